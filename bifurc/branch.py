@@ -1,0 +1,180 @@
+"""A traced curve as a piecewise polynomial of its arclength."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+__all__ = ["Branch", "Outcome"]
+
+
+class Outcome(Enum):
+    """Why tracing ended, with what to do next."""
+
+    CLOSED = "closed: the curve came back to its start"
+    LEFT_REGION = "left the region: both ends lie on the bounds; widen the bounds to follow it further"
+    STALLED = "stalled: no trusted step is left; look for a cusp or a singular point of higher order at the end"
+    STEP_LIMIT = "step limit: the curve is longer than the allowed length; raise max_length"
+    OPEN = "closure gap: the start does not solve the equations; correct the start or the geometry"
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A smooth solution curve u(s), s the arclength from 0 to ``length``.
+
+    ``pieces`` (k, order + 1, n) are polynomial coefficients in (s - centers[i]) / radii[i]; piece i is used
+    from breaks[i] to breaks[i + 1]. ``residuals`` (k,) bound the relative residual on each piece as sampled when it
+    was made; ``gap`` is the residual at a start that could not be corrected.
+    """
+
+    pieces: np.ndarray
+    centers: np.ndarray
+    radii: np.ndarray
+    breaks: np.ndarray
+    residuals: np.ndarray
+    periods: np.ndarray
+    outcome: Outcome
+    gap: float = field(default=0.0)
+
+    @property
+    def n(self) -> int:
+        """Number of unknowns."""
+        return self.pieces.shape[2]
+
+    @property
+    def length(self) -> float:
+        """Arclength of the whole curve."""
+        return float(self.breaks[-1])
+
+    @property
+    def closed(self) -> bool:
+        """Whether the curve comes back to its start (modulo the periods)."""
+        return self.outcome is Outcome.CLOSED
+
+    @property
+    def max_residual(self) -> float:
+        """Largest relative residual seen on any piece."""
+        return float(self.residuals.max(initial=self.gap))
+
+    def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
+        """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of a closed curve."""
+        s = np.asarray(s, dtype=float)
+        turns = np.floor(s / self.length) if self.closed else np.zeros_like(s)
+        local = s - turns * self.length
+        piece = np.clip(np.searchsorted(self.breaks, local, side="right") - 1, 0, len(self.pieces) - 1)
+        x = (local - self.centers[piece]) / self.radii[piece]
+        coefficients = self.pieces[piece]
+        order = coefficients.shape[-2] - 1
+        factor = np.ones(order + 1)
+        for j in range(derivative):
+            factor *= np.maximum(np.arange(order + 1) - j, 0)
+        value = np.zeros((*s.shape, self.n))
+        for k in range(order, derivative - 1, -1):
+            value = value * x[..., None] + factor[k] * coefficients[..., k, :]
+        value = value / self.radii[piece][..., None] ** derivative
+        if derivative == 0 and self.closed:
+            value = value + turns[..., None] * (self._ends[1] - self._ends[0])
+        return value
+
+    @cached_property
+    def _ends(self) -> np.ndarray:
+        x = (self.breaks[[0, -1]] - self.centers[[0, -1]]) / self.radii[[0, -1]]
+        powers = x[:, None] ** np.arange(self.pieces.shape[1])
+        return np.einsum("ek,ekn->en", powers, self.pieces[[0, -1]])
+
+    @cached_property
+    def winding(self) -> np.ndarray:
+        """Turns (n,) that each periodic unknown makes along a closed curve; 0 for the others and for open curves."""
+        turns = np.zeros(self.n, dtype=int)
+        if self.closed:
+            periodic = np.isfinite(self.periods)
+            travel = self._ends[1] - self._ends[0]
+            turns[periodic] = np.rint(travel[periodic] / self.periods[periodic]).astype(int)
+        return turns
+
+    def arclengths(self, count: int) -> np.ndarray:
+        """``count`` equally spaced arclengths; a closed curve's last one stops short of the start."""
+        return np.linspace(0.0, self.length, count, endpoint=not self.closed)
+
+    def sample(self, count: int) -> np.ndarray:
+        """Points (count, n) at equally spaced arclengths."""
+        return self(self.arclengths(count))
+
+    def travel(self, start: float, end: float) -> np.ndarray:
+        """Total variation (n,) of each unknown from arclength ``start`` to ``end`` (end >= start)."""
+        s = np.linspace(start, end, max(16, int(64 * (end - start) / max(self.radii.max(), 1e-300))))
+        return np.abs(np.diff(self(s), axis=0)).sum(axis=0)
+
+    @cached_property
+    def _index(self) -> tuple[cKDTree, np.ndarray, np.ndarray]:
+        s = np.concatenate(
+            [np.linspace(a, b, 12, endpoint=False) for a, b in zip(self.breaks[:-1], self.breaks[1:], strict=True)]
+            + [self.breaks[-1:]]
+        )
+        box = np.where(np.isfinite(self.periods), self.periods, 0.0)
+        return cKDTree(_into_box(self(s), box), boxsize=box), s, box
+
+    def nearest(self, points: np.ndarray, neighbours: int = 3) -> tuple[np.ndarray, np.ndarray]:
+        """Distance (k,) of each point (k, n) to the curve modulo the periods, and the arclength (k,) there."""
+        points = np.atleast_2d(np.asarray(points, dtype=float))
+        tree, grid, box = self._index
+        count = min(neighbours, len(grid))
+        _, near = tree.query(_into_box(points, box), k=count)
+        s = grid[near.reshape(len(points), count)]
+        reach = np.diff(self.breaks).max() / 6
+        for _ in range(6):
+            gap = self._wrapped(self(s) - points[:, None, :])
+            slope = self(s, 1)
+            step = np.einsum("kjn,kjn->kj", gap, slope) / np.einsum("kjn,kjn->kj", slope, slope)
+            s = s - np.clip(step, -reach, reach)
+            s = s % self.length if self.closed else np.clip(s, 0.0, self.length)
+        distance = np.linalg.norm(self._wrapped(self(s) - points[:, None, :]), axis=-1)
+        best = np.argmin(distance, axis=1)
+        rows = np.arange(len(points))
+        return distance[rows, best], s[rows, best]
+
+    def passes(self, point: np.ndarray, within: float) -> np.ndarray:
+        """All arclengths at which the curve passes ``point`` (n,) at a distance below ``within``, in order."""
+        _, grid, _ = self._index
+        gap = np.linalg.norm(self._wrapped(self(grid) - point), axis=-1)
+        near = grid[gap < 2.5 * np.diff(grid).max() + within]
+        found: list[float] = []
+        for s in near:
+            for _ in range(8):
+                offset, slope = self._wrapped(self(s) - point), self(s, 1)
+                s = s - offset @ slope / (slope @ slope)
+                s = s % self.length if self.closed else min(max(s, 0.0), self.length)
+            apart = [abs(s - t) for t in found]
+            if self.closed:
+                apart = [min(d, self.length - d) for d in apart]
+            if np.linalg.norm(self._wrapped(self(s) - point)) < within and min(apart, default=1.0) > 1e-6:
+                found.append(float(s))
+        return np.array(sorted(found))
+
+    def _wrapped(self, gap: np.ndarray) -> np.ndarray:
+        periodic = np.isfinite(self.periods)
+        if np.any(periodic):
+            gap = gap.copy()
+            gap[..., periodic] -= self.periods[periodic] * np.round(gap[..., periodic] / self.periods[periodic])
+        return gap
+
+    def reversed(self) -> Branch:
+        """The same curve run the other way."""
+        signs = (-1.0) ** np.arange(self.pieces.shape[1])
+        return Branch(
+            (self.pieces * signs[:, None])[::-1], (self.length - self.centers)[::-1], self.radii[::-1],
+            (self.length - self.breaks)[::-1], self.residuals[::-1], self.periods, self.outcome, self.gap,
+        )  # fmt: skip
+
+
+def _into_box(points: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Points with periodic unknowns taken into [0, box)."""
+    out = np.array(points, dtype=float)
+    periodic = box > 0
+    out[..., periodic] %= box[periodic]
+    out[..., periodic] = np.where(out[..., periodic] >= box[periodic], 0.0, out[..., periodic])
+    return out

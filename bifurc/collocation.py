@@ -1,0 +1,131 @@
+"""Curve pieces for a problem that offers no series: corrected points at Chebyshev nodes, interpolated.
+
+A piece follows the curve over a stretch of the hyperplane coordinate t . (u - u_0), corrects a point at
+every Chebyshev node of it, and is accepted when the last coefficients of the interpolant have fallen
+to the tolerance: spectral accuracy between the nodes from nothing but F and F'.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from bifurc.corrector import correct_across, null_vector
+
+if TYPE_CHECKING:
+    from bifurc.problem import Problem
+
+__all__ = ["march_by_collocation"]
+
+RAN, STALLED, OPEN = 0, 1, 2
+
+
+def march_by_collocation(
+    problem: Problem, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,
+    longest: float, count: int,
+) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    """(status, pieces, steps, radii, residuals) as in `bifurc.problem.March`."""
+    point, gap = correct_across(problem, start, tangent, tolerance)
+    pieces, radii, residuals = [], [], []
+    status = RAN
+    if gap > 100 * tolerance + 1e-12:
+        return OPEN, np.empty((0, order + 1, problem.n)), np.empty(0), np.empty(0), np.array([gap])
+    heading, width = null_vector(problem, point, tangent), longest / 4
+    while len(pieces) < count:
+        piece, length, residual, width = _piece(problem, point, heading, order, tolerance, shortest, width)
+        if piece is None:
+            status = STALLED
+            break
+        pieces.append(piece)
+        radii.append(length / 2)
+        residuals.append(residual)
+        point = piece.sum(axis=0)  # the value at x = 1
+        slope = np.arange(order + 1) @ piece
+        heading = slope / np.linalg.norm(slope)
+        width = min(width, longest)
+    half = np.array(radii)
+    steps = half + np.concatenate([[0.0], half[:-1]]) if len(half) else half
+    return status, np.array(pieces).reshape(-1, order + 1, problem.n), steps, half, np.array(residuals)
+
+
+def _piece(
+    problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, shortest: float,
+    width: float,
+) -> tuple[np.ndarray | None, float, float, float]:  # fmt: skip
+    """One accepted piece (or None), its arclength, its residual and the width to try next."""
+    cosine = -np.cos(np.pi * np.arange(order + 1) / order)  # nodes from -1 to 1
+    while width >= shortest:
+        nodes = _follow(problem, start, heading, 0.5 * width * (cosine + 1.0), tolerance)
+        if nodes is not None:
+            coefficients = chebyshev.chebfit(cosine, nodes, order)
+            tail = float(np.abs(coefficients[-2:]).max())
+            size = max(width, 1e-3)
+            if tail <= tolerance * size:
+                piece, length = _by_arclength(coefficients, width)
+                inside = np.vander(np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True)
+                misfit = problem.residuals(inside @ piece) / problem.magnitude
+                residual = float(np.linalg.norm(misfit, axis=1).max())
+                if residual <= 30 * tolerance * max(size, 1.0):
+                    growth = (tolerance * size / max(tail, 1e-18)) ** (1.0 / order)
+                    return piece, length, residual, width * min(1.6, max(0.7, 0.95 * growth))
+                tail = max(tail, residual)
+            width *= min(0.75, max(0.3, 0.9 * (tolerance * size / tail) ** (1.0 / order)))
+        else:
+            width *= 0.4
+    return None, 0.0, 0.0, width
+
+
+def _follow(
+    problem: Problem, start: np.ndarray, heading: np.ndarray, offsets: np.ndarray, tolerance: float
+) -> np.ndarray | None:
+    """Curve points (k, n) at ``offsets`` along ``heading`` from ``start``; None where correction fails.
+
+    Each is predicted by the polynomial through the last few points before it.
+    """
+    points = [start]
+    for k in range(1, len(offsets)):
+        reach = offsets[k] - offsets[k - 1]
+        if k == 1:
+            guess = start + reach * heading
+        else:
+            last = slice(max(0, k - 6), k)
+            guess = _extrapolate(offsets[last], np.array(points[last]), offsets[k])
+        guess = guess + ((offsets[k] - (guess - start) @ heading)) * heading
+        point, gap = correct_across(problem, guess, heading, tolerance)
+        if gap > 100 * tolerance or np.linalg.norm(point - points[-1]) > 4 * reach:
+            return None
+        points.append(point)
+    return np.array(points)
+
+
+def _extrapolate(at: np.ndarray, values: np.ndarray, target: float) -> np.ndarray:
+    """Value at ``target`` of the polynomial through ``values`` (Neville)."""
+    table = values.copy()
+    for level in range(1, len(at)):
+        left, right = at[: len(at) - level], at[level:]
+        span = (right - left)[:, None]
+        table = ((target - left)[:, None] * table[1:] - (target - right)[:, None] * table[:-1]) / span
+    return table[0]
+
+
+def _by_arclength(coefficients: np.ndarray, width: float) -> tuple[np.ndarray, float]:
+    """The Chebyshev piece on a hyperplane coordinate of ``width``, as monomials in arclength on [-1, 1]; and its length."""
+    order = len(coefficients) - 1
+    fine = -np.cos(np.pi * np.arange(3 * order + 1) / (3 * order))
+    slope = chebyshev.chebval(fine, chebyshev.chebder(coefficients))
+    speed = chebyshev.chebfit(fine, np.linalg.norm(slope, axis=0), 3 * order)
+    arclength = chebyshev.chebint(speed, lbnd=-1)
+    length = float(chebyshev.chebval(1.0, arclength))
+    nodes = -np.cos(np.pi * np.arange(order + 1) / order)
+    target = 0.5 * length * (nodes + 1.0)
+    x = nodes.copy()
+    for _ in range(8):
+        x = np.clip(x - (chebyshev.chebval(x, arclength) - target) / chebyshev.chebval(x, speed), -1.0, 1.0)
+    values = chebyshev.chebval(x, coefficients).T
+    fitted = chebyshev.chebfit(nodes, values, order)
+    basis = np.zeros((order + 1, order + 1))
+    for k in range(order + 1):
+        basis[k, : k + 1] = chebyshev.cheb2poly(np.eye(order + 1)[k])[: k + 1]
+    return basis.T @ fitted, length

@@ -1,0 +1,199 @@
+"""What is solved: a system F(u) = 0 of any number of equations whose solutions are curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.collocation import march_by_collocation
+from bifurc.corrector import project_by_least_squares
+
+__all__ = ["FunctionProblem", "March", "MarchStatus", "Problem", "ProblemError"]
+
+
+class ProblemError(ValueError):
+    """A problem or a start that cannot be used: names the thing, its value and what is allowed."""
+
+    def __init__(self, name: str, value: object, allowed: str):
+        self.name, self.value, self.allowed = name, value, allowed
+        super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
+
+
+class MarchStatus:
+    """Why a march of pieces ended: all pieces made, no trusted step left, or no solution at the start."""
+
+    RAN, STALLED, OPEN = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class March:
+    """Consecutive polynomial pieces of a curve.
+
+    ``pieces`` (k, order + 1, n) are coefficients in (s - centre) / radius, trusted from -1 to 1, s the
+    arclength; ``steps`` (k,) the arclength to each centre from the one before it (from the start, for the first), ``radii`` (k,),
+    ``residuals`` (k,) the largest residual seen on each piece relative to the problem's magnitude, or the gap
+    at the start alone when the status is OPEN.
+    """
+
+    status: int
+    pieces: np.ndarray
+    steps: np.ndarray
+    radii: np.ndarray
+    residuals: np.ndarray
+
+
+class Problem:
+    """F: R^n -> R^m with any m; the curves are where rank F' = n - 1 and F = 0.
+
+    Redundant equations are normal: a spatial loop has six for five or fewer that are independent. A subclass
+    gives `residuals` and `jacobians` for many points at once, and may replace `hessian`, `march` and `project` by
+    something faster; the methods here need nothing but those two.
+
+    ``names`` and ``units`` (n,) label the unknowns, ``periods`` (n,) are their periods (inf where there is none),
+    ``bounds`` (n, 2) the region of interest (infinite where there is none), ``magnitude`` the typical size of
+    F', by which residuals and singular values are divided, ``scale`` the typical size of the unknowns, and ``derivatives`` says how F' was made.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    periods: np.ndarray
+    bounds: np.ndarray
+    magnitude: float = 1.0
+    scale: float = 1.0
+    derivatives: str = "exact"
+
+    @property
+    def n(self) -> int:
+        """Number of unknowns."""
+        return len(self.names)
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        raise NotImplementedError
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        raise NotImplementedError
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,), here by central differences of F'."""
+        step = 1e-5 * (1.0 + np.abs(point))
+        shifts = np.diag(step)
+        upper, lower = self.jacobians(point + shifts), self.jacobians(point - shifts)
+        out = np.moveaxis((upper - lower) / (2 * step[:, None, None]), 0, -1)
+        return 0.5 * (out + np.swapaxes(out, 1, 2))
+
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,
+        longest: float, count: int,
+    ) -> March:  # fmt: skip
+        """Up to ``count`` pieces of the curve from ``start`` along ``tangent``, here by collocation."""
+        return March(*march_by_collocation(self, start, tangent, order, tolerance, shortest, longest, count))
+
+    def project(
+        self, starts: np.ndarray, center: np.ndarray | None = None, radius: float = 0.0
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is left at each.
+
+        With ``radius`` > 0 on the sphere of that radius about ``center`` as well.
+        """
+        return project_by_least_squares(self, starts, center, radius)
+
+    def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """a - b with every periodic unknown taken to within half a period of zero."""
+        gap = np.asarray(a, dtype=float) - b
+        periodic = np.isfinite(self.periods)
+        if np.any(periodic):
+            period = self.periods[periodic]
+            gap[..., periodic] -= period * np.round(gap[..., periodic] / period)
+        return gap
+
+    def check_point(self, point: np.ndarray, name: str) -> np.ndarray:
+        """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or values not finite."""
+        out = np.array(point, dtype=float)
+        if out.shape != (self.n,):
+            raise ProblemError(f"shape of {name}", out.shape, f"({self.n},)")
+        if not np.all(np.isfinite(out)):
+            raise ProblemError(name, out, "finite")
+        return out
+
+
+class FunctionProblem(Problem):
+    """A problem from a plain Python callable ``function``: (n,) -> (m,).
+
+    Derivatives come from ``jacobian``: (n,) -> (m, n) where given, else by complex step where the function
+    lets complex numbers through, else by central differences; ``derivatives`` says which. ``bounds`` (n, 2)
+    is the region from which `explore` draws starts and in which curves are followed. Raises
+    `ProblemError` for bounds out of order and for a function that gives no finite vector.
+    """
+
+    def __init__(
+        self,
+        function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
+        bounds: Sequence[Sequence[float]],
+        *,
+        jacobian: Callable[[np.ndarray], np.ndarray] | None = None,
+        names: Sequence[str] | None = None,
+        units: Sequence[str] | None = None,
+        periods: Sequence[float] | None = None,
+    ):
+        self.bounds = np.array(bounds, dtype=float)
+        if self.bounds.ndim != 2 or self.bounds.shape[1] != 2 or np.any(self.bounds[:, 0] >= self.bounds[:, 1]):
+            raise ProblemError("bounds", self.bounds.tolist(), "rows of (low, high) with low < high")
+        n = len(self.bounds)
+        self.names = tuple(names) if names else tuple(f"u{i + 1}" for i in range(n))
+        self.units = tuple(units) if units else ("",) * n
+        self.periods = np.full(n, np.inf) if periods is None else np.array(periods, dtype=float)
+        for what, given in (("names", self.names), ("units", self.units), ("periods", self.periods)):
+            if len(given) != n:
+                raise ProblemError(f"number of {what}", len(given), f"{n}, the number of bounds")
+        self._function, self._jacobian = function, jacobian
+        low = np.where(np.isfinite(self.bounds[:, 0]), self.bounds[:, 0], -1.0)
+        high = np.where(np.isfinite(self.bounds[:, 1]), self.bounds[:, 1], 1.0)
+        probes = np.random.default_rng(0).uniform(low, high, (7, n))
+        value = np.asarray(function(probes[0]), dtype=float)
+        if value.ndim != 1 or not np.all(np.isfinite(value)):
+            raise ProblemError("value of the function", value, "a vector of finite numbers")
+        self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
+        size = np.linalg.norm(self.jacobians(probes), ord=2, axis=(1, 2))
+        self.magnitude = float(np.median(size)) or 1.0
+        self.scale = float(np.median(high - low)) / 4.0
+
+    def _choose_derivatives(self, probe: np.ndarray) -> str:
+        try:
+            by_complex = self._complex_step(probe)
+        except (TypeError, ValueError, np.exceptions.ComplexWarning):
+            return "central differences"
+        by_difference = self._central_difference(probe)
+        size = 1.0 + np.abs(by_difference).max()
+        agree = by_complex.shape == by_difference.shape and np.abs(by_complex - by_difference).max() < 1e-5 * size
+        return "complex step" if agree else "central differences"
+
+    def _complex_step(self, point: np.ndarray) -> np.ndarray:
+        shifts = point + 1e-100j * np.eye(self.n)
+        return np.column_stack([np.imag(np.asarray(self._function(row))) / 1e-100 for row in shifts])
+
+    def _central_difference(self, point: np.ndarray) -> np.ndarray:
+        columns = []
+        for i in range(self.n):
+            step = np.zeros(self.n)
+            step[i] = 6e-6 * (1.0 + abs(point[i]))
+            upper, lower = (np.asarray(self._function(point + sign * step), dtype=float) for sign in (1, -1))
+            columns.append((upper - lower) / (2 * step[i]))
+        return np.column_stack(columns)
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        return np.array([np.asarray(self._function(u), dtype=float) for u in np.atleast_2d(points)])
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        if self._jacobian is not None:
+            make = self._jacobian
+        elif self.derivatives == "complex step":
+            make = self._complex_step
+        else:
+            make = self._central_difference
+        return np.array([np.asarray(make(u), dtype=float) for u in np.atleast_2d(points)])
