@@ -1,0 +1,84 @@
+"""Mavroidis and Roth's 6R: four links of one Bennett ratio, and two equal links that are free."""
+
+from __future__ import annotations
+
+from enum import Enum
+from functools import partial
+from math import radians
+from typing import Any
+
+from linkages.entry import Entry, Parameter
+from linkages.link import Link, bennett_links, closed_chain
+from linkages.loop import Loop
+
+__all__ = ["ENTRIES", "OffsetPattern", "mavroidis_roth"]
+
+
+class OffsetPattern(Enum):
+    """How the offsets of joints 5 and 6 follow from those of joints 2 and 3."""
+
+    OPPOSITE = "R2 = R5, R3 = R6"
+    REFLECTED = "R2 = R6, R3 = R5"
+    NEGATIVE = "R2 = -R5, R3 = -R6"
+
+
+def mavroidis_roth(
+    alpha: Any,
+    gamma: Any,
+    scale: Any,
+    length: Any,
+    twist: Any,
+    r2: Any,
+    r3: Any,
+    pattern: OffsetPattern = OffsetPattern.OPPOSITE,
+    exchanged: bool = False,
+) -> Loop:
+    """Mavroidis and Roth's 6R: links a, l, a, c, l, c, or a, l, c, a, l, c when ``exchanged``.
+
+    ``alpha``, ``gamma`` are the twists (rad) of a and c, whose lengths are ``scale * sin(twist)``; ``length``
+    and ``twist`` are those of the free link l. Source: Mavroidis and Roth (1995), equation (2.4.11) in Song
+    (2013); the pattern R2 = -R5, R3 = -R6 moves as well and is not in the sources.
+    """
+    a, c = bennett_links(scale, alpha, gamma)
+    free = Link(length, twist)
+    r5, r6 = {
+        OffsetPattern.OPPOSITE: (r2, r3),
+        OffsetPattern.REFLECTED: (r3, r2),
+        OffsetPattern.NEGATIVE: (-r2, -r3),
+    }[pattern]
+    links = (a, free, c, a, free, c) if exchanged else (a, free, a, c, free, c)
+    return closed_chain(*links, offsets=(0, r2, r3, 0, r5, r6))
+
+
+_PARAMETERS = (
+    Parameter("alpha", radians(35), "angle", "twist of link a", radians(15), radians(110)),
+    Parameter("gamma", radians(81), "angle", "twist of link c", radians(15), radians(110)),
+    Parameter("scale", 1.7, "length", "length / sin(twist) of the links a and c", 0.5, 3.0),
+    Parameter("length", 1.13, "length", "length of the free links 23 and 56", 0.3, 2.0),
+    Parameter("twist", radians(73), "angle", "twist of the free links 23 and 56", radians(15), radians(165)),
+    Parameter("r2", 0.31, "length", "offset R2", -0.5, 0.5),
+    Parameter("r3", -0.47, "length", "offset R3", -0.5, 0.5),
+)
+
+
+def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
+    links = "a12 = a45, a23 = a56, a34 = a61" if exchanged else "a12 = a34, a23 = a56, a45 = a61"
+    order = "exchanged-" if exchanged else ""
+    extra = ("moves too; not in the sources",) if pattern is OffsetPattern.NEGATIVE else ()
+    return Entry(
+        f"{order}mavroidis-roth-6r-{pattern.name.lower()}",
+        f"Mavroidis and Roth's 6R, {'exchanged, ' if exchanged else ''}{pattern.value}",
+        "Mavroidis and Roth (1995); Song (2013), eq. 2.4.11",
+        partial(mavroidis_roth, pattern=pattern, exchanged=exchanged),
+        _PARAMETERS,
+        (
+            f"{links}, twists likewise",
+            "sin(twist)/length is the same for the links 12, 34, 45, 61; links 23 = 56 are free",
+            f"R1 = R4 = 0, {pattern.value}",
+        ),
+        errata=extra,
+        facts={"joints": 6, "mobility": 1},
+    )
+
+
+ENTRIES = tuple(_entry(pattern, exchanged) for exchanged in (False, True) for pattern in OffsetPattern)

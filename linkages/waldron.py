@@ -1,0 +1,77 @@
+"""Waldron's hybrid 6R: two Bennett loops, of any ratios, with a joint axis in common."""
+
+from __future__ import annotations
+
+from math import radians
+from typing import Any
+
+from linkages.constructions import share_joint
+from linkages.entry import Entry, Parameter
+from linkages.link import bennett_links, closed_chain
+from linkages.loop import Loop
+from linkages.spatial_triangle import Kink
+
+__all__ = ["ENTRIES", "waldron_collinear", "waldron_hybrid"]
+
+
+def waldron_hybrid(
+    alpha: Any, beta: Any, scale_1: Any, gamma: Any, delta: Any, scale_2: Any, kink_1: Any, kink_2: Any, shift: Any
+) -> Loop:
+    """Waldron's hybrid 6R of the Bennett loops a, b and c, d: links b, a, [b d], c, d, [c a].
+
+    Twists in rad; ``scale_1`` and ``scale_2`` are length / sin(twist) of the two loops; the links b, d are
+    locked at ``kink_1`` and c, a at ``kink_2`` (rad, or a `Kink`); ``shift`` is the distance of the loops
+    along the common axis. Source: Waldron (1968); Baker (1993a) for the geometry.
+    """
+    a, b = bennett_links(scale_1, alpha, beta)
+    c, d = bennett_links(scale_2, gamma, delta)
+    return share_joint(closed_chain(a, b, a, b), closed_chain(d, c, d, c), kink_1, kink_2, shift)
+
+
+def waldron_collinear(alpha: Any, beta: Any, scale_1: Any, gamma: Any, delta: Any, scale_2: Any) -> Loop:
+    """Waldron's hybrid 6R without offsets: b and d folded upon each other, a and c in line.
+
+    Links b, a, b - d, c, d, a + c. Source: Yu and Baker (1981); section 2.4.6 in Song (2013).
+    """
+    return waldron_hybrid(alpha, beta, scale_1, gamma, delta, scale_2, Kink.FOLDED, Kink.STRAIGHT, 0)
+
+
+def _twist(name: str, degrees: float, link: str) -> Parameter:
+    return Parameter(name, radians(degrees), "angle", f"twist of link {link}", radians(15), radians(110))
+
+
+_LOOPS = (
+    _twist("alpha", 35, "a"),
+    _twist("beta", 62, "b"),
+    Parameter("scale_1", 1.7, "length", "length / sin(twist) of the links a and b", 0.5, 3.0),
+    _twist("gamma", 81, "c"),
+    _twist("delta", 48, "d"),
+    Parameter("scale_2", 1.25, "length", "length / sin(twist) of the links c and d", 0.5, 3.0),
+)
+_RATIOS = "sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d"
+
+ENTRIES = (
+    Entry(
+        "waldron-hybrid-6r",
+        "Waldron's hybrid 6R of two Bennett loops",
+        "Waldron (1968); Baker (1993a); Song (2013), section 2.4.5",
+        waldron_hybrid,
+        (
+            *_LOOPS,
+            Parameter("kink_1", radians(25), "angle", "angle between b and d", radians(-120), radians(120)),
+            Parameter("kink_2", radians(-70), "angle", "angle between c and a", radians(-120), radians(120)),
+            Parameter("shift", 0.37, "length", "distance along the common axis", -1.0, 1.0),
+        ),
+        (_RATIOS, "links 34 and 61 and the offsets R1, R3, R4, R6 from the spatial triangles", "R2 = R5 = 0"),
+        facts={"joints": 6, "mobility": 1},
+    ),
+    Entry(
+        "waldron-collinear-6r",
+        "Waldron's hybrid 6R with collinear links",
+        "Waldron (1968); Yu and Baker (1981); Song (2013), section 2.4.6",
+        waldron_collinear,
+        _LOOPS,
+        (_RATIOS, "links b, a, b-d, c, d, a+c, twists likewise, R = 0"),
+        facts={"joints": 6, "mobility": 1},
+    ),
+)
