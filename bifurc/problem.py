@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.collocation import march_by_collocation
 from bifurc.corrector import project_by_least_squares
+from bifurc.seeding import Seeds, random_seeds
 
 __all__ = ["FunctionProblem", "March", "MarchStatus", "Problem", "ProblemError"]
 
@@ -100,6 +101,10 @@ class Problem:
         With ``radius`` > 0 on the sphere of that radius about ``center`` as well.
         """
         return project_by_least_squares(self, starts, center, radius)
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        """Solutions to start from, here reached from ``count`` random starts."""
+        return random_seeds(self, rng, count)
 
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b with every periodic unknown taken to within half a period of zero."""

@@ -68,7 +68,7 @@ def _residual_jacobian(theta, geometry, residual, jacobian):
         jacobian[5, i] += wx * p[1] - wy * p[0]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def residuals(thetas, geometry):
     """Closure residuals (k, 6) of configurations (k, n)."""
     k, n = thetas.shape
@@ -79,7 +79,7 @@ def residuals(thetas, geometry):
     return out
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def jacobians(thetas, geometry):
     """Derivatives (k, 6, n) of the closure residual at configurations (k, n)."""
     k, n = thetas.shape
@@ -89,7 +89,7 @@ def jacobians(thetas, geometry):
     return out
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def hessians(theta, geometry):
     """Second derivative (6, n, n) of the closure residual at one configuration (n,).
 
@@ -341,7 +341,7 @@ def _meet(left, right, at, guess, place, heading, other, slope):
 RAN, STALLED, OPEN = 0, 1, 2
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
     """Up to ``count`` consecutive Taylor pieces of the motion from ``theta`` along ``tangent``.
 
@@ -425,7 +425,8 @@ def _damped_step(jacobian, residual, damping, step):
         for k in range(j):
             for i in range(j, n):
                 normal[i, j] -= normal[i, k] * normal[j, k]
-        pivot = np.sqrt(max(normal[j, j], 1e-300))
+        normal[j, j] = max(normal[j, j], 1e-300)
+        pivot = np.sqrt(normal[j, j])
         for i in range(j, n):
             normal[i, j] /= pivot
     for i in range(n):
@@ -454,7 +455,7 @@ def _augmented(theta, geometry, center, radius, residual, jacobian):
     return np.sqrt(np.sum(residual * residual))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, error_model="numpy")
 def project(starts, geometry, center, radius, noise, iterations):
     """Levenberg-Marquardt from every start (k, n) onto the closed configurations.
 

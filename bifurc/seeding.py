@@ -1,0 +1,71 @@
+"""Starting points, and the estimate of what they missed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.special import gammaincinv
+
+if TYPE_CHECKING:
+    from bifurc.problem import Problem
+
+__all__ = ["Completeness", "Seeds", "missed_probability", "random_seeds"]
+
+
+@dataclass(frozen=True)
+class Seeds:
+    """Solutions to start from.
+
+    ``points`` (k, n) solve the system; ``random`` (k,) says which of them come from random starts, the rest from complete
+    slices; ``gaps`` are the residuals (g,) of the random starts that found no solution. ``statement`` says what
+    the slices leave out, empty where there are none; ``complete`` whether every slice was complete.
+    """
+
+    points: np.ndarray
+    random: np.ndarray
+    gaps: np.ndarray
+    complete: bool = False
+    statement: str = ""
+
+
+@dataclass(frozen=True)
+class Completeness:
+    """How sure it is that nothing is missing: ``level`` is "complete slices" or "estimated"."""
+
+    level: str
+    statement: str
+    missed_probability: float
+
+
+def random_seeds(problem: Problem, rng: np.random.Generator, count: int, closed_below: float = 1e-11) -> Seeds:
+    """Solutions reached from ``count`` random starts.
+
+    Periodic unknowns are drawn from their period, the others from the bounds (from -scale to scale
+    where these are infinite).
+    """
+    low = np.where(np.isfinite(problem.bounds[:, 0]), problem.bounds[:, 0], -problem.scale)
+    high = np.where(np.isfinite(problem.bounds[:, 1]), problem.bounds[:, 1], problem.scale)
+    periodic = np.isfinite(problem.periods)
+    low = np.where(periodic, -0.5 * problem.periods, low)
+    high = np.where(periodic, 0.5 * problem.periods, high)
+    points, gaps = problem.project(rng.uniform(low, high, (count, problem.n)))
+    solved = gaps < closed_below
+    solved &= np.all((points >= problem.bounds[:, 0]) & (points <= problem.bounds[:, 1]), axis=1)
+    return Seeds(points[solved], np.ones(int(solved.sum()), dtype=bool), gaps[~solved])
+
+
+def missed_probability(hits: Sequence[int]) -> float:
+    """Upper 95 % limit of the chance that one more random start would reach something not yet seen.
+
+    ``hits``: how many starts reached each thing found. Good and Turing (Good 1953) estimate the unseen share by
+    n1 / N, with n1 the number of things hit just once among N starts; n1 is close to Poisson, and its upper
+    limit (Garwood 1936) is used in its place: 3 / N where nothing was hit just once.
+    """
+    total = int(sum(hits))
+    if total == 0:
+        return 1.0
+    singles = sum(1 for h in hits if h == 1)
+    return float(min(1.0, gammaincinv(singles + 1, 0.95) / total))
