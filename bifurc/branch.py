@@ -123,16 +123,19 @@ class Branch:
         points = np.atleast_2d(np.asarray(points, dtype=float))
         tree, grid, box = self._index
         count = min(neighbours, len(grid))
-        _, near = tree.query(_into_box(points, box), k=count)
-        s = grid[near.reshape(len(points), count)]
-        reach = np.diff(self.breaks).max() / 6
-        for _ in range(6):
-            gap = self._wrapped(self(s) - points[:, None, :])
-            slope = self(s, 1)
-            step = np.einsum("kjn,kjn->kj", gap, slope) / np.einsum("kjn,kjn->kj", slope, slope)
-            s = s - np.clip(step, -reach, reach)
-            s = s % self.length if self.closed else np.clip(s, 0.0, self.length)
-        distance = np.linalg.norm(self._wrapped(self(s) - points[:, None, :]), axis=-1)
+        distance, near = tree.query(_into_box(points, box), k=count)
+        distance, near = distance.reshape(len(points), count), near.reshape(len(points), count)
+        s = grid[near]
+        spacing = np.diff(grid).max()
+        close = distance[:, 0] < 2 * spacing  # the others are surely off the curve: the nearest sample will do
+        if np.any(close):
+            t, target = s[close], points[close, None, :]
+            for _ in range(5):
+                gap, slope = self._wrapped(self(t) - target), self(t, 1)
+                step = np.einsum("kjn,kjn->kj", gap, slope) / np.einsum("kjn,kjn->kj", slope, slope)
+                t = self._inside(t - np.clip(step, -2 * spacing, 2 * spacing))
+            s[close] = t
+            distance[close] = np.linalg.norm(self._wrapped(self(t) - target), axis=-1)
         best = np.argmin(distance, axis=1)
         rows = np.arange(len(points))
         return distance[rows, best], s[rows, best]
@@ -141,19 +144,17 @@ class Branch:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below ``within``, in order."""
         _, grid, _ = self._index
         gap = np.linalg.norm(self._wrapped(self(grid) - point), axis=-1)
-        near = grid[gap < 2.5 * np.diff(grid).max() + within]
-        found: list[float] = []
-        for s in near:
-            for _ in range(8):
-                offset, slope = self._wrapped(self(s) - point), self(s, 1)
-                s = s - offset @ slope / (slope @ slope)
-                s = s % self.length if self.closed else min(max(s, 0.0), self.length)
-            apart = [abs(s - t) for t in found]
-            if self.closed:
-                apart = [min(d, self.length - d) for d in apart]
-            if np.linalg.norm(self._wrapped(self(s) - point)) < within and min(apart, default=1.0) > 1e-6:
-                found.append(float(s))
-        return np.array(sorted(found))
+        s = grid[gap < 2.5 * np.diff(grid).max() + within]
+        for _ in range(8):
+            offset, slope = self._wrapped(self(s) - point), self(s, 1)
+            s = self._inside(s - np.einsum("kn,kn->k", offset, slope) / np.einsum("kn,kn->k", slope, slope))
+        s = np.sort(s[np.linalg.norm(self._wrapped(self(s) - point), axis=1) < within])
+        apart = np.diff(s, prepend=s[-1] - self.length if self.closed and len(s) > 1 else -np.inf)
+        return s[apart > 1e-6]
+
+    def _inside(self, s: np.ndarray) -> np.ndarray:
+        """Arclengths taken into the curve: modulo its length where it is closed, else cut off."""
+        return s % self.length if self.closed else np.clip(s, 0.0, self.length)
 
     def _wrapped(self, gap: np.ndarray) -> np.ndarray:
         periodic = np.isfinite(self.periods)

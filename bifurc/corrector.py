@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["correct_across", "null_vector", "project_by_least_squares"]
+__all__ = ["correct_across", "null_vector", "project_by_least_squares", "project_to_sphere_by_newton"]
 
 
 def null_vector(problem: Problem, point: np.ndarray, along: np.ndarray | None = None) -> np.ndarray:
@@ -52,41 +52,58 @@ def correct_across(
 
 
 def project_by_least_squares(
-    problem: Problem, starts: np.ndarray, center: np.ndarray | None = None, radius: float = 0.0,
-    iterations: int = 80,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    problem: Problem, starts: np.ndarray, iterations: int = 80
+) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) reached from every start (k, n), and the relative residual (k,) left at each.
 
     Levenberg-Marquardt with the residual norm as damping, which converges quadratically to solution sets that
-    are not isolated points as well (Fan & Yuan 2005). With ``radius`` > 0 the solutions also lie on the
-    sphere of that radius about ``center``.
+    are not isolated points as well (Fan & Yuan 2005).
     """
     points, gaps = np.array(starts, dtype=float), np.empty(len(starts))
 
-    def augmented(u: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    def evaluate(u: np.ndarray) -> tuple[np.ndarray, float]:
         residual = problem.residuals(u[None])[0] / problem.magnitude
-        jacobian = problem.jacobians(u[None])[0] / problem.magnitude
-        if radius > 0 and center is not None:
-            offset = u - center
-            residual = np.append(residual, 0.5 * (offset @ offset / radius - radius))
-            jacobian = np.vstack([jacobian, offset / radius])
-        return residual, jacobian, float(np.linalg.norm(residual))
+        return residual, float(np.linalg.norm(residual))
 
     for k, u in enumerate(points):
-        residual, jacobian, gap = augmented(u)
+        residual, gap = evaluate(u)
         factor = 1e-2
         for _ in range(iterations):
-            if gap <= 1e-15:
+            if gap <= 1e-15 or factor > 1e9:
                 break
+            jacobian = problem.jacobians(u[None])[0] / problem.magnitude
             normal = jacobian.T @ jacobian + factor * gap * np.eye(len(u))
             trial = u - np.linalg.lstsq(normal, jacobian.T @ residual, rcond=None)[0]
-            new_residual, new_jacobian, new_gap = augmented(trial)
+            new_residual, new_gap = evaluate(trial)
             if new_gap < gap:
                 factor = max(factor * (0.2 if new_gap < 0.5 * gap else 1.0), 1e-8)
-                u, residual, jacobian, gap = trial, new_residual, new_jacobian, new_gap
+                u, residual, gap = trial, new_residual, new_gap
             else:
                 factor *= 8.0
-                if factor > 1e9:
-                    break
         points[k], gaps[k] = u, gap
     return points, gaps
+
+
+def project_to_sphere_by_newton(
+    problem: Problem, starts: np.ndarray, center: np.ndarray, radius: float, iterations: int = 25
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals (k,) and last steps (k,).
+
+    Gauss-Newton without damping: next to a singular point the equations differ in size by the radius, which a
+    merit function would see and Newton's method does not. Steps are cut to a third of the radius.
+    """
+    points, gaps, last = np.array(starts, dtype=float), np.empty(len(starts)), np.empty(len(starts))
+    for k, u in enumerate(points):
+        for _ in range(iterations):
+            offset = (u - center) / radius
+            matrix = np.vstack([problem.jacobians(u[None])[0] / problem.magnitude, offset])
+            right = np.append(
+                -problem.residuals(u[None])[0] / problem.magnitude, 0.5 * radius * (1.0 - offset @ offset)
+            )
+            step = np.linalg.lstsq(matrix, right, rcond=1e-14)[0]
+            last[k] = np.linalg.norm(step)
+            u = u + step * min(1.0, radius / (3.0 * last[k] + 1e-300))
+            if last[k] < 1e-14 * problem.scale:
+                break
+        points[k], gaps[k] = u, np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
+    return points, gaps, last

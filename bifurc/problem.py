@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.collocation import march_by_collocation
-from bifurc.corrector import project_by_least_squares
+from bifurc.corrector import project_by_least_squares, project_to_sphere_by_newton
 from bifurc.seeding import Seeds, random_seeds
 
 __all__ = ["FunctionProblem", "March", "MarchStatus", "Problem", "ProblemError"]
@@ -93,14 +93,15 @@ class Problem:
         """Up to ``count`` pieces of the curve from ``start`` along ``tangent``, here by collocation."""
         return March(*march_by_collocation(self, start, tangent, order, tolerance, shortest, longest, count))
 
-    def project(
-        self, starts: np.ndarray, center: np.ndarray | None = None, radius: float = 0.0
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is left at each.
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is left at each."""
+        return project_by_least_squares(self, starts)
 
-        With ``radius`` > 0 on the sphere of that radius about ``center`` as well.
-        """
-        return project_by_least_squares(self, starts, center, radius)
+    def project_to_sphere(
+        self, starts: np.ndarray, center: np.ndarray, radius: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals and last steps (k,)."""
+        return project_to_sphere_by_newton(self, starts, center, radius)
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Solutions to start from, here reached from ``count`` random starts."""

@@ -196,9 +196,9 @@ def section(problem: Problem, point: np.ndarray, null_space: np.ndarray, radius:
     """
     directions = _spread(null_space.shape[1])
     starts = point + radius * directions @ null_space.T
-    found, gaps = problem.project(starts, point, radius)
-    # a section next to the point is a solution of F = O(radius^2): the residual must be far below that
-    good = found[(gaps < 1e-9 * radius**2 + 3e-15) & (np.linalg.norm(found - starts, axis=1) < 1.2 * radius)]
+    found, gaps, last = problem.project_to_sphere(starts, point, radius)
+    # next to the point F is of order radius^2 whatever the direction: the residual must be far below that
+    good = found[(gaps < 1e-8 * (radius / problem.scale) ** 2 + 5e-15) & (last < 1e-4 * radius)]
     clusters: list[np.ndarray] = []
     for candidate in good:
         if all(np.linalg.norm(candidate - other) > 1e-2 * radius for other in clusters):

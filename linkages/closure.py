@@ -55,10 +55,13 @@ class LoopClosure(Problem):
         )  # fmt: skip
         return March(status, pieces, steps, radii, residuals)
 
-    def project(
-        self, starts: np.ndarray, center: np.ndarray | None = None, radius: float = 0.0
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at each."""
-        starts = np.ascontiguousarray(starts, dtype=float)
-        middle = np.zeros(self.n) if center is None else np.ascontiguousarray(center, dtype=float)
-        return kernels.project(starts, self._geometry, middle, radius, ROUNDING, 60)
+        return kernels.project(np.ascontiguousarray(starts, dtype=float), self._geometry, ROUNDING, 60)
+
+    def project_to_sphere(
+        self, starts: np.ndarray, center: np.ndarray, radius: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Closed configurations at distance ``radius`` from ``center``, residuals and last steps."""
+        starts, center = np.ascontiguousarray(starts, dtype=float), np.ascontiguousarray(center, dtype=float)
+        return kernels.project_to_sphere(starts, center, radius, self._geometry, 25)

@@ -439,37 +439,22 @@ def _damped_step(jacobian, residual, damping, step):
         step[i] /= normal[i, i]
 
 
-@register_jitable
-def _augmented(theta, geometry, center, radius, residual, jacobian):
-    """Residual (7,) and Jacobian (7, n): closure, and where radius > 0 the sphere |theta - center| = radius."""
-    _residual_jacobian(theta, geometry, residual, jacobian)
-    residual[6] = 0.0
-    jacobian[6] = 0.0
-    if radius > 0.0:
-        square = 0.0
-        for i in range(theta.shape[0]):
-            offset = theta[i] - center[i]
-            square += offset * offset
-            jacobian[6, i] = offset / radius
-        residual[6] = 0.5 * (square / radius - radius)
-    return np.sqrt(np.sum(residual * residual))
-
-
 @njit(cache=True, nogil=True, error_model="numpy")
-def project(starts, geometry, center, radius, noise, iterations):
+def project(starts, geometry, noise, iterations):
     """Levenberg-Marquardt from every start (k, n) onto the closed configurations.
 
-    With ``radius`` > 0 also onto the sphere of that radius around ``center``. The damping is the residual's norm,
-    for which convergence is quadratic to solution sets that are not isolated points as well (Fan and
-    Yuan 2005). Returns points (k, n) and residual norms (k,); a start that does not close keeps its gap.
+    The damping is the residual's norm, for which convergence is quadratic to solution sets that are not isolated
+    points as well (Fan and Yuan 2005). Returns points (k, n) and residual norms (k,); a start that does not
+    close keeps its gap.
     """
     k, n = starts.shape
     points, gaps = starts.copy(), np.empty(k)
-    residual, jacobian, step = np.empty(7), np.empty((7, n)), np.empty(n)
-    trial, trial_residual, trial_jacobian = np.empty(n), np.empty(7), np.empty((7, n))
+    residual, jacobian, step = np.empty(6), np.empty((6, n)), np.empty(n)
+    trial, trial_residual, trial_jacobian = np.empty(n), np.empty(6), np.empty((6, n))
     for start in range(k):
         theta = points[start]
-        gap = _augmented(theta, geometry, center, radius, residual, jacobian)
+        _residual_jacobian(theta, geometry, residual, jacobian)
+        gap = np.sqrt(np.sum(residual * residual))
         factor, failures = 1e-2, 0
         for _ in range(iterations):
             if gap <= noise:
@@ -477,7 +462,8 @@ def project(starts, geometry, center, radius, noise, iterations):
             _damped_step(jacobian, residual, factor * gap, step)
             for i in range(n):
                 trial[i] = theta[i] + step[i]
-            new = _augmented(trial, geometry, center, radius, trial_residual, trial_jacobian)
+            _residual_jacobian(trial, geometry, trial_residual, trial_jacobian)
+            new = np.sqrt(np.sum(trial_residual * trial_residual))
             if new < gap:
                 failures = 0
                 factor = max(factor * (0.2 if new < 0.5 * gap else 1.0), 1e-8)
@@ -490,3 +476,37 @@ def project(starts, geometry, center, radius, noise, iterations):
                     break
         gaps[start] = gap
     return points, gaps
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def project_to_sphere(starts, center, radius, geometry, iterations):
+    """Gauss-Newton from every start (k, n) onto closed configurations at distance ``radius`` from ``center``.
+
+    Next to a singular point the equations differ in size by the radius; undamped Gauss-Newton does not see that,
+    a merit function would. Steps are cut to a third of the radius. Returns points (k, n), residual norms (k,)
+    and lengths of the last step (k,).
+    """
+    k, n = starts.shape
+    points, gaps, last = starts.copy(), np.empty(k), np.empty(k)
+    residual, matrix, scale = np.empty(6), np.empty((7, n)), np.empty(n)
+    right, step = np.empty(7), np.empty(n)
+    for start in range(k):
+        theta = points[start]
+        for _ in range(iterations):
+            _residual_jacobian(theta, geometry, residual, matrix[:6])
+            square = 0.0
+            for i in range(n):
+                matrix[6, i] = (theta[i] - center[i]) / radius
+                square += matrix[6, i] * matrix[6, i]
+            right[:6] = -residual
+            right[6] = 0.5 * radius * (1.0 - square)
+            _factor(matrix, scale)
+            _solve(matrix, scale, right, step)
+            size = np.sqrt(np.sum(step * step))
+            cut = min(1.0, radius / (3.0 * size + 1e-300))
+            theta += cut * step
+            if size < 1e-14:
+                break
+        _residual_jacobian(theta, geometry, residual, matrix[:6])
+        gaps[start], last[start] = np.sqrt(np.sum(residual * residual)), size
+    return points, gaps, last
