@@ -17,8 +17,11 @@ __all__ = ["FAMILIES", "UnknownLinkageError", "catalogue", "entry"]
 FAMILIES = (
     "linkages.four_bar",
     "linkages.bennett",
+    "linkages.goldberg",
     "linkages.double_goldberg",
     "linkages.bricard",
+    "linkages.reconfigurable",
+    "linkages.wohlhart",
 )
 
 

@@ -9,10 +9,10 @@ t4,
 
 with two real circuits. A circuit passes through two of its four flat configurations, where t1 and t4 are 0 or
 infinite, and that tells the two forms of a pair apart:
-- Form I of the WDG is the circuit through t1 = t4 = infinity: the root with the plus sign next to theta1 =
-  pi in Song 2013, eq. (5.2.4). In the DSG, eq. (5.2.7) with its switch of the root at theta1 = 0 gives the
-  same circuit as long as (m6 - m1) m4 (m4 - m3) > 0, and the other one otherwise.
-- Form III is the circuit through t1 = t4 = 0.
+- Form I holds the plus root next to theta1 = pi in Song 2013, eq. (5.2.4), for the WDG, and next to theta1
+  = -pi in eq. (5.2.7) for the DSG. Wherever the printed switching of roots describes one smooth circuit, it
+  is this one.
+- Form III is the circuit through t1 = t4 = 0, where it meets Form I of the special linkages.
 """
 
 from __future__ import annotations
@@ -66,25 +66,20 @@ def _products(sign: int, k_d: float, k_b: float) -> Function:
     return residual
 
 
-def _circuits(k: float, k_other: float, slope: float) -> tuple[Function, Function]:
-    """Functions that are not negative on the circuit through t1 = t4 = infinity, and on that through 0, 0.
+def _circuit(k: float, k_other: float, slope: float, t1_infinite: bool, t4_infinite: bool) -> Function:
+    """A function that is not negative on one circuit of the curve and not positive on the other.
 
-    The curve is t4 + k_other/t4 = slope (t1 + k/t1). The circuit on which t1 (or t4) never meets its
-    other root is the one where it stays the larger of the pair; where both products are negative, the
-    signs of t1 and t4 agree or not.
+    The one circuit passes through the flat configuration where t1 and t4 are infinite or 0, as said. Where
+    t1 (or t4) never meets its other root k/t1 it stays the larger or the smaller of the pair along a
+    circuit; where both products are negative, the signs of t1 and t4 agree, or not.
     """
-
-    def alike(theta: np.ndarray) -> np.ndarray:
-        return math.copysign(1.0, slope) * np.sin(theta[..., 0]) * np.sin(theta[..., 3])
-
-    def larger(i: int, j: int) -> Function:
-        return lambda theta: np.cos(theta[..., j]) - np.cos(theta[..., i])
-
     if k < 0 and k_other < 0:
-        return alike, alike
+        sign = math.copysign(1.0, slope) * (1 if t1_infinite == t4_infinite else -1)
+        return lambda theta: sign * np.sin(theta[..., 0]) * np.sin(theta[..., 3])
     t1_is_split = k_other > 0 and (k < 0 or math.sqrt(k_other) > abs(slope) * math.sqrt(k))
-    far = larger(0, 1) if t1_is_split else larger(3, 4)
-    return far, lambda theta: -far(theta)
+    i, infinite = (0, t1_infinite) if t1_is_split else (3, t4_infinite)
+    sign = 1.0 if infinite else -1.0
+    return lambda theta: sign * (np.cos(theta[..., i + 1]) - np.cos(theta[..., i]))
 
 
 def _both(base: Function, inside: Function, side: int) -> Function:
@@ -102,8 +97,8 @@ def _non_constructive_patterns(
     k_d, k_b = (_non_constructive(sign, alpha, gamma, x) for x in (delta, beta))
     base = _products(-1, k_d, k_b)
     # with t2 and t5 negated this is the curve of the module's head, of products -k_d and -k_b
-    _, near = _circuits(-k_d, -k_b, (1 + k_b) / (1 + k_d))
-    return FormPattern(III, _both(base, near, +1)), FormPattern(IV, _both(base, near, -1))
+    inside = _circuit(-k_d, -k_b, (1 + k_b) / (1 + k_d), t1_infinite=False, t4_infinite=False)
+    return FormPattern(III, _both(base, inside, +1)), FormPattern(IV, _both(base, inside, -1))
 
 
 def patterns(sign: int, alpha: float, beta: float, gamma: float, delta: float) -> tuple[FormPattern, ...]:
@@ -118,13 +113,14 @@ def patterns(sign: int, alpha: float, beta: float, gamma: float, delta: float) -
         return special_patterns(sign, alpha, beta, delta)
     k_d, k_b = (_constructive(sign, alpha, gamma, x) for x in (delta, beta))
     base = _products(+1, k_d, k_b)
-    far, _ = _circuits(k_d, k_b, (1 - k_b) / (k_d - 1))
-    side = 1
+    # where tan(theta4/2) tends on the plus root as theta1 tends to pi (WDG), or to -pi (DSG)
+    t4_infinite = k_b < 1
     if sign < 0:
         m1, m3 = _ratio(beta, alpha), _ratio(delta, alpha)
         m4, m6 = _ratio(delta, gamma), _ratio(beta, gamma)
-        side = 1 if (m6 - m1) * m4 * (m4 - m3) > 0 else -1
-    constructive = FormPattern(I, _both(base, far, side)), FormPattern(II, _both(base, far, -side))
+        t4_infinite = (m6 - m1) * m4 * (m4 - m3) > 0
+    inside = _circuit(k_d, k_b, (1 - k_b) / (k_d - 1), t1_infinite=True, t4_infinite=t4_infinite)
+    constructive = FormPattern(I, _both(base, inside, +1)), FormPattern(II, _both(base, inside, -1))
     return constructive + _non_constructive_patterns(sign, alpha, beta, gamma, delta)
 
 

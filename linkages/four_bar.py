@@ -14,7 +14,7 @@ from linkages.conditions import decided, require_positive
 from linkages.entry import Entry, FormPattern, Parameter
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["ENTRIES", "four_bar", "kite", "parallelogram", "rhombus"]
+__all__ = ["ENTRIES", "form_patterns", "four_bar", "kite", "parallelogram", "rhombus"]
 
 SOURCE = "Hunt 1990, Kinematic geometry of mechanisms"
 NAMES = ("12", "23", "34", "41")
@@ -72,30 +72,28 @@ def _proper(name: str) -> FormPattern:
 
 
 def _folded(first: int) -> FormPattern:
-    """Two neighbouring links stay folded onto each other at joints ``first`` and ``first + 2`` (from 1)."""
+    """Two pairs of links stay folded onto each other at joints ``first`` and ``first + 2`` (from 1)."""
     residual = _pairs(-1, lambda h: np.cos(h[..., first - 1]), lambda h: np.cos(h[..., first + 1]))
     return FormPattern(f"folded form (joints {first},{first + 2} inactive)", residual)
 
 
-def _parallelogram_patterns(a: float, b: float) -> tuple[FormPattern, ...]:
-    if a == b:
-        return _rhombus_patterns(a)
-    return _proper("parallelogram form"), FormPattern("antiparallelogram form", _pairs(-1))
+def _kite(axis: int) -> FormPattern:
+    """The angles beside the axis of symmetry, which runs through joint ``axis`` (from 1), are alike."""
+    i, j = axis % 4, (axis + 2) % 4
+    return FormPattern("kite form", lambda theta: np.sin((theta[..., i] - theta[..., j]) / 2)[..., None])
 
 
-def _rhombus_patterns(a: float) -> tuple[FormPattern, ...]:
-    return _proper("rhombus form"), _folded(1), _folded(2)
-
-
-def _kite_patterns(a: float, b: float) -> tuple[FormPattern, ...]:
-    if a == b:
-        return _rhombus_patterns(a)
-
-    def symmetric(theta: np.ndarray) -> np.ndarray:
-        h = np.asarray(theta) / 2
-        return np.sin(h[..., 3] - h[..., 1])[..., None]
-
-    return _folded(1), FormPattern("kite form", symmetric)
+def form_patterns(a: float, b: float, c: float, d: float) -> tuple[FormPattern, ...]:
+    """The forms of the planar four-bar with links 12, 23, 34, 41 of lengths that are alike in pairs."""
+    if a == b == c == d:
+        return _proper("rhombus form"), _folded(1), _folded(2)
+    if a == c and b == d:
+        return _proper("parallelogram form"), FormPattern("antiparallelogram form", _pairs(-1))
+    if a == d and b == c:
+        return _folded(1), _kite(1)
+    if a == b and c == d:
+        return _folded(2), _kite(2)
+    return ()
 
 
 def _length(name: str, default: float, meaning: str) -> Parameter:
@@ -124,7 +122,7 @@ ENTRIES: tuple[Entry, ...] = (
         parallelogram,
         (_length("a", 1.0, "length of links 12 and 34"), _length("b", 2.0, "length of links 23 and 41")),
         conditions=("a12 = a34, a23 = a41", "all twists and offsets 0"),
-        patterns=_parallelogram_patterns,
+        patterns=lambda a, b: form_patterns(a, b, a, b),
         facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},
     ),
     Entry(
@@ -134,7 +132,7 @@ ENTRIES: tuple[Entry, ...] = (
         rhombus,
         (_length("a", 1.0, "length of every link"),),
         conditions=("a12 = a23 = a34 = a41", "all twists and offsets 0"),
-        patterns=_rhombus_patterns,
+        patterns=lambda a: form_patterns(a, a, a, a),
         facts={"mobility": 1, "rank": 3, "forms": 3, "bifurcations": 3, "arcs": 6},
     ),
     Entry(
@@ -144,7 +142,7 @@ ENTRIES: tuple[Entry, ...] = (
         kite,
         (_length("a", 1.0, "length of links 12 and 41"), _length("b", 2.0, "length of links 23 and 34")),
         conditions=("a12 = a41, a23 = a34", "all twists and offsets 0"),
-        patterns=_kite_patterns,
+        patterns=lambda a, b: form_patterns(a, b, b, a),
         facts={"mobility": 1, "rank": 3, "forms": 2},
     ),
 )
