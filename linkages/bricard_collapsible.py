@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from linkages.conditions import decided
 from linkages.entry import Entry, Parameter
 from linkages.link import Link, closed_chain
 from linkages.loop import GeometryError, Loop
@@ -46,8 +47,9 @@ def _corners(first: Point, opposite: Point, radius: Any) -> tuple[Point, Point]:
 def _normals(point: Point, radius: Any) -> tuple[Any, Any]:
     """Directions (rad) of the normals of the two tangents from ``point`` to the circle about the origin."""
     distance = sqrt(point[0] ** 2 + point[1] ** 2)
-    if not float(distance) > float(radius) > 0:
-        raise GeometryError("radius", float(radius), f"between 0 and {float(distance)}, the distance of the point")
+    size, reach = decided(radius), decided(distance)
+    if size is not None and reach is not None and not reach > size > 0:
+        raise GeometryError("radius of a circle", size, f"between 0 and {reach}, the distance of a corner")
     middle, half = atan2(point[1], point[0]), acos(radius / distance)
     return middle + half, middle - half
 
@@ -64,7 +66,7 @@ def _difference(p: Point, q: Point) -> Point:
 
 ENTRIES = (
     Entry(
-        "doubly-collapsible-octahedral-bricard",
+        "bricard-octahedral-doubly-collapsible",
         "Doubly collapsible octahedral Bricard 6R",
         "Bricard (1897); Baker (1980); Song (2013), eq. 2.4.18",
         doubly_collapsible_octahedral,
@@ -73,8 +75,12 @@ ENTRIES = (
             Parameter("y1", 0.4, "length", "second coordinate of the corner A", 0.1, 0.8),
             Parameter("x2", -1.1, "length", "first coordinate of the corner A'", -1.6, -0.9),
             Parameter("y2", 1.9, "length", "second coordinate of the corner A'", 1.5, 2.3),
-            Parameter("radius_1", 0.7, "length", "radius of the circle that AB, A'B', A'B, AB' touch", 0.5, 0.8),
-            Parameter("radius_2", 1.1, "length", "radius of the circle that AC, A'C', A'C, AC' touch", 0.95, 1.3),
+            Parameter(
+                "radius_1", 0.7, "length", "radius of the circle that AB, A'B', A'B, AB' touch", 0.5, 0.8
+            ),
+            Parameter(
+                "radius_2", 1.1, "length", "radius of the circle that AC, A'C', A'C, AC' touch", 0.95, 1.3
+            ),
         ),
         (
             "all lengths zero; offsets and twists are sides and turns of the hexagon A B C A' B' C'",

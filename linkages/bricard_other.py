@@ -1,4 +1,4 @@
-"""Bricard's trihedral 6R, the revised line-symmetric one, and the linkages of Altmann and of Wohlhart near them."""
+"""Bricard's trihedral and revised line-symmetric 6R, and the linkages of Altmann and Wohlhart near them."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from functools import partial
 from math import radians
 from typing import Any
 
+from linkages.conditions import require_equal, require_positive
 from linkages.entry import Entry, Parameter
 from linkages.link import Link, closed_chain
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.numbers import pi_like, sqrt
 
 __all__ = ["ENTRIES", "altmann", "revised_line_symmetric", "trihedral", "wohlhart_hybrid"]
@@ -21,9 +22,9 @@ def revised_line_symmetric(
     alpha12: Any,
     alpha23: Any,
     alpha34: Any,
-    r1: Any,
-    r2: Any,
-    r3: Any,
+    R1: Any,
+    R2: Any,
+    R3: Any,
 ) -> Loop:
     """Revised general line-symmetric Bricard 6R: opposite links equal, opposite offsets negative.
 
@@ -31,7 +32,7 @@ def revised_line_symmetric(
     Song (2013).
     """
     half = Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34)
-    return closed_chain(*half, *half, offsets=(r1, r2, r3, -r1, -r2, -r3))
+    return closed_chain(*half, *half, offsets=(R1, R2, R3, -R1, -R2, -R3))
 
 
 def trihedral(
@@ -43,13 +44,10 @@ def trihedral(
     `GeometryError`. Source: Bricard (1927); equation (2.4.15) in Song (2013) for alternating twists.
     """
     square = a12**2 + a34**2 + a56**2 - a23**2 - a45**2
-    if not float(square) > 0:
-        raise GeometryError("a61^2 = a12^2 + a34^2 + a56^2 - a23^2 - a45^2", float(square), "positive")
-    if a61 is None:
-        a61 = sqrt(square)
-    elif abs(float(a61**2 - square)) > 1e-9 * float(square + a61**2):
-        gap = float(square - a61**2)
-        raise GeometryError("a12^2 + a34^2 + a56^2 - a23^2 - a45^2 - a61^2", gap, "0")
+    require_positive("a12^2 + a34^2 + a56^2 - a23^2 - a45^2", square)
+    if a61 is not None:
+        require_equal("a61^2", a61**2, square, "a12^2 + a34^2 + a56^2 - a23^2 - a45^2")
+    a61 = sqrt(square) if a61 is None else a61
     right = pi_like(a12, a23, a34, a45, a56) / 2
     other = -right if alternating else right
     lengths = (a12, a23, a34, a45, a56, a61)
@@ -73,9 +71,9 @@ def wohlhart_hybrid(
     alpha12: Any,
     alpha23: Any,
     alpha45: Any,
-    r2: Any,
-    r4: Any,
-    r6: Any = None,
+    R2: Any,
+    R4: Any,
+    R6: Any = None,
 ) -> Loop:
     """Wohlhart's hybrid 6R: three plane-symmetric link pairs 61-12, 23-34, 45-56 with a common transversal.
 
@@ -83,11 +81,11 @@ def wohlhart_hybrid(
     `GeometryError`. Source: Wohlhart (1987); equation (2.4.22) in Song (2013) has the pairs 12-23, 34-45,
     56-61, which does not go with its offsets.
     """
-    if r6 is not None and abs(float(r2 + r4 + r6)) > 1e-9 * max(abs(float(r2)), abs(float(r4)), 1e-300):
-        raise GeometryError("R2 + R4 + R6", float(r2 + r4 + r6), "0")
+    if R6 is not None:
+        require_equal("R6", R6, -R2 - R4, "-(R2 + R4)")
     a, b, c = Link(a12, alpha12), Link(a23, alpha23), Link(a45, alpha45)
     b_back, c_back, a_back = (Link(link.length, -link.twist) for link in (b, c, a))
-    offsets = (0, r2, 0, r4, 0, -r2 - r4)
+    offsets = (0, R2, 0, R4, 0, -R2 - R4)
     return closed_chain(a, b, b_back, c, c_back, a_back, offsets=offsets)
 
 
@@ -97,8 +95,14 @@ def _lengths(**values: float) -> tuple[Parameter, ...]:
 
 def _twists(**degrees: float) -> tuple[Parameter, ...]:
     return tuple(
-        Parameter(k, radians(v), "angle", f"twist of link {k[5:]}", radians(-165 if v < 0 else 15),
-                  radians(-15 if v < 0 else 165))
+        Parameter(
+            k,
+            radians(v),
+            "angle",
+            f"twist of link {k[5:]}",
+            radians(-165 if v < 0 else 15),
+            radians(-15 if v < 0 else 165),
+        )
         for k, v in degrees.items()
     )
 
@@ -110,7 +114,11 @@ def _offsets(**values: float) -> tuple[Parameter, ...]:
 _TRIHEDRAL = tuple(
     Parameter(name, value, "length", f"length {name}", low, low + 0.3)
     for name, value, low in (
-        ("a12", 1.0, 0.95), ("a23", 0.7, 0.65), ("a34", 1.1, 0.95), ("a45", 0.9, 0.65), ("a56", 0.8, 0.7)
+        ("a12", 1.0, 0.95),
+        ("a23", 0.7, 0.65),
+        ("a34", 1.1, 0.95),
+        ("a45", 0.9, 0.65),
+        ("a56", 0.8, 0.7),
     )
 )
 _SQUARES = "a12^2 + a34^2 + a56^2 = a23^2 + a45^2 + a61^2"
@@ -118,14 +126,14 @@ _FACTS = {"joints": 6, "mobility": 1}
 
 ENTRIES = (
     Entry(
-        "revised-line-symmetric-bricard",
+        "bricard-line-symmetric-revised",
         "Revised general line-symmetric Bricard 6R",
         "Mavroidis and Roth (1995); Song (2013), eq. 2.4.19",
         revised_line_symmetric,
         (
             *_lengths(a12=1.0, a23=0.8, a34=1.25),
             *_twists(alpha12=50, alpha23=77, alpha34=110),
-            *_offsets(r1=0.3, r2=-0.45, r3=0.6),
+            *_offsets(R1=0.3, R2=-0.45, R3=0.6),
         ),
         (
             "a12 = a45, a23 = a56, a34 = a61, twists likewise",
@@ -134,7 +142,7 @@ ENTRIES = (
         facts=_FACTS,
     ),
     Entry(
-        "trihedral-bricard",
+        "bricard-trihedral",
         "Trihedral Bricard 6R",
         "Bricard (1927); Baker (1980); Song (2013), eq. 2.4.15",
         trihedral,
@@ -143,7 +151,7 @@ ENTRIES = (
         facts=_FACTS,
     ),
     Entry(
-        "trihedral-bricard-equal-twists",
+        "bricard-trihedral-equal-twists",
         "Trihedral Bricard 6R with equal twists",
         "variant of Bricard (1927) found by closure",
         partial(trihedral, alternating=False),
@@ -152,7 +160,7 @@ ENTRIES = (
         facts=_FACTS,
     ),
     Entry(
-        "altmann-6r",
+        "altmann",
         "Altmann's 6R",
         "Altmann (1954); Baker (1993b); Song (2013), eq. 2.4.21",
         altmann,
@@ -164,20 +172,22 @@ ENTRIES = (
         facts=_FACTS,
     ),
     Entry(
-        "wohlhart-hybrid-6r",
+        "wohlhart-hybrid",
         "Wohlhart's hybrid 6R",
         "Wohlhart (1987); Song (2013), eq. 2.4.22",
         wohlhart_hybrid,
         (
             *_lengths(a12=1.0, a23=0.8, a45=1.25),
             *_twists(alpha12=-50, alpha23=77, alpha45=110),
-            *_offsets(r2=0.4, r4=0.3),
+            *_offsets(R2=0.4, R4=0.3),
         ),
         (
             "a61 = a12, a23 = a34, a45 = a56, alpha61 = -alpha12, alpha34 = -alpha23, alpha56 = -alpha45",
             "R1 = R3 = R5 = 0, R2 + R4 + R6 = 0",
         ),
-        errata=("the pairs 12-23, 34-45, 56-61 are printed; with R2 + R4 + R6 = 0 they are 61-12, 23-34, 45-56",),
+        errata=(
+            "the pairs 12-23, 34-45, 56-61 are printed; with R2 + R4 + R6 = 0 they are 61-12, 23-34, 45-56",
+        ),
         facts=_FACTS,
     ),
 )

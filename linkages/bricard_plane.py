@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import radians
 from typing import Any
 
+from linkages.conditions import decided, require_equal
 from linkages.entry import Entry, Parameter
 from linkages.link import Link, closed_chain
 from linkages.loop import GeometryError, Loop
@@ -14,21 +15,21 @@ __all__ = ["ENTRIES", "plane_symmetric", "plane_symmetric_octahedral", "revised_
 
 
 def plane_symmetric(
-    a12: Any, a23: Any, a34: Any, alpha12: Any, alpha23: Any, alpha34: Any, r2: Any, r3: Any
+    a12: Any, a23: Any, a34: Any, alpha12: Any, alpha23: Any, alpha34: Any, R2: Any, R3: Any
 ) -> Loop:
     """General plane-symmetric Bricard 6R; lengths and offsets in one unit, twists in rad.
 
-    alpha12 + alpha61 = alpha34 + alpha45 = pi, alpha23 + alpha56 = 0, R2 = R6, R3 = R5. Source: Bricard (1927);
-    equation (2.4.14) in Song (2013) has alpha23 + alpha56 = pi, which with these offsets is rigid.
+    alpha12 + alpha61 = alpha34 + alpha45 = pi, alpha23 + alpha56 = 0, R2 = R6, R3 = R5. Source: Bricard
+    (1927); equation (2.4.14) in Song (2013) has alpha23 + alpha56 = pi, which with these offsets is rigid.
     """
     pi = pi_like(alpha12, alpha23, alpha34)
     ahead = Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34)
     behind = Link(a34, pi - alpha34), Link(a23, -alpha23), Link(a12, pi - alpha12)
-    return closed_chain(*ahead, *behind, offsets=(0, r2, r3, 0, r3, r2))
+    return closed_chain(*ahead, *behind, offsets=(0, R2, R3, 0, R3, R2))
 
 
 def revised_plane_symmetric(
-    a12: Any, a23: Any, a34: Any, alpha12: Any, alpha23: Any, alpha34: Any, r2: Any, r3: Any
+    a12: Any, a23: Any, a34: Any, alpha12: Any, alpha23: Any, alpha34: Any, R2: Any, R3: Any
 ) -> Loop:
     """Revised general plane-symmetric Bricard 6R: opposite twists, R2 = -R6, R3 = -R5.
 
@@ -37,34 +38,35 @@ def revised_plane_symmetric(
     """
     ahead = Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34)
     behind = (Link(link.length, -link.twist) for link in reversed(ahead))
-    return closed_chain(*ahead, *behind, offsets=(0, r2, r3, 0, -r3, -r2))
+    return closed_chain(*ahead, *behind, offsets=(0, R2, R3, 0, -R3, -R2))
 
 
 def plane_symmetric_octahedral(
-    alpha12: Any, alpha23: Any, alpha34: Any, alpha45: Any, alpha61: Any, r1: Any, alpha56: Any = None
+    alpha12: Any, alpha23: Any, alpha34: Any, alpha45: Any, alpha61: Any, R1: Any, alpha56: Any = None
 ) -> Loop:
-    """Plane-symmetric octahedral Bricard 6R: all lengths zero, offsets from ``r1`` and the twists (rad).
+    """Plane-symmetric octahedral Bricard 6R: all lengths zero, offsets from ``R1`` and the twists (rad).
 
     ``alpha56`` follows from R2^2 + R3^2 + 2 R2 R3 cos(alpha23) = R5^2 + R6^2 + 2 R5 R6 cos(alpha56) and is
     checked if given. Raises `GeometryError`. Source: Bricard (1927); equation (2.4.17) in Song (2013) lacks
     that condition and is rigid without it.
     """
     ahead, behind = sin(alpha12 + alpha34), sin(alpha45 + alpha61)
-    r2, r3 = -r1 * sin(alpha34) / ahead, r1 * sin(alpha12) / ahead
-    r5, r6 = r1 * sin(alpha61) / behind, -r1 * sin(alpha45) / behind
-    base = r2**2 + r3**2 + 2 * r2 * r3 * cos(alpha23)
-    cosine = (base - r5**2 - r6**2) / (2 * r5 * r6)
-    if abs(float(cosine)) > 1:
-        raise GeometryError("cos(alpha56)", float(cosine), "between -1 and 1 for these twists")
+    R2, R3 = -R1 * sin(alpha34) / ahead, R1 * sin(alpha12) / ahead
+    R5, R6 = R1 * sin(alpha61) / behind, -R1 * sin(alpha45) / behind
+    base = R2**2 + R3**2 + 2 * R2 * R3 * cos(alpha23)
+    cosine = (base - R5**2 - R6**2) / (2 * R5 * R6)
+    value = decided(cosine)
+    if value is not None and abs(value) > 1:
+        raise GeometryError("cos(alpha56)", value, "between -1 and 1; these twists do not close")
     needed = acos(cosine)
-    if alpha56 is not None and abs(float(cos(alpha56) - cosine)) > 1e-9:
-        raise GeometryError("alpha56", float(alpha56), f"{float(needed)} for the other twists")
+    if alpha56 is not None:
+        require_equal("cos(alpha56)", cos(alpha56), cosine, "for the other twists")
     twists = (alpha12, alpha23, alpha34, alpha45, needed if alpha56 is None else alpha56, alpha61)
-    return closed_chain(*(Link(0, twist) for twist in twists), offsets=(r1, r2, r3, -r1, r5, r6))
+    return closed_chain(*(Link(0, twist) for twist in twists), offsets=(R1, R2, R3, -R1, R5, R6))
 
 
 def _length(name: str, value: float, low: float = 0.3, high: float = 2.0) -> Parameter:
-    return Parameter(name, value, "length", f"{'offset' if name[0] == 'r' else 'length'} {name}", low, high)
+    return Parameter(name, value, "length", f"{'offset' if name[0] == 'R' else 'length'} {name}", low, high)
 
 
 def _twist(name: str, value: float, low: float = 15, high: float = 165) -> Parameter:
@@ -74,14 +76,14 @@ def _twist(name: str, value: float, low: float = 15, high: float = 165) -> Param
 _HALF = (
     *(_length(name, value) for name, value in (("a12", 1.0), ("a23", 0.8), ("a34", 1.25))),
     *(_twist(f"alpha{k}", radians(value)) for k, value in ((12, 50), (23, 77), (34, 110))),
-    _length("r2", -0.45, -0.5, 0.5),
-    _length("r3", 0.6, -0.5, 0.5),
+    _length("R2", -0.45, -0.5, 0.5),
+    _length("R3", 0.6, -0.5, 0.5),
 )
 _FACTS = {"joints": 6, "mobility": 1}
 
 ENTRIES = (
     Entry(
-        "plane-symmetric-bricard",
+        "bricard-plane-symmetric",
         "General plane-symmetric Bricard 6R",
         "Bricard (1927); Baker (1980); Song (2013), eq. 2.4.14",
         plane_symmetric,
@@ -95,7 +97,7 @@ ENTRIES = (
         facts=_FACTS,
     ),
     Entry(
-        "revised-plane-symmetric-bricard",
+        "bricard-plane-symmetric-revised",
         "Revised general plane-symmetric Bricard 6R",
         "Mavroidis and Roth (1995); Song (2013), eq. 2.4.20",
         revised_plane_symmetric,
@@ -108,7 +110,7 @@ ENTRIES = (
         facts=_FACTS,
     ),
     Entry(
-        "plane-symmetric-octahedral-bricard",
+        "bricard-octahedral-plane-symmetric",
         "Plane-symmetric octahedral Bricard 6R",
         "Bricard (1897, 1927); Baker (1980); Song (2013), eq. 2.4.17",
         plane_symmetric_octahedral,
@@ -118,7 +120,7 @@ ENTRIES = (
             _twist("alpha34", 2.258845335456913, 120, 135),
             _twist("alpha45", 0.8086507372666255, 42, 50),
             _twist("alpha61", 0.5933371007764807, 32, 36),
-            _length("r1", 1.936892176093739, 1.0, 3.0),
+            _length("R1", 1.936892176093739, 1.0, 3.0),
         ),
         (
             "all lengths zero, R4 = -R1",

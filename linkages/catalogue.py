@@ -16,10 +16,23 @@ __all__ = ["FAMILIES", "UnknownLinkageError", "catalogue", "entry"]
 
 FAMILIES = (
     "linkages.four_bar",
+    "linkages.spherical",
     "linkages.bennett",
     "linkages.goldberg",
+    "linkages.goldberg_5r",
+    "linkages.tori",
+    "linkages.goldberg_6r",
     "linkages.double_goldberg",
+    "linkages.mixed_double_goldberg",
+    "linkages.back_to_back",
+    "linkages.waldron",
+    "linkages.yu_baker",
+    "linkages.mavroidis_roth",
+    "linkages.dietmaier",
     "linkages.bricard",
+    "linkages.bricard_plane",
+    "linkages.bricard_collapsible",
+    "linkages.bricard_other",
     "linkages.reconfigurable",
     "linkages.wohlhart",
 )

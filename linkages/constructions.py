@@ -21,8 +21,10 @@ from typing import Any
 
 import numpy as np
 
-from linkages.link import Link, refuse_unequal_ratios
+from linkages.conditions import decided, require_equal
+from linkages.link import Link
 from linkages.loop import GeometryError, Loop
+from linkages.numbers import sin
 from linkages.spatial_triangle import Kink, composite_link
 
 __all__ = [
@@ -85,9 +87,8 @@ def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
     for k in range(1, shared + 1):
         _refuse_different(a[-k], b[-k], f"shared link {n + shared + 1 - k}")
     for k in range(1, shared):
-        gap = float(first.offsets[-k] - second.offsets[-k])
-        if abs(gap) > EQUAL * max(first.characteristic_length, 1e-300):
-            raise GeometryError(f"offset of shared joint {first.n + 1 - k}, difference", gap, "0")
+        gap = first.offsets[-k] - second.offsets[-k]
+        _refuse_offset(gap, f"offset of shared joint {first.n + 1 - k}, difference", first)
     offsets = [first.offsets[0] - second.offsets[0], *first.offsets[1:n]]
     offsets += [first.offsets[n] - second.offsets[m], *(-r for r in second.offsets[m - 1 : 0 : -1])]
     return _loop([*a[:n], *b[:m][::-1]], offsets)
@@ -183,19 +184,26 @@ def _index(loop: Loop, joint: int) -> int:
 
 
 def _refuse_different(one: Link, other: Link, name: str) -> None:
-    extent = max(abs(float(one.length)), abs(float(other.length)), 1e-300)
-    length, twist = float(one.length - other.length), float(one.twist - other.twist)
-    if abs(length) > EQUAL * extent:
-        raise GeometryError(f"{name}, difference of the lengths", length, "0")
-    if abs(np.sin(twist / 2)) > EQUAL:
-        raise GeometryError(f"{name}, difference of the twists", twist, "0")
+    require_equal(f"length of {name}", other.length, one.length, "its length in the other loop")
+    gap = decided(sin((one.twist - other.twist) / 2))
+    if gap is not None and abs(gap) > EQUAL:
+        raise GeometryError(f"twist of {name}, difference", f"{2 * gap:.6g} rad", "0")
 
 
 def _refuse_no_bennett(loop: Loop, joint: int) -> None:
     i = _index(loop, joint)
-    before, after = (i - 1) % loop.n, i
     links = _links(loop)
-    names = {f"{k + 1}{(k + 1) % loop.n + 1}": links[k] for k in (before, after)}
-    refuse_unequal_ratios(EQUAL, **names)
-    if abs(float(loop.offsets[i])) > EQUAL * loop.characteristic_length:
-        raise GeometryError(f"offset of joint {joint}", loop.offsets[i], "0")
+    before, after = links[i - 1], links[i]
+    require_equal(
+        f"links at joint {joint}: length times sine of the other twist",
+        after.length * sin(before.twist),
+        before.length * sin(after.twist),
+        "for one Bennett ratio",
+    )
+    _refuse_offset(loop.offsets[i], f"offset of joint {joint}", loop)
+
+
+def _refuse_offset(value: Any, name: str, loop: Loop) -> None:
+    amount = decided(value)
+    if amount is not None and abs(amount) > EQUAL * loop.characteristic_length:
+        raise GeometryError(name, f"{amount:.6g}", "0")

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from linkages.loop import GeometryError, Loop
+from linkages.conditions import bennett_length, require_positive
+from linkages.loop import Loop
 from linkages.numbers import atan, sin, tan
 
 __all__ = [
@@ -18,7 +19,6 @@ __all__ = [
     "bennett_links",
     "closed_chain",
     "half_angle_ratio",
-    "refuse_unequal_ratios",
     "syncopated_link",
 ]
 
@@ -40,9 +40,16 @@ class Link:
         return Link(-self.length, -self.twist)
 
 
-def bennett_links(scale: Any, *twists: Any) -> tuple[Link, ...]:
-    """Links of one Bennett ratio: each has length ``scale * sin(twist)``; ``scale`` is 1 / Bennett ratio."""
-    return tuple(Link(scale * sin(twist), twist) for twist in twists)
+def bennett_links(a: Any, alpha: Any, **others: tuple[Any, Any]) -> tuple[Link, ...]:
+    """The link a/alpha and links of the same Bennett ratio, in the order given.
+
+    Each of ``others`` is a name with (twist, length): the length follows from the ratio where it is None, and
+    is checked where it is given. Twists in rad. Raises `GeometryError` for a ratio that differs, and for a
+    length that is not positive.
+    """
+    require_positive("length a", a)
+    lengths = {k: bennett_length(k, twist, given, a, alpha) for k, (twist, given) in others.items()}
+    return (Link(a, alpha), *(Link(lengths[k], twist) for k, (twist, _) in others.items()))
 
 
 def closed_chain(*links: Link, offsets: Sequence[Any] | None = None) -> Loop:
@@ -67,21 +74,3 @@ def syncopated_link(base: Link, product: Any) -> Link:
     """
     twist = 2 * atan((product + 1) / (product - 1) * tan(base.twist / 2))
     return Link(base.length * sin(twist) / sin(base.twist), twist)
-
-
-def refuse_unequal_ratios(tolerance: float = 1e-9, **links: Link) -> None:
-    """Raise `GeometryError` if the named links have not one Bennett ratio, relative to ``tolerance``.
-
-    Compared as a sin(alpha') against a' sin(alpha), which also serves links without length.
-    """
-    names, first = list(links), next(iter(links.values()))
-    for name in names[1:]:
-        link = links[name]
-        here, there = link.length * sin(first.twist), first.length * sin(link.twist)
-        extent = max(abs(float(link.length)), abs(float(first.length)), 1e-300)
-        if abs(float(here - there)) > tolerance * extent:
-            raise GeometryError(
-                f"link {name}: sin(twist)/length",
-                float(sin(link.twist) / link.length) if link.length != 0 else "infinite",
-                f"{float(sin(first.twist) / first.length)}, the Bennett ratio of link {names[0]}",
-            )

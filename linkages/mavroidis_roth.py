@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 from functools import partial
-from math import radians
+from math import radians, sin
 from typing import Any
 
 from linkages.entry import Entry, Parameter
@@ -23,41 +23,43 @@ class OffsetPattern(Enum):
 
 
 def mavroidis_roth(
+    a: Any,
     alpha: Any,
     gamma: Any,
-    scale: Any,
     length: Any,
     twist: Any,
-    r2: Any,
-    r3: Any,
+    R2: Any,
+    R3: Any,
     pattern: OffsetPattern = OffsetPattern.OPPOSITE,
     exchanged: bool = False,
+    c: Any = None,
 ) -> Loop:
     """Mavroidis and Roth's 6R: links a, l, a, c, l, c, or a, l, c, a, l, c when ``exchanged``.
 
-    ``alpha``, ``gamma`` are the twists (rad) of a and c, whose lengths are ``scale * sin(twist)``; ``length``
-    and ``twist`` are those of the free link l. Source: Mavroidis and Roth (1995), equation (2.4.11) in Song
-    (2013); the pattern R2 = -R5, R3 = -R6 moves as well and is not in the sources.
+    ``alpha``, ``gamma`` are the twists (rad) of a and c; the length of c follows and is checked if given;
+    ``length`` and ``twist`` are those of the free link l. Raises `GeometryError`. Source: Mavroidis and
+    Roth (1995), equation (2.4.11) in Song (2013); the pattern R2 = -R5, R3 = -R6 moves as well and is not
+    in the sources.
     """
-    a, c = bennett_links(scale, alpha, gamma)
+    a, c = bennett_links(a, alpha, c=(gamma, c))
     free = Link(length, twist)
-    r5, r6 = {
-        OffsetPattern.OPPOSITE: (r2, r3),
-        OffsetPattern.REFLECTED: (r3, r2),
-        OffsetPattern.NEGATIVE: (-r2, -r3),
+    R5, R6 = {
+        OffsetPattern.OPPOSITE: (R2, R3),
+        OffsetPattern.REFLECTED: (R3, R2),
+        OffsetPattern.NEGATIVE: (-R2, -R3),
     }[pattern]
     links = (a, free, c, a, free, c) if exchanged else (a, free, a, c, free, c)
-    return closed_chain(*links, offsets=(0, r2, r3, 0, r5, r6))
+    return closed_chain(*links, offsets=(0, R2, R3, 0, R5, R6))
 
 
 _PARAMETERS = (
+    Parameter("a", 1.7 * sin(radians(35)), "length", "length of link a", 0.3, 3.0),
     Parameter("alpha", radians(35), "angle", "twist of link a", radians(15), radians(110)),
     Parameter("gamma", radians(81), "angle", "twist of link c", radians(15), radians(110)),
-    Parameter("scale", 1.7, "length", "length / sin(twist) of the links a and c", 0.5, 3.0),
     Parameter("length", 1.13, "length", "length of the free links 23 and 56", 0.3, 2.0),
     Parameter("twist", radians(73), "angle", "twist of the free links 23 and 56", radians(15), radians(165)),
-    Parameter("r2", 0.31, "length", "offset R2", -0.5, 0.5),
-    Parameter("r3", -0.47, "length", "offset R3", -0.5, 0.5),
+    Parameter("R2", 0.31, "length", "offset R2", -0.5, 0.5),
+    Parameter("R3", -0.47, "length", "offset R3", -0.5, 0.5),
 )
 
 
@@ -66,7 +68,7 @@ def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
     order = "exchanged-" if exchanged else ""
     extra = ("moves too; not in the sources",) if pattern is OffsetPattern.NEGATIVE else ()
     return Entry(
-        f"{order}mavroidis-roth-6r-{pattern.name.lower()}",
+        f"{order}mavroidis-roth-{pattern.name.lower()}",
         f"Mavroidis and Roth's 6R, {'exchanged, ' if exchanged else ''}{pattern.value}",
         "Mavroidis and Roth (1995); Song (2013), eq. 2.4.11",
         partial(mavroidis_roth, pattern=pattern, exchanged=exchanged),

@@ -7,7 +7,7 @@ across the Bennett loop a, c. Up to the sign with which c is added, the links co
 from __future__ import annotations
 
 from functools import partial
-from math import radians
+from math import pi, radians, sin
 from typing import Any
 
 from linkages.entry import Entry, Parameter
@@ -29,16 +29,26 @@ _ORDER = {
 
 
 def double_goldberg_type(
-    alpha: Any, beta: Any, gamma: Any, delta: Any, scale: Any, order: str = "I", kind: str = "mixed"
+    a: Any,
+    alpha: Any,
+    beta: Any,
+    gamma: Any,
+    delta: Any,
+    order: str = "I",
+    kind: str = "mixed",
+    b: Any = None,
+    c: Any = None,
+    d: Any = None,
 ) -> Loop:
     """The double-Goldberg 6R of Type ``order``, I to VI, made of the two 5R linkages of ``kind``.
 
-    Twists of the links a, b, c, d in rad, lengths ``scale * sin(twist)``, no offsets. ``kind`` is a key of
-    `KINDS`: "mixed" (a subtractive and a plain Goldberg 5R), "goldberg", "subtractive". Source: Song and Chen
-    (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3, equations (3.4.3) to (3.4.22). The latter's
-    "alpha34 = alpha + gamma" in (3.4.11) is alpha45.
+    Twists of the links a, b, c, d in rad; the lengths b, c, d follow and are checked if given; no offsets.
+    ``kind`` is a key of `KINDS`: "mixed" (a subtractive and a plain Goldberg 5R), "goldberg",
+    "subtractive". Source: Song and Chen (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3,
+    equations (3.4.3) to (3.4.22). The latter's "alpha34 = alpha + gamma" in (3.4.11) is alpha45.
     """
-    names = dict(zip("abcd", bennett_links(scale, alpha, beta, gamma, delta), strict=True))
+    basic = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    names = dict(zip("abcd", basic, strict=True))
     first, second = KINDS[kind]
 
     def link(text: str) -> Link:
@@ -51,20 +61,27 @@ def double_goldberg_type(
 
 
 _PARAMETERS = (
+    Parameter("a", 1.7 * sin(radians(66)), "length", "length of link a", 0.3, 3.0),
     *(
         Parameter(name, radians(value), "angle", f"twist of link {link}", radians(15), radians(110))
-        for name, value, link in (("alpha", 66, "a"), ("beta", 50, "b"), ("gamma", 28, "c"), ("delta", 83, "d"))
+        for name, value, link in (
+            ("alpha", 66, "a"),
+            ("beta", 50, "b"),
+            ("gamma", 28, "c"),
+            ("delta", 83, "d"),
+        )
     ),
-    Parameter("scale", 1.7, "length", "length / sin(twist) of the links a, b, c, d", 0.5, 3.0),
 )
 _TITLES = {
     "mixed": "Mixed double-Goldberg 6R",
     "goldberg": "Double-Goldberg 6R",
     "subtractive": "Double-subtractive-Goldberg 6R",
 }
-_LOCKED = {"mixed": 0.0, "goldberg": 3.141592653589793, "subtractive": 3.141592653589793}
+_LOCKED = {"mixed": 0.0, "goldberg": pi, "subtractive": pi}
 _ERRATA = {
-    ("I", "mixed"): ("the closure equations (4.8), (4.9) / (3.4.8), (3.4.9) are printed with m2 for m1 and m4",),
+    ("I", "mixed"): (
+        "the closure equations (4.8), (4.9) / (3.4.8), (3.4.9) are printed with m2 for m1 and m4",
+    ),
     ("II", "mixed"): ("alpha34 = alpha + gamma is printed twice in (4.11) / (3.4.11); one is alpha45",),
     ("III", "mixed"): ("tan(theta4/2) = -m3 tan(theta1/2) is printed in (4.16) / (3.4.16); the sign is +",),
 }
@@ -76,7 +93,9 @@ def _entry(order: str, kind: str) -> Entry:
     facts: dict[str, Any] = {"joints": 6, "mobility": 1}
     if order == "III":
         facts["locked"] = {3: _LOCKED[kind]}
-    name = {"mixed": "mixed-double-goldberg", "goldberg": "double-goldberg"}.get(kind, "double-subtractive-goldberg")
+    name = {"mixed": "mixed-double-goldberg", "goldberg": "double-goldberg"}.get(
+        kind, "double-subtractive-goldberg"
+    )
     return Entry(
         f"{name}-type-{order.lower()}",
         f"{_TITLES[kind]}, Type {order}",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import radians
+from math import radians, sin
 from typing import Any
 
 from linkages.constructions import share_joint
@@ -15,25 +15,37 @@ __all__ = ["ENTRIES", "waldron_collinear", "waldron_hybrid"]
 
 
 def waldron_hybrid(
-    alpha: Any, beta: Any, scale_1: Any, gamma: Any, delta: Any, scale_2: Any, kink_1: Any, kink_2: Any, shift: Any
+    a: Any,
+    alpha: Any,
+    beta: Any,
+    c: Any,
+    gamma: Any,
+    delta: Any,
+    kink_1: Any,
+    kink_2: Any,
+    shift: Any,
+    b: Any = None,
+    d: Any = None,
 ) -> Loop:
     """Waldron's hybrid 6R of the Bennett loops a, b and c, d: links b, a, [b d], c, d, [c a].
 
-    Twists in rad; ``scale_1`` and ``scale_2`` are length / sin(twist) of the two loops; the links b, d are
-    locked at ``kink_1`` and c, a at ``kink_2`` (rad, or a `Kink`); ``shift`` is the distance of the loops
-    along the common axis. Source: Waldron (1968); Baker (1993a) for the geometry.
+    Twists in rad; the lengths b and d follow from the two Bennett ratios, and are checked if given; the
+    links b, d are locked at ``kink_1`` and c, a at ``kink_2`` (rad, or a `Kink`); ``shift`` is the distance
+    of the loops along the common axis. Source: Waldron (1968); Baker (1993a) for the geometry.
     """
-    a, b = bennett_links(scale_1, alpha, beta)
-    c, d = bennett_links(scale_2, gamma, delta)
+    a, b = bennett_links(a, alpha, b=(beta, b))
+    c, d = bennett_links(c, gamma, d=(delta, d))
     return share_joint(closed_chain(a, b, a, b), closed_chain(d, c, d, c), kink_1, kink_2, shift)
 
 
-def waldron_collinear(alpha: Any, beta: Any, scale_1: Any, gamma: Any, delta: Any, scale_2: Any) -> Loop:
+def waldron_collinear(
+    a: Any, alpha: Any, beta: Any, c: Any, gamma: Any, delta: Any, b: Any = None, d: Any = None
+) -> Loop:
     """Waldron's hybrid 6R without offsets: b and d folded upon each other, a and c in line.
 
     Links b, a, b - d, c, d, a + c. Source: Yu and Baker (1981); section 2.4.6 in Song (2013).
     """
-    return waldron_hybrid(alpha, beta, scale_1, gamma, delta, scale_2, Kink.FOLDED, Kink.STRAIGHT, 0)
+    return waldron_hybrid(a, alpha, beta, c, gamma, delta, Kink.FOLDED, Kink.STRAIGHT, 0, b, d)
 
 
 def _twist(name: str, degrees: float, link: str) -> Parameter:
@@ -41,18 +53,18 @@ def _twist(name: str, degrees: float, link: str) -> Parameter:
 
 
 _LOOPS = (
+    Parameter("a", 1.7 * sin(radians(35)), "length", "length of link a", 0.3, 3.0),
     _twist("alpha", 35, "a"),
     _twist("beta", 62, "b"),
-    Parameter("scale_1", 1.7, "length", "length / sin(twist) of the links a and b", 0.5, 3.0),
+    Parameter("c", 1.25 * sin(radians(81)), "length", "length of link c", 0.3, 3.0),
     _twist("gamma", 81, "c"),
     _twist("delta", 48, "d"),
-    Parameter("scale_2", 1.25, "length", "length / sin(twist) of the links c and d", 0.5, 3.0),
 )
 _RATIOS = "sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d"
 
 ENTRIES = (
     Entry(
-        "waldron-hybrid-6r",
+        "waldron-hybrid",
         "Waldron's hybrid 6R of two Bennett loops",
         "Waldron (1968); Baker (1993a); Song (2013), section 2.4.5",
         waldron_hybrid,
@@ -66,7 +78,7 @@ ENTRIES = (
         facts={"joints": 6, "mobility": 1},
     ),
     Entry(
-        "waldron-collinear-6r",
+        "waldron-collinear",
         "Waldron's hybrid 6R with collinear links",
         "Waldron (1968); Yu and Baker (1981); Song (2013), section 2.4.6",
         waldron_collinear,

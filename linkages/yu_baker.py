@@ -2,30 +2,48 @@
 
 from __future__ import annotations
 
-from math import radians
+from math import radians, sin
 from typing import Any
 
 from linkages.entry import Entry, Parameter
-from linkages.link import bennett_links, closed_chain, half_angle_ratio, syncopated_link
+from linkages.link import Link, bennett_links, closed_chain, half_angle_ratio, syncopated_link
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "yu_baker"]
+__all__ = ["ENTRIES", "yu_baker", "yu_baker_two_ratios"]
 
 
 def yu_baker(
-    alpha: Any, beta: Any, gamma: Any, delta: Any, scale_1: Any, scale_2: Any = None
+    a: Any, alpha: Any, beta: Any, gamma: Any, delta: Any, b: Any = None, c: Any = None, d: Any = None
 ) -> Loop:
-    """Yu and Baker's syncopated 6R: links e - b, a + c, e - d, c, b - d, a.
+    """Yu and Baker's syncopated 6R of one Bennett ratio: links e - b, a + c, e - d, c, b - d, a.
 
-    Twists in rad. ``scale_1`` and ``scale_2`` (by default the same) are length / sin(twist) of a, b and of c,
-    d. Source: Yu and Baker (1981); equation (2.4.10) in Song (2013) asks for one ratio, which is not needed.
+    Twists in rad; the lengths b, c, d follow and are checked if given; e/epsilon follows. Raises
+    `GeometryError`. Source: Yu and Baker (1981); equation (2.4.10) in Song (2013).
     """
-    a, b = bennett_links(scale_1, alpha, beta)
-    c, d = bennett_links(scale_1 if scale_2 is None else scale_2, gamma, delta)
-    e = syncopated_link(a + c, half_angle_ratio(alpha, beta) * half_angle_ratio(gamma, delta))
+    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    return _syncopated(a, b, c, d)
+
+
+def yu_baker_two_ratios(
+    a: Any, alpha: Any, beta: Any, c: Any, gamma: Any, delta: Any, b: Any = None, d: Any = None
+) -> Loop:
+    """Yu and Baker's syncopated 6R with one Bennett ratio for a, b and another for c, d.
+
+    Source: as `yu_baker`; equation (2.4.10) in Song (2013) asks for one ratio, which is not needed.
+    """
+    a, b = bennett_links(a, alpha, b=(beta, b))
+    c, d = bennett_links(c, gamma, d=(delta, d))
+    return _syncopated(a, b, c, d)
+
+
+def _syncopated(a: Link, b: Link, c: Link, d: Link) -> Loop:
+    product = half_angle_ratio(a.twist, b.twist) * half_angle_ratio(c.twist, d.twist)
+    e = syncopated_link(a + c, product)
     return closed_chain(e - b, a + c, e - d, c, b - d, a)
 
 
+_A = Parameter("a", 1.7 * sin(radians(35)), "length", "length of link a", 0.3, 3.0)
+_C = Parameter("c", 1.25 * sin(radians(81)), "length", "length of link c", 0.3, 3.0)
 _TWISTS = tuple(
     Parameter(name, radians(value), "angle", f"twist of link {link}", radians(15), radians(110))
     for name, value, link in (("alpha", 35, "a"), ("beta", 62, "b"), ("gamma", 81, "c"), ("delta", 48, "d"))
@@ -37,24 +55,20 @@ _CONDITIONS = (
 
 ENTRIES = (
     Entry(
-        "yu-baker-6r",
+        "yu-baker",
         "Yu and Baker's syncopated 6R",
         "Yu and Baker (1981); Song (2013), eq. 2.4.10",
         yu_baker,
-        (*_TWISTS, Parameter("scale_1", 1.7, "length", "length / sin(twist) of a, b, c, d", 0.5, 3.0)),
+        (_A, *_TWISTS),
         ("sin(twist)/length is the same for the links a, b, c, d", *_CONDITIONS),
         facts={"joints": 6, "mobility": 1},
     ),
     Entry(
-        "yu-baker-two-ratio-6r",
+        "yu-baker-two-ratios",
         "Yu and Baker's syncopated 6R with two Bennett ratios",
         "Yu and Baker (1981); Song (2013), eq. 2.4.10",
-        yu_baker,
-        (
-            *_TWISTS,
-            Parameter("scale_1", 1.7, "length", "length / sin(twist) of a and b", 0.5, 3.0),
-            Parameter("scale_2", 1.25, "length", "length / sin(twist) of c and d", 0.5, 3.0),
-        ),
+        yu_baker_two_ratios,
+        (_A, *_TWISTS[:2], _C, *_TWISTS[2:]),
         ("sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d", *_CONDITIONS),
         errata=("four equal Bennett ratios are printed; two pairs suffice",),
         facts={"joints": 6, "mobility": 1},
