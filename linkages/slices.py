@@ -29,8 +29,9 @@ from linkages.loop import GeometryError, Loop
 
 __all__ = ["Slice", "slice_configurations"]
 
-CLOSURE = 1e-12  # a configuration closes: largest entry of T_1 ... T_n - I, lengths in characteristic lengths
+CLOSURE = 1e-13  # a configuration closes: largest entry of T_1 ... T_n - I, lengths in characteristic lengths
 SINGULAR = 1e-10  # below this the pencil of an elimination is singular
+INFINITE = 1e-4  # exp(i theta) below this, or above its inverse: a complex solution at infinity
 EQUAL = 1e-6  # rad: two configurations that agree to this are one
 ROOM = 40  # configurations kept of one slice: four are possible, more only where a continuum is sampled
 STARTS = 48  # starts of Gauss-Newton in a slice that the elimination cannot decide
@@ -113,6 +114,13 @@ def _link_quaternions(lengths: np.ndarray, twists: np.ndarray, offsets: np.ndarr
 
 
 @register_jitable
+def _copy(target, source):
+    """Fill ``target`` (k,); a loop, because numba takes a second to compile an assignment of rows."""
+    for i in range(len(target)):
+        target[i] = source[i]
+
+
+@register_jitable
 def _quaternion_product(p, i, q, j):
     """Product of the quaternions that start at entry i of p and entry j of q."""
     a, b, c, d = p[i], p[i + 1], p[i + 2], p[i + 3]
@@ -123,7 +131,7 @@ def _quaternion_product(p, i, q, j):
 
 @register_jitable
 def _product(p, q):
-    out = np.empty(8)
+    out = np.empty_like(p)
     out[0], out[1], out[2], out[3] = _quaternion_product(p, 0, q, 0)
     a, b, c, d = _quaternion_product(p, 0, q, 4)
     w, x, y, z = _quaternion_product(p, 4, q, 0)
@@ -133,22 +141,25 @@ def _product(p, q):
 
 @register_jitable
 def _conjugate(q):
-    out = -q
-    out[0], out[4] = q[0], q[4]
+    out = np.empty(8)
+    for i in range(8):
+        out[i] = q[i] if i % 4 == 0 else -q[i]
     return out
 
 
 @register_jitable
-def _turn(angle):
-    out = np.zeros(8)
-    out[0], out[3] = np.cos(angle / 2), np.sin(angle / 2)
+def _turned(angle, q):
+    """(cos(angle/2) + k sin(angle/2)) q."""
+    c, s, out, side = np.cos(angle / 2), np.sin(angle / 2), np.empty_like(q), _turn_by_left(q)
+    for i in range(8):
+        out[i] = c * q[i] + s * side[i]
     return out
 
 
 @register_jitable
 def _turn_by_left(q):
     """k q."""
-    out = np.empty(8)
+    out = np.empty_like(q)
     for i in (0, 4):
         out[i], out[i + 1], out[i + 2], out[i + 3] = -q[i + 3], -q[i + 2], q[i + 1], q[i]
     return out
@@ -193,18 +204,18 @@ def _pair_turns(p, norms):
     x_plus, x_minus = (p[0] + 1j * p[1]) * norms[1], (p[0] - 1j * p[1]) * norms[1]
     y_plus, y_minus = (p[2] + 1j * p[3]) * norms[0], (p[2] - 1j * p[3]) * norms[0]
     size = np.sqrt(abs(x_plus) ** 2 + abs(x_minus) ** 2 + abs(y_plus) ** 2 + abs(y_minus) ** 2)
-    if min(abs(x_minus), abs(x_plus), abs(y_plus), abs(y_minus)) < 1e-5 * size or size == 0:
+    if min(abs(x_minus), abs(x_plus), abs(y_plus), abs(y_minus)) <= INFINITE * size:
         return 0j, 0j
     return y_plus / x_minus, y_minus / x_minus
 
 
 @register_jitable
 def _right_space(after_b, after_c, after_d):
-    """Rows (4, 8) spanning conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b), and the norms (2,) of the pair."""
+    """Rows (4, 8) spanning conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b), and the norms of the pair."""
     rows, _, norms = _pair_space(_conjugate(after_c))
     left, right = _conjugate(after_d), _conjugate(after_b)
     for i in range(4):
-        rows[i] = _product(_product(left, rows[i]), right)
+        _copy(rows[i], _product(_product(left, rows[i]), right))
     return rows, norms
 
 
@@ -223,25 +234,41 @@ def _projected(complement, rows):
 
 
 @register_jitable
+def _size(p):
+    """Euclidean norm of a complex vector."""
+    total = 0.0
+    for z in p:
+        total += z.real * z.real + z.imag * z.imag
+    return np.sqrt(total)
+
+
+@register_jitable
+def _left_coordinates(y, rows, left):
+    """Coordinates (4,) on the left side of the element with coordinates y on the right."""
+    x = np.zeros(4, np.complex128)
+    for k in range(8):
+        entry = 0j
+        for j in range(len(rows)):
+            entry += y[j] * rows[j, k]
+        for i in range(4):
+            x[i] += left[i, k] * entry
+    return x
+
+
+@register_jitable
 def _record(y, rows, left, left_norms, right_norms, turns, defects, count):
     """Append the joints (a, b, c, d) of the null vector y to ``turns``; their number afterwards."""
     if count >= len(turns):
         return count
-    reached, x = np.zeros(8, np.complex128), np.zeros(4, np.complex128)
-    for j in range(len(rows)):
-        reached += y[j] * rows[j]
-    for i in range(4):
-        for k in range(8):
-            x[i] += left[i, k] * reached[k]
-    size = np.sum(np.abs(x) ** 2) + 1e-300
-    defects[count] = abs(_modulus_defect(x, x, left_norms)) / size
+    x = _left_coordinates(y, rows, left)
+    defects[count] = abs(_modulus_defect(x, x, left_norms)) / (_size(x) ** 2 + 1e-300)
     turns[count, 0], turns[count, 1] = _pair_turns(x, left_norms)
     if len(rows) == 2:  # a single joint on the right: y is (cos, sin) of half its angle
         plus, minus = y[0] + 1j * y[1], y[0] - 1j * y[1]
-        turns[count, 2] = plus / minus if min(abs(plus), abs(minus)) > 1e-5 else 0j
+        turns[count, 2] = plus / minus if min(abs(plus), abs(minus)) > INFINITE else 0j
     else:
-        size = np.sum(np.abs(y) ** 2) + 1e-300
-        defects[count] = max(defects[count], abs(_modulus_defect(y, y, right_norms)) / size)
+        defect = abs(_modulus_defect(y, y, right_norms)) / (_size(y) ** 2 + 1e-300)
+        defects[count] = max(defects[count], defect)
         minus_d, minus_c = _pair_turns(y, right_norms)
         turns[count, 2] = 1 / minus_c if minus_c != 0 else 0j
         turns[count, 3] = 1 / minus_d if minus_d != 0 else 0j
@@ -250,66 +277,151 @@ def _record(y, rows, left, left_norms, right_norms, turns, defects, count):
 
 @register_jitable
 def _line_forms(p, q, rows, left, left_norms, right_norms):
-    """Coefficients (2, 3) of the moduli defects of s p + t q, left and right, in s s, s t, t t."""
+    """Coefficients (2, 3) of the modulus defects of s p + t q, left and right, in s s, s t, t t."""
     out = np.zeros((2, 3), np.complex128)
-    ends = np.zeros((2, 4), np.complex128)
-    for j in range(len(rows)):
-        for i in range(4):
-            reach = 0j
-            for k in range(8):
-                reach += left[i, k] * rows[j, k]
-            ends[0, i] += reach * p[j]
-            ends[1, i] += reach * q[j]
-    out[0, 0] = _modulus_defect(ends[0], ends[0], left_norms)
-    out[0, 1] = 2 * _modulus_defect(ends[0], ends[1], left_norms)
-    out[0, 2] = _modulus_defect(ends[1], ends[1], left_norms)
-    if len(rows) == 4:
-        out[1, 0] = _modulus_defect(p, p, right_norms)
-        out[1, 1] = 2 * _modulus_defect(p, q, right_norms)
-        out[1, 2] = _modulus_defect(q, q, right_norms)
+    x, z = _left_coordinates(p, rows, left), _left_coordinates(q, rows, left)
+    for side in range(2 if len(rows) == 4 else 1):
+        a, b, norms = (x, z, left_norms) if side == 0 else (p, q, right_norms)
+        out[side, 0] = _modulus_defect(a, a, norms)
+        out[side, 1] = 2 * _modulus_defect(a, b, norms)
+        out[side, 2] = _modulus_defect(b, b, norms)
     return out
 
 
 @register_jitable
-def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defects, count):
-    """Append the candidates in the null space of ``matrix`` (4, q); the right side is spanned by ``rows`` (q, 8).
-
-    Returns their number, the number of them that sample a continuum, and whether the null space has three
-    dimensions or more, which is not resolved. A null space of two dimensions is a line that meets
-    the two quadrics |x| = |y| in at most two points, unless it lies in both: a continuum.
-    """
-    _, sigma, vh = np.linalg.svd(matrix)
-    q = matrix.shape[1]
-    sigma = sigma / max(sigma[0], 1.0)
-    p = np.conj(vh[q - 1])
-    count = _record(p, rows, left, left_norms, right_norms, turns, defects, count)
-    if sigma[q - 2] > 1e-3:
-        return count, 0, False
-    other = np.conj(vh[q - 2])
-    forms = _line_forms(p, other, rows, left, left_norms, right_norms)
-    sizes = np.abs(forms).sum(axis=1)
+def _record_line(p, q, rows, left, left_norms, right_norms, turns, defects, count):
+    """Append the points of the line through p and q on the quadrics |x| = |y|; their number afterwards, and
+    the largest coefficient of the quadrics: both contain the line when it vanishes."""
+    forms = _line_forms(p, q, rows, left, left_norms, right_norms)
+    sizes = _size(forms[0]), _size(forms[1])
     a, b, c = forms[1] if sizes[1] > sizes[0] else forms[0]
     root = np.sqrt(b * b - 4 * a * c)
     lead = b + root if abs(b + root) > abs(b - root) else b - root
-    for s, t in ((-lead, 2 * a), (2 * c, -lead)):
+    for i in range(2):
+        s, t = (-lead, 2 * a) if i == 0 else (2 * c, -lead)
         size = np.sqrt(abs(s) ** 2 + abs(t) ** 2)
         if size > 1e-12:
-            y = (s * p + t * other) / size
+            y = _combined(s / size, p, t / size, q)
             count = _record(y, rows, left, left_norms, right_norms, turns, defects, count)
-    sampled = 0
-    if sigma[q - 2] < 1e-6 and sizes.max() < 1e-6:
-        p, other = _real_line(p, other)
-        for i in range(8):
-            y = np.cos(0.2 + i * np.pi / 8) * p + np.sin(0.2 + i * np.pi / 8) * other
-            count = _record(y, rows, left, left_norms, right_norms, turns, defects, count)
-        sampled = 8
-    return count, sampled, q > 2 and sigma[q - 3] < 1e-7
+    return count, max(sizes[0], sizes[1])
 
 
 @register_jitable
-def _real_line(p, q):
-    """The same two vectors turned by phases that make them real where they can be."""
-    return p * np.exp(-0.5j * np.angle(np.sum(p * p))), q * np.exp(-0.5j * np.angle(np.sum(q * q)))
+def _mixed(s, p, t, q):
+    """s p + t q of two real matrices."""
+    out = np.empty(p.shape, np.complex128)
+    for i in range(p.shape[0]):
+        for j in range(p.shape[1]):
+            out[i, j] = s * p[i, j] + t * q[i, j]
+    return out
+
+
+@register_jitable
+def _combined(s, p, t, q):
+    """s p + t q."""
+    out = np.empty(len(p), np.complex128)
+    for i in range(len(p)):
+        out[i] = s * p[i] + t * q[i]
+    return out
+
+
+@register_jitable
+def _eliminate(matrix, reduced, order, steps):
+    """Largest entry left after ``steps`` steps of Gauss-Jordan with complete pivoting on ``matrix`` (4, q).
+
+    ``reduced`` takes the result, ``order`` its order of columns.
+    """
+    q = matrix.shape[1]
+    for j in range(q):
+        order[j] = j
+        for i in range(4):
+            reduced[i, j] = matrix[i, j]
+    for k in range(steps + 1):
+        best, r, c = 0.0, k, k
+        for i in range(k, 4):
+            for j in range(k, q):
+                if abs(reduced[i, j]) > best:
+                    best, r, c = abs(reduced[i, j]), i, j
+        if k == steps or best < 1e-300:
+            return best
+        order[k], order[c] = order[c], order[k]
+        for i in range(4):
+            reduced[i, k], reduced[i, c] = reduced[i, c], reduced[i, k]
+        for j in range(q):
+            reduced[k, j], reduced[r, j] = reduced[r, j], reduced[k, j]
+        for i in range(4):
+            if i != k:
+                factor = reduced[i, k] / reduced[k, k]
+                for j in range(k, q):
+                    reduced[i, j] -= factor * reduced[k, j]
+    return 0.0
+
+
+@register_jitable
+def _null_vectors(matrix, dimension):
+    """Orthonormal rows (dimension, q) of the null space that ``matrix`` (4, q) has but for what is left after
+    q - dimension pivots, and the size of that rest."""
+    q = matrix.shape[1]
+    reduced, order = np.empty((4, q), np.complex128), np.empty(q, np.int64)
+    rank = q - dimension
+    rest = _eliminate(matrix, reduced, order, rank)
+    out = np.zeros((dimension, q), np.complex128)
+    for d in range(dimension):
+        out[d, order[rank + d]] = 1.0
+        for k in range(rank):
+            if reduced[k, k] != 0:
+                out[d, order[k]] = -reduced[k, rank + d] / reduced[k, k]
+        for e in range(d):
+            inner = 0j
+            for j in range(q):
+                inner += np.conj(out[e, j]) * out[d, j]
+            for j in range(q):
+                out[d, j] -= inner * out[e, j]
+        size = _size(out[d])
+        for j in range(q):
+            out[d, j] /= size
+    return out, rest
+
+
+@register_jitable
+def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defects, count):
+    """Append the candidates in the null space of ``matrix`` (4, q); ``rows`` (q, 8) span the right side.
+
+    Returns their number, how many of them sample a continuum, and whether the null space has dimensions that
+    are not resolved. One of dimension two is a line that meets the two quadrics |x| = |y| in at
+    most two points, unless it lies in both: a continuum. In one of dimension three (a Bennett loop within
+    the linkage) the quadrics may share a conic, a continuum too.
+    """
+    q = matrix.shape[1]
+    single, _ = _null_vectors(matrix, 1)
+    count = _record(single[0], rows, left, left_norms, right_norms, turns, defects, count)
+    line, rest = _null_vectors(matrix, 2)
+    if rest > 1e-3:
+        return count, 0, False
+    p, other = line
+    count, form = _record_line(p, other, rows, left, left_norms, right_norms, turns, defects, count)
+    if rest > 1e-6:
+        return count, 0, False
+    if q > 2:
+        plane, rest = _null_vectors(matrix, 3)
+        if rest < 1e-6:
+            before = count
+            for i in range(8):
+                angle = 0.2 + i * np.pi / 8
+                y = _combined(np.cos(angle), plane[0], np.sin(angle), plane[1])
+                count, _ = _record_line(
+                    y, plane[2], rows, left, left_norms, right_norms, turns, defects, count
+                )
+            shared = count > before
+            for i in range(before, count):
+                shared = shared and defects[i] < 1e-6
+            return count, count - before if shared else 0, not shared
+    if form > 1e-6:
+        return count, 0, False
+    for i in range(8):
+        y = _combined(np.cos(0.2 + i * np.pi / 8), p, np.sin(0.2 + i * np.pi / 8), other)
+        count = _record(y, rows, left, left_norms, right_norms, turns, defects, count)
+    return count, 8, False
 
 
 # --- the three sizes of chain -------------------------------------------------------------------------------
@@ -320,17 +432,17 @@ def _solve_three(fixed, turns, defects):
     """Candidates of a chain of three joints with links ``fixed`` (3, 8): (count, sampled, crowded)."""
     best, value = 0, -1.0
     for a in range(3):
-        smallest = _pair_space(fixed[a])[2].min()
+        norms = _pair_space(fixed[a])[2]
+        smallest = min(norms[0], norms[1])
         if smallest > value:
             best, value = a, smallest
     after_b, after_c = _conjugate(fixed[(best + 1) % 3]), _conjugate(fixed[(best + 2) % 3])
     left, complement, norms = _pair_space(fixed[best])
     rows = np.empty((2, 8))
-    rows[0], rows[1] = _product(after_c, after_b), -_product(after_c, _turn_by_left(after_b))
-    matrix = _projected(complement, rows).astype(np.complex128)
-    count, sampled, _ = _record_null_space(
-        matrix, rows.astype(np.complex128), left, norms, norms, turns, defects, 0
-    )
+    _copy(rows[0], _product(after_c, after_b))
+    _copy(rows[1], _product(_conjugate(_turn_by_left(fixed[(best + 2) % 3])), after_b))
+    matrix, mixed = _projected(complement, rows).astype(np.complex128), rows.astype(np.complex128)
+    count, sampled, _ = _record_null_space(matrix, mixed, left, norms, norms, turns, defects, 0)
     _reorder(turns, count, 3, best)
     return count, sampled, value < 1e-10
 
@@ -342,9 +454,9 @@ def _solve_four(fixed, turns, defects):
     for a in range(2):
         left, complement, left_norms = _pair_space(fixed[a])
         rows, right_norms = _right_space(fixed[a + 1], fixed[a + 2], fixed[(a + 3) % 4])
-        matrix = _projected(complement, rows).astype(np.complex128)
+        matrix, mixed = _projected(complement, rows).astype(np.complex128), rows.astype(np.complex128)
         count, sampled, crowded = _record_null_space(
-            matrix, rows.astype(np.complex128), left, left_norms, right_norms, turns, defects, 0
+            matrix, mixed, left, left_norms, right_norms, turns, defects, 0
         )
         if not crowded:
             _reorder(turns, count, 4, a)
@@ -358,38 +470,46 @@ def _pencil(fixed, v):
     complement = _pair_space(fixed[(v + 1) % 5])[1]
     rows, _ = _right_space(fixed[(v + 2) % 5], fixed[(v + 3) % 5], fixed[(v + 4) % 5])
     cosine, sine = np.empty((4, 8)), np.empty((4, 8))
+    back, back_turned = _conjugate(fixed[v]), _conjugate(_turn_by_left(fixed[v]))
     for i in range(4):
-        cosine[i] = _product(_conjugate(fixed[v]), rows[i])
-        sine[i] = -_product(_conjugate(fixed[v]), _turn_by_left(rows[i]))
+        _copy(cosine[i], _product(back, rows[i]))
+        _copy(sine[i], _product(back_turned, rows[i]))
     return _projected(complement, cosine), _projected(complement, sine), cosine, sine
 
 
 @register_jitable
-def _inverse(matrix):
-    """Inverse (4, 4) with complete pivoting, and 1 / its Frobenius norm, which is at most the smallest
-    singular value; 0 for a singular matrix."""
-    a, b = matrix.copy(), np.eye(4)
-    used_row, column_of = np.zeros(4, np.bool_), np.full(4, -1)
-    free = np.ones(4, np.bool_)
-    for _ in range(4):
-        best, r, c = 0.0, -1, -1
-        for i in range(4):
-            for j in range(4):
-                if not used_row[i] and free[j] and abs(a[i, j]) > best:
+def _inverse(c, m0, s, m1):
+    """Inverse (4, 4) of c m0 + s m1, with complete pivoting, and 1 / its Frobenius norm, which is at most the
+    smallest singular value; 0 for a singular matrix."""
+    a = np.zeros((4, 8))
+    order, out, total = np.empty(4, np.int64), np.empty((4, 4)), 0.0
+    for i in range(4):
+        a[i, 4 + i], order[i] = 1.0, i
+        for j in range(4):
+            a[i, j] = c * m0[i, j] + s * m1[i, j]
+    for k in range(4):
+        best, r, c = 0.0, k, k
+        for i in range(k, 4):
+            for j in range(k, 4):
+                if abs(a[i, j]) > best:
                     best, r, c = abs(a[i, j]), i, j
         if best < 1e-14:
-            return b, 0.0
-        used_row[r], free[c], column_of[r] = True, False, c
-        b[r] /= a[r, c]
-        a[r] /= a[r, c]
+            return out, 0.0
+        order[k], order[c] = order[c], order[k]
         for i in range(4):
-            if i != r:
-                b[i] -= a[i, c] * b[r]
-                a[i] -= a[i, c] * a[r]
-    out = np.empty((4, 4))
-    for i in range(4):
-        out[column_of[i]] = b[i]
-    return out, 1 / np.sqrt(np.sum(out * out))
+            a[i, k], a[i, c] = a[i, c], a[i, k]
+        for j in range(8):
+            a[k, j], a[r, j] = a[r, j], a[k, j]
+        for i in range(4):
+            factor = a[i, k] / a[k, k]
+            if i != k:
+                for j in range(k, 8):
+                    a[i, j] -= factor * a[k, j]
+    for k in range(4):
+        for j in range(4):
+            out[order[k], j] = a[k, 4 + j] / a[k, k]
+            total += out[order[k], j] ** 2
+    return out, 1 / np.sqrt(total)
 
 
 @register_jitable
@@ -402,7 +522,7 @@ def _most_regular(fixed, excluded):
         m0, m1, _, _ = _pencil(fixed, v)
         for i in range(3):
             half = 0.3 + i * np.pi / 3
-            value = _inverse(np.cos(half) * m0 + np.sin(half) * m1)[1]
+            value = _inverse(np.cos(half), m0, np.sin(half), m1)[1]
             if value > best:
                 best, kept, origin = value, v, half
     return kept, origin, best
@@ -430,21 +550,28 @@ def _solve_pencil(fixed, v, origin, turns, defects):
     left, _, left_norms = _pair_space(fixed[(v + 1) % 5])
     right_norms = _pair_space(_conjugate(fixed[(v + 3) % 5]))[2]
     c0, s0 = np.cos(origin), np.sin(origin)
-    inverse, _ = _inverse(c0 * m0 + s0 * m1)
-    values = np.linalg.eigvals((inverse @ (c0 * m1 - s0 * m0)).astype(np.complex128))
+    inverse, _ = _inverse(c0, m0, s0, m1)
+    standard = np.zeros((4, 4), np.complex128)
+    for i in range(4):
+        for j in range(4):
+            for k in range(4):
+                standard[i, j] += inverse[i, k] * (c0 * m1[k, j] - s0 * m0[k, j])
+    values = np.linalg.eigvals(standard)
     count, sampled, crowded = 0, 0, False
     for value in values:
         # cos(half) M + sin(half) M' is singular for half = origin + arccot(-value)
         size = np.sqrt(1 + abs(value) ** 2)
         c, s = (-value * c0 - s0) / size, (-value * s0 + c0) / size
-        if min(abs(c + 1j * s), abs(c - 1j * s)) < 1e-5:
-            continue  # at infinity
+        if min(abs(c + 1j * s), abs(c - 1j * s)) < INFINITE:
+            continue
         before = count
+        matrix, rows = _mixed(c, m0, s, m1), _mixed(c, cosine, s, sine)
         count, more, full = _record_null_space(
-            c * m0 + s * m1, c * cosine + s * sine, left, left_norms, right_norms, turns, defects, before
+            matrix, rows, left, left_norms, right_norms, turns, defects, before
         )
         kept = (c + 1j * s) / (c - 1j * s)
-        turns[before:count, 4] = kept
+        for i in range(before, count):
+            turns[i, 4] = kept
         sampled += more
         crowded = crowded or (full and abs(abs(kept) - 1) < 1e-3)
     _reorder(turns, count, 5, (v + 1) % 5)
@@ -454,8 +581,10 @@ def _solve_pencil(fixed, v, origin, turns, defects):
 @register_jitable
 def _reorder(turns, count, m, first):
     """Columns 0, 1, ... of ``turns`` belong to joints first, first + 1, ... of a chain of m: sort them."""
+    row = np.empty(m, np.complex128)
     for i in range(count):
-        row = turns[i].copy()
+        for j in range(m):
+            row[j] = turns[i, j]
         for j in range(m):
             turns[i, (first + j) % m] = row[j]
 
@@ -464,59 +593,76 @@ def _reorder(turns, count, m, first):
 
 
 @register_jitable
-def _closure(fixed, theta, jacobian):
+def _closure(links, theta, jacobian):
     """Closure error (6,): rotation vector and translation, to first order; its derivative into (6, m).
 
     The vector part of a quaternion vanishes for the identity only, so half turns are no ghosts.
     """
     m = len(theta)
-    after = np.zeros((m + 1, 8))
+    after = np.zeros((m + 1, 8), np.complex128)
     after[m, 0] = 1.0
     for i in range(m - 1, -1, -1):
-        after[i] = _product(_product(_turn(theta[i]), fixed[i]), after[i + 1])
-    total, before = after[0], np.zeros(8)
-    sign = 1.0 if total[0] >= 0 else -1.0
-    before[0] = sign
-    error = np.empty(6)
+        _copy(after[i], _turned(theta[i], _product(links[i], after[i + 1])))
+    total, before = after[0], np.zeros(8, np.complex128)
+    before[0] = 1.0 if total[0].real >= 0 else -1.0
+    error = np.empty(6, np.complex128)
     for r in range(3):
-        error[r], error[r + 3] = 2 * sign * total[r + 1], 2 * sign * total[r + 5]
+        error[r], error[r + 3] = 2 * before[0] * total[r + 1], 2 * before[0] * total[r + 5]
+    turn = np.zeros(8, np.complex128)
     for i in range(m):
         derivative = _product(before, _turn_by_left(after[i]))
         for r in range(3):
             jacobian[r, i], jacobian[r + 3, i] = derivative[r + 1], derivative[r + 5]
-        before = _product(_product(before, _turn(theta[i])), fixed[i])
+        turn[0], turn[3] = np.cos(theta[i] / 2), np.sin(theta[i] / 2)
+        before = _product(_product(before, turn), links[i])
     return error
 
 
 @register_jitable
-def _least_squares(matrix, right):
-    """The x (m,) of least |matrix x - right|: Gram-Schmidt with pivots, directions below 1e-9 get no part."""
-    a, b, m = matrix.copy(), right.copy(), matrix.shape[1]
-    order, r, x = np.arange(m), np.zeros((m, m)), np.zeros(m)
-    rank, first = m, 1.0
+def _largest(p):
+    out = 0.0
+    for z in p:
+        out = max(out, abs(z))
+    return out
+
+
+@register_jitable
+def _least_squares(a, b):
+    """The x (m,) of least |a x - b|: Gram-Schmidt with pivots, directions below 1e-9 get no part.
+
+    Overwrites a and b.
+    """
+    rows, m = a.shape
+    order, r, x = np.empty(m, np.int64), np.zeros((m, m), np.complex128), np.zeros(m, np.complex128)
+    rank, first, out = m, 0.0, np.zeros(m, np.complex128)
     for k in range(m):
-        best = k
+        order[k] = k
+    for k in range(m):
+        best, largest = k, -1.0
         for j in range(k, m):
-            if np.sum(a[:, j] ** 2) > np.sum(a[:, best] ** 2):
-                best = j
-        for i in range(len(a)):
+            size = _size(a[:, j])
+            if size > largest:
+                best, largest = j, size
+        first = max(first, largest)
+        if largest <= 1e-9 * first:
+            rank = k
+            break
+        for i in range(rows):
             a[i, k], a[i, best] = a[i, best], a[i, k]
         for i in range(k):
             r[i, k], r[i, best] = r[i, best], r[i, k]
         order[k], order[best] = order[best], order[k]
-        norm = np.sqrt(np.sum(a[:, k] ** 2))
-        first = norm if k == 0 else first
-        if norm <= 1e-9 * first:
-            rank = k
-            break
-        r[k, k] = norm
-        a[:, k] /= norm
+        r[k, k] = largest
+        for i in range(rows):
+            a[i, k] /= largest
+            x[k] += np.conj(a[i, k]) * b[i]
+        for i in range(rows):
+            b[i] -= x[k] * a[i, k]
         for j in range(k + 1, m):
-            r[k, j] = np.sum(a[:, k] * a[:, j])
-            a[:, j] -= r[k, j] * a[:, k]
-        x[k] = np.sum(a[:, k] * b)
-        b -= x[k] * a[:, k]
-    out = np.zeros(m)
+            for i in range(rows):
+                r[k, j] += np.conj(a[i, k]) * a[i, j]
+            for i in range(rows):
+                a[i, j] -= r[k, j] * a[i, k]
     for k in range(rank - 1, -1, -1):
         for j in range(k + 1, rank):
             x[k] -= r[k, j] * x[j]
@@ -526,21 +672,23 @@ def _least_squares(matrix, right):
 
 
 @register_jitable
-def _polish(fixed, theta):
-    """Gauss-Newton on ``theta`` (m,), in place; True when it closes."""
-    jacobian = np.empty((6, len(theta)))
+def _polish(links, theta):
+    """The closure error after Gauss-Newton on ``theta`` (m,), complex, in place."""
+    jacobian = np.empty((6, len(theta)), np.complex128)
     previous = np.inf
     for i in range(60):
-        error = _closure(fixed, theta, jacobian)
-        size = np.abs(error).max()
+        error = _closure(links, theta, jacobian)
+        size = _largest(error)
         if size < 5e-16 or (size < 1e-13 and size > 0.5 * previous):
             break
         if i > 10 and (size > 1e-3 or size > 0.9 * previous):
             break
         previous = size
         step = _least_squares(jacobian, error)
-        theta -= step * min(1.0, 0.5 / (np.abs(step).max() + 1e-300))
-    return np.abs(_closure(fixed, theta, jacobian)).max() < 0.3 * CLOSURE
+        factor = min(1.0, 0.5 / (_largest(step) + 1e-300))
+        for j in range(len(theta)):
+            theta[j] -= factor * step[j]
+    return _largest(_closure(links, theta, jacobian))
 
 
 @register_jitable
@@ -551,75 +699,81 @@ def _wrapped(angle):
 
 
 @register_jitable
-def _add_new(fixed, theta, found, count):
+def _distance(p, q):
+    """Largest difference of the angles p and q, complex, modulo the period."""
+    out = 0.0
+    for i in range(len(p)):
+        gap = p[i] - q[i]
+        out = max(out, abs(_wrapped(gap.real)), abs(gap.imag))
+    return out
+
+
+@register_jitable
+def _add_new(links, theta, found, count):
     """Number of configurations in ``found`` after adding ``theta``, unless it is among them.
 
     At a singular configuration Gauss-Newton stops at different points that all close: two points whose
     middle closes too are one.
     """
-    jacobian = np.empty((6, len(theta)))
-    for i in range(len(theta)):
-        theta[i] = _wrapped(theta[i])
+    jacobian, middle = np.empty((6, len(theta)), np.complex128), np.empty_like(theta)
     for i in range(count):
-        gap = theta - found[i]
-        for j in range(len(gap)):
-            gap[j] = _wrapped(gap[j])
-        distance = np.abs(gap).max()
+        distance = _distance(theta, found[i])
         if distance < EQUAL:
             return count
-        if distance < 1e-2 and np.abs(_closure(fixed, theta - gap / 2, jacobian)).max() < 1e-14:
-            return count
+        if distance < 1e-2:
+            for j in range(len(theta)):
+                gap = theta[j] - found[i, j]
+                middle[j] = theta[j] - (_wrapped(gap.real) + 1j * gap.imag) / 2
+            if _largest(_closure(links, middle, jacobian)) < 1e-14:
+                return count
     if count < len(found):
-        found[count] = theta
+        for j in range(len(theta)):
+            found[count, j] = _wrapped(theta[j].real) + 1j * theta[j].imag
         count += 1
     return count
 
 
 @register_jitable
-def _add_complex(turn, others, count):
-    """Number of rows of ``others`` (exp(i theta), complex) after adding ``turn`` unless it is among them."""
-    for i in range(count):
-        if np.abs(turn / others[i] - 1).max() < 1e-4:
-            return count
-    if count < len(others):
-        others[count] = turn
-        count += 1
-    return count
-
-
-@register_jitable
-def _collect(fixed, turns, defects, candidates, found):
-    """(real configurations, all finite ones, candidates that close where they were) from the candidates."""
-    m = len(fixed)
-    others = np.empty((len(turns), m), np.complex128)
+def _collect(links, turns, defects, candidates, found, others):
+    """(real configurations, complex ones, number of real candidates that close where they are)."""
+    m = len(links)
+    start, theta = np.empty(m, np.complex128), np.empty(m, np.complex128)
     count, n_others, held = 0, 0, 0
     for i in range(candidates):
-        turn = turns[i, :m]
-        if np.abs(turn).min() < 1e-10 or defects[i] > 0.02:
+        smallest, away = 1.0, 0.0
+        for j in range(m):
+            smallest = min(smallest, abs(turns[i, j]))
+            away = max(away, abs(abs(turns[i, j]) - 1))
+        if smallest < INFINITE or defects[i] > 0.02:
             continue
-        real = False
-        if np.abs(np.log(np.abs(turn))).max() < 0.1:
-            start = np.angle(turn)
-            theta = start.copy()
-            if _polish(fixed, theta):
-                real = np.abs(np.exp(1j * theta) / turn - 1).max() < 1e-3
-                held += real
-                count = _add_new(fixed, theta, found, count)
-        if not real and defects[i] < 1e-6:
-            n_others = _add_complex(turn, others, n_others)
-    return count, count + n_others, held
+        for j in range(m):
+            start[j] = -1j * np.log(turns[i, j])
+            theta[j] = start[j].real
+        if away < 0.1 and _polish(links, theta) < CLOSURE / 2:
+            count = _add_new(links, theta, found, count)
+            if _distance(theta, start) < 1e-3:
+                held += 1
+                continue
+        _copy(theta, start)
+        error, imaginary, growth = _polish(links, theta), 0.0, 1.0
+        for j in range(m):
+            imaginary = max(imaginary, abs(theta[j].imag))
+            growth *= np.exp(abs(theta[j].imag))  # of the entries, and of the rounding with them
+        if 1e-7 < imaginary < -np.log(INFINITE) and error < CLOSURE * growth:
+            n_others = _add_new(links, theta, others, n_others)
+    return count, n_others, held
 
 
 @register_jitable
-def _sample(fixed, found, count):
+def _sample(links, found, count):
     """Number of configurations in ``found`` after Gauss-Newton from fixed, well spread starts."""
-    m = len(fixed)
-    theta = np.empty(m)
+    m = len(links)
+    theta = np.empty(m, np.complex128)
     for i in range(STARTS):
         for j in range(m):  # the Weyl sequence of square roots of primes
             theta[j] = 2 * np.pi * ((i + 1) * np.sqrt((2.0, 3.0, 5.0, 7.0, 11.0)[j]) % 1.0)
-        if _polish(fixed, theta):
-            count = _add_new(fixed, theta, found, count)
+        if _polish(links, theta) < CLOSURE / 2:
+            count = _add_new(links, theta, found, count)
     return count
 
 
@@ -629,28 +783,29 @@ def _solve_slices(links, joint, angles):
     n = len(links)
     found, count = np.zeros((len(angles), ROOM, n)), np.zeros(len(angles), np.int64)
     n_complex, status = np.zeros(len(angles), np.int64), np.zeros(len(angles), np.int64)
-    fixed, chain = np.empty((n - 1, 8)), np.empty((ROOM, n - 1))
-    turns, defects = np.ones((64, n - 1 if n > 4 else 4), np.complex128), np.zeros(64)
+    fixed, chain = np.empty((n - 1, 8)), np.empty((ROOM, n - 1), np.complex128)
+    others = np.empty((ROOM, n - 1), np.complex128)
+    turns, defects = np.ones((128, max(n - 1, 4)), np.complex128), np.zeros(128)
     for k in range(len(angles)):
         for i in range(n - 1):
-            fixed[i] = links[(joint + 1 + i) % n]
-        fixed[n - 2] = _product(_product(fixed[n - 2], _turn(angles[k])), links[joint])
+            _copy(fixed[i], links[(joint + 1 + i) % n])
+        _copy(fixed[n - 2], _product(fixed[n - 2], _turned(angles[k], links[joint])))
         if n == 4:
             candidates, sampled, crowded = _solve_three(fixed, turns, defects)
         elif n == 5:
             candidates, sampled, crowded = _solve_four(fixed, turns, defects)
         else:
             candidates, sampled, crowded = _solve_five(fixed, turns, defects)
-        count[k], n_complex[k], held = _collect(fixed, turns, defects, candidates, chain)
+        closing = fixed.astype(np.complex128)
+        count[k], n_others, held = _collect(closing, turns, defects, candidates, chain, others)
+        n_complex[k] = count[k] + n_others
         if crowded:
-            status[k] = UNDECIDED
-            count[k] = _sample(fixed, chain, count[k])
-        elif sampled and held > 4:
-            status[k] = CONTINUUM
-        if status[k] != COMPLETE:
-            n_complex[k] = -1
+            status[k], n_complex[k] = UNDECIDED, -1
+            count[k] = _sample(closing, chain, count[k])
+        elif sampled > 0 and held > 4:
+            status[k], n_complex[k] = CONTINUUM, -1
         for i in range(count[k]):
             found[k, i, joint] = _wrapped(angles[k])
             for j in range(n - 1):
-                found[k, i, (joint + 1 + j) % n] = chain[i, j]
+                found[k, i, (joint + 1 + j) % n] = chain[i, j].real
     return found, count, n_complex, status
