@@ -11,6 +11,7 @@ import networkx as nx
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.monitor import Profile
 from bifurc.problem import ProblemError
 from bifurc.seeding import Completeness
 from bifurc.singular import Kind, SingularPoint
@@ -30,15 +31,20 @@ def wrap(point: np.ndarray, periods: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Form:
-    """A smooth motion branch with its name, the smallest regular singular value seen along it, the rank that F' has on it
-    and the number of the component it belongs to. ``labels`` holds what a recogniser said of it."""
+    """A smooth motion branch with its name, the singular values along it, the smallest regular one of them, minima
+    included, and the number of the component it belongs to. ``labels`` holds what a recogniser said of it."""
 
     name: str
     branch: Branch
+    profile: Profile
     min_singular_value: float
-    rank: int
     component: int = 0
     labels: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def rank(self) -> int:
+        """The rank that F' has along the form, but for single points."""
+        return self.profile.rank
 
 
 @dataclass(frozen=True)
@@ -111,7 +117,8 @@ class RouteError(LookupError):
 class Atlas:
     """All that `bifurc.explore.explore` found of a problem.
 
-    ``closure_gap`` is the smallest residual that could be reached where nothing solves the system (else 0).
+    ``closure_gap``: where there is no form, the median relative residual along the valley in which the system is
+    nearly solved (0 where there are forms).
     ``info`` keeps provenance: settings, seed, seconds, whether the run was interrupted.
     """
 

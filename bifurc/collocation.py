@@ -61,17 +61,17 @@ def _piece(
         if nodes is not None:
             coefficients = chebyshev.chebfit(cosine, nodes, order)
             tail = float(np.abs(coefficients[-2:]).max())
-            size = max(width, 1e-3)
-            if tail <= tolerance * size:
+            enough = tolerance * problem.scale
+            if tail <= enough:
                 piece, length = _by_arclength(coefficients, width)
                 inside = np.vander(np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True)
                 misfit = problem.residuals(inside @ piece) / problem.magnitude
                 residual = float(np.linalg.norm(misfit, axis=1).max())
-                if residual <= 30 * tolerance * max(size, 1.0):
-                    growth = (tolerance * size / max(tail, 1e-18)) ** (1.0 / order)
+                if residual <= 30 * tolerance:
+                    growth = (enough / max(tail, 1e-18)) ** (1.0 / order)
                     return piece, length, residual, width * min(1.6, max(0.7, 0.95 * growth))
                 tail = max(tail, residual)
-            width *= min(0.75, max(0.3, 0.9 * (tolerance * size / tail) ** (1.0 / order)))
+            width *= min(0.75, max(0.3, 0.9 * (enough / tail) ** (1.0 / order)))
         else:
             width *= 0.4
     return None, 0.0, 0.0, width

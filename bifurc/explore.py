@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 import time
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import networkx as nx
 import numpy as np
@@ -13,7 +14,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface, wrap
 from bifurc.branch import Branch, Outcome
 from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
-from bifurc.monitor import dead_points, profile_branch, singular_value_minima, singular_values
+from bifurc.monitor import Profile, dead_points, profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
 from bifurc.seeding import Completeness, Seeds, missed_probability
 from bifurc.singular import Kind, SingularPoint, classify_singular_point, locate_singular_point, section
@@ -23,23 +24,24 @@ __all__ = ["explore"]
 log = logging.getLogger(__name__)
 
 SAME = 1e-6  # distance, in units of the problem's scale, below which a seed lies on a traced curve
+INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R"}
+NEARLY = 1e-3  # singular value, over the problem's magnitude, below which a singular point is looked for
 SURFACE_CHECKS = 12  # how many seeds of nullity 2 are examined one by one once a surface is known
 
 
 @dataclass
 class _Findings:
-    """What is known so far."""
+    """What is known so far. ``owner`` labels every seed with what it lies on: (kind, number)."""
 
     branches: list[Branch] = field(default_factory=list)
+    profiles: list[Profile] = field(default_factory=list)
     minima: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
-    ranks: list[int] = field(default_factory=list)
-    typical: list[float] = field(default_factory=list)
     located: list[list[float]] = field(default_factory=list)  # arclengths of minima that are singular points
     points: list[SingularPoint] = field(default_factory=list)
     rigid: list[np.ndarray] = field(default_factory=list)
     surface: list[np.ndarray] = field(default_factory=list)
-    hits: list[int] = field(default_factory=list)  # random starts per branch, then per rigid assembly
-    rigid_hits: list[int] = field(default_factory=list)
+    gaps: list[float] = field(default_factory=list)  # residuals of starts that only nearly solve the system
+    owner: dict[int, tuple[str, int]] = field(default_factory=dict)
 
 
 def explore(
@@ -72,7 +74,8 @@ def explore(
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
     if gathered is None:
-        gathered = Seeds(np.empty((0, problem.n)), np.empty(0, dtype=bool), np.empty(0))
+        nothing = np.empty((0, problem.n))
+        gathered = Seeds(nothing, np.empty(0, dtype=bool), np.empty(0), nothing)
     info = {
         "seed": seed, "starts": starts, "settings": asdict(settings), "interrupted": interrupted,
         "derivatives": problem.derivatives, "seconds": time.perf_counter() - began,
@@ -88,52 +91,53 @@ def _work_through(
     progress: Callable[[str, int], None] | None,
 ) -> None:  # fmt: skip
     """Trace from every seed that lies on nothing known, and from every half-branch that shows up on the way."""
-    values = singular_values(problem, seeds.points) if len(seeds.points) else np.empty((0, problem.n))
-    open_seeds = np.ones(len(seeds.points), dtype=bool)
-    # clear seeds first: those whose curve is far from singular
-    order = np.argsort(-values[:, problem.n - 2], kind="stable") if len(values) else []
-    for i in order:
-        if not open_seeds[i]:
-            continue
-        known = len(found.branches)
-        _take_seed(problem, seeds.points[i], values[i], bool(seeds.random[i]), found, settings)
-        open_seeds[i] = False
-        for branch in found.branches[known:]:
-            rest = np.flatnonzero(open_seeds)
-            on = branch.nearest(seeds.points[rest])[0] < SAME * problem.scale if len(rest) else np.empty(0, bool)
-            open_seeds[rest[on]] = False
-            found.hits.append(int(seeds.random[rest[on]].sum()))
-            if progress is not None:
-                progress("forms", len(found.branches))
-        if len(found.branches) > known and i < len(seeds.random) and seeds.random[i]:
-            found.hits[known] += 1
+    if not len(seeds.points):
+        return
+    values = singular_values(problem, seeds.points)
+    # the clearest first: those whose curve is far from singular
+    waiting = list(np.argsort(-values[:, max(problem.n - 2, 0)], kind="stable"))
+    matched = 0
+    while waiting:
+        i = waiting.pop(0)
+        found.owner[i] = _take_seed(problem, seeds.points[i], values[i], found, settings)
+        for number in range(matched, len(found.branches)):
+            distance, _ = found.branches[number].nearest(seeds.points[waiting])
+            on = distance < SAME * problem.scale
+            found.owner.update((waiting[k], ("form", number)) for k in np.flatnonzero(on))
+            waiting = [waiting[k] for k in np.flatnonzero(~on)]
+        matched = len(found.branches)
+        if progress is not None:
+            progress("forms", matched)
 
 
 def _take_seed(
-    problem: Problem, point: np.ndarray, values: np.ndarray, random: bool, found: _Findings, settings: TraceSettings
-) -> None:
+    problem: Problem, point: np.ndarray, values: np.ndarray, found: _Findings, settings: TraceSettings
+) -> tuple[str, int]:
     """Find out what a seed lies on: a curve, a rigid assembly, a singular point, or a surface."""
-    n, top = problem.n, max(values[0], 1e-300)
-    if values[n - 1] > 1e-9 * top:
-        nearly = values[n - 1] < 1e-6 * top  # rounding on a curve that is hard to solve, or a linkage slightly off
-        if not (nearly and _trace_and_follow(problem, point, None, found, settings)):
-            _add_rigid(problem, point, random, found)
-        return
-    if values[n - 2] > 1e-4 * top:
-        _trace_and_follow(problem, point, None, found, settings)
-        return
-    if _near_any(problem, point, [p.u for p in found.points], 1e-4):
-        return
-    nullity = int(np.count_nonzero(values < 1e-4 * top))
-    if values[n - 2] < 1e-9 * top:
-        # a whole neighbourhood of lower rank, or a singular point hit by chance: the section tells
-        known_surface = len(found.surface) > SURFACE_CHECKS
-        if known_surface or _on_surface(problem, point):
+    n = problem.n
+    if values[n - 1] > 1e-6:
+        return "rigid", _known_or_new(problem, point, found.rigid)
+    if values[n - 2] <= 1e-4:
+        known = _nearest(problem, point, [p.u for p in found.points], 1e-4)
+        if known is not None:
+            return "point", known
+        if values[n - 2] < 1e-9 and (len(found.surface) > SURFACE_CHECKS or _on_surface(problem, point)):
             found.surface.append(point)
-            return
-    _examine(problem, point, nullity, found, settings, reach=1e-2)
-    if not _near_any(problem, point, [p.u for p in found.points], 1e-4):
-        _trace_and_follow(problem, point, None, found, settings)
+            return "surface", 0
+        nullity = int(np.count_nonzero(values < 1e-4))
+        located = _examine(problem, point, nullity, found, reach=1e-2)
+        if located is not None:
+            number = next(i for i, p in enumerate(found.points) if p is located)
+            starts = [(located.u + located.radius * h, h) for h in located.half_branches]
+            _trace_and_follow(problem, starts, found, settings)
+            return "point", number
+    number = len(found.branches)
+    nearly = len(found.gaps)
+    if _trace_and_follow(problem, [(point, None)], found, settings):
+        return "form", number
+    if len(found.gaps) > nearly:
+        return "no solution", 0
+    return "rigid", _known_or_new(problem, point, found.rigid)
 
 
 def _on_surface(problem: Problem, point: np.ndarray) -> bool:
@@ -141,91 +145,87 @@ def _on_surface(problem: Problem, point: np.ndarray) -> bool:
     jacobian = problem.jacobians(point[None])[0] / problem.magnitude
     _, sigma, right = np.linalg.svd(jacobian)
     padded = np.concatenate([sigma, np.zeros(len(right) - len(sigma))])
-    null_space = right[padded < 1e-7 * padded[0]].T
+    null_space = right[padded < 1e-7].T
     return null_space.shape[1] > 1 and section(problem, point, null_space, 1e-2 * problem.scale).dimension > 1
 
 
 def _trace_and_follow(
-    problem: Problem, start: np.ndarray, direction: np.ndarray | None, found: _Findings, settings: TraceSettings
+    problem: Problem, queue: list[tuple[np.ndarray, np.ndarray | None]], found: _Findings, settings: TraceSettings
 ) -> bool:
-    """Trace the branch through ``start`` and everything that hangs on it; False where there is no curve."""
-    queue = [(start, direction)]
+    """Trace the branches through the starts and everything that hangs on them; False where there is no curve."""
     traced = False
     while queue:
         point, along = queue.pop()
         if any(branch.nearest(point)[0][0] < SAME * problem.scale for branch in found.branches):
             continue
         branch = trace_branch(problem, point, along, settings)
-        if branch.outcome is Outcome.OPEN or branch.length < 1e-3 * problem.scale:
+        if branch.outcome is Outcome.OPEN:
+            found.gaps.append(branch.gap)
+        if not len(branch.pieces) or branch.length < 1e-3 * problem.scale:
             log.info("no curve through %s: %s", point, branch.outcome.value)
             continue
         traced = True
-        queue += _add_branch(problem, branch, found, settings)
+        queue = queue + _add_branch(problem, branch, found)
     return traced
 
 
 def _add_branch(
-    problem: Problem, branch: Branch, found: _Findings, settings: TraceSettings
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Record a traced branch and the singular points on it; starts on the other branches through them come back."""
+    problem: Problem, branch: Branch, found: _Findings
+) -> list[tuple[np.ndarray, np.ndarray | None]]:
+    """Record a traced branch and the singular points on it; starts on all branches through them come back."""
     profile = profile_branch(problem, branch)
     s, value = singular_value_minima(problem, branch, profile)
     found.branches.append(branch)
+    found.profiles.append(profile)
     found.minima.append((s, value))
-    found.ranks.append(profile.rank)
-    found.typical.append(float(np.max(profile.smallest)))
     located: list[float] = []
-    starts: list[tuple[np.ndarray, np.ndarray]] = []
-    top = float(np.median(profile.values[..., 0]))
-    for at, small in zip(s, value, strict=True):
-        if small > 1e-3 * top:
-            continue
-        values = singular_values(problem, branch(at)[None])[0]
-        nullity = int(np.count_nonzero(values < max(1e-3 * top, 3 * small)))
-        point = _examine(problem, branch(at), nullity, found, settings, reach=0.05)
+    candidates = [(float(at), max(NEARLY, 3 * small)) for at, small in zip(s, value, strict=True) if small < NEARLY]
+    if branch.outcome is Outcome.STALLED:  # at a cusp the curve ends before the singular point is reached
+        candidates += [(0.0, 10 * NEARLY), (branch.length, 10 * NEARLY)]
+    starts: list[tuple[np.ndarray, np.ndarray | None]] = []
+    for at, small in candidates:
+        nullity = int(np.count_nonzero(singular_values(problem, branch(at)[None])[0] < small))
+        point = _examine(problem, branch(at), nullity, found, reach=0.05) if nullity > 1 else None
         if point is not None:
-            located.append(float(at))
+            located.append(at)
             starts += [(point.u + point.radius * h, h) for h in point.half_branches]
-    for end in () if branch.closed else (0.0, branch.length):
-        if branch.outcome is Outcome.STALLED:
-            values = singular_values(problem, branch(end)[None])[0]
-            nullity = int(np.count_nonzero(values < 1e-2 * top))
-            if nullity > 1 and (point := _examine(problem, branch(end), nullity, found, settings, reach=0.05)) is not None:
-                starts += [(point.u + point.radius * h, h) for h in point.half_branches]
     found.located.append(located)
     return starts
 
 
 def _examine(
-    problem: Problem, near: np.ndarray, nullity: int, found: _Findings, settings: TraceSettings, reach: float
+    problem: Problem, near: np.ndarray, nullity: int, found: _Findings, reach: float
 ) -> SingularPoint | None:
     """Locate and classify the singular point near a configuration; one already known is returned as it is."""
-    for k in range(max(nullity, 2), min(problem.n, 4) + 1) if nullity < 4 else (nullity,):
-        result = locate_singular_point(problem, near, k, reach * problem.scale)
+    for k in sorted({max(nullity, 2), 2, 3}, key=lambda k: abs(k - nullity)):
+        result = locate_singular_point(problem, near, k, reach * problem.scale) if k <= problem.n else None
         if result is None:
             continue
         u, null_space, error = result
-        for known in found.points:
-            if np.linalg.norm(problem.difference(known.u, u)) < 1e-6 * problem.scale:
-                return known
+        known = _nearest(problem, u, [p.u for p in found.points], SAME)
+        if known is not None:
+            return found.points[known]
         point = classify_singular_point(problem, u, null_space, error)
         found.points.append(point)
         return point
     return None
 
 
-def _add_rigid(problem: Problem, point: np.ndarray, random: bool, found: _Findings) -> None:
-    """Record an isolated assembly, or count one more hit of a known one."""
-    for i, known in enumerate(found.rigid):
-        if np.linalg.norm(problem.difference(known, point)) < SAME * problem.scale:
-            found.rigid_hits[i] += int(random)
-            return
-    found.rigid.append(point)
-    found.rigid_hits.append(int(random))
+def _nearest(problem: Problem, point: np.ndarray, others: list[np.ndarray], within: float) -> int | None:
+    """Number of the first of ``others`` at less than ``within`` scales from ``point``, or None."""
+    for i, other in enumerate(others):
+        if np.linalg.norm(problem.difference(other, point)) < within * problem.scale:
+            return i
+    return None
 
 
-def _near_any(problem: Problem, point: np.ndarray, others: list[np.ndarray], within: float) -> bool:
-    return any(np.linalg.norm(problem.difference(other, point)) < within * problem.scale for other in others)
+def _known_or_new(problem: Problem, point: np.ndarray, known: list[np.ndarray]) -> int:
+    """Number of ``point`` in the list, to which it is added where it is new."""
+    number = _nearest(problem, point, known, SAME)
+    if number is None:
+        known.append(point)
+        return len(known) - 1
+    return number
 
 
 # --- putting the atlas together -----------------------------------------------------------------------
@@ -237,34 +237,49 @@ def _assemble(problem: Problem, found: _Findings, seeds: Seeds, interrupted: boo
     branches = [found.branches[i] for i in order]
     points = [_meeting_point(problem, p, branches) for p in found.points]
     points = sorted(points, key=lambda p: (p.kind.value, *np.round(wrap(p.point.u, problem.periods), 6)))
-    named = [_with_name(p, i + 1) for i, p in enumerate(points)]
-    component = _components(len(branches), named)
-    forms = tuple(
-        Form(
-            f"Form {i + 1}", branch, float(found.minima[k][1].min(initial=found.typical[k])), found.ranks[k], component[i]
-        )
-        for i, (k, branch) in enumerate(zip(order, branches, strict=True))
-    )
-    near = [
-        Event(i, float(s), branches[i](s), float(v))
-        for i, k in enumerate(order)
-        for s, v in zip(*found.minima[k], strict=True)
-        if float(s) not in found.located[k] and v < 0.5 * found.typical[k]
-    ]
-    dead = [
-        Event(i, float(s), branch(s), index=j)
-        for i, branch in enumerate(branches)
-        for j, roots in enumerate(dead_points(branch))
-        for s in roots
-    ]
-    surfaces = (Surface(2, np.array(found.surface)),) if found.surface else ()
-    solved = bool(found.branches or found.rigid or found.points or found.surface)
-    gap = 0.0 if solved else float(seeds.gaps.min(initial=np.inf))
+    points = [replace(p, name=f"{INITIALS.get(p.kind, 'S')}{i}") for i, p in enumerate(points, start=1)]
+    component = _components(len(branches), points)
+    forms, near, dead = [], [], []
+    for i, k in enumerate(order):
+        branch, profile, minima = found.branches[k], found.profiles[k], found.minima[k]
+        smallest = float(min(minima[1].min(initial=np.inf), profile.smallest.min()))
+        forms.append(Form(f"Form {i + 1}", branch, profile, smallest, component[i]))
+        near += [
+            Event(i, float(s), branch(s), float(v))
+            for s, v in zip(*minima, strict=True)
+            if float(s) not in found.located[k] and v < 0.5 * profile.smallest.max()
+        ]
+        dead += [Event(i, float(s), branch(s), index=j) for j, roots in enumerate(dead_points(branch)) for s in roots]
+    mobile = bool(found.branches or found.surface)
     return Atlas(
-        names=problem.names, units=problem.units, periods=problem.periods, forms=forms, points=tuple(named),
+        names=problem.names, units=problem.units, periods=problem.periods, forms=tuple(forms), points=tuple(points),
         near_misses=tuple(near), dead_points=tuple(dead), rigid=np.array(found.rigid).reshape(-1, problem.n),
-        surfaces=surfaces, completeness=_completeness(found, seeds, interrupted), closure_gap=gap, info=info,
+        surfaces=(Surface(2, np.array(found.surface)),) if found.surface else (),
+        completeness=_completeness(found, seeds, interrupted),
+        closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found), info=info,
     )  # fmt: skip
+
+
+def _closure_gap(problem: Problem, seeds: Seeds, found: _Findings) -> float:
+    """Median residual along the valley in which the system is nearly solved, where it has no curve of solutions.
+
+    From every start that did not solve the system, Gauss-Newton steps of rank n - 1 run down to the valley but not along
+    it, so that an isolated solution at its end does not hide the gap. Where there is no valley, the residuals themselves.
+    """
+    points = seeds.missed.copy()
+    for _ in range(12):
+        if not len(points):
+            break
+        residual = problem.residuals(points) / problem.magnitude
+        left, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude, full_matrices=False)
+        inverse = np.zeros_like(sigma)
+        kept = sigma[:, : problem.n - 1] > 1e-6 * sigma[:, :1]
+        inverse[:, : problem.n - 1][kept] = 1.0 / sigma[:, : problem.n - 1][kept]
+        step = np.einsum("kji,kj,kmj,km->ki", right, inverse, left, residual)
+        points -= step * np.minimum(1.0, 0.5 * problem.scale / (np.linalg.norm(step, axis=1) + 1e-300))[:, None]
+    gaps = np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude if len(points) else np.empty(0)
+    gaps = np.concatenate([np.maximum(gaps, seeds.gaps), found.gaps])
+    return float(np.median(gaps)) if len(gaps) else np.inf
 
 
 def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch]) -> MeetingPoint:
@@ -286,11 +301,6 @@ def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch
     return MeetingPoint("", kind, point, tuple(passes), tangents, note)
 
 
-def _with_name(point: MeetingPoint, number: int) -> MeetingPoint:
-    letter = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R"}.get(point.kind, "S")
-    return MeetingPoint(f"{letter}{number}", point.kind, point.point, point.passes, point.tangents, point.note)
-
-
 def _components(count: int, points: list[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of the forms."""
     graph = nx.Graph()
@@ -307,15 +317,15 @@ def _components(count: int, points: list[MeetingPoint]) -> list[int]:
 
 def _completeness(found: _Findings, seeds: Seeds, interrupted: bool) -> Completeness:
     """What the seeds prove, and the estimate for the rest."""
-    surface_hits = [len(found.surface)] if found.surface else []
-    missed = missed_probability([*found.hits, *found.rigid_hits, *surface_hits])
-    hits = int(sum(found.hits) + sum(found.rigid_hits) + sum(surface_hits))
+    hits = Counter(owner for i, owner in found.owner.items() if seeds.random[i])
+    closed = sum(hits.values())
+    hits["no solution", 0] = len(seeds.gaps)
+    missed = missed_probability(list(hits.values()))
     estimate = (
-        f"{hits} random starts reached what is listed here: one more would reach something new with a probability "
-        f"of at most {missed:.2g} (95 % confidence)"
+        f"{closed} of {closed + len(seeds.gaps)} random starts reached a solution, each listed here: one more start "
+        f"would reach something new with a probability of at most {missed:.2g} (95 % confidence)"
     )
     if interrupted:
         return Completeness("interrupted", "the search was interrupted; " + estimate, missed)
-    if seeds.complete:
-        return Completeness("complete slices", f"{seeds.statement}; {estimate}", missed)
-    return Completeness("estimated", f"{seeds.statement}; {estimate}" if seeds.statement else estimate, missed)
+    level = "complete slices" if seeds.complete else "estimated"
+    return Completeness(level, f"{seeds.statement}; {estimate}" if seeds.statement else estimate, missed)

@@ -63,11 +63,11 @@ def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
 
 
 def profile_branch(problem: Problem, branch: Branch, tolerance: float = 1e-9) -> Profile:
-    """The singular values along a curve; ``tolerance``: what counts as zero relative to the largest."""
+    """The singular values along a curve; ``tolerance``: what counts as zero, over the problem's magnitude."""
     arclength = _on_pieces(branch, _nodes()[0])
     values = singular_values(problem, branch(arclength))
     typical = np.median(values.reshape(-1, problem.n), axis=0)
-    rank = int(np.count_nonzero(typical > tolerance * typical[0]))
+    rank = int(np.count_nonzero(typical > tolerance))
     return Profile(arclength, values, max(min(rank, problem.n - 1), 1))
 
 
@@ -95,7 +95,7 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
         best = np.argmin(values, axis=1)
         rows = np.arange(len(s))
         s, value, reach = trial[rows, best], values[rows, best], reach / 4
-    genuine = ~of_product | (value < 1e-3 * np.median(profile.values[..., 0]))
+    genuine = ~of_product | (value < 1e-3)
     return _without_repeats(s[genuine], value[genuine], branch)
 
 

@@ -20,13 +20,14 @@ class Seeds:
     """Solutions to start from.
 
     ``points`` (k, n) solve the system; ``random`` (k,) says which of them come from random starts, the rest from complete
-    slices; ``gaps`` are the residuals (g,) of the random starts that found no solution. ``statement`` says what
+    slices; ``missed`` (g, n) is where the random starts ended that found no solution, ``gaps`` (g,) the residuals there. ``statement`` says what
     the slices leave out, empty where there are none; ``complete`` whether every slice was complete.
     """
 
     points: np.ndarray
     random: np.ndarray
     gaps: np.ndarray
+    missed: np.ndarray
     complete: bool = False
     statement: str = ""
 
@@ -40,7 +41,7 @@ class Completeness:
     missed_probability: float
 
 
-def random_seeds(problem: Problem, rng: np.random.Generator, count: int, closed_below: float = 1e-11) -> Seeds:
+def random_seeds(problem: Problem, rng: np.random.Generator, count: int, closed_below: float = 1e-12) -> Seeds:
     """Solutions reached from ``count`` random starts.
 
     Periodic unknowns are drawn from their period, the others from the bounds (from -scale to scale
@@ -54,7 +55,7 @@ def random_seeds(problem: Problem, rng: np.random.Generator, count: int, closed_
     points, gaps = problem.project(rng.uniform(low, high, (count, problem.n)))
     solved = gaps < closed_below
     solved &= np.all((points >= problem.bounds[:, 0]) & (points <= problem.bounds[:, 1]), axis=1)
-    return Seeds(points[solved], np.ones(int(solved.sum()), dtype=bool), gaps[~solved])
+    return Seeds(points[solved], np.ones(int(solved.sum()), dtype=bool), gaps[~solved], points[~solved])
 
 
 def missed_probability(hits: Sequence[int]) -> float:

@@ -120,7 +120,7 @@ def locate_singular_point(
     values = np.linalg.svd(problem.jacobians(u[None])[0] / problem.magnitude, compute_uv=False)
     residual = np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
     tail = values[n - k] if len(values) > n - k else 0.0
-    if residual > 1e-11 or tail > 1e-8 * values[0]:
+    if residual > 1e-11 or tail > 1e-8:
         return None
     error = min(moved, previous) + 1e-15 / max(smallest, 1e-15)
     return u, basis, error

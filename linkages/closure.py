@@ -5,11 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.problem import March, Problem
+from bifurc.seeding import Seeds, random_seeds
 from linkages import kernels
 from linkages.loop import Loop
+from linkages.slices import slice_configurations
 
 __all__ = ["LoopClosure"]
 
+SLICES = 24  # of every joint: any motion in which a joint turns by more than 15 degrees meets one
+LARGEST_SLICED = 6  # joints of the longest loop with complete slices
 ROUNDING = 4e-16  # below this residual norm a projection has nothing left to gain
 
 
@@ -54,6 +58,27 @@ class LoopClosure(Problem):
             shortest, longest, count,
         )  # fmt: skip
         return March(status, pieces, steps, radii, residuals)
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        """Closed configurations to start from: complete slices of every joint of a 4R, 5R or 6R loop, and
+        what is reached from ``count`` random starts."""
+        drawn = random_seeds(self, rng, count)
+        if self.loop.n > LARGEST_SLICED:
+            return drawn
+        first = rng.uniform(-np.pi, np.pi, self.n)
+        steps = 2 * np.pi / SLICES * np.arange(SLICES)
+        slices = [slice_configurations(self.loop, j + 1, first[j] + steps) for j in range(self.n)]
+        degenerate = sum(int(np.count_nonzero(s.degenerate)) for s in slices)
+        points = np.concatenate([*(s.configurations for s in slices), drawn.points])
+        random = np.repeat([False, True], [len(points) - len(drawn.points), len(drawn.points)])
+        statement = (
+            f"complete slices of all {self.n} joints every {360 // SLICES} degrees: every motion in which some joint "
+            f"turns by more than {360 // SLICES} degrees is here"
+        )
+        if degenerate:
+            reason = next(s.reason for s in slices if s.reason)
+            statement = f"{degenerate} of {SLICES * self.n} slices could not be made complete ({reason})"
+        return Seeds(points, random, drawn.gaps, drawn.missed, degenerate == 0, statement)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at each."""

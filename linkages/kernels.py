@@ -305,19 +305,18 @@ def _largest_residual(coefficients, radius, geometry, theta, tangent, screws, qu
 
 @register_jitable
 def _expand(theta, tangent, geometry, matrix, scale, order, tolerance, longest, coefficients):
-    """Fill the series at a settled point; its trusted radius and largest residual come back."""
+    """Fill the series at a settled point; its trusted radius (0 for none) and largest residual come back."""
     n = theta.shape[0]
     place, heading = np.empty(n), np.empty(n)
     screws, quaternion, translation = np.empty((6, n)), np.empty(4), np.empty(3)
     _series(theta, tangent, geometry, matrix, scale, order, coefficients)
     radius = _trusted_radius(coefficients, tolerance, longest)
-    worst = np.inf
     for _ in range(20):
         worst = _largest_residual(coefficients, radius, geometry, place, heading, screws, quaternion, translation)
         if worst <= 3.0 * tolerance + 4e-15:
-            break
+            return radius, worst
         radius *= 0.85
-    return radius, worst
+    return 0.0, worst
 
 
 @register_jitable
@@ -370,6 +369,8 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
     radii[0], residuals[0] = _expand(
         point, heading, geometry, matrix, scale, order, tolerance, longest, pieces[0]
     )
+    if radii[0] < shortest:
+        return STALLED, pieces[:0], steps[:0], radii[:0], residuals[:0], sigmas[:0]
     status, made = RAN, 1
     while made < count and status == RAN:
         radius, status = radii[made - 1], STALLED
