@@ -14,7 +14,7 @@ from linkages.entry import Entry, Parameter
 from linkages.link import Link, bennett_links, closed_chain
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "KINDS", "TYPES", "double_goldberg_type"]
+__all__ = ["ENTRIES", "KINDS", "TYPES", "double_goldberg_chain", "double_goldberg_type"]
 
 TYPES = ("I", "II", "III", "IV", "V", "VI")
 KINDS = {"mixed": (-1, 1), "goldberg": (1, 1), "subtractive": (-1, -1)}  # signs of the first and second 5R
@@ -47,8 +47,13 @@ def double_goldberg_type(
     "subtractive". Source: Song and Chen (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3,
     equations (3.4.3) to (3.4.22). The latter's "alpha34 = alpha + gamma" in (3.4.11) is alpha45.
     """
-    basic = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    names = dict(zip("abcd", basic, strict=True))
+    links = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    return double_goldberg_chain(*links, order=order, kind=kind)
+
+
+def double_goldberg_chain(a: Link, b: Link, c: Link, d: Link, order: str, kind: str) -> Loop:
+    """The loop of Type ``order`` and ``kind`` of these four basic links, whatever their ratios; -c is allowed."""
+    names = {"a": a, "b": b, "c": c, "d": d}
     first, second = KINDS[kind]
 
     def link(text: str) -> Link:
@@ -79,9 +84,7 @@ _TITLES = {
 }
 _LOCKED = {"mixed": 0.0, "goldberg": pi, "subtractive": pi}
 _ERRATA = {
-    ("I", "mixed"): (
-        "the closure equations (4.8), (4.9) / (3.4.8), (3.4.9) are printed with m2 for m1 and m4",
-    ),
+    ("I", "mixed"): ("the closure equations (4.8), (4.9) / (3.4.8), (3.4.9) are printed with m2 for m1 and m4",),
     ("II", "mixed"): ("alpha34 = alpha + gamma is printed twice in (4.11) / (3.4.11); one is alpha45",),
     ("III", "mixed"): ("tan(theta4/2) = -m3 tan(theta1/2) is printed in (4.16) / (3.4.16); the sign is +",),
 }
@@ -93,9 +96,7 @@ def _entry(order: str, kind: str) -> Entry:
     facts: dict[str, Any] = {"joints": 6, "mobility": 1}
     if order == "III":
         facts["locked"] = {3: _LOCKED[kind]}
-    name = {"mixed": "mixed-double-goldberg", "goldberg": "double-goldberg"}.get(
-        kind, "double-subtractive-goldberg"
-    )
+    name = {"mixed": "mixed-double-goldberg", "goldberg": "double-goldberg"}.get(kind, "double-subtractive-goldberg")
     return Entry(
         f"{name}-type-{order.lower()}",
         f"{_TITLES[kind]}, Type {order}",
