@@ -136,7 +136,7 @@ ENTRIES: tuple[Entry, ...] = (
         conditions=(SUM, RATIO),
         patterns=lambda a, alpha, beta, gamma, delta: patterns(+1, alpha, beta, gamma, delta),
         errata=(SWITCHING,),
-        facts={"mobility": 1, "rank": 5, "forms": 4},
+        facts={"mobility": 1, "rank": 5, "forms": 4, "bifurcations": 4, "components": 1},
     ),
     Entry(
         "double-subtractive-goldberg",
@@ -147,7 +147,7 @@ ENTRIES: tuple[Entry, ...] = (
         conditions=(DIFFERENCE, RATIO),
         patterns=lambda a, alpha, beta, gamma, delta: patterns(-1, alpha, beta, gamma, delta),
         errata=("Song 2013, eqs (5.2.13)-(5.2.17): m2 must be m6",),
-        facts={"mobility": 1, "rank": 5, "forms": 4},
+        facts={"mobility": 1, "rank": 5, "forms": 4, "bifurcations": 4, "components": 1},
     ),
     Entry(
         "special-wohlhart-double-goldberg",

@@ -143,6 +143,6 @@ ENTRIES: tuple[Entry, ...] = (
         (_length("a", 1.0, "length of links 12 and 41"), _length("b", 2.0, "length of links 23 and 34")),
         conditions=("a12 = a41, a23 = a34", "all twists and offsets 0"),
         patterns=lambda a, b: form_patterns(a, b, b, a),
-        facts={"mobility": 1, "rank": 3, "forms": 2},
+        facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},
     ),
 )

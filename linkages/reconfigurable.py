@@ -118,6 +118,6 @@ ENTRIES: tuple[Entry, ...] = (
         ),
         patterns=_patterns(reconfigurable_bricard_2, "line-symmetric"),
         errata=(TRIANGLE, "Song 2013, eq. (5.3.6): the two cosines must be sines"),
-        facts={"mobility": 1, "rank": 5},
+        facts={"mobility": 1, "rank": 5, "forms": 2, "bifurcations": 0, "components": 2},
     ),
 )

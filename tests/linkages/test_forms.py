@@ -1,0 +1,125 @@
+import numpy as np
+import pytest
+
+from linkages.catalogue import entry
+from linkages.forms import identify_form, name_forms
+from linkages.loop import GeometryError
+
+
+def _loop_and_patterns(case):
+    found = entry(case["linkage"])
+    values = found.complete(case["parameters"])
+    return found.build(**values), found.patterns(**values) if found.patterns else ()
+
+
+def _case(reference_cases, linkage, parameters=0):
+    return next(c for c in reference_cases if c["linkage"] == linkage and len(c["parameters"]) == parameters)
+
+
+@pytest.fixture(scope="module")
+def traced(reference_cases, trace_form):
+    """(case, loop, patterns, samples of every form) of all reference cases."""
+    out = []
+    for case in reference_cases:
+        loop, patterns = _loop_and_patterns(case)
+        out.append((case, loop, patterns, [trace_form(loop, form["theta"]) for form in case["forms"]]))
+    return out
+
+
+def test_every_form_of_the_reference_cases_is_given_its_name(traced, closure_gap):
+    for case, loop, patterns, forms in traced:
+        assert max(closure_gap(loop, samples) for samples in forms) < 1e-12
+        names = [identity.name for identity in name_forms(forms, loop, patterns)]
+        assert names == [form["name"] for form in case["forms"]], case["linkage"]
+
+
+def test_names_do_not_depend_on_start_direction_wrapping_or_order(traced):
+    rng = np.random.default_rng(3)
+    for case, loop, patterns, forms in traced:
+        changed = []
+        for samples in forms:
+            turned = np.roll(samples[:-1], rng.integers(len(samples)), axis=0)[:: rng.choice([-1, 1])]
+            changed.append(np.arctan2(np.sin(turned), np.cos(turned)))
+        names = [identity.name for identity in name_forms(changed[::-1], loop, patterns)]
+        assert names == [form["name"] for form in case["forms"]][::-1], case["linkage"]
+
+
+def test_inactive_joints_come_with_their_angles(traced):
+    for case, loop, patterns, forms in traced:
+        for form, samples in zip(case["forms"], forms, strict=True):
+            identity = identify_form(samples, loop, patterns)
+            if case["linkage"] == "special-double-subtractive-goldberg" and "Bennett" in form["name"]:
+                assert identity.inactive_joints == (3, 6)
+                assert identity.inactive_angles == pytest.approx((np.pi, np.pi), abs=1e-9)
+            if case["linkage"].startswith("reconfigurable") and "Bennett" in form["name"]:
+                assert identity.inactive_joints == (2, 5)
+                assert identity.inactive_angles == pytest.approx(np.radians([-70, -70]), abs=1e-9)
+            if "6R" in form["name"] or "original" in form["name"]:
+                assert identity.inactive_joints == ()
+
+
+def test_symmetries_are_recognised(traced):
+    expected = {
+        "Form I (original)": "theta_i = theta_{i+3}",
+        "Form I' (revised)": "theta_i = -theta_{i+3}",
+        "threefold form": "theta_i = theta_{i+2}",
+        "antiparallelogram form": "theta_i = -theta_{i+2}",
+        "Form III (non-constructive 6R)": "",
+    }
+    seen = set()
+    for case, loop, _, forms in traced:
+        for form, samples in zip(case["forms"], forms, strict=True):
+            if form["name"] in expected:
+                seen.add(form["name"])
+                assert identify_form(samples, loop).symmetry == expected[form["name"]]
+    assert seen == set(expected)
+
+
+def test_a_bennett_form_is_found_without_the_patterns_of_the_entry(traced):
+    names = set()
+    for case, loop, _, forms in traced:
+        for form, samples in zip(case["forms"], forms, strict=True):
+            if "Bennett 4R" in form["name"]:
+                names.add(identify_form(samples, loop).name)
+    assert names == {
+        "Bennett 4R form (joints 3,6 inactive) asymmetric",
+        "Bennett 4R form (joints 2,5 inactive) asymmetric",
+        "Bennett 4R form (joints 2,5 inactive) line-symmetric",
+    }
+
+
+def test_relabelled_joints_move_the_inactive_ones(reference_cases, trace_form):
+    case = _case(reference_cases, "special-double-subtractive-goldberg")
+    loop, _ = _loop_and_patterns(case)
+    form = next(f for f in case["forms"] if "Bennett" in f["name"])
+    samples = np.roll(trace_form(loop, form["theta"]), -1, axis=1)
+    assert identify_form(samples, loop.relabelled(1)).inactive_joints == (2, 5)
+
+
+def test_forms_of_one_pattern_are_lettered_and_unknown_ones_numbered(reference_cases, trace_form):
+    case = _case(reference_cases, "wohlhart-symmetric", 1)
+    loop, patterns = _loop_and_patterns(case)
+    forms = [trace_form(loop, form["theta"]) for form in case["forms"]]
+    assert {i.name for i in name_forms(forms, loop, patterns)} == {"threefold form a", "threefold form b"}
+    assert {i.name for i in name_forms(forms, loop)} == {"Form 1", "Form 2"}
+
+
+def test_a_relabelled_parallelogram_keeps_its_names(reference_cases, trace_form):
+    case = _case(reference_cases, "kite")
+    loop, _ = _loop_and_patterns(case)
+    turned = loop.relabelled(1)
+    forms = [np.roll(trace_form(loop, form["theta"]), -1, axis=1) for form in case["forms"]]
+    assert [i.name for i in name_forms(forms, turned)] == ["folded form (joints 2,4 inactive)", "kite form"]
+
+
+def test_a_single_configuration_is_a_rigid_assembly(reference_cases):
+    case = _case(reference_cases, "bricard-line-symmetric")
+    loop, _ = _loop_and_patterns(case)
+    identity = identify_form(np.array([case["forms"][0]["theta"]]), loop)
+    assert identity.name == "rigid assembly"
+
+
+def test_samples_of_another_number_of_joints_are_refused(reference_cases):
+    loop, _ = _loop_and_patterns(_case(reference_cases, "bricard-line-symmetric"))
+    with pytest.raises(GeometryError, match="shape of the samples"):
+        identify_form(np.zeros((3, 5)), loop)
