@@ -34,6 +34,7 @@ SINGULAR = 1e-10  # below this the pencil of an elimination is singular
 INFINITE = 1e-4  # exp(i theta) below this, or above its inverse: a complex solution at infinity
 EQUAL = 1e-6  # rad: two configurations that agree to this are one
 ROOM = 40  # configurations kept of one slice: four are possible, more only where a continuum is sampled
+CANDIDATES = 64  # of one slice: twelve, more only where a continuum is sampled
 STARTS = 48  # starts of Gauss-Newton in a slice that the elimination cannot decide
 COMPLETE, CONTINUUM, UNDECIDED = 0, 1, 2
 REASONS = {
@@ -93,9 +94,7 @@ def slice_configurations(loop: Loop, joint: int, angles: np.ndarray) -> Slice:
     configurations = np.concatenate([found[i, :c] for i, c in enumerate(count)] or [np.zeros((0, loop.n))])
     gap = loop.frames(configurations)[:, -1] - np.eye(4)
     gap[:, :3, 3] /= scale
-    reasons = [
-        f"{np.sum(status == s)} of {len(angles)} slices: {text}" for s, text in REASONS.items() if s in status
-    ]
+    reasons = [f"{np.sum(status == s)} of {len(angles)} slices: {text}" for s, text in REASONS.items() if s in status]
     return Slice(
         joint, angles, configurations, index, np.abs(gap).max(axis=(1, 2)), n_complex, status != COMPLETE,
         "; ".join(reasons),
@@ -398,7 +397,7 @@ def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defec
     line, rest = _null_vectors(matrix, 2)
     if rest > 1e-3:
         return count, 0, False
-    p, other = line
+    p, other = line[0], line[1]
     count, form = _record_line(p, other, rows, left, left_norms, right_norms, turns, defects, count)
     if rest > 1e-6:
         return count, 0, False
@@ -408,10 +407,8 @@ def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defec
             before = count
             for i in range(8):
                 angle = 0.2 + i * np.pi / 8
-                y = _combined(np.cos(angle), plane[0], np.sin(angle), plane[1])
-                count, _ = _record_line(
-                    y, plane[2], rows, left, left_norms, right_norms, turns, defects, count
-                )
+                y = _combined(np.cos(angle) + 0j, plane[0], np.sin(angle) + 0j, plane[1])
+                count, _ = _record_line(y, plane[2], rows, left, left_norms, right_norms, turns, defects, count)
             shared = count > before
             for i in range(before, count):
                 shared = shared and defects[i] < 1e-6
@@ -419,7 +416,8 @@ def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defec
     if form > 1e-6:
         return count, 0, False
     for i in range(8):
-        y = _combined(np.cos(0.2 + i * np.pi / 8), p, np.sin(0.2 + i * np.pi / 8), other)
+        angle = 0.2 + i * np.pi / 8
+        y = _combined(np.cos(angle) + 0j, p, np.sin(angle) + 0j, other)
         count = _record(y, rows, left, left_norms, right_norms, turns, defects, count)
     return count, 8, False
 
@@ -455,9 +453,7 @@ def _solve_four(fixed, turns, defects):
         left, complement, left_norms = _pair_space(fixed[a])
         rows, right_norms = _right_space(fixed[a + 1], fixed[a + 2], fixed[(a + 3) % 4])
         matrix, mixed = _projected(complement, rows).astype(np.complex128), rows.astype(np.complex128)
-        count, sampled, crowded = _record_null_space(
-            matrix, mixed, left, left_norms, right_norms, turns, defects, 0
-        )
+        count, sampled, crowded = _record_null_space(matrix, mixed, left, left_norms, right_norms, turns, defects, 0)
         if not crowded:
             _reorder(turns, count, 4, a)
             break
@@ -529,21 +525,6 @@ def _most_regular(fixed, excluded):
 
 
 @register_jitable
-def _solve_five(fixed, turns, defects):
-    """Candidates of a chain of five joints: (count, sampled, crowded or singular)."""
-    excluded = np.zeros(5, np.bool_)
-    for _ in range(5):
-        v, origin, regularity = _most_regular(fixed, excluded)
-        if regularity < SINGULAR:
-            break
-        count, sampled, crowded = _solve_pencil(fixed, v, origin, turns, defects)
-        if not crowded:
-            return count, sampled, False
-        excluded[v] = True
-    return 0, 0, True
-
-
-@register_jitable
 def _solve_pencil(fixed, v, origin, turns, defects):
     """Candidates from the eigenvalues of one elimination: (count, sampled, crowded)."""
     m0, m1, cosine, sine = _pencil(fixed, v)
@@ -566,9 +547,7 @@ def _solve_pencil(fixed, v, origin, turns, defects):
             continue
         before = count
         matrix, rows = _mixed(c, m0, s, m1), _mixed(c, cosine, s, sine)
-        count, more, full = _record_null_space(
-            matrix, rows, left, left_norms, right_norms, turns, defects, before
-        )
+        count, more, full = _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defects, before)
         kept = (c + 1j * s) / (c - 1j * s)
         for i in range(before, count):
             turns[i, 4] = kept
@@ -777,31 +756,66 @@ def _sample(links, found, count):
     return count
 
 
+# --- compiled entries: one for each number of joints, so that only what is used is compiled ------------------
+
+
+@register_jitable
+def _chain(links, joint, angle):
+    """Fixed links (n - 1, 8) between the other joints, in order after ``joint`` (from 0), which is at ``angle``."""
+    n = len(links)
+    fixed = np.empty((n - 1, 8))
+    for i in range(n - 1):
+        _copy(fixed[i], links[(joint + 1 + i) % n])
+    _copy(fixed[n - 2], _product(fixed[n - 2], _turned(angle, links[joint])))
+    return fixed
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
-def _solve_slices(links, joint, angles):
+def _candidates_4r(links, joint, angles, turns, defects, outcome):
+    for k in range(len(angles)):
+        fixed = _chain(links, joint, angles[k])
+        outcome[k, 0], outcome[k, 1], outcome[k, 2] = _solve_three(fixed, turns[k], defects[k])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _candidates_5r(links, joint, angles, turns, defects, outcome):
+    for k in range(len(angles)):
+        fixed = _chain(links, joint, angles[k])
+        outcome[k, 0], outcome[k, 1], outcome[k, 2] = _solve_four(fixed, turns[k], defects[k])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _candidates_6r(links, joint, angles, turns, defects, outcome):
+    for k in range(len(angles)):
+        fixed = _chain(links, joint, angles[k])
+        excluded = np.zeros(5, np.bool_)
+        outcome[k, 2] = 1
+        for _ in range(5):
+            v, origin, regularity = _most_regular(fixed, excluded)
+            if regularity < SINGULAR:
+                break
+            count, sampled, crowded = _solve_pencil(fixed, v, origin, turns[k], defects[k])
+            if not crowded:
+                outcome[k, 0], outcome[k, 1], outcome[k, 2] = count, sampled, 0
+                break
+            excluded[v] = True
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _configurations(links, joint, angles, turns, defects, outcome):
     """Configurations (m, ROOM, n), their numbers (m,), numbers with complex ones (m,) and status (m,)."""
     n = len(links)
     found, count = np.zeros((len(angles), ROOM, n)), np.zeros(len(angles), np.int64)
     n_complex, status = np.zeros(len(angles), np.int64), np.zeros(len(angles), np.int64)
-    fixed, chain = np.empty((n - 1, 8)), np.empty((ROOM, n - 1), np.complex128)
-    others = np.empty((ROOM, n - 1), np.complex128)
-    turns, defects = np.ones((128, max(n - 1, 4)), np.complex128), np.zeros(128)
+    chain, others = np.empty((ROOM, n - 1), np.complex128), np.empty((ROOM, n - 1), np.complex128)
     for k in range(len(angles)):
-        for i in range(n - 1):
-            _copy(fixed[i], links[(joint + 1 + i) % n])
-        _copy(fixed[n - 2], _product(fixed[n - 2], _turned(angles[k], links[joint])))
-        if n == 4:
-            candidates, sampled, crowded = _solve_three(fixed, turns, defects)
-        elif n == 5:
-            candidates, sampled, crowded = _solve_four(fixed, turns, defects)
-        else:
-            candidates, sampled, crowded = _solve_five(fixed, turns, defects)
-        closing = fixed.astype(np.complex128)
-        count[k], n_others, held = _collect(closing, turns, defects, candidates, chain, others)
+        fixed = _chain(links, joint, angles[k]).astype(np.complex128)
+        candidates, sampled, crowded = outcome[k, 0], outcome[k, 1], outcome[k, 2]
+        count[k], n_others, held = _collect(fixed, turns[k], defects[k], candidates, chain, others)
         n_complex[k] = count[k] + n_others
         if crowded:
             status[k], n_complex[k] = UNDECIDED, -1
-            count[k] = _sample(closing, chain, count[k])
+            count[k] = _sample(fixed, chain, count[k])
         elif sampled > 0 and held > 4:
             status[k], n_complex[k] = CONTINUUM, -1
         for i in range(count[k]):
@@ -809,3 +823,13 @@ def _solve_slices(links, joint, angles):
             for j in range(n - 1):
                 found[k, i, (joint + 1 + j) % n] = chain[i, j].real
     return found, count, n_complex, status
+
+
+def _solve_slices(links, joint, angles):
+    """What `_configurations` returns, from the candidates of the right number of joints."""
+    m, n = len(angles), len(links)
+    turns, defects = np.ones((m, CANDIDATES, max(n - 1, 4)), np.complex128), np.zeros((m, CANDIDATES))
+    outcome = np.zeros((m, 3), np.int64)  # number of candidates, of those that sample a continuum, undecided
+    candidates = {4: _candidates_4r, 5: _candidates_5r, 6: _candidates_6r}[n]
+    candidates(links, joint, angles, turns, defects, outcome)
+    return _configurations(links, joint, angles, turns, defects, outcome)
