@@ -117,7 +117,12 @@ ENTRIES: tuple[Entry, ...] = (
             "sin(gamma - pi)/c = -sin(delta)/d of the third side d/delta of the triangle",
         ),
         patterns=_patterns(reconfigurable_bricard_2, "line-symmetric"),
-        errata=(TRIANGLE, "Song 2013, eq. (5.3.6): the two cosines must be sines"),
+        errata=(
+            TRIANGLE,
+            "Song 2013, eq. (5.3.6): the two cosines must be sines",
+            "Song 2013, section 5.3.4: the Bennett form need not be Form II; it follows the roots of Form I for "
+            "the default parameters, and those of both, with two bifurcations, for most others",
+        ),
         facts={"mobility": 1, "rank": 5, "forms": 2, "bifurcations": 0, "components": 2},
     ),
 )
