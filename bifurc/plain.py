@@ -16,8 +16,8 @@ TAG = "__kind__"  # marks what JSON has no word for: tuples, arrays, numpy's sca
 def to_text(value: Any) -> str:
     """``value`` as JSON text that `from_text` turns into an equal value of the same type.
 
-    Mappings, lists, tuples, strings, numbers, booleans, None, numpy scalars and arrays of numbers or text may be nested;
-    raises `TypeError` for anything else. Floats keep every digit.
+    Mappings, lists, tuples, strings, numbers, booleans, None, numpy scalars and arrays of numbers or text may be
+    nested; raises `TypeError` for anything else. Floats keep every digit.
     """
     return json.dumps(_encode(value))
 
