@@ -23,6 +23,7 @@ FAMILIES = (
     "linkages.tori",
     "linkages.goldberg_6r",
     "linkages.double_goldberg",
+    "linkages.generalized_double_goldberg",
     "linkages.mixed_double_goldberg",
     "linkages.back_to_back",
     "linkages.waldron",

@@ -29,6 +29,7 @@ from linkages.spatial_triangle import Kink, composite_link
 
 __all__ = [
     "Kink",
+    "ending_with",
     "isomerize",
     "isomerized_angles",
     "lock",
@@ -72,6 +73,18 @@ def locked_angles(loop: Loop, joint: int, kink: Any, theta: np.ndarray) -> np.nd
     return np.delete(out, i, axis=-1)
 
 
+def ending_with(loop: Loop, *links: Link) -> Loop:
+    """``loop`` relabelled, and read the other way round if need be, so that its last links are these.
+
+    Raises `GeometryError` when they do not follow each other in the loop.
+    """
+    for read in (r.relabelled(k) for r in (loop, loop.reversed()) for k in range(loop.n)):
+        if all(_is_same(x, y) for x, y in zip(_links(read)[-len(links) :], links, strict=True)):
+            return read
+    wanted = ", ".join(f"{link.length}/{link.twist}" for link in links)
+    raise GeometryError("shared links", wanted, "neighbouring links of the loop, in this order or reversed")
+
+
 def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
     """The loop left of two loops that lie on each other with their last ``shared`` links, removed.
 
@@ -79,7 +92,7 @@ def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
     follows ``first`` from its joint 1, and comes back along ``second``; it has n + m - 2 shared joints,
     the first and the last common axis being joints 1 and n - shared + 1. With one common link it has two
     degrees of freedom until one of these is locked; with more, the common inner joints must turn alike.
-    Each loop is brought into place by `Loop.relabelled` and `Loop.reversed`.
+    `ending_with` reads a loop so that given links come last.
     Raises `GeometryError` when the common links or the offsets of their inner joints differ.
     """
     a, b = _links(first), _links(second)
@@ -181,6 +194,14 @@ def _index(loop: Loop, joint: int) -> int:
     if not 1 <= joint <= loop.n:
         raise GeometryError("joint", joint, f"from 1 to {loop.n}")
     return joint - 1
+
+
+def _is_same(one: Link, other: Link) -> bool:
+    try:
+        _refuse_different(one, other, "link")
+    except GeometryError:
+        return False
+    return True
 
 
 def _refuse_different(one: Link, other: Link, name: str) -> None:

@@ -66,11 +66,13 @@ _PARAMETERS = (
 def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
     links = "a12 = a45, a23 = a56, a34 = a61" if exchanged else "a12 = a34, a23 = a56, a45 = a61"
     order = "exchanged-" if exchanged else ""
-    extra = ("moves too; not in the sources",) if pattern is OffsetPattern.NEGATIVE else ()
+    source = "Mavroidis and Roth (1995); Song (2013), eq. 2.4.11"
+    if pattern is OffsetPattern.NEGATIVE:
+        source = "found by closure; with R2 = R3 the kinked double-Goldberg 6R of Wohlhart (1991a)"
     return Entry(
         f"{order}mavroidis-roth-{pattern.name.lower()}",
         f"Mavroidis and Roth's 6R, {'exchanged, ' if exchanged else ''}{pattern.value}",
-        "Mavroidis and Roth (1995); Song (2013), eq. 2.4.11",
+        source,
         partial(mavroidis_roth, pattern=pattern, exchanged=exchanged),
         _PARAMETERS,
         (
@@ -78,7 +80,6 @@ def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
             "sin(twist)/length is the same for the links 12, 34, 45, 61; links 23 = 56 are free",
             f"R1 = R4 = 0, {pattern.value}",
         ),
-        errata=extra,
         facts={"joints": 6, "mobility": 1},
     )
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from linkages.constructions import (
+    ending_with,
     isomerize,
     isomerized_angles,
     lock,
@@ -17,11 +18,13 @@ from linkages.constructions import (
     superpose_across_bennett,
     superposed_angles,
 )
+from linkages.generalized_double_goldberg import generalized_double_goldberg
 from linkages.goldberg import goldberg, subtractive_goldberg
 from linkages.goldberg_5r import generalized_goldberg, syncopated_goldberg
 from linkages.goldberg_6r import l_shape_goldberg, serial_goldberg
 from linkages.link import Link, bennett_links, closed_chain, half_angle_ratio, syncopated_link
 from linkages.loop import GeometryError, Loop
+from linkages.mavroidis_roth import OffsetPattern, mavroidis_roth
 from linkages.mixed_double_goldberg import KINDS, TYPES, double_goldberg_chain, double_goldberg_type
 from linkages.spatial_triangle import Kink, composite_link
 
@@ -144,6 +147,38 @@ def test_constructions_refuse_what_does_not_fit():
         lock(bennett_loop(a, b), 5)
 
 
+def goldberg_angles(sides: float, turn: float) -> np.ndarray:
+    """Configuration of the Goldberg 5R with links of twist ``sides`` whose joint 5 has the angle ``turn``."""
+    m1, m2 = half_angle_ratio(ALPHA, sides), half_angle_ratio(GAMMA, sides)
+    tangent = 1 / np.tan(turn / 2)  # theta2 + theta3 = pi - theta5
+    x = max(np.roots([m2, -tangent * (1 - m1 * m2), m1]).real)
+    first, second, third = (2 * np.arctan(v) for v in (x, m1 / x, m2 * x))
+    return np.array([first, second, third, np.pi - first, turn])
+
+
+def test_common_link_pair_closes_where_the_common_joint_agrees():
+    one, other = goldberg(A, ALPHA, BETA, GAMMA), goldberg(A, ALPHA, DELTA, GAMMA)
+    for turn in (0.5, -0.3):
+        first, second = goldberg_angles(BETA, turn), goldberg_angles(DELTA, turn)
+        assert max(gap(one, first), gap(other, second)) < TIGHT
+        assert gap(superpose(one, other, shared=2), superposed_angles(first, second, shared=2)) < TIGHT
+        bent = isomerize(other, 5)
+        turned = isomerized_angles(other, 5, second)
+        crossed = superpose_across_bennett(one, bent)
+        assert gap(bent, turned) < TIGHT
+        assert gap(crossed, superposed_angles(first, second, shared=2)) < TIGHT
+
+
+def test_type_iii_is_a_goldberg_linkage_with_a_locked_joint():
+    values = (A, ALPHA, BETA, GAMMA, DELTA)
+    mixed = lock(double_goldberg_type(*values, order="III", kind="mixed"), 3)
+    assert same(mixed, goldberg(A * np.sin(BETA) / np.sin(ALPHA), BETA, ALPHA, DELTA))
+    a, b, _, d = LINKS
+    for kind in ("goldberg", "subtractive"):
+        made = lock(double_goldberg_type(*values, order="III", kind=kind), 3, Kink.FOLDED)
+        assert same_up_to_link_direction(made, closed_chain(a, b - d, a, d, b))
+
+
 # --- the eighteen combinations of table 2 in Song and Chen (2012)
 
 
@@ -160,14 +195,8 @@ def five_bars(sign: int, b: Link) -> tuple[Loop, ...]:
     return common_a, common_c, apart
 
 
-def facing(loop: Loop, crossed: bool, pair: tuple[Link, Link]) -> Loop:
-    """``loop`` read so that its last two links are ``pair``, or its reverse when ``crossed``."""
-    wanted = pair[::-1] if crossed else pair
-    for read in (r.relabelled(k) for r in (loop, loop.reversed()) for k in range(5)):
-        last = [Link(*x) for x in zip(read.lengths[-2:], read.twists[-2:], strict=True)]
-        if last == list(wanted):
-            return read
-    raise AssertionError("the pair is not in the loop")
+def last_two(loop: Loop) -> list[Link]:
+    return [Link(*x) for x in zip(loop.lengths[-2:], loop.twists[-2:], strict=True)]
 
 
 def type_of(loop: Loop) -> str:
@@ -193,9 +222,9 @@ def test_eighteen_combinations_give_the_six_mixed_types():
     }
     found = {}
     for (i, s), (j, g) in itertools.product(enumerate(five_bars(-1, b), 1), enumerate(five_bars(1, d), 1)):
-        pair = tuple(Link(*x) for x in zip(s.lengths[-2:], s.twists[-2:], strict=True))
-        link_pair = superpose(s, facing(g, False, pair), shared=2)
-        across = superpose_across_bennett(s, facing(g, True, pair))
+        pair = last_two(s)
+        link_pair = superpose(s, ending_with(g, *pair), shared=2)
+        across = superpose_across_bennett(s, ending_with(g, *pair[::-1]))
         found[f"S{i}", f"G{j}"] = (type_of(link_pair), type_of(across))
     assert found == expected
 
@@ -210,9 +239,11 @@ def test_two_equal_kinds_of_five_bars_give_the_twelve_counterparts():
         pairs |= {"V": (0, 1, False), "VI": (0, 1, True)}
         for order, (i, j, crossed) in pairs.items():
             s = first[i]
-            pair = tuple(Link(*x) for x in zip(s.lengths[-2:], s.twists[-2:], strict=True))
-            join = superpose_across_bennett if crossed else lambda x, y: superpose(x, y, shared=2)
-            made = join(s, facing(second[j], crossed, pair))
+            pair = last_two(s)
+            if crossed:
+                made = superpose_across_bennett(s, ending_with(second[j], *pair[::-1]))
+            else:
+                made = superpose(s, ending_with(second[j], *pair), shared=2)
             wanted = double_goldberg_type(A, ALPHA, BETA, GAMMA, DELTA, order=order, kind=kind)
             assert same_up_to_link_direction(made, wanted), (kind, order)
 
@@ -226,3 +257,32 @@ def same_up_to_link_direction(one: Loop, other: Loop) -> bool:
 
     reads = [loop.relabelled(k) for loop in (one, one.reversed()) for k in range(one.n)]
     return any(np.allclose(folded(r), folded(other), atol=1e-12) for r in reads)
+
+
+def test_kinked_pair_has_the_plain_linkages_as_limits():
+    values = (A, ALPHA, BETA, GAMMA, DELTA)
+    kinks = {
+        "mixed": (Kink.FOLDED, Kink.STRAIGHT),
+        "goldberg": (Kink.STRAIGHT, Kink.STRAIGHT),
+        "subtractive": (Kink.FOLDED, Kink.FOLDED),
+    }
+    for kind, pair in kinks.items():
+        made = generalized_double_goldberg(*values, *pair)
+        assert same_up_to_link_direction(made, double_goldberg_type(*values, kind=kind))
+
+
+def test_equal_kinks_give_a_mavroidis_roth_linkage():
+    made = generalized_double_goldberg(A, ALPHA, BETA, GAMMA, DELTA, 0.7, 0.7)
+    free = composite_link(LINKS[0], LINKS[2], 0.7)
+    b, d = LINKS[1], LINKS[3]
+    wanted = mavroidis_roth(
+        b.length,
+        b.twist,
+        d.twist,
+        free.link.length,
+        free.link.twist,
+        free.before[0],
+        free.after[0],
+        OffsetPattern.NEGATIVE,
+    )
+    assert same(made, wanted)
