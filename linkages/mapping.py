@@ -1,0 +1,64 @@
+"""From a loop to its transition map, with the forms recognised and named."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bifurc.atlas import Atlas
+from bifurc.explore import explore
+from linkages.catalogue import entry
+from linkages.closure import LoopClosure
+from linkages.entry import FormPattern
+from linkages.forms import name_forms
+from linkages.loop import Loop
+
+__all__ = ["map_by_name", "map_linkage"]
+
+NAMING, CLOSING = 400, 4000  # samples of a form for its name, and for its largest closure error
+
+
+def map_linkage(loop: Loop, patterns: Sequence[FormPattern] = (), **options: Any) -> Atlas:
+    """The transition map of a loop: every form with its name, every bifurcation, every near miss.
+
+    ``patterns`` are the forms that a source names, ``options`` those of `bifurc.explore.explore` (``starts``,
+    ``seed``, ``settings``, ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
+    ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest closure error seen along it
+    relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists in rad.
+    """
+    problem = LoopClosure(loop)
+    atlas = explore(problem, **options)
+    identities = name_forms([form.branch.sample(NAMING) for form in atlas.forms], loop, patterns)
+    labels = [
+        {
+            "inactive_joints": list(identity.inactive_joints),
+            "inactive_angles": list(identity.inactive_angles),
+            "symmetry": identity.symmetry,
+            "max_residual": largest_residual(problem, form.branch.sample(CLOSING)),
+        }
+        for identity, form in zip(identities, atlas.forms, strict=True)
+    ]
+    lengths, twists, offsets = (values.tolist() for values in loop.arrays)
+    linkage = {"name": loop.name, "lengths": lengths, "twists": twists, "offsets": offsets}
+    named = atlas.renamed([identity.name for identity in identities], labels)
+    return replace(named, info={**atlas.info, "linkage": linkage})
+
+
+def map_by_name(name: str, *, starts: int = 200, seed: int = 0, **parameters: Any) -> Atlas:
+    """The transition map of a linkage of the catalogue, its parameters (rad) at their defaults unless given.
+
+    Raises `linkages.catalogue.UnknownLinkageError`, and `linkages.loop.GeometryError` for parameters that make no
+    linkage.
+    """
+    found = entry(name)
+    values = found.complete(parameters)
+    patterns = found.patterns(**values) if found.patterns is not None else ()
+    return map_linkage(found.build(**values), patterns, starts=starts, seed=seed)
+
+
+def largest_residual(problem: LoopClosure, points: np.ndarray) -> float:
+    """The largest closure error at points (k, n): the norm over rotation and translation."""
+    return float(np.linalg.norm(problem.residuals(points), axis=1).max(initial=0.0))

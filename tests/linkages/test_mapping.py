@@ -1,0 +1,38 @@
+"""From a loop to its map with named forms."""
+
+import numpy as np
+import pytest
+
+from linkages.catalogue import UnknownLinkageError
+from linkages.loop import GeometryError, Loop
+from linkages.mapping import map_by_name, map_linkage
+
+
+def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
+    atlas = map_by_name("special-double-subtractive-goldberg")
+    bennett = atlas.forms[atlas.form("Form II (Bennett 4R)")]
+    assert bennett.labels["inactive_joints"] == [3, 6]
+    assert np.abs(bennett.labels["inactive_angles"]) == pytest.approx(np.pi)
+    assert sorted(form.name.split(" (")[0] for form in atlas.forms) == ["Form I", "Form II", "Form III", "Form IV"]
+
+
+def test_every_form_says_how_well_it_closes_and_the_atlas_what_was_mapped():
+    atlas = map_by_name("parallelogram", b=3.0)
+    assert all(0 < form.labels["max_residual"] < 1e-12 for form in atlas.forms)
+    assert atlas.info["linkage"] == {
+        "name": "parallelogram", "lengths": [1.0, 3.0, 1.0, 3.0], "twists": [0.0] * 4, "offsets": [0.0] * 4,
+    }  # fmt: skip
+
+
+def test_a_loop_without_a_source_is_mapped_too():
+    atlas = map_linkage(Loop((1, 2, 1, 2), (0, 0, 0, 0), (0, 0, 0, 0), "mine"), seed=3)
+    assert atlas.info["linkage"]["name"] == "mine"
+    assert atlas.info["seed"] == 3
+    assert len(atlas.forms) == 2
+
+
+def test_a_name_or_a_parameter_that_does_not_exist_is_refused():
+    with pytest.raises(UnknownLinkageError, match="bennett"):
+        map_by_name("benet")
+    with pytest.raises(GeometryError, match="one of a, alpha, beta"):
+        map_by_name("bennett", gamma=1.0)
