@@ -1,0 +1,242 @@
+"""The command line: list, show, map and route. Modules are imported by the command that needs them."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from studies.status import EchoHandler, ExitCode, StatusLine, kernels_are_compiled
+
+if TYPE_CHECKING:
+    from bifurc.atlas import Atlas
+
+EXIT_CODES = """\b
+Exit codes:
+  0    done; for map: the linkage moves
+  2    bad input
+  3    the linkage does not move: rigid, or no real configuration
+  4    there is no route
+  130  interrupted; what was found is shown and written
+"""
+EXPLORING = (
+    click.option(
+        "--param", "parameters", multiple=True, metavar="KEY=VALUE",
+        help="Parameter of a named linkage, angles in degrees; may be given several times.",
+    ),
+    click.option("--starts", default=200, type=click.IntRange(min=1), show_default=True, help="Number of random starts."),
+    click.option("--seed", default=0, type=click.IntRange(min=0), show_default=True, help="Seed of the random starts."),
+    click.option("--tolerance", default=1e-13, show_default=True, help="How closely curves are followed."),
+    click.option("-v", "--verbose", is_flag=True, help="Say more on standard error."),
+)  # fmt: skip
+
+
+def exploring(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``command`` with the options that say what is explored, and how."""
+    for option in reversed(EXPLORING):
+        command = option(command)
+    return command
+
+
+class BadInput(click.ClickException):
+    """Something the user can mend, said without a traceback."""
+
+    exit_code = int(ExitCode.BAD_INPUT)
+
+
+class NoRoute(click.ClickException):
+    """Two forms that no route joins."""
+
+    exit_code = int(ExitCode.NO_ROUTE)
+
+
+class Commands(click.Group):
+    """A group that turns the errors of the library into messages and exit codes."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except (ValueError, LookupError) as error:
+            from bifurc.atlas import RouteError
+            from bifurc.problem import ProblemError
+            from linkages.catalogue import UnknownLinkageError
+            from linkages.file import LinkageFileError
+            from linkages.loop import GeometryError
+
+            known = (GeometryError, LinkageFileError, ProblemError, RouteError, UnknownLinkageError)
+            if isinstance(error, known):
+                raise BadInput(str(error)) from None
+            raise
+        except KeyboardInterrupt:
+            click.echo("interrupted", err=True)
+            ctx.exit(ExitCode.INTERRUPTED)
+
+
+@click.group(cls=Commands, epilog=EXIT_CODES)
+@click.version_option(package_name="bifurc")
+def main() -> None:
+    """Transition maps of spatial linkages.
+
+    \b
+    Examples:
+      bifurc map special-double-subtractive-goldberg --out out
+      bifurc map my_linkage.toml --json
+      bifurc route special-double-subtractive-goldberg "Form I" "Bennett 4R"
+    """
+
+
+@main.command("list")
+def list_linkages() -> None:
+    """List the linkages of the catalogue.
+
+    \b
+    Example:
+      bifurc list
+    """
+    from linkages.catalogue import catalogue
+    from studies.summary import table
+
+    rows = [(found.name, str(found.build().n), found.title) for found in catalogue().values()]
+    click.echo(table(("name", "joints", "title"), rows))
+
+
+@main.command()
+@click.argument("name")
+def show(name: str) -> None:
+    """Show a linkage of the catalogue: source, parameters, conditions, geometry.
+
+    \b
+    Example:
+      bifurc show bennett
+    """
+    from linkages.catalogue import entry
+    from studies.summary import describe_entry
+
+    click.echo(describe_entry(entry(name)))
+
+
+@main.command("map", epilog=EXIT_CODES)
+@click.argument("linkage", metavar="NAME|FILE.toml")
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for dataset, graph, summary and figures."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document and nothing else; angles in radians.")
+@exploring
+def map_command(
+    linkage: str, parameters: tuple[str, ...], out: Path | None, as_json: bool, starts: int, seed: int,
+    tolerance: float, verbose: bool,
+) -> None:  # fmt: skip
+    """Map every motion form of a linkage, every bifurcation, and the graph between them.
+
+    \b
+    Examples:
+      bifurc map bennett --param alpha=70 --param beta=30
+      bifurc map special-double-subtractive-goldberg --out out
+      bifurc map my_linkage.toml --json > map.json
+    """
+    _listen(verbose)
+    if out is not None:
+        _prepare(out)
+    atlas = _explore(linkage, parameters, starts, seed, tolerance)
+    from studies.summary import make_summary
+    from studies.verdict import judge
+
+    verdict, summary = judge(atlas), make_summary(atlas)
+    if as_json:
+        import json
+
+        from studies.document import make_document
+
+        click.echo(json.dumps(make_document(atlas), allow_nan=False))
+    else:
+        click.echo(summary)
+    if out is not None:
+        from studies.files import write_results
+
+        written = write_results(atlas, out, summary)
+        click.echo(f"wrote {', '.join(path.name for path in written)} to {out}", err=True)
+    if verdict.code is not ExitCode.MAPPED and as_json:
+        click.echo(verdict.sentence, err=True)
+    click.get_current_context().exit(verdict.code)
+
+
+@main.command(epilog=EXIT_CODES)
+@click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
+@click.argument("start", metavar="FROM")
+@click.argument("goal", metavar="TO")
+@exploring
+def route(
+    source: str, start: str, goal: str, parameters: tuple[str, ...], starts: int, seed: int, tolerance: float,
+    verbose: bool,
+) -> None:  # fmt: skip
+    """Show how to take a linkage from one form to another.
+
+    FROM and TO are names of forms as `bifurc map` shows them, or the part of a name that tells them apart.
+
+    \b
+    Examples:
+      bifurc route special-double-subtractive-goldberg "Form I" "Bennett 4R"
+      bifurc route out/atlas.nc "Form III" "Form IV"
+    """
+    _listen(verbose)
+    atlas = _load(source) if source.endswith(".nc") else _explore(source, parameters, starts, seed, tolerance)
+    from bifurc.atlas import RouteError
+    from studies.summary import describe_route
+
+    names = [atlas.forms[atlas.form(name)].name for name in (start, goal)]
+    try:
+        found = atlas.route(names[0], names[1])
+    except RouteError as error:
+        raise NoRoute(str(error)) from None
+    click.echo(describe_route(atlas, found, *names))
+
+
+def _listen(verbose: bool) -> None:
+    """Show warnings of the library (and with ``verbose`` all it says) for the time of this command."""
+    handler = EchoHandler(logging.INFO if verbose else logging.WARNING)
+    for name in ("bifurc", "linkages"):
+        logger = logging.getLogger(name)
+        logger.setLevel(handler.level)
+        logger.addHandler(handler)
+        click.get_current_context().call_on_close(lambda logger=logger: logger.removeHandler(handler))
+
+
+def _prepare(out: Path) -> None:
+    from studies.files import prepare_folder
+
+    try:
+        prepare_folder(out)
+    except OSError as error:
+        raise BadInput(f"--out {out}: nothing can be written there ({error.strerror})") from None
+
+
+def _explore(linkage: str, parameters: tuple[str, ...], starts: int, seed: int, tolerance: float) -> Atlas:
+    from bifurc.continuation import TraceSettings
+    from linkages.mapping import map_linkage
+    from studies.choice import choose_linkage
+
+    settings = TraceSettings(tolerance=tolerance)
+    chosen = choose_linkage(linkage, parameters)
+    if not kernels_are_compiled():
+        click.echo("compiling the kernels: once, about 20 seconds", err=True)
+    status = StatusLine()
+    try:
+        return map_linkage(chosen.loop, chosen.patterns, starts=starts, seed=seed, settings=settings, progress=status)
+    finally:
+        status.wipe()
+
+
+def _load(path: str) -> Atlas:
+    from bifurc.dataset import AtlasFileError, load_atlas
+
+    try:
+        return load_atlas(path)
+    except FileNotFoundError:
+        raise BadInput(f"{path}: there is no such file") from None
+    except AtlasFileError as error:
+        raise BadInput(str(error)) from None
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read ({error.strerror or error})") from None

@@ -1,0 +1,111 @@
+"""An atlas of a linkage as one JSON document: angles in radians, joints numbered from 1."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from bifurc.atlas import Atlas, Form, Surface, wrap
+
+__all__ = ["make_document", "smallest_singular_value"]
+
+
+def make_document(atlas: Atlas) -> dict[str, Any]:
+    """The document that `bifurc map --json` prints; docs/json.md says what each key holds."""
+    names = [form.name for form in atlas.forms]
+    forms = [_form(atlas, i, form) for i, form in enumerate(atlas.forms)]
+    surfaces = [_surface(atlas, k, surface) for k, surface in enumerate(atlas.surfaces)]
+    sure = atlas.completeness
+    return {
+        "linkage": dict(atlas.info["linkage"]),
+        "forms": forms + surfaces,
+        "bifurcations": [
+            {
+                "theta": _angles(atlas, point.point.u),
+                "rank": point.point.rank,
+                "forms": [names[i] for i, _ in point.passes],
+                "tangents": point.tangents.tolist(),
+                "error": point.point.error,
+            }
+            for point in atlas.bifurcations
+        ],
+        "rank_drops": [
+            {"theta": _angles(atlas, point.point.u), "rank": point.point.rank, "form": names[point.passes[0][0]]}
+            for point in atlas.rank_drops
+        ],
+        "near_misses": [
+            {"theta": _angles(atlas, miss.u), "singular_value": miss.value, "form": names[miss.form]}
+            for miss in atlas.near_misses
+        ],
+        "dead_points": [
+            {"theta": _angles(atlas, dead.u), "joint": dead.index + 1, "form": names[dead.form]}
+            for dead in atlas.dead_points
+        ],
+        "rigid_assemblies": [_angles(atlas, theta) for theta in atlas.rigid],
+        "completeness": {
+            "level": "complete slices" if sure.level == "complete slices" else "estimated",
+            "statement": sure.statement,
+            "missed_probability": sure.missed_probability,
+        },
+        "seconds": atlas.info["seconds"],
+        "version": version("bifurc"),
+        "seed": atlas.info["seed"],
+        "tolerance": atlas.info["settings"]["tolerance"],
+    }
+
+
+def smallest_singular_value(atlas: Atlas, index: int) -> float:
+    """The smallest regular singular value along a form: 0 where it passes a singular point."""
+    passes = any(i == index for point in atlas.points for i, _ in point.passes)
+    return 0.0 if passes else atlas.forms[index].min_singular_value
+
+
+def _form(atlas: Atlas, index: int, form: Form) -> dict[str, Any]:
+    branch = form.branch
+    return {
+        "name": form.name,
+        "dimension": 1,
+        "closed": branch.closed,
+        "length": branch.length,
+        "winding": branch.winding.tolist(),
+        "inactive_joints": list(form.labels["inactive_joints"]),
+        "symmetry": form.labels["symmetry"],
+        "sample": _angles(atlas, branch(_far_from_singular(atlas, index))),
+        "max_residual": float(form.labels["max_residual"]),
+        "min_singular_value": smallest_singular_value(atlas, index),
+        "component": form.component,
+    }
+
+
+def _surface(atlas: Atlas, number: int, surface: Surface) -> dict[str, Any]:
+    """A component of dimension 2 or more, of which only single configurations are known."""
+    return {
+        "name": f"surface {number + 1}",
+        "dimension": surface.dimension,
+        "closed": None,
+        "length": None,
+        "winding": None,
+        "inactive_joints": [],
+        "symmetry": "",
+        "sample": _angles(atlas, surface.samples[0]),
+        "max_residual": None,
+        "min_singular_value": None,
+        "component": atlas.components + number,
+    }
+
+
+def _far_from_singular(atlas: Atlas, index: int) -> float:
+    """An arclength of a form: the middle of its longest stretch without singular points."""
+    branch = atlas.forms[index].branch
+    marks = sorted(s for point in atlas.points for i, s in point.passes if i == index)
+    if not marks:
+        return 0.5 * branch.length
+    marks = [*marks, marks[0] + branch.length] if branch.closed else [0.0, *marks, branch.length]
+    longest = int(np.argmax(np.diff(marks)))
+    return 0.5 * (marks[longest] + marks[longest + 1])
+
+
+def _angles(atlas: Atlas, theta: np.ndarray) -> list[float]:
+    return [float(x) for x in wrap(theta, atlas.periods)]
