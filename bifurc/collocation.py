@@ -17,7 +17,7 @@ from bifurc.corrector import correct_across, null_vector
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["march_by_collocation"]
+__all__ = ["bridge_by_collocation", "march_by_collocation"]
 
 RAN, STALLED, OPEN = 0, 1, 2
 
@@ -50,31 +50,55 @@ def march_by_collocation(
     return status, np.array(pieces).reshape(-1, order + 1, problem.n), steps, half, np.array(residuals)
 
 
+def bridge_by_collocation(
+    problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, width: float
+) -> tuple[np.ndarray, float, float] | None:
+    """One piece of about ``width`` from ``start``: (coefficients (order + 1, n), arclength, residual), or None.
+
+    Over a point in the middle where no series can be made: no node lies there, and the nodes next to it
+    need only be as good as ``tolerance``.
+    """
+    odd = order - 1 + order % 2  # an even number of nodes leaves the middle free
+    made = _attempt(problem, start, heading, odd, tolerance, width)
+    if isinstance(made, float):
+        return None
+    piece, length, residual, _ = made
+    return np.vstack([piece, np.zeros((order - odd, problem.n))]), length, residual
+
+
 def _piece(
     problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, shortest: float,
     width: float,
 ) -> tuple[np.ndarray | None, float, float, float]:  # fmt: skip
     """One accepted piece (or None), its arclength, its residual and the width to try next."""
-    cosine = -np.cos(np.pi * np.arange(order + 1) / order)  # nodes from -1 to 1
     while width >= shortest:
-        nodes = _follow(problem, start, heading, 0.5 * width * (cosine + 1.0), tolerance)
-        if nodes is not None:
-            coefficients = chebyshev.chebfit(cosine, nodes, order)
-            tail = float(np.abs(coefficients[-2:]).max())
-            enough = tolerance * problem.scale
-            if tail <= enough:
-                piece, length = _by_arclength(coefficients, width)
-                inside = np.vander(np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True)
-                misfit = problem.residuals(inside @ piece) / problem.magnitude
-                residual = float(np.linalg.norm(misfit, axis=1).max())
-                if residual <= 30 * tolerance:
-                    growth = (enough / max(tail, 1e-18)) ** (1.0 / order)
-                    return piece, length, residual, width * min(1.6, max(0.7, 0.95 * growth))
-                tail = max(tail, residual)
-            width *= min(0.75, max(0.3, 0.9 * (enough / tail) ** (1.0 / order)))
-        else:
-            width *= 0.4
+        made = _attempt(problem, start, heading, order, tolerance, width)
+        if not isinstance(made, float):
+            return made
+        width *= made
     return None, 0.0, 0.0, width
+
+
+def _attempt(
+    problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, width: float
+) -> tuple[np.ndarray, float, float, float] | float:
+    """A piece of the given width with the next width to try, or the factor by which the width is to shrink."""
+    cosine = -np.cos(np.pi * np.arange(order + 1) / order)  # nodes from -1 to 1
+    nodes = _follow(problem, start, heading, 0.5 * width * (cosine + 1.0), tolerance)
+    if nodes is None:
+        return 0.4
+    coefficients = chebyshev.chebfit(cosine, nodes, order)
+    tail, enough = float(np.abs(coefficients[-2:]).max()), tolerance * problem.scale
+    if tail <= enough:
+        piece, length = _by_arclength(coefficients, width)
+        inside = np.vander(np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True)
+        misfit = problem.residuals(inside @ piece) / problem.magnitude
+        residual = float(np.linalg.norm(misfit, axis=1).max())
+        if residual <= 30 * tolerance:
+            growth = (enough / max(tail, 1e-18)) ** (1.0 / order)
+            return piece, length, residual, width * min(1.6, max(0.7, 0.95 * growth))
+        tail = max(tail, residual)
+    return min(0.75, max(0.3, 0.9 * (enough / tail) ** (1.0 / order)))
 
 
 def _follow(
@@ -90,7 +114,7 @@ def _follow(
         if k == 1:
             guess = start + reach * heading
         else:
-            last = slice(max(0, k - 6), k)
+            last = slice(max(0, k - 10), k)
             guess = _extrapolate(offsets[last], np.array(points[last]), offsets[k])
         guess = guess + ((offsets[k] - (guess - start) @ heading)) * heading
         point, gap = correct_across(problem, guess, heading, tolerance)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
+from bifurc.collocation import bridge_by_collocation
 from bifurc.corrector import null_vector
 from bifurc.problem import MarchStatus, Problem, ProblemError
 
@@ -66,37 +67,87 @@ def trace_branch(
     return _join(backward.reversed(), forward)
 
 
+@dataclass(frozen=True)
+class _Track:
+    """Pieces gathered so far, with the arclengths of their centres."""
+
+    pieces: np.ndarray
+    centers: np.ndarray
+    radii: np.ndarray
+    residuals: np.ndarray
+
+    @property
+    def reached(self) -> float:
+        """Arclength up to which the last piece is trusted."""
+        return float(self.centers[-1] + self.radii[-1]) if len(self.centers) else 0.0
+
+    def extended(self, keep: int, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, residuals: np.ndarray) -> _Track:
+        """The first ``keep`` pieces and the given ones."""
+        return _Track(
+            np.concatenate([self.pieces[:keep], pieces]), np.concatenate([self.centers[:keep], centers]),
+            np.concatenate([self.radii[:keep], radii]), np.concatenate([self.residuals[:keep], residuals]),
+        )  # fmt: skip
+
+    def at(self, piece: int, s: float) -> tuple[np.ndarray, np.ndarray]:
+        """Point and unit tangent of a piece at arclength ``s``."""
+        order = self.pieces.shape[1] - 1
+        powers = ((s - self.centers[piece]) / self.radii[piece]) ** np.arange(order + 1)
+        slope = (np.arange(1, order + 1) * powers[:-1]) @ self.pieces[piece][1:]
+        return powers @ self.pieces[piece], slope / np.linalg.norm(slope)
+
+
 def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: TraceSettings) -> Branch:
     """The curve from ``start`` along ``tangent`` until it closes, leaves the region, stalls or grows too long."""
     scale, count = problem.scale, 28
-    pieces = np.empty((0, settings.order + 1, problem.n))
-    centers, radii, residuals = np.empty(0), np.empty(0), np.empty(0)
-    point, heading, reached = start, tangent, 0.0
+    nothing = np.empty(0)
+    track = _Track(np.empty((0, settings.order + 1, problem.n)), nothing, nothing, nothing)
+    point, heading = start, tangent
     while True:
         run = problem.march(
             point, heading, settings.order, settings.tolerance, settings.shortest * scale,
             settings.longest * scale, count,
         )  # fmt: skip
-        first = max(len(pieces) - 1, 0)
-        centers = np.concatenate([centers, reached + np.cumsum(run.steps)])
-        pieces, radii = np.concatenate([pieces, run.pieces]), np.concatenate([radii, run.radii])
         if run.status == MarchStatus.OPEN:
-            gap = float(run.residuals[-1])
-            return _assemble(problem, pieces, centers, radii, residuals, Outcome.OPEN, 0.0, gap)
-        residuals = np.concatenate([residuals, run.residuals])
-        if not len(run.pieces):
-            return _assemble(problem, pieces, centers, radii, residuals, Outcome.STALLED, reached)
-        end = _end_of_curve(problem, pieces, centers, radii, first)
+            return _assemble(problem, track, Outcome.OPEN, 0.0, float(run.residuals[-1]))
+        known = len(track.pieces)
+        track = track.extended(known, run.pieces, track.reached + np.cumsum(run.steps), run.radii, run.residuals)
+        end = _end_of_curve(problem, track, max(known - 1, 0))
+        if end is None and run.status == MarchStatus.STALLED:
+            bridged = _bridge(problem, track, settings)
+            if bridged is None:
+                return _assemble(problem, track, Outcome.STALLED, track.reached)
+            track = bridged
+            end = _end_of_curve(problem, track, len(track.pieces) - 1)
         if end is not None:
-            return _assemble(problem, pieces, centers, radii, residuals, *end)
-        reached = float(centers[-1] + radii[-1])
-        if run.status == MarchStatus.STALLED:
-            return _assemble(problem, pieces, centers, radii, residuals, Outcome.STALLED, reached)
-        if reached > settings.max_length * scale:
-            return _assemble(problem, pieces, centers, radii, residuals, Outcome.STEP_LIMIT, reached)
-        point = pieces[-1].sum(axis=0)
-        heading = np.arange(settings.order + 1) @ pieces[-1]
-        heading, count = heading / np.linalg.norm(heading), 16
+            return _assemble(problem, track, *end)
+        if track.reached > settings.max_length * scale:
+            return _assemble(problem, track, Outcome.STEP_LIMIT, track.reached)
+        point, heading = track.at(-1, track.reached)
+        count = 16
+
+
+def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track | None:
+    """The track with a piece across the point before which it stalled, or None.
+
+    Near a singular point where the rank drops faster than on a simple crossing no series reaches over. The curve is
+    smooth there all the same: a piece by collocation, from as far before the point as beyond it, needs no series.
+    """
+    for reach in (0.1, 0.2, 0.05, 0.4, 0.02):
+        begin = track.reached - reach * problem.scale
+        before = np.flatnonzero(track.centers <= begin)
+        if not len(before):
+            continue
+        last = int(before[-1])
+        for slack in (10.0, 100.0):
+            tolerance = slack * settings.tolerance
+            point, heading = track.at(last, begin)
+            made = bridge_by_collocation(problem, point, heading, settings.order, tolerance, 2 * reach * problem.scale)
+            if made is not None:
+                piece, length, residual = made
+                return track.extended(
+                    last + 1, piece[None], np.array([begin + length / 2]), np.array([length / 2]), np.array([residual])
+                )
+    return None
 
 
 def _breaks(centers: np.ndarray, radii: np.ndarray, length: float) -> np.ndarray:
@@ -106,38 +157,31 @@ def _breaks(centers: np.ndarray, radii: np.ndarray, length: float) -> np.ndarray
     return np.concatenate([[0.0], inner, [length]])
 
 
-def _assemble(
-    problem: Problem, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, residuals: np.ndarray,
-    outcome: Outcome, length: float, gap: float = 0.0,
-) -> Branch:  # fmt: skip
+def _assemble(problem: Problem, track: _Track, outcome: Outcome, length: float, gap: float = 0.0) -> Branch:
     """The branch of the pieces up to arclength ``length``."""
-    breaks = _breaks(centers, radii, length) if len(pieces) else np.zeros(1)
-    keep = int(np.searchsorted(breaks[:-1], length, side="left")) if len(pieces) else 0
-    breaks = np.append(breaks[:keep], length)
+    breaks = _breaks(track.centers, track.radii, length) if len(track.pieces) else np.zeros(1)
+    keep = int(np.searchsorted(breaks[:-1], length, side="left"))
     return Branch(
-        pieces[:keep], centers[:keep], radii[:keep], breaks, residuals[:keep], problem.periods, outcome, gap
-    )
+        track.pieces[:keep], track.centers[:keep], track.radii[:keep], np.append(breaks[:keep], length),
+        track.residuals[:keep], problem.periods, outcome, gap,
+    )  # fmt: skip
 
 
-def _end_of_curve(
-    problem: Problem, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, first: int
-) -> tuple[Outcome, float] | None:
+def _end_of_curve(problem: Problem, track: _Track, first: int) -> tuple[Outcome, float] | None:
     """Where the curve, from piece ``first`` on, comes back to its start or first leaves the bounds."""
-    closing = _closing(problem, pieces, centers, radii, first)
-    leaving = _leaving(problem, pieces, centers, radii, first)
+    if not len(track.pieces):
+        return None
+    closing, leaving = _closing(problem, track, first), _leaving(problem, track, first)
     if closing is not None and (leaving is None or closing < leaving):
         return Outcome.CLOSED, closing
     return None if leaving is None else (Outcome.LEFT_REGION, leaving)
 
 
-def _closing(
-    problem: Problem, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, first: int
-) -> float | None:
+def _closing(problem: Problem, track: _Track, first: int) -> float | None:
     """Arclength at which the curve passes its start again in the same direction, modulo the periods."""
+    pieces, centers, radii = track.pieces, track.centers, track.radii
     order = pieces.shape[1] - 1
-    powers = (-centers[0] / radii[0]) ** np.arange(order + 1)
-    start = powers @ pieces[0]
-    slope = (np.arange(1, order + 1) * powers[:-1]) @ pieces[0][1:] / radii[0]
+    start, slope = track.at(0, 0.0)
     away = np.linalg.norm(problem.difference(pieces[first:, 0], start), axis=1)
     for i in first + np.flatnonzero(away < 1.1 * radii[first:]):
         grid = np.linspace(-1.0, 1.0, 17)
@@ -156,10 +200,9 @@ def _closing(
     return None
 
 
-def _leaving(
-    problem: Problem, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, first: int
-) -> float | None:
+def _leaving(problem: Problem, track: _Track, first: int) -> float | None:
     """Arclength at which the curve first leaves the bounds."""
+    pieces, centers, radii = track.pieces, track.centers, track.radii
     if not np.any(np.isfinite(problem.bounds)):
         return None
 
