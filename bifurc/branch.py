@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
+from bifurc.pieces import evaluate, feet
+
 __all__ = ["Branch", "Outcome"]
 
 
@@ -63,22 +65,14 @@ class Branch:
     def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
         """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of a closed curve."""
         s = np.asarray(s, dtype=float)
-        turns = np.floor(s / self.length) if self.closed else np.zeros_like(s)
-        local = s - turns * self.length
-        piece = np.clip(np.searchsorted(self.breaks, local, side="right") - 1, 0, len(self.pieces) - 1)
-        x = (local - self.centers[piece]) / self.radii[piece]
-        coefficients = self.pieces[piece]
-        order = coefficients.shape[-2] - 1
-        factor = np.ones(order + 1)
-        for j in range(derivative):
-            factor *= np.maximum(np.arange(order + 1) - j, 0)
-        value = np.zeros((*s.shape, self.n))
-        for k in range(order, derivative - 1, -1):
-            value = value * x[..., None] + factor[k] * coefficients[..., k, :]
-        value = value / self.radii[piece][..., None] ** derivative
-        if derivative == 0 and self.closed:
-            value = value + turns[..., None] * (self._ends[1] - self._ends[0])
-        return value
+        return evaluate(self._curve, np.ascontiguousarray(s.ravel()), derivative).reshape(*s.shape, self.n)
+
+    @cached_property
+    def _curve(self) -> tuple[np.ndarray, ...]:
+        """The curve as the kernels of `bifurc.pieces` take it."""
+        travel = self._ends[1] - self._ends[0] if self.closed else np.empty(0)
+        arrays = (self.breaks, self.centers, self.radii, self.pieces, travel)
+        return tuple(np.require(array, dtype=float, requirements=["C", "W"]) for array in arrays)
 
     @cached_property
     def _ends(self) -> np.ndarray:
@@ -123,45 +117,28 @@ class Branch:
         points = np.atleast_2d(np.asarray(points, dtype=float))
         tree, grid, box = self._index
         count = min(neighbours, len(grid))
-        distance, near = tree.query(_into_box(points, box), k=count)
-        distance, near = distance.reshape(len(points), count), near.reshape(len(points), count)
+        distance, near = (np.reshape(a, (len(points), count)) for a in tree.query(_into_box(points, box), k=count))
         s = grid[near]
         spacing = np.diff(grid).max()
         close = distance[:, 0] < 2 * spacing  # the others are surely off the curve: the nearest sample will do
         if np.any(close):
-            t, target = s[close], points[close, None, :]
-            for _ in range(5):
-                gap, slope = self._wrapped(self(t) - target), self(t, 1)
-                step = np.einsum("kjn,kjn->kj", gap, slope) / np.einsum("kjn,kjn->kj", slope, slope)
-                t = self._inside(t - np.clip(step, -2 * spacing, 2 * spacing))
-            s[close] = t
-            distance[close] = np.linalg.norm(self._wrapped(self(t) - target), axis=-1)
+            targets = np.repeat(points[close], count, axis=0)
+            at, apart = feet(self._curve, targets, s[close].ravel(), 2 * spacing, self.periods, 5)
+            s[close], distance[close] = at.reshape(-1, count), apart.reshape(-1, count)
         best = np.argmin(distance, axis=1)
         rows = np.arange(len(points))
         return distance[rows, best], s[rows, best]
 
     def passes(self, point: np.ndarray, within: float) -> np.ndarray:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below ``within``, in order."""
-        _, grid, _ = self._index
-        gap = np.linalg.norm(self._wrapped(self(grid) - point), axis=-1)
-        s = grid[gap < 2.5 * np.diff(grid).max() + within]
-        for _ in range(8):
-            offset, slope = self._wrapped(self(s) - point), self(s, 1)
-            s = self._inside(s - np.einsum("kn,kn->k", offset, slope) / np.einsum("kn,kn->k", slope, slope))
-        s = np.sort(s[np.linalg.norm(self._wrapped(self(s) - point), axis=1) < within])
+        tree, grid, box = self._index
+        spacing = np.diff(grid).max()
+        near = tree.query_ball_point(_into_box(point, box), 2.5 * spacing + within)
+        targets = np.tile(np.asarray(point, dtype=float), (len(near), 1))
+        s, distance = feet(self._curve, targets, grid[near], spacing, self.periods, 8)
+        s = np.sort(s[distance < within])
         apart = np.diff(s, prepend=s[-1] - self.length if self.closed and len(s) > 1 else -np.inf)
         return s[apart > 1e-6]
-
-    def _inside(self, s: np.ndarray) -> np.ndarray:
-        """Arclengths taken into the curve: modulo its length where it is closed, else cut off."""
-        return s % self.length if self.closed else np.clip(s, 0.0, self.length)
-
-    def _wrapped(self, gap: np.ndarray) -> np.ndarray:
-        periodic = np.isfinite(self.periods)
-        if np.any(periodic):
-            gap = gap.copy()
-            gap[..., periodic] -= self.periods[periodic] * np.round(gap[..., periodic] / self.periods[periodic])
-        return gap
 
     def reversed(self) -> Branch:
         """The same curve run the other way."""

@@ -185,9 +185,11 @@ def _add_branch(
     starts: list[tuple[np.ndarray, np.ndarray | None]] = []
     for at, small in candidates:
         nullity = int(np.count_nonzero(singular_values(problem, branch(at)[None])[0] < small))
+        known = len(found.points)
         point = _examine(problem, branch(at), nullity, found, reach=0.05) if nullity > 1 else None
         if point is not None:
             located.append(at)
+        if point is not None and len(found.points) > known:
             starts += [(point.u + point.radius * h, h) for h in point.half_branches]
     found.located.append(located)
     return starts
