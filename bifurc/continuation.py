@@ -42,6 +42,10 @@ class TraceSettings:
 
 DEFAULT_SETTINGS = TraceSettings()
 
+# Next to a crossing rounding bends the curve F = 1e-16 from one branch into the other: a radius below this is first
+# taken for a sign of one, and a smooth piece across is tried.
+CAUTIOUS = 1e-4
+
 
 def trace_branch(
     problem: Problem,
@@ -102,27 +106,33 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
     nothing = np.empty(0)
     track = _Track(np.empty((0, settings.order + 1, problem.n)), nothing, nothing, nothing)
     point, heading = start, tangent
+    shortest = cautious = max(CAUTIOUS, settings.shortest) * scale
     while True:
         run = problem.march(
-            point, heading, settings.order, settings.tolerance, settings.shortest * scale,
-            settings.longest * scale, count,
-        )  # fmt: skip
+            point, heading, settings.order, settings.tolerance, shortest, settings.longest * scale, count
+        )
         if run.status == MarchStatus.OPEN:
             return _assemble(problem, track, Outcome.OPEN, 0.0, float(run.residuals[-1]))
         known = len(track.pieces)
         track = track.extended(known, run.pieces, track.reached + np.cumsum(run.steps), run.radii, run.residuals)
         end = _end_of_curve(problem, track, max(known - 1, 0))
         if end is None and run.status == MarchStatus.STALLED:
-            bridged = _bridge(problem, track, settings)
-            if bridged is None:
+            bridged = _bridge(problem, track, settings) if shortest == cautious else None
+            if bridged is not None:
+                track = bridged
+                end = _end_of_curve(problem, track, len(track.pieces) - 1)
+            elif shortest > settings.shortest * scale:
+                shortest = settings.shortest * scale  # no singular point to jump over: a sharp bend, to be followed
+            else:
                 return _assemble(problem, track, Outcome.STALLED, track.reached)
-            track = bridged
-            end = _end_of_curve(problem, track, len(track.pieces) - 1)
+        elif len(run.radii) and run.radii[-1] > 10 * cautious:
+            shortest = cautious
         if end is not None:
             return _assemble(problem, track, *end)
         if track.reached > settings.max_length * scale:
             return _assemble(problem, track, Outcome.STEP_LIMIT, track.reached)
-        point, heading = track.at(-1, track.reached)
+        if len(track.pieces):
+            point, heading = track.at(-1, track.reached)
         count = 16
 
 
