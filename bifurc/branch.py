@@ -125,9 +125,15 @@ class Branch:
             targets = np.repeat(points[close], count, axis=0)
             at, apart = feet(self._curve, targets, s[close].ravel(), 2 * spacing, self.periods, 5)
             s[close], distance[close] = at.reshape(-1, count), apart.reshape(-1, count)
-        best = np.argmin(distance, axis=1)
-        rows = np.arange(len(points))
-        return distance[rows, best], s[rows, best]
+        best, rows = np.argmin(distance, axis=1), np.arange(len(points))
+        distance, s = distance[rows, best], s[rows, best]
+        # beside a crossing the nearest samples may all lie on another pass: try every one that can lead to the foot
+        for i in np.flatnonzero(close & (distance > 1e-7 * spacing)):
+            around = grid[tree.query_ball_point(_into_box(points[i], box), distance[i] + spacing)]
+            at, apart = feet(self._curve, np.tile(points[i], (len(around), 1)), around, 2 * spacing, self.periods, 8)
+            if apart.min(initial=np.inf) < distance[i]:
+                distance[i], s[i] = apart.min(), at[np.argmin(apart)]
+        return distance, s
 
     def passes(self, point: np.ndarray, within: float) -> np.ndarray:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below ``within``, in order."""
