@@ -68,6 +68,8 @@ def trace_branch(
     backward = _follow(problem, start, -tangent, settings)
     if not len(backward.pieces):
         return forward
+    if backward.outcome is Outcome.CLOSED:  # it came through where the other way stalled
+        return backward.reversed()
     return _join(backward.reversed(), forward)
 
 
