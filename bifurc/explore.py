@@ -17,7 +17,8 @@ from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
 from bifurc.monitor import Profile, dead_points, profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
 from bifurc.seeding import Completeness, Seeds, missed_probability
-from bifurc.singular import Kind, SingularPoint, classify_singular_point, locate_singular_point, section
+from bifurc.section import section
+from bifurc.singular import Kind, SingularPoint, classify_singular_point, locate_singular_point
 
 __all__ = ["explore"]
 
@@ -204,7 +205,7 @@ def _examine(
         if result is None:
             continue
         u, null_space, error = result
-        known = _nearest(problem, u, [p.u for p in found.points], SAME)
+        known = _nearest(problem, u, [p.u for p in found.points], SAME + 10 * error / problem.scale)
         if known is not None:
             return found.points[known]
         point = classify_singular_point(problem, u, null_space, error)
@@ -285,22 +286,30 @@ def _closure_gap(problem: Problem, seeds: Seeds, found: _Findings) -> float:
 
 
 def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch]) -> MeetingPoint:
-    """A singular point with the branches that pass it; what they and the section say together is its kind."""
-    passes = [
-        (i, float(s)) for i, branch in enumerate(branches) for s in branch.passes(point.u, 1e-6 * problem.scale)
-    ]
-    tangents = np.array([branches[i](s, 1) for i, s in passes]).reshape(-1, problem.n)
-    ends = sum(1 for i, s in passes if not branches[i].closed and min(s, branches[i].length - s) < 1e-6)
-    explained = 2 * len(passes) - ends
-    seen = len(point.half_branches)
+    """A singular point with the branches that pass it or end there; where they and the section disagree, a note."""
+    within = SAME * problem.scale + 10 * point.error
+    through = [(i, float(s)) for i, branch in enumerate(branches) for s in branch.passes(point.u, within)]
+    ends = [(i, s) for i, branch in enumerate(branches) for s in _ends_at(problem, branch, point)]
+    tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(-1, problem.n)
+    explained, seen = 2 * len(through) + len(ends), len(point.half_branches)
     kind, note = point.kind, ""
-    if point.dimension <= 1:
-        if explained > 2 or (explained == 2 and seen <= 2):
-            kind = Kind.BIFURCATION if explained > 2 else Kind.RANK_DROP
-        if explained != seen:
-            note = f"{explained} half-branches were traced, the section shows {seen}"
-            kind = Kind.BIFURCATION if explained > 2 else Kind.UNDECIDED
-    return MeetingPoint("", kind, point, tuple(passes), tangents, note)
+    if point.dimension < 2 and explained != seen:
+        note = f"{explained} half-branches were traced, the section shows {seen}"
+        kind = Kind.BIFURCATION if explained > 2 else Kind.UNDECIDED
+    return MeetingPoint("", kind, point, tuple(through + ends), tangents, note)
+
+
+def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
+    """Arclengths of the ends of a branch that stalled before a cusp: next to the point, in a half-branch's direction."""
+    found = []
+    for s in (0.0, branch.length) if branch.outcome is Outcome.STALLED else ():
+        offset = problem.difference(branch(s), point.u)
+        distance = float(np.linalg.norm(offset))
+        if distance < 0.05 * problem.scale and any(
+            np.linalg.norm(offset - distance * h) < 0.3 * distance for h in point.half_branches
+        ):
+            found.append(s)
+    return found
 
 
 def _components(count: int, points: list[MeetingPoint]) -> list[int]:

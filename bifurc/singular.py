@@ -8,16 +8,9 @@ from enum import Enum
 import numpy as np
 
 from bifurc.problem import Problem
+from bifurc.section import section
 
-__all__ = [
-    "Kind",
-    "Section",
-    "SingularPoint",
-    "classify_singular_point",
-    "locate_singular_point",
-    "second_order_tangents",
-    "section",
-]
+__all__ = ["Kind", "SingularPoint", "classify_singular_point", "locate_singular_point", "second_order_tangents"]
 
 
 class Kind(Enum):
@@ -25,8 +18,8 @@ class Kind(Enum):
 
     BIFURCATION = "bifurcation"  # two or more branches meet
     RANK_DROP = "rank drop"  # one smooth branch passes
+    CUSP = "cusp"  # two half-branches leave to the same side
     ISOLATED = "isolated"  # no branch passes
-    END = "end"  # a branch ends: a cusp or an end in a component of other dimension
     DIMENSION_CHANGE = "dimension change"  # it lies on a component of dimension 2 or more
     UNDECIDED = "undecided"
 
@@ -38,7 +31,7 @@ class SingularPoint:
     ``u`` (n,), ``rank`` of F' there, ``null_space`` (n, k), ``error``: estimate of the distance to the exact
     point, ``half_branches`` (h, n): unit directions in which solutions leave it, as seen on a small sphere, ``tangents``
     (t, n) of the branches from the second-order equations (t = 0 where these do not decide), ``dimension``
-    of the solution set nearby, ``order`` of the argument that decided: 2, or 0 for the section alone, which was made at ``radius``.
+    of the solution set nearby (-1 where sections of two radii disagree), ``order`` of the argument that decided: 2, or 0 for the section alone, which was made at ``radius``.
     """
 
     u: np.ndarray
@@ -56,13 +49,13 @@ class SingularPoint:
         """What the half-branches alone say."""
         if self.dimension > 1:
             return Kind.DIMENSION_CHANGE
+        if self.dimension < 0:
+            return Kind.UNDECIDED
         count = len(self.half_branches)
         if count == 0:
             return Kind.ISOLATED
-        if count == 1:
-            return Kind.END
         if count == 2:
-            return Kind.RANK_DROP
+            return Kind.CUSP if self.half_branches[0] @ self.half_branches[1] > 0 else Kind.RANK_DROP
         return Kind.BIFURCATION if count % 2 == 0 else Kind.UNDECIDED
 
 
@@ -70,7 +63,7 @@ class SingularPoint:
 
 
 def locate_singular_point(
-    problem: Problem, start: np.ndarray, nullity: int, reach: float, iterations: int = 20
+    problem: Problem, start: np.ndarray, nullity: int, reach: float, iterations: int = 60
 ) -> tuple[np.ndarray, np.ndarray, float] | None:
     """The point near ``start`` where F = 0 and F' has a null space of dimension ``nullity``: (u, V (n, k), error).
 
@@ -81,7 +74,8 @@ def locate_singular_point(
         [ F''V    I_k (x) F'  ]
         [ 0       I_k (x) V^T ]   (columns of dV orthogonal to V)
 
-    which is regular although F' is not. None where it does not converge or moves farther than ``reach``. The error
+    which is regular at a simple singular point although F' is not; at one of higher order the iteration converges
+    linearly and to fewer digits, which the error says. None where it does not converge or moves farther than ``reach``. The error
     estimate is the last correction plus rounding over the smallest singular value of that matrix.
     """
     n, k = problem.n, nullity
@@ -120,9 +114,9 @@ def locate_singular_point(
     values = np.linalg.svd(problem.jacobians(u[None])[0] / problem.magnitude, compute_uv=False)
     residual = np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
     tail = values[n - k] if len(values) > n - k else 0.0
-    if residual > 1e-11 or tail > 1e-8:
+    if residual > 1e-11 or tail > 1e-7 or moved > 1e-6 * problem.scale:
         return None
-    error = min(moved, previous) + 1e-15 / max(smallest, 1e-15)
+    error = min(moved, previous) + min(1e-15 / max(smallest, 1e-15), np.sqrt(1e-15)) * problem.scale
     return u, basis, error
 
 
@@ -177,72 +171,32 @@ def _have_common_root(pair: np.ndarray) -> bool:
     return bool(abs((a * f - c * d) ** 2 - (a * e - b * d) * (b * f - c * e)) < 1e-6)
 
 
-# --- section with a small sphere ----------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Section:
-    """Solutions on a small sphere about a point: ``points`` (h, n), one for each half-branch, and the local
-    ``dimension`` of the solution set (2 stands for 2 or more: the section is not finite)."""
-
-    points: np.ndarray
-    dimension: int
-
-
-def section(problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float) -> Section:
-    """Intersection of the solution set with the sphere of ``radius`` about a singular point.
-
-    Starts are spread over the unit sphere of the null space, to which all branches are tangent.
-    """
-    directions = _spread(null_space.shape[1])
-    starts = point + radius * directions @ null_space.T
-    found, gaps, last = problem.project_to_sphere(starts, point, radius)
-    # next to the point F is of order radius^2 whatever the direction: the residual must be far below that
-    good = found[(gaps < 1e-8 * (radius / problem.scale) ** 2 + 5e-15) & (last < 1e-4 * radius)]
-    clusters: list[np.ndarray] = []
-    for candidate in good:
-        if all(np.linalg.norm(candidate - other) > 1e-2 * radius for other in clusters):
-            clusters.append(candidate)
-    if len(clusters) > max(12, len(starts) // 4):
-        return Section(np.array(clusters), 2)
-    return Section(np.array(clusters).reshape(-1, len(point)), 1 if clusters else 0)
-
-
-def _spread(k: int) -> np.ndarray:
-    """Unit vectors over the sphere in R^k, in opposite pairs."""
-    if k == 1:
-        return np.array([[1.0], [-1.0]])
-    if k == 2:
-        angles = 0.1 + np.arange(24) * np.pi / 12
-        return np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    half = np.random.default_rng(k).normal(size=(100 * (k - 1), k))
-    half /= np.linalg.norm(half, axis=1)[:, None]
-    return np.concatenate([half, -half])
+# --- classification -----------------------------------------------------------------------------------
 
 
 def classify_singular_point(
-    problem: Problem, point: np.ndarray, null_space: np.ndarray, error: float, radius: float = 1e-2
+    problem: Problem, point: np.ndarray, null_space: np.ndarray, error: float, radius: float = 2e-2
 ) -> SingularPoint:
     """The located point with its half-branches, tangents and local dimension.
 
-    The section is made at ``radius`` and at a quarter of it (in units of the problem's scale); where the two disagree the
-    radius shrinks, down to 1/64 of the first. Tangents of second order are kept where their number agrees with the section.
+    The section is made at ``radius`` and at half of it (in units of the problem's scale); where the two disagree the
+    radius shrinks. Tangents of second order are kept where their number agrees with the section.
     """
     k = null_space.shape[1]
     tangents = second_order_tangents(problem, point, null_space)
     radius *= problem.scale
-    outer = section(problem, point, null_space, radius)
     agreed = False
-    for _ in range(3):
-        inner = section(problem, point, null_space, radius / 4)
-        if inner.dimension == outer.dimension and (inner.dimension > 1 or len(inner.points) == len(outer.points)):
-            agreed = True
+    for _ in range(4):
+        outer, inner = (section(problem, point, null_space, r) for r in (radius, radius / 2))
+        agreed = inner.dimension == outer.dimension and (inner.dimension > 1 or len(inner.points) == len(outer.points))
+        if agreed:
             break
-        radius, outer = radius / 4, inner
+        radius /= 4
     half = (outer.points - point) / radius
     decided = tangents is not None and 2 * len(tangents) == len(half) and agreed
     return SingularPoint(
-        u=point, rank=problem.n - k, null_space=null_space, error=error, half_branches=half if agreed else half[:0],
+        u=point, rank=problem.n - k, null_space=null_space, error=error,
+        half_branches=half if agreed and outer.dimension < 2 else half[:0],
         tangents=tangents if decided and tangents is not None else np.empty((0, len(point))),
-        dimension=outer.dimension if agreed else 0, order=2 if decided else 0, radius=radius,
+        dimension=outer.dimension if agreed else -1, order=2 if decided else 0, radius=radius,
     )  # fmt: skip

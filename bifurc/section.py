@@ -1,0 +1,139 @@
+"""The solution set next to a singular point, cut with a small sphere.
+
+Every branch through the point leaves along its null space. The reduced equations of Liapunov and Schmidt live
+on that space alone, and their zeros on a small circle or sphere are the half-branches: two for every branch that
+passes, whatever the order at which their tangents or curvatures separate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize.elementwise import find_minimum, find_root
+
+if TYPE_CHECKING:
+    from bifurc.problem import Problem
+
+__all__ = ["ReducedEquations", "Section", "section"]
+
+ANGLES = 96  # samples on the circle of a null space of dimension 2
+
+
+@dataclass(frozen=True)
+class Section:
+    """Solutions on a small sphere about a point: ``points`` (h, n), one for each half-branch, and the local
+    ``dimension`` of the solution set (2 stands for 2 or more: the section is not finite)."""
+
+    points: np.ndarray
+    dimension: int
+
+
+class ReducedEquations:
+    """The Liapunov-Schmidt reduction at a singular point, on the sphere of ``radius`` in its null space.
+
+    For a unit vector x of the null space V (n, k) the point is u + radius V x + w(x), where w solves the independent
+    equations; what is left is W^T F / radius^2, with W the left null space. The chord iteration for w uses
+    the one factorisation made here and gains a factor of about the radius each time.
+    """
+
+    def __init__(self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float):
+        jacobian = problem.jacobians(point[None])[0] / problem.magnitude
+        left, sigma, right = np.linalg.svd(jacobian)
+        rank = problem.n - null_space.shape[1]
+        self._problem, self._point, self._null_space, self._radius = problem, point, null_space, radius
+        self._inverse = (right[:rank].T / sigma[:rank]) @ left[:, :rank].T
+        self._left = left[:, rank:]
+        self.noise = 4e-15 / radius**2
+
+    def points(self, x: np.ndarray) -> np.ndarray:
+        """Points (k, n) that solve the independent equations above unit vectors x (k, nullity)."""
+        base = self._point + self._radius * x @ self._null_space.T
+        w = np.zeros_like(base)
+        for _ in range(10):
+            step = self._problem.residuals(base + w) / self._problem.magnitude @ self._inverse.T
+            w -= step
+            if np.abs(step).max() < 1e-15 * self._problem.scale:
+                break
+        return base + w
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """The reduced equations (k, codimension) at unit vectors x (k, nullity)."""
+        residual = self._problem.residuals(self.points(x)) / self._problem.magnitude
+        return residual @ self._left / self._radius**2
+
+
+def section(problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float) -> Section:
+    """Intersection of the solution set with a sphere of ``radius`` about a singular point (n,)."""
+    if null_space.shape[1] == 2:
+        return _circle_section(ReducedEquations(problem, point, null_space, radius))
+    return _sphere_section(problem, point, null_space, radius)
+
+
+# --- nullity 2: every zero on a circle ----------------------------------------------------------------
+
+
+def _circle_section(equations: ReducedEquations) -> Section:
+    """All zeros on the circle: sign changes of the leading combination of the equations, also those that its
+    minima between two samples reveal; what does not solve the other equations is dropped."""
+    angles = 0.01 + 2 * np.pi * np.arange(ANGLES) / ANGLES
+    values = equations(_unit(angles))
+    size = float(np.linalg.norm(values, axis=1).max())
+    if size < 30 * equations.noise:
+        return Section(equations.points(_unit(angles)), 2)
+    leading = np.linalg.svd(values, full_matrices=False)[2][0]
+
+    def combined(angle: np.ndarray, sign: np.ndarray) -> np.ndarray:
+        return sign * (equations(_unit(np.ravel(angle))) @ leading).reshape(np.shape(angle))
+
+    h = values @ leading
+    low, high, touching = _brackets(angles, h, combined, 30 * equations.noise + 1e-9 * size)
+    roots = find_root(combined, (low, high), args=(np.ones_like(low),)).x if len(low) else np.empty(0)
+    candidates = np.concatenate([roots, touching])
+    if not len(candidates):
+        return Section(np.empty((0, len(equations.points(_unit(angles[:1]))[0]))), 0)
+    left_over = np.linalg.norm(equations(_unit(candidates)), axis=1)
+    found = equations.points(_unit(candidates[left_over < 1e-6 * size + 30 * equations.noise]))
+    return Section(found, 1 if len(found) else 0)
+
+
+def _brackets(angles, h, combined, zero):  # type: ignore[no-untyped-def]
+    """Brackets (low, high) of the sign changes of ``h`` on the circle, and the angles where it only touches zero."""
+    step, after = angles[1] - angles[0], np.roll(h, -1)
+    changes = np.flatnonzero(np.sign(h) * np.sign(after) < 0)
+    low, high = angles[changes], angles[changes] + step
+    dips = np.flatnonzero((np.abs(h) <= np.abs(np.roll(h, 1))) & (np.abs(h) < np.abs(after)))
+    dips = dips[(np.sign(h[dips]) == np.sign(after[dips])) & (np.sign(h[dips]) == np.sign(np.roll(h, 1)[dips]))]
+    if not len(dips):
+        return low, high, np.empty(0)
+    at, sign = angles[dips], np.sign(h[dips])
+    bottom = find_minimum(combined, (at - step, at, at + step), args=(sign,))
+    below = bottom.f_x < -zero
+    low = np.concatenate([low, at[below] - step, bottom.x[below]])
+    high = np.concatenate([high, bottom.x[below], at[below] + step])
+    return low, high, bottom.x[np.abs(bottom.f_x) <= zero]
+
+
+def _unit(angles: np.ndarray) -> np.ndarray:
+    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+
+# --- nullity 3 and more: many starts on a sphere ------------------------------------------------------
+
+
+def _sphere_section(problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float) -> Section:
+    """What Gauss-Newton reaches from starts spread over the sphere."""
+    k = null_space.shape[1]
+    half = np.random.default_rng(k).normal(size=(100 * (k - 1), k))
+    half /= np.linalg.norm(half, axis=1)[:, None]
+    starts = point + radius * np.concatenate([half, -half]) @ null_space.T
+    found, gaps, last = problem.project_to_sphere(starts, point, radius)
+    # next to the point F is of order radius^2 whatever the direction: the residual must be far below that
+    good = found[(gaps < 1e-8 * (radius / problem.scale) ** 2 + 5e-15) & (last < 1e-4 * radius)]
+    clusters: list[np.ndarray] = []
+    for candidate in good:
+        if all(np.linalg.norm(candidate - other) > 1e-4 * radius for other in clusters):
+            clusters.append(candidate)
+    dimension = 2 if len(clusters) > max(12, len(starts) // 4) else int(bool(clusters))
+    return Section(np.array(clusters).reshape(-1, problem.n), dimension)
