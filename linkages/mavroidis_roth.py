@@ -38,8 +38,8 @@ def mavroidis_roth(
 
     ``alpha``, ``gamma`` are the twists (rad) of a and c; the length of c follows and is checked if given;
     ``length`` and ``twist`` are those of the free link l. Raises `GeometryError`. Source: Mavroidis and
-    Roth (1995), equation (2.4.11) in Song (2013); the pattern R2 = -R5, R3 = -R6 moves as well and is not
-    in the sources.
+    Roth (1995), equation (2.4.11) in Song (2013); the pattern R2 = -R5, R3 = -R6 moves as well:
+    two generalized Goldberg 5R of one kink angle on their common link pair have it.
     """
     a, c = bennett_links(a, alpha, c=(gamma, c))
     free = Link(length, twist)
@@ -68,7 +68,8 @@ def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
     order = "exchanged-" if exchanged else ""
     source = "Mavroidis and Roth (1995); Song (2013), eq. 2.4.11"
     if pattern is OffsetPattern.NEGATIVE:
-        source = "found by closure; with R2 = R3 the kinked double-Goldberg 6R of Wohlhart (1991a)"
+        source = "found by closure"
+        source += "" if exchanged else "; the kinked double-Goldberg 6R of Wohlhart (1991a) is a case of it"
     return Entry(
         f"{order}mavroidis-roth-{pattern.name.lower()}",
         f"Mavroidis and Roth's 6R, {'exchanged, ' if exchanged else ''}{pattern.value}",
