@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from studies.status import EchoHandler, ExitCode, StatusLine, kernels_are_compiled
+from studies.status import EchoHandler, ExitCode, StatusLine, compilation_announced
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -27,7 +27,7 @@ EXPLORING = (
         "--param", "parameters", multiple=True, metavar="KEY=VALUE",
         help="Parameter of a named linkage, angles in degrees; may be given several times.",
     ),
-    click.option("--starts", default=200, type=click.IntRange(min=1), show_default=True, help="Number of random starts."),
+    click.option("--starts", default=200, type=click.IntRange(min=1), show_default=True, help="Random starts."),
     click.option("--seed", default=0, type=click.IntRange(min=0), show_default=True, help="Seed of the random starts."),
     click.option("--tolerance", default=1e-13, show_default=True, help="How closely curves are followed."),
     click.option("-v", "--verbose", is_flag=True, help="Say more on standard error."),
@@ -220,11 +220,12 @@ def _explore(linkage: str, parameters: tuple[str, ...], starts: int, seed: int, 
 
     settings = TraceSettings(tolerance=tolerance)
     chosen = choose_linkage(linkage, parameters)
-    if not kernels_are_compiled():
-        click.echo("compiling the kernels: once, about 20 seconds", err=True)
     status = StatusLine()
     try:
-        return map_linkage(chosen.loop, chosen.patterns, starts=starts, seed=seed, settings=settings, progress=status)
+        with compilation_announced():
+            return map_linkage(
+                chosen.loop, chosen.patterns, starts=starts, seed=seed, settings=settings, progress=status
+            )
     finally:
         status.wipe()
 

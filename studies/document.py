@@ -13,7 +13,7 @@ __all__ = ["make_document", "smallest_singular_value"]
 
 
 def make_document(atlas: Atlas) -> dict[str, Any]:
-    """The document that `bifurc map --json` prints; docs/json.md says what each key holds."""
+    """The document that `bifurc map --json` prints; docs/results.md says what each key holds."""
     names = [form.name for form in atlas.forms]
     forms = [_form(atlas, i, form) for i, form in enumerate(atlas.forms)]
     surfaces = [_surface(atlas, k, surface) for k, surface in enumerate(atlas.surfaces)]

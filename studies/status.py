@@ -5,13 +5,14 @@ from __future__ import annotations
 import logging
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from enum import IntEnum
-from pathlib import Path
 from typing import Any
 
 import click
 
-__all__ = ["EchoHandler", "ExitCode", "StatusLine", "kernels_are_compiled"]
+__all__ = ["EchoHandler", "ExitCode", "StatusLine", "compilation_announced"]
 
 
 class ExitCode(IntEnum):
@@ -52,21 +53,26 @@ class EchoHandler(logging.Handler):
         click.echo(f"{record.levelname.lower()}: {record.getMessage()}", err=True)
 
 
-def kernels_are_compiled() -> bool:
-    """Whether compiled kernels are on disk from an earlier run, as far as file names and times tell."""
-    from linkages import kernels, slices
+@contextmanager
+def compilation_announced() -> Iterator[None]:
+    """Say once on standard error when kernels are being compiled, and how long it took altogether."""
+    from numba.core import event
 
-    return all(
-        _is_cached(value)
-        for module in (kernels, slices)
-        for value in vars(module).values()
-        if hasattr(value, "stats") and hasattr(value, "py_func") and value.stats.cache_path is not None
-    )
+    class Announcement(event.Listener):
+        began = 0.0
 
+        def on_start(self, event: Any) -> None:
+            if not self.began:
+                self.began = time.monotonic()
+                click.echo("compiling kernels (once, kept on disk; up to half a minute) ...", err=True)
 
-def _is_cached(dispatcher: Any) -> bool:
-    code = dispatcher.py_func.__code__
-    source = Path(code.co_filename)
-    pattern = f"*{dispatcher.py_func.__name__}-{code.co_firstlineno}.*.nbi"
-    indices = Path(dispatcher.stats.cache_path).glob(pattern)
-    return any(index.stat().st_mtime >= source.stat().st_mtime for index in indices)
+        def on_end(self, event: Any) -> None:
+            self.ended = time.monotonic()
+
+    announcement = Announcement()
+    try:
+        with event.install_listener("numba:compile", announcement):
+            yield
+    finally:
+        if announcement.began:
+            click.echo(f"compiled in {announcement.ended - announcement.began:.1f} s", err=True)
