@@ -1,0 +1,29 @@
+# Each target sets up the virtual environment .venv first, if that is missing or older than pyproject.toml.
+
+PYTHON ?= python3
+BIN := .venv/bin
+LINKAGE ?= special-double-subtractive-goldberg
+
+.PHONY: map test lint studies clean
+
+map: .venv/ready  ## the main job: one linkage to its complete transition map
+	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
+
+test: .venv/ready  ## all tests, the examples of README and docs among them
+	$(BIN)/python -m pytest
+
+lint: .venv/ready  ## ruff and mypy
+	$(BIN)/python -m ruff check .
+	$(BIN)/python -m mypy
+
+studies: .venv/ready  ## every study, each into out/NAME
+	for study in studies/*_study.py; do \
+	  name=$$(basename $$study .py); $(BIN)/python -m studies.$$name --out out/$$name || exit 1; done
+
+clean:
+	rm -rf .venv out
+
+.venv/ready: pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	touch $@
