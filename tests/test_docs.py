@@ -1,0 +1,84 @@
+"""The examples of README and docs: Python blocks run, `bifurc` lines do what is shown, the picture is true.
+
+A console block holds `$ bifurc ...` lines, each with the output that must follow: line by line, "..." for any lines,
+the beginning of a line for the whole of it. A comment "exit code N" behind a command is what it ends with. TOML
+blocks that begin with a comment "NAME.toml" are written to that file first.
+"""
+
+import re
+import shlex
+from pathlib import Path
+
+import matplotlib
+import pytest
+from click.testing import CliRunner
+
+from studies.cli import main
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def blocks(page, language):
+    return [text for kind, text in BLOCK.findall(page.read_text(encoding="utf-8")) if kind == language]
+
+
+def console_examples(text):
+    """(arguments, exit code, expected lines) of every command of a console block."""
+    for part in re.split(r"^\$ ", text, flags=re.MULTILINE)[1:]:
+        command, *expected = part.rstrip("\n").split("\n")
+        code = re.search(r"# exit code (\d+)", command)
+        program, *arguments = shlex.split(command, comments=True)
+        assert program == "bifurc", command
+        yield arguments, int(code[1]) if code else 0, expected
+
+
+def check_output(output, expected):
+    lines, anywhere = iter(output.splitlines()), False
+    for wanted in expected:
+        if wanted == "...":
+            anywhere = True
+            continue
+        for line in lines:
+            if line.startswith(wanted):
+                break
+            assert anywhere, f"{line!r} where {wanted!r} is promised"
+        else:
+            raise AssertionError(f"{wanted!r} is promised and does not come")
+        anywhere = False
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_examples_of_a_page_do_what_it_says(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    matplotlib.use("Agg")
+    for text in blocks(page, "toml"):
+        name = re.match(r"# (\S+\.toml)\n", text)
+        assert name, "the first line of a TOML block names its file"
+        Path(name[1]).write_text(text, encoding="utf-8")
+    for text in blocks(page, "console"):
+        for arguments, code, expected in console_examples(text):
+            result = CliRunner().invoke(main, arguments)
+            assert result.exit_code == code, (arguments, result.output)
+            check_output(result.stdout, expected)
+    names: dict = {}
+    for text in blocks(page, "python"):
+        exec(compile(text, str(page), "exec"), names)
+
+
+def test_the_picture_in_the_readme_is_the_graph_of_forms():
+    from linkages.mapping import map_by_name
+
+    (text,) = blocks(ROOT / "README.md", "mermaid")
+    names = dict(re.findall(r'(\w+)\["(.*?)"\]', text))
+    drawn = re.findall(r"(\w+)(?:\[.*?\])? ---\|(\w+)\| (\w+)", text)
+    graph = map_by_name("special-double-subtractive-goldberg").graph
+    real = {(frozenset((a, b)), data["bifurcation"]) for a, b, data in graph.edges(data=True)}
+    assert {(frozenset((names[a], names[b])), point) for a, point, b in drawn} == real
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_between_pages_lead_somewhere(page):
+    for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
+        assert (page.parent / target).exists(), target
