@@ -47,8 +47,8 @@ def double_goldberg_type(
     "subtractive". Source: Song and Chen (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3,
     equations (3.4.3) to (3.4.22). The latter's "alpha34 = alpha + gamma" in (3.4.11) is alpha45.
     """
-    links = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return double_goldberg_chain(*links, order=order, kind=kind)
+    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    return double_goldberg_chain(a, b, c, d, order, kind)
 
 
 def double_goldberg_chain(a: Link, b: Link, c: Link, d: Link, order: str, kind: str) -> Loop:

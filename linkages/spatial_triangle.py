@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+from linkages.conditions import decided
 from linkages.link import Link
 from linkages.loop import GeometryError
 from linkages.numbers import atan2, cos, pi_like, sin, sqrt
@@ -52,7 +53,8 @@ def composite_link(first: Link, second: Link, kink: Any = Kink.STRAIGHT, offset:
     before = (ck * s2 * c1 + c2 * s1, sk * s2)  # new common normal seen from the first link, times sin(twist)
     after = (ck * s1 * c2 + c1 * s2, sk * s1)  # second link seen from the new common normal, times sin(twist)
     sine = sqrt(before[0] ** 2 + before[1] ** 2)
-    if isinstance(sine, float) and sine < 1e-12:
+    size = decided(sine)
+    if size is not None and size < 1e-12:
         raise GeometryError("kink", kink, "such that the outer axes are not parallel")
     length = (p * before[0] + q * after[0] - e * s1 * s2 * sk) / sine
     along_first, along_last = q * s1 * sk + e * c1, p * s2 * sk + e * c2

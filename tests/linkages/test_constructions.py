@@ -286,3 +286,8 @@ def test_equal_kinks_give_a_mavroidis_roth_linkage():
         OffsetPattern.NEGATIVE,
     )
     assert same(made, wanted)
+
+
+def test_parallel_outer_axes_are_refused():
+    with pytest.raises(GeometryError, match="not parallel"):
+        composite_link(Link(1.0, 0.7), Link(1.0, 0.7), np.pi)
