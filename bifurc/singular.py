@@ -80,44 +80,59 @@ def locate_singular_point(
     """
     n, k = problem.n, nullity
     u = start.copy()
-    jacobian = problem.jacobians(u[None])[0] / problem.magnitude
-    basis = np.linalg.svd(jacobian)[2][n - k :].T
-    m = len(jacobian)
-    smallest, moved = np.inf, np.inf
-    for iteration in range(iterations):
-        residual = problem.residuals(u[None])[0] / problem.magnitude
-        jacobian = problem.jacobians(u[None])[0] / problem.magnitude
-        hessian = problem.hessian(u) / problem.magnitude
-        matrix = np.zeros((m + k * (m + k), n + k * n))
-        matrix[:m, :n] = jacobian
-        right = np.zeros(len(matrix))
-        right[:m] = -residual
-        for j in range(k):
-            rows, columns = slice(m + j * m, m + (j + 1) * m), slice(n + j * n, n + (j + 1) * n)
-            matrix[rows, :n] = hessian @ basis[:, j]
-            matrix[rows, columns] = jacobian
-            right[rows] = -jacobian @ basis[:, j]
-            ortho = slice(m + k * m + j * k, m + k * m + (j + 1) * k)
-            matrix[ortho, columns] = basis.T
+    basis = np.linalg.svd(problem.jacobians(u[None])[0])[2][n - k :].T
+    moves: list[float] = []
+    condition, unknowns = 0.0, 0
+    for _ in range(iterations):
+        matrix, right = _augmented_system(problem, u, basis)
         left, sigma, transposed = np.linalg.svd(matrix, full_matrices=False)
-        kept = sigma > 1e-9 * sigma[0]
-        smallest = float(sigma[kept][-1] / sigma[0])
+        kept = sigma > 1e-12 * sigma[0]
+        if np.count_nonzero(kept) < unknowns:
+            break  # of higher order, and so near that the next step would be rounding
+        unknowns, condition = int(np.count_nonzero(kept)), float(sigma[0] / sigma[kept][-1])
         step = transposed[kept].T @ ((left[:, kept].T @ right) / sigma[kept])
-        du = step[:n]
-        previous, moved = moved, float(np.linalg.norm(du))
-        u = u + du
+        u = u + step[:n]
         basis = np.linalg.qr(basis + step[n:].reshape(k, n).T)[0]
+        moves.append(float(np.linalg.norm(step[:n])))
         if np.linalg.norm(problem.difference(u, start)) > reach:
             return None
-        if moved < 1e-14 * problem.scale or (iteration > 3 and moved > 0.5 * previous and moved < 1e-9 * problem.scale):
+        stagnant = len(moves) > 4 and moves[-1] > 0.9 * moves[-2]
+        if moves[-1] < 1e-15 * condition * problem.scale or (stagnant and moves[-1] < 1e-7 * problem.scale):
             break
     values = np.linalg.svd(problem.jacobians(u[None])[0] / problem.magnitude, compute_uv=False)
     residual = np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
     tail = values[n - k] if len(values) > n - k else 0.0
-    if residual > 1e-11 or tail > 1e-7 or moved > 1e-6 * problem.scale:
+    if residual > 1e-11 or tail > 1e-7 or not moves or moves[-1] > 1e-5 * problem.scale:
         return None
-    error = min(moved, previous) + min(1e-15 / max(smallest, 1e-15), np.sqrt(1e-15)) * problem.scale
-    return u, basis, error
+    return u, basis, _location_error(moves, condition) * problem.scale
+
+
+def _augmented_system(problem: Problem, u: np.ndarray, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Matrix and right-hand side of one Gauss-Newton step of `locate_singular_point`."""
+    n, k = basis.shape
+    residual = problem.residuals(u[None])[0] / problem.magnitude
+    jacobian = problem.jacobians(u[None])[0] / problem.magnitude
+    hessian = problem.hessian(u) / problem.magnitude
+    m = len(jacobian)
+    matrix, right = np.zeros((m + k * (m + k), n + k * n)), np.zeros(m + k * (m + k))
+    matrix[:m, :n], right[:m] = jacobian, -residual
+    for j in range(k):
+        rows, columns = slice(m + j * m, m + (j + 1) * m), slice(n + j * n, n + (j + 1) * n)
+        matrix[rows, :n], matrix[rows, columns] = hessian @ basis[:, j], jacobian
+        right[rows] = -jacobian @ basis[:, j]
+        matrix[m + k * m + j * k : m + k * m + (j + 1) * k, columns] = basis.T
+    return matrix, right
+
+
+def _location_error(moves: list[float], condition: float) -> float:
+    """Estimate of the distance left: rounding times the condition where convergence was quadratic; where it was linear,
+    the rest of the geometric series, twice."""
+    rounding = 1e-15 * condition
+    ratio = moves[-1] / moves[-2] if len(moves) > 1 and moves[-2] > 0 else 0.0
+    if moves[-1] <= 10 * rounding and ratio < 0.1 and condition < 1e7:
+        return rounding + moves[-1]
+    ratio = min(max(ratio, 0.5), 0.9)
+    return 2.0 * moves[-1] * ratio / (1.0 - ratio) + rounding if condition < 1e7 else 4.0 * moves[-1] / (1.0 - ratio)
 
 
 # --- tangent cone of second order ---------------------------------------------------------------------
