@@ -68,15 +68,13 @@ def extended_myard(
     is printed for any R3 = R4; that holds for R3 = 0 only. Raises `GeometryError`.
     """
     a, b = bennett_links(a, alpha, b=(beta, b))
-    pi_ = pi_like(alpha, beta, offset)
-    if offset == 0:
-        needed = pi_ - 2 * alpha
-    else:
-        needed = 2 * acos(sin(alpha) / sqrt(1 + (offset * sin(beta) / b.length) ** 2))
+    pi = pi_like(alpha, beta, offset)
+    shear = offset * sin(beta) / b.length
+    needed = pi - 2 * alpha if offset == 0 else 2 * acos(sin(alpha) / sqrt(1 + shear**2))
     if alpha34 is not None:
         require_equal("alpha34", alpha34, needed, "which goes with R3 = R4")
     return closed_chain(
-        a, b, Link(0, needed), b, Link(a.length, pi_ - alpha), offsets=(0, 0, offset, offset, 0)
+        a, b, Link(0, needed), b, Link(a.length, pi - alpha), offsets=(0, 0, offset, offset, 0)
     )
 
 
