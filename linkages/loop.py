@@ -185,6 +185,9 @@ def loop_from_axes(
             x[i], in_foot[j] = across / lengths[i], out_foot[i] + across
         twists[i] = np.arctan2(np.cross(z[i], z[j]) @ x[i], z[i] @ z[j])
     offsets = np.einsum("ij,ij->i", out_foot - in_foot, z)
+    rounding = 1e-13 * float(np.abs(p).max())  # of axes that meet: a loop of nothing else would be measured by it
+    for values in (lengths, offsets):
+        values[np.abs(values) < rounding] = 0.0
     before = np.roll(x, 1, axis=0)
     theta = np.arctan2(
         np.einsum("ij,ij->i", np.cross(before, x), z), np.einsum("ij,ij->i", before, x)

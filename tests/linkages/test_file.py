@@ -66,6 +66,12 @@ def test_axes_in_one_configuration_give_the_loop_and_its_angles(write):
     assert np.abs(loop.frames(theta)[-1] - np.eye(4)).max() < 1e-12
 
 
+def test_axes_that_meet_in_a_point_have_lengths_and_offsets_of_exactly_zero(write):
+    axes = "[[1, 0, 1], [0, 1, 1], [-1, 0, 1.2], [0, -1, 1.5]]"
+    loop, _ = read_linkage(write(f"points = {axes}\ndirections = {axes}"))
+    assert loop.lengths == loop.offsets == (0.0, 0.0, 0.0, 0.0)
+
+
 BAD = {
     "is missing": ("lengths = [1, 1, 1, 1]\noffsets = [0, 0, 0, 0]", "twists: a missing list"),
     "is of another length": (TABLE.replace("[100, 40, 100, 40]", "[100, 40, 100, 40, 1]"), "number of twists: 5"),
