@@ -1,4 +1,4 @@
-"""The command line: list, show, map and route. Modules are imported by the command that needs them."""
+"""The command line: list, show, map, route and sweep. Modules are imported by the command that needs them."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from studies.status import EchoHandler, ExitCode, StatusLine, compilation_announced
+from studies.sweep.command import sweep_command
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -192,6 +193,9 @@ def route(
     except RouteError as error:
         raise NoRoute(str(error)) from None
     click.echo(describe_route(atlas, found, *names))
+
+
+main.add_command(sweep_command)
 
 
 def _listen(verbose: bool) -> None:
