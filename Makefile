@@ -3,6 +3,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 LINKAGE ?= special-double-subtractive-goldberg
+STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
+  zero_offset_line_symmetric_bricard first_reconfigurable_bricard
 
 .PHONY: map test lint studies clean
 
@@ -17,8 +19,7 @@ lint: .venv/ready  ## ruff and mypy
 	$(BIN)/python -m mypy
 
 studies: .venv/ready  ## every study, each into out/NAME
-	for study in studies/*_study.py; do \
-	  name=$$(basename $$study .py); $(BIN)/python -m studies.$$name --out out/$$name || exit 1; done
+	for name in $(STUDIES); do $(BIN)/python -m studies.$$name --out out/$$name || exit 1; done
 
 clean:
 	rm -rf .venv out

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from bifurc.atlas import Atlas
 
-__all__ = ["prepare_folder", "write_results"]
+__all__ = ["prepare_folder", "staging", "write_results"]
 
 
 def prepare_folder(folder: Path) -> None:
@@ -29,21 +29,21 @@ def write_results(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
     from bifurc.graphml import write_graphml
 
     written: list[Path] = []
-    with _staging(folder, written) as stage:
+    with staging(folder, written) as stage:
         save_atlas(atlas, stage / "atlas.nc")
-    with _staging(folder, written) as stage:
+    with staging(folder, written) as stage:
         write_graphml(atlas, stage / "graph.graphml")
         (stage / "summary.txt").write_text(summary + "\n", encoding="utf-8")
     if atlas.forms:
         from bifurc.plotting import save_figures
 
-        with _staging(folder, written) as stage:
+        with staging(folder, written) as stage:
             save_figures(atlas, stage)
     return written
 
 
 @contextmanager
-def _staging(folder: Path, written: list[Path]) -> Iterator[Path]:
+def staging(folder: Path, written: list[Path]) -> Iterator[Path]:
     """A folder whose files move to ``folder`` at the end, unless something went wrong."""
     with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder) as name:
         yield Path(name)

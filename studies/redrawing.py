@@ -1,0 +1,86 @@
+"""What the studies share: draw a published transition map anew and check what the source says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+import numpy as np
+
+from bifurc.atlas import Atlas
+from studies.files import staging, write_results
+from studies.status import compilation_announced
+from studies.summary import make_summary
+
+__all__ = ["Claim", "Redrawing", "angles_along", "largest"]
+
+HOLDS = 1e-9  # rad
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A sentence of the source, and by how much the computed map deviates from it (rad, or a count)."""
+
+    sentence: str
+    deviation: float
+
+
+@dataclass(frozen=True)
+class Redrawing:
+    """A published figure: its name for the files, its axes (joints from 1; None where the source does not name
+    them), how to compute the map, and what the source says of it."""
+
+    figure: str
+    joints: tuple[int, int] | None
+    compute: Callable[[], Atlas]
+    claims: Callable[[Atlas], Sequence[Claim]]
+
+    def command(self) -> click.Command:
+        """The study as a command with the option ``--out``."""
+
+        @click.command(help=f"Draw {self.figure} anew, with all tables and files of `bifurc map`.")
+        @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("out") / self.figure)
+        def study(out: Path) -> None:
+            self.run(out)
+
+        return study
+
+    def run(self, out: Path) -> None:
+        """Print the tables and the claims; write the figure and the results of the map to a folder."""
+        from bifurc.plotting import plot_transition_map
+
+        out.mkdir(parents=True, exist_ok=True)
+        with compilation_announced():
+            atlas = self.compute()
+        lines = [_judged(claim) for claim in self.claims(atlas)]
+        summary = make_summary(atlas) + "\n\nWhat the source says\n" + "\n".join(lines)
+        click.echo(summary)
+        written = write_results(atlas, out, summary)
+        with staging(out, written) as stage:
+            figure = plot_transition_map(atlas, joints=self.joints)
+            for ending in ("png", "svg"):
+                figure.savefig(stage / f"{self.figure}.{ending}", dpi=150)
+        click.echo(f"wrote {self.figure}.png and {len(written) - 1} more files to {out}", err=True)
+
+
+def angles_along(atlas: Atlas, form: str, *joints: int) -> tuple[np.ndarray, ...]:
+    """Angles (500,), rad, of the given joints (from 1) along a form."""
+    samples = atlas.forms[atlas.form(form)].branch.sample(500)
+    return tuple(samples[:, joint - 1] for joint in joints)
+
+
+def largest(deviations: np.ndarray) -> float:
+    """The largest absolute value."""
+    return float(np.abs(deviations).max())
+
+
+def _judged(claim: Claim) -> str:
+    if claim.deviation == 0:
+        verdict = "holds"
+    elif claim.deviation < HOLDS:
+        verdict = f"holds to {claim.deviation:.0e}"
+    else:
+        verdict = f"is off by {claim.deviation:.2g}"
+    return f"  {verdict:<16}  {claim.sentence}"
