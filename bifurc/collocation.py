@@ -28,7 +28,9 @@ def march_by_collocation(
 ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     """(status, pieces, steps, radii, residuals) as in `bifurc.problem.March`."""
     point, gap = correct_across(problem, start, tangent, tolerance)
-    pieces, radii, residuals = [], [], []
+    pieces: list[np.ndarray] = []
+    radii: list[float] = []
+    residuals: list[float] = []
     status = RAN
     if gap > 100 * tolerance + 1e-12:
         return OPEN, np.empty((0, order + 1, problem.n)), np.empty(0), np.empty(0), np.array([gap])
@@ -116,7 +118,7 @@ def _follow(
         else:
             last = slice(max(0, k - 10), k)
             guess = _extrapolate(offsets[last], np.array(points[last]), offsets[k])
-        guess = guess + ((offsets[k] - (guess - start) @ heading)) * heading
+        guess = guess + (offsets[k] - (guess - start) @ heading) * heading
         point, gap = correct_across(problem, guess, heading, tolerance)
         if gap > 100 * tolerance or np.linalg.norm(point - points[-1]) > 4 * reach:
             return None
@@ -135,7 +137,7 @@ def _extrapolate(at: np.ndarray, values: np.ndarray, target: float) -> np.ndarra
 
 
 def _by_arclength(coefficients: np.ndarray, width: float) -> tuple[np.ndarray, float]:
-    """The Chebyshev piece on a hyperplane coordinate of ``width``, as monomials in arclength on [-1, 1]; and its length."""
+    """The Chebyshev piece on a hyperplane coordinate of ``width`` as monomials in arclength, and its length."""
     order = len(coefficients) - 1
     fine = -np.cos(np.pi * np.arange(3 * order + 1) / (3 * order))
     slope = chebyshev.chebval(fine, chebyshev.chebder(coefficients))

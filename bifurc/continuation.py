@@ -18,8 +18,9 @@ __all__ = ["TraceSettings", "trace_branch"]
 class TraceSettings:
     """How a curve is followed. Lengths are in units of the problem's ``scale``.
 
-    ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the ``shortest`` and ``longest`` trusted
-    radius, and the ``max_length`` after which tracing gives up. Raises `ProblemError` outside the ranges.
+    ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the ``shortest`` and ``longest``
+    trusted radius, and the ``max_length`` after which tracing gives up. Raises `ProblemError` outside the
+    ranges.
     """
 
     order: int = 16
@@ -56,8 +57,8 @@ def trace_branch(
     """The whole smooth curve through ``start`` (n,), first followed to the side of ``direction`` (n,).
 
     A curve that does not close is followed both ways to its ends. Trouble is an `Outcome` on the branch, not an
-    exception: a start that cannot be corrected gives a branch of no pieces whose ``gap`` is the residual left. Raises
-    `ProblemError` for a start or direction of the wrong shape.
+    exception: a start that cannot be corrected gives a branch of no pieces whose ``gap`` is the residual left.
+    Raises `ProblemError` for a start or direction of the wrong shape.
     """
     start = problem.check_point(start, "start")
     along = None if direction is None else problem.check_point(direction, "direction")
@@ -87,7 +88,9 @@ class _Track:
         """Arclength up to which the last piece is trusted."""
         return float(self.centers[-1] + self.radii[-1]) if len(self.centers) else 0.0
 
-    def extended(self, keep: int, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, residuals: np.ndarray) -> _Track:
+    def extended(
+        self, keep: int, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, residuals: np.ndarray
+    ) -> _Track:
         """The first ``keep`` pieces and the given ones."""
         return _Track(
             np.concatenate([self.pieces[:keep], pieces]), np.concatenate([self.centers[:keep], centers]),
@@ -141,8 +144,9 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
 def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track | None:
     """The track with a piece across the point before which it stalled, or None.
 
-    Near a singular point where the rank drops faster than on a simple crossing no series reaches over. The curve is
-    smooth there all the same: a piece by collocation, from as far before the point as beyond it, needs no series.
+    Near a singular point where the rank drops faster than on a simple crossing no series reaches over. The
+    curve is smooth there all the same: a piece by collocation, from as far before the point as beyond it, needs
+    no series.
     """
     for reach in (0.1, 0.2, 0.05, 0.4, 0.02):
         begin = track.reached - reach * problem.scale

@@ -7,6 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
+from itertools import pairwise
 
 import networkx as nx
 import numpy as np
@@ -16,8 +17,8 @@ from bifurc.branch import Branch, Outcome
 from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
 from bifurc.monitor import Profile, dead_points, profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
-from bifurc.seeding import Completeness, Seeds, missed_probability
 from bifurc.section import section
+from bifurc.seeding import Completeness, Seeds, missed_probability
 from bifurc.singular import Kind, SingularPoint, classify_singular_point, locate_singular_point
 
 __all__ = ["explore"]
@@ -56,10 +57,11 @@ def explore(
 ) -> Atlas:
     """All solution curves of a problem, all singular points on them, nothing twice.
 
-    Seeds come from `Problem.seeds` (complete slices where the problem has them, and ``starts`` random starts drawn with
-    ``seed``) unless given. Every branch found is traced whole and monitored; from every singular point the
-    directions in which other branches leave become further starts. ``progress`` is called with what was found and
-    how many. Ctrl-C ends the search early: the atlas holds what was found, and ``info["interrupted"]`` is true.
+    Seeds come from `Problem.seeds` (complete slices where the problem has them, and ``starts`` random starts
+    drawn with ``seed``) unless given. Every branch found is traced whole and monitored; from every singular
+    point the directions in which other branches leave become further starts. ``progress`` is called with what
+    was found and how many. Ctrl-C ends the search early: the atlas holds what was found, and
+    ``info["interrupted"]`` is true.
     """
     if starts < 1 and seeds is None:
         raise ProblemError("starts", starts, "at least 1")
@@ -266,8 +268,9 @@ def _assemble(problem: Problem, found: _Findings, seeds: Seeds, interrupted: boo
 def _closure_gap(problem: Problem, seeds: Seeds, found: _Findings) -> float:
     """Median residual along the valley in which the system is nearly solved, where it has no curve of solutions.
 
-    From every start that did not solve the system, Gauss-Newton steps of rank n - 1 run down to the valley but not along
-    it, so that an isolated solution at its end does not hide the gap. Where there is no valley, the residuals themselves.
+    From every start that did not solve the system, Gauss-Newton steps of rank n - 1 run down to the valley but
+    not along it, so that an isolated solution at its end does not hide the gap. Where there is no valley, the
+    residuals themselves.
     """
     points = seeds.missed.copy()
     for _ in range(12):
@@ -300,7 +303,7 @@ def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch
 
 
 def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
-    """Arclengths of the ends of a branch that stalled before a cusp: next to the point, in a half-branch's direction."""
+    """Arclengths of the ends of a branch that stalled before a cusp: near the point, along a half-branch."""
     found = []
     for s in (0.0, branch.length) if branch.outcome is Outcome.STALLED else ():
         offset = problem.difference(branch(s), point.u)
@@ -318,7 +321,7 @@ def _components(count: int, points: list[MeetingPoint]) -> list[int]:
     graph.add_nodes_from(range(count))
     for point in points:
         indices = [i for i, _ in point.passes]
-        graph.add_edges_from(zip(indices[:-1], indices[1:], strict=True))
+        graph.add_edges_from(pairwise(indices))
     out = [0] * count
     for number, members in enumerate(sorted(nx.connected_components(graph), key=min)):
         for i in members:

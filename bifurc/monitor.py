@@ -45,7 +45,8 @@ def _nodes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
     fine = np.linspace(-1.0, 1.0, FINE + 1)
     onto = np.polynomial.chebyshev.chebvander(fine, NODES - 1)
-    return 0.5 * (nodes + 1), 0.5 * (fine + 1), onto @ np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, NODES - 1))
+    from_values = np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes, NODES - 1))
+    return 0.5 * (nodes + 1), 0.5 * (fine + 1), onto @ from_values
 
 
 def _on_pieces(branch: Branch, fractions: np.ndarray) -> np.ndarray:
@@ -135,18 +136,19 @@ def _without_repeats(s: np.ndarray, value: np.ndarray, branch: Branch) -> tuple[
 def roots_along(branch: Branch, function: Callable[[np.ndarray], np.ndarray]) -> list[np.ndarray]:
     """Arclengths of the sign changes along a curve of test functions.
 
-    ``function`` maps arclengths (k,) to values (k, q); one array of roots is returned for each of the q functions.
-    Sign changes are bracketed on the Chebyshev nodes of every piece and refined all together.
+    ``function`` maps arclengths (k,) to values (k, q); one array of roots is returned for each of the q
+    functions. Sign changes are bracketed on the Chebyshev nodes of every piece and refined all together.
     """
     s = np.concatenate([[0.0], _on_pieces(branch, _nodes()[0]).ravel(), [branch.length]])
     values = function(s)
     index, which = np.nonzero(values[:-1] * values[1:] < 0)
     if not len(index):
         return [np.empty(0)] * values.shape[1]
-    found = find_root(
-        lambda x, q: np.take_along_axis(function(x), q[:, None], axis=1)[:, 0],
-        (s[index], s[index + 1]), args=(which,),
-    )  # fmt: skip
+
+    def of_interest(x: np.ndarray, which: np.ndarray) -> np.ndarray:
+        return np.take_along_axis(function(x), which[:, None], axis=1)[:, 0]
+
+    found = find_root(of_interest, (s[index], s[index + 1]), args=(which,))
     return [found.x[which == q] for q in range(values.shape[1])]
 
 

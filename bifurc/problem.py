@@ -33,9 +33,9 @@ class March:
     """Consecutive polynomial pieces of a curve.
 
     ``pieces`` (k, order + 1, n) are coefficients in (s - centre) / radius, trusted from -1 to 1, s the
-    arclength; ``steps`` (k,) the arclength to each centre from the one before it (from the start, for the first), ``radii`` (k,),
-    ``residuals`` (k,) the largest residual seen on each piece relative to the problem's magnitude, or the gap
-    at the start alone when the status is OPEN.
+    arclength; ``steps`` (k,) the arclength to each centre from the one before it (from the start, for the
+    first), ``radii`` (k,), ``residuals`` (k,) the largest residual seen on each piece relative to the problem's
+    magnitude, or the gap at the start alone when the status is OPEN.
     """
 
     status: int
@@ -54,13 +54,15 @@ class Problem:
 
     ``names`` and ``units`` (n,) label the unknowns, ``periods`` (n,) are their periods (inf where there is none),
     ``bounds`` (n, 2) the region of interest (infinite where there is none), ``magnitude`` the typical size of
-    F', by which residuals and singular values are divided, ``scale`` the typical size of the unknowns, and ``derivatives`` says how F' was made.
+    F', by which residuals and singular values are divided, ``scale`` the typical size of the unknowns, and
+    ``derivatives`` says how F' was made.
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     periods: np.ndarray
     bounds: np.ndarray
+    curvature_residual: float = np.inf
     magnitude: float = 1.0
     scale: float = 1.0
     derivatives: str = "exact"
@@ -85,6 +87,13 @@ class Problem:
         upper, lower = self.jacobians(point + shifts), self.jacobians(point - shifts)
         out = np.moveaxis((upper - lower) / (2 * step[:, None, None]), 0, -1)
         return 0.5 * (out + np.swapaxes(out, 1, 2))
+
+    def curvature_bound(self) -> float | None:
+        """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None where none is known.
+
+        It need hold only where the relative residual is at most ``curvature_residual``.
+        """
+        return None
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,

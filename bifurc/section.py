@@ -33,9 +33,9 @@ class Section:
 class ReducedEquations:
     """The Liapunov-Schmidt reduction at a singular point, on the sphere of ``radius`` in its null space.
 
-    For a unit vector x of the null space V (n, k) the point is u + radius V x + w(x), where w solves the independent
-    equations; what is left is W^T F / radius^2, with W the left null space. The chord iteration for w uses
-    the one factorisation made here and gains a factor of about the radius each time.
+    For a unit vector x of the null space V (n, k) the point is u + radius V x + w(x), where w solves the
+    independent equations; what is left is W^T F / radius^2, with W the left null space. The chord iteration for
+    w uses the one factorisation made here and gains a factor of about the radius each time.
     """
 
     def __init__(self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float):

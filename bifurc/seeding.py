@@ -19,9 +19,10 @@ __all__ = ["Completeness", "Seeds", "missed_probability", "random_seeds"]
 class Seeds:
     """Solutions to start from.
 
-    ``points`` (k, n) solve the system; ``random`` (k,) says which of them come from random starts, the rest from complete
-    slices; ``missed`` (g, n) is where the random starts ended that found no solution, ``gaps`` (g,) the residuals there. ``statement`` says what
-    the slices leave out, empty where there are none; ``complete`` whether every slice was complete.
+    ``points`` (k, n) solve the system; ``random`` (k,) says which of them come from random starts, the rest
+    from complete slices; ``missed`` (g, n) is where the random starts ended that found no solution, ``gaps``
+    (g,) the residuals there. ``statement`` says what the slices leave out, empty where there are none;
+    ``complete`` whether every slice was complete.
     """
 
     points: np.ndarray

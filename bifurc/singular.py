@@ -29,9 +29,10 @@ class SingularPoint:
     """A located singular point.
 
     ``u`` (n,), ``rank`` of F' there, ``null_space`` (n, k), ``error``: estimate of the distance to the exact
-    point, ``half_branches`` (h, n): unit directions in which solutions leave it, as seen on a small sphere, ``tangents``
-    (t, n) of the branches from the second-order equations (t = 0 where these do not decide), ``dimension``
-    of the solution set nearby (-1 where sections of two radii disagree), ``order`` of the argument that decided: 2, or 0 for the section alone, which was made at ``radius``.
+    point, ``half_branches`` (h, n): unit directions in which solutions leave it, as seen on a small sphere,
+    ``tangents`` (t, n) of the branches from the second-order equations (t = 0 where these do not decide),
+    ``dimension`` of the solution set nearby (-1 where sections of two radii disagree), ``order`` of the
+    argument that decided: 2, or 0 for the section alone, which was made at ``radius``.
     """
 
     u: np.ndarray
@@ -75,8 +76,9 @@ def locate_singular_point(
         [ 0       I_k (x) V^T ]   (columns of dV orthogonal to V)
 
     which is regular at a simple singular point although F' is not; at one of higher order the iteration converges
-    linearly and to fewer digits, which the error says. None where it does not converge or moves farther than ``reach``. The error
-    estimate is the last correction plus rounding over the smallest singular value of that matrix.
+    linearly and to fewer digits, which the error says. None where it does not converge or moves farther than
+    ``reach``. The error estimate is the last correction plus rounding over the smallest singular value of that
+    matrix.
     """
     n, k = problem.n, nullity
     u = start.copy()
@@ -142,9 +144,10 @@ def second_order_tangents(problem: Problem, point: np.ndarray, null_space: np.nd
     """Unit tangents (t, n) at a singular point of nullity 2 that second order allows; None where it does not decide.
 
     With W the left null space, all branches have tangents V x with W^T F''(Vx, Vx) = 0: binary quadratic forms,
-    as many as W has columns, and often proportional to each other. They are reduced to an independent set by an SVD of
-    their coefficients. One independent form with two distinct real roots gives two tangents, without real roots none;
-    two or more have a common root or not. No form at all, or a double root, is for higher order.
+    as many as W has columns, and often proportional to each other. They are reduced to an independent set by an
+    SVD of their coefficients. One independent form with two distinct real roots gives two tangents, without
+    real roots none; two or more have a common root or not. No form at all, or a double root, is for higher
+    order.
     """
     if null_space.shape[1] != 2:
         return None
@@ -194,8 +197,8 @@ def classify_singular_point(
 ) -> SingularPoint:
     """The located point with its half-branches, tangents and local dimension.
 
-    The section is made at ``radius`` and at half of it (in units of the problem's scale); where the two disagree the
-    radius shrinks. Tangents of second order are kept where their number agrees with the section.
+    The section is made at ``radius`` and at half of it (in units of the problem's scale); where the two
+    disagree the radius shrinks. Tangents of second order are kept where their number agrees with the section.
     """
     k = null_space.shape[1]
     tangents = second_order_tangents(problem, point, null_space)

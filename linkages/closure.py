@@ -24,6 +24,8 @@ class LoopClosure(Problem):
     the Jacobian are the joint screws, second derivatives their Lie brackets.
     """
 
+    curvature_residual = 0.2
+
     def __init__(self, loop: Loop):
         self.loop = loop
         self.names = tuple(f"theta{i + 1}" for i in range(loop.n))
@@ -47,6 +49,22 @@ class LoopClosure(Problem):
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
         return kernels.hessians(np.ascontiguousarray(point, dtype=float), self._geometry)
+
+    def curvature_bound(self) -> float:
+        """K with |J(x) - J(y)| <= K |x - y| near closed configurations, from the geometry.
+
+        The second derivative by joints i <= j is at most 1/2 for the rotation and the distance of the end point
+        from axis j for the translation. Where the loop is nearly closed the end point is the base point, which
+        the links before j and those after it reach; the shorter way bounds the distance, with
+        ``curvature_residual`` to spare. K is the largest eigenvalue of the matrix of these bounds.
+        """
+        a, _, offset = np.abs(self.loop.arrays) / self.loop.characteristic_length
+        link = a + np.roll(offset, -1)  # along link j and the axis after it
+        before = np.concatenate([[0.0], np.cumsum(link)[:-1]]) - offset + offset[0]
+        after = np.cumsum((a + offset)[::-1])[::-1] - offset
+        distance = np.minimum(np.maximum(before, 0.0) + self.curvature_residual, after)
+        later = np.maximum.outer(np.arange(self.n), np.arange(self.n))
+        return float(np.linalg.eigvalsh(np.sqrt(0.25 + distance[later] ** 2))[-1])
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,

@@ -346,9 +346,10 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
 
     Returns (status, pieces (k, order + 1, n), steps (k,), radii (k,), residuals (k,), sigmas (k,)). Piece i is
     the series of theta(s) about a point of the curve that lies ``steps[i]`` of arclength beyond the
-    centre of piece i - 1 (0 for the first), in the variable (s - centre) / radii[i], trusted from -1 to 1; neighbouring
-    pieces overlap. ``sigmas`` estimate the smallest regular singular value at the centres. Status RAN: all pieces made;
-    STALLED: no trusted step of ``shortest`` is left; OPEN: the loop does not close, ``residuals[-1]`` is the gap.
+    centre of piece i - 1 (0 for the first), in the variable (s - centre) / radii[i], trusted from -1 to 1;
+    neighbouring pieces overlap. ``sigmas`` estimate the smallest regular singular value at the centres. Status
+    RAN: all pieces made; STALLED: no trusted step of ``shortest`` is left; OPEN: the loop does not close,
+    ``residuals[-1]`` is the gap.
 
     A piece is trusted on both sides of its centre, so the next centre lies almost two radii on. Near a
     bifurcation at distance d the radius is about d and somewhat more: a centre on either side covers the
