@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +16,8 @@ from bifurc.planes import copies_in_frame, place_in_frame, scale_of
 from bifurc.singular import Kind
 
 __all__ = [
-    "SETTINGS", "Style", "draw_curve", "draw_legend", "draw_marks", "form_style", "label_groups", "note_emptiness",
+    "SETTINGS", "Style", "draw_curve", "draw_legend", "draw_marks", "form_style", "label_groups",
+    "legend_size", "note_emptiness",
 ]  # fmt: skip
 
 # settings that the user's own must not disturb
@@ -34,6 +36,7 @@ DASHES = ("-", (0, (6, 2)), (0, (6, 2, 1.2, 2)), (0, (1.2, 1.2)), (0, (9, 2, 3, 
 LABEL_REACH = 11.0  # points from a mark to its name
 DIRECTIONS = [np.array([np.cos(a), np.sin(a)]) for a in np.deg2rad([45, 135, 315, 225, 0, 180, 90, 270])]
 MARKS = {Kind.BIFURCATION: ("o", 6.5), Kind.RANK_DROP: ("D", 5.0)}
+OTHER_MARK = ("s", 5.0)
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ def draw_marks(axes: Axes, atlas: Atlas, plane: tuple[int, ...], size: float | N
         shown = copies_in_frame(place_in_frame(solution[None, pick], scales)[0], scales)
         axes.plot(shown[:, 0], shown[:, 1], "x", color="0.3", markersize=size or 5.5, clip_on=False, zorder=3)
     for point in atlas.points:
-        marker, usual = MARKS.get(point.kind, ("s", 5.0))
+        marker, usual = MARKS.get(point.kind, OTHER_MARK)
         shown = copies_in_frame(place_in_frame(point.point.u[None, pick], scales)[0], scales)
         axes.plot(
             shown[:, 0], shown[:, 1], marker, markersize=size or usual, markerfacecolor="white",
@@ -75,23 +78,33 @@ def draw_marks(axes: Axes, atlas: Atlas, plane: tuple[int, ...], size: float | N
 
 def draw_legend(figure: Figure, atlas: Atlas) -> None:
     """Names of the forms and of the marks, at the right of the figure."""
+    marks = [(MARKS.get(kind, OTHER_MARK), kind.value) for kind in dict.fromkeys(p.kind for p in atlas.points)]
     entries = [
-        Line2D([], [], color=form_style(i).color, linestyle=form_style(i).dashes, linewidth=1.8, label=form.name)
-        for i, form in enumerate(atlas.forms)
+        Line2D([], [], color=form_style(i).color, linestyle=form_style(i).dashes, linewidth=1.8, label=name)
+        for i, name in enumerate(_wrapped_names(atlas))
     ]
-    kinds = {point.kind: point for point in atlas.points}
-    for kind in kinds:
-        marker, size = MARKS.get(kind, ("s", 5.0))
-        entries.append(
-            Line2D([], [], linestyle="", marker=marker, markersize=size, markerfacecolor="white",
-                   markeredgecolor="black", label=kind.value)
-        )  # fmt: skip
+    entries += [
+        Line2D([], [], linestyle="", marker=marker, markersize=size, markerfacecolor="white",
+               markeredgecolor="black", label=label)
+        for (marker, size), label in marks
+    ]  # fmt: skip
     if len(atlas.rigid):
         entries.append(Line2D([], [], linestyle="", marker="x", color="0.3", label="rigid assembly"))
     if atlas.surfaces:
         entries.append(Line2D([], [], linestyle="", marker=".", color="0.6", label="mobility 2 or more"))
     if entries:
         figure.legend(handles=entries, loc="outside right upper", frameon=False, handlelength=3.2)
+
+
+def legend_size(atlas: Atlas) -> tuple[float, float]:
+    """Width and height that the legend takes, in inches."""
+    lines = [line for name in _wrapped_names(atlas) for line in name.splitlines()]
+    longest = max([len("rigid assembly"), *map(len, lines)])
+    return 0.75 + 0.072 * longest, 0.17 * (len(lines) + 4)
+
+
+def _wrapped_names(atlas: Atlas) -> list[str]:
+    return [textwrap.fill(form.name, 24) for form in atlas.forms]
 
 
 def note_emptiness(axes: Axes, atlas: Atlas) -> None:

@@ -71,6 +71,7 @@ def _layout(graph: nx.Graph, names: list[str]) -> np.ndarray:
     if extent[0] > 1.2 * extent[1]:  # the long way lies flat, the first form at its left or upper end
         spots = spots @ axes.T
         spots *= np.where(spots[0] * [1, -1] > 0, -1.0, 1.0)
+        spots[:, 1] *= extent[1] > 0.05 * extent[0]  # a chain is drawn straight
     lengths = [np.linalg.norm(spots[names.index(a)] - spots[names.index(b)]) for a, b in graph.edges if a != b]
     return spots * (REACH / np.mean(lengths))
 

@@ -92,7 +92,7 @@ def _inside(points: np.ndarray, half: np.ndarray) -> np.ndarray:
     enter = np.where(still, np.where(outside, np.inf, -np.inf), np.fmin(one, two)).max(axis=1).clip(0.0)
     leave = np.where(still, np.where(outside, -np.inf, np.inf), np.fmax(one, two)).min(axis=1).clip(max=1.0)
     shortest = 1e-7 * np.where(np.isfinite(half), half, 0.0).min()  # drops copies that touch the frame in a point
-    seen = np.flatnonzero((leave - enter) * np.linalg.norm(step, axis=1) > shortest)
+    seen = np.flatnonzero(np.maximum(leave - enter, 0.0) * np.linalg.norm(step, axis=1) > shortest)
     rows: list[np.ndarray] = []
     last = -2
     for i in seen.tolist():

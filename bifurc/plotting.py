@@ -17,7 +17,16 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.drawing import SETTINGS, draw_curve, draw_legend, draw_marks, form_style, label_groups, note_emptiness
+from bifurc.drawing import (
+    SETTINGS,
+    draw_curve,
+    draw_legend,
+    draw_marks,
+    form_style,
+    label_groups,
+    legend_size,
+    note_emptiness,
+)
 from bifurc.form_graph import plot_form_graph
 from bifurc.planes import Scale, choose_plane, curve_points, cut_to_frame, scale_of
 from bifurc.problem import ProblemError
@@ -34,8 +43,9 @@ def plot_transition_map(
     Angles are drawn in degrees on the torus. Raises `ProblemError` for numbers that are not two of the unknowns.
     """
     plane = choose_plane(atlas) if joints is None else _checked(atlas, joints)
+    width, height = legend_size(atlas)
     with rc_context(SETTINGS):
-        figure = figure or Figure(figsize=(6.4, 4.9), layout="constrained")
+        figure = figure or Figure(figsize=(4.9 + width, max(4.9, height)), layout="constrained")
         axes = figure.subplots()
         _draw_plane(axes, atlas, plane)
         draw_marks(axes, atlas, plane)
@@ -55,8 +65,10 @@ def plot_joint_angles(atlas: Atlas, figure: Figure | None = None, input_joint: i
     others = [i for i in range(n) if i != first] or [first]
     columns = min(len(others), 3 if len(others) <= 9 else 4)
     rows = -(-len(others) // columns)
+    width, height = legend_size(atlas)
+    size = (2.3 * columns + width, max(2.2 * rows + 0.4, height))
     with rc_context(SETTINGS):
-        figure = figure or Figure(figsize=(2.35 * columns + 1.5, 2.2 * rows + 0.4), layout="compressed")
+        figure = figure or Figure(figsize=size, layout="compressed")
         panels = figure.subplots(rows, columns, squeeze=False)
         for axes in panels.flat[len(others) :]:
             axes.set_visible(False)
@@ -81,7 +93,8 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
     rows = -(-count // columns)
     low, high = _range_of_singular_values(atlas)
     with rc_context(SETTINGS):
-        figure = figure or Figure(figsize=(4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4), layout="constrained")
+        size = (4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4)
+        figure = figure or Figure(figsize=size, layout="constrained")
         panels = figure.subplots(rows, columns, squeeze=False, sharey=True)
         for axes in panels.flat[count:]:
             axes.set_visible(False)
