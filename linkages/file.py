@@ -24,11 +24,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop, loop_from_axes
 
-__all__ = ["LinkageFileError", "read_linkage"]
+__all__ = ["LinkageFileError", "read_linkage", "read_precisely"]
 
 log = logging.getLogger(__name__)
 
@@ -64,6 +65,22 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
         return _table(content, name), None
     except GeometryError as error:
         raise LinkageFileError(path, str(error)) from None
+
+
+def read_precisely(path: Path | str) -> Loop:
+    """The loop that a TOML file describes, in mpmath numbers at the precision that is set.
+
+    The decimals of a table are taken as they are written, degrees turned into radians exactly; joint axes give the
+    same loop as `read_linkage`, its doubles taken as exact. Raises `LinkageFileError`.
+    """
+    loop, configuration = read_linkage(path)
+    if configuration is not None:
+        return loop
+    content = tomllib.loads(Path(path).read_text(encoding="utf-8"), parse_float=mpmath.mpf)
+    lengths, twists, offsets = (tuple(mpmath.mpf(x) for x in content[key]) for key in TABLE)
+    if content["angles"] == "deg":
+        twists = tuple(twist * mpmath.pi / 180 for twist in twists)
+    return Loop(lengths, twists, offsets, loop.name)
 
 
 def _parse(path: Path) -> dict[str, Any]:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from linkages.catalogue import entry
 from linkages.entry import Entry, FormPattern
-from linkages.file import read_linkage
+from linkages.file import read_linkage, read_precisely
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["Choice", "choose_linkage"]
+__all__ = ["Choice", "choose_linkage", "choose_precisely"]
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Choice:
     ``parameters`` are "key=value", angles in degrees. Raises `GeometryError`, `UnknownLinkageError` and
     `LinkageFileError`.
     """
-    if text.endswith(".toml") or Path(text).is_file():
+    if _is_file(text):
         if parameters:
             raise GeometryError("--param", parameters[0], "left out with a file, which holds the whole geometry")
         return Choice(read_linkage(text)[0])
@@ -37,6 +37,24 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Choice:
     values = found.complete(dict(_parameter(found, item) for item in parameters))
     patterns = found.patterns(**values) if found.patterns is not None else ()
     return Choice(found.build(**values), patterns)
+
+
+def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
+    """The loop that `choose_linkage` finds, in mpmath numbers at the precision that is set.
+
+    Parameters of a named linkage keep the values that its doubles have, and the constructor works on them exactly.
+    """
+    import mpmath
+
+    if _is_file(text):
+        return read_precisely(text)
+    found = entry(text)
+    values = found.complete(dict(_parameter(found, item) for item in parameters))
+    return found.build(**{key: mpmath.mpf(value) for key, value in values.items()})
+
+
+def _is_file(text: str) -> bool:
+    return text.endswith(".toml") or Path(text).is_file()
 
 
 def _parameter(found: Entry, item: str) -> tuple[str, float]:

@@ -125,10 +125,14 @@ def show(name: str) -> None:
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for dataset, graph, summary and figures."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document and nothing else; angles in radians.")
+@click.option(
+    "--digits", type=click.IntRange(20, 1000),
+    help="Find every singular point again in arithmetic of so many digits, and show how many of the map's agree.",
+)
 @exploring
 def map_command(
-    linkage: str, parameters: tuple[str, ...], out: Path | None, as_json: bool, starts: int, seed: int,
-    tolerance: float, verbose: bool,
+    linkage: str, parameters: tuple[str, ...], out: Path | None, as_json: bool, digits: int | None, starts: int,
+    seed: int, tolerance: float, verbose: bool,
 ) -> None:  # fmt: skip
     """Map every motion form of a linkage, every bifurcation, and the graph between them.
 
@@ -137,8 +141,11 @@ def map_command(
       bifurc map bennett --param alpha=70 --param beta=30
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map my_linkage.toml --json > map.json
+      bifurc map special-double-subtractive-goldberg --digits 50
     """
     _listen(verbose)
+    if as_json and digits:
+        raise BadInput("--digits: it has no place in the JSON document; leave out --json")
     if out is not None:
         _prepare(out)
     atlas = _explore(linkage, parameters, starts, seed, tolerance)
@@ -154,6 +161,10 @@ def map_command(
         click.echo(json.dumps(make_document(atlas), allow_nan=False))
     else:
         click.echo(summary)
+    if digits:
+        from studies.confirmation import describe_confirmation
+
+        click.echo("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
         from studies.files import write_results
 
