@@ -7,12 +7,15 @@ to the tolerance: spectral accuracy between the nodes from nothing but F and F'.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from bifurc.corrector import correct_across, null_vector
+from bifurc.bordered import Bordered
+from bifurc.corrector import correct_across
 
 if TYPE_CHECKING:
     from bifurc.problem import Problem
@@ -34,7 +37,7 @@ def march_by_collocation(
     status = RAN
     if gap > 100 * tolerance + 1e-12:
         return OPEN, np.empty((0, order + 1, problem.n)), np.empty(0), np.empty(0), np.array([gap])
-    heading, width = null_vector(problem, point, tangent), longest / 4
+    heading, width = Bordered(problem.jacobian(point) / problem.magnitude, tangent).null_vector(), longest / 4
     while len(pieces) < count:
         piece, length, residual, width = _piece(problem, point, heading, order, tolerance, shortest, width)
         if piece is None:
@@ -85,14 +88,14 @@ def _attempt(
     problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, width: float
 ) -> tuple[np.ndarray, float, float, float] | float:
     """A piece of the given width with the next width to try, or the factor by which the width is to shrink."""
-    cosine = -np.cos(np.pi * np.arange(order + 1) / order)  # nodes from -1 to 1
-    nodes = _follow(problem, start, heading, 0.5 * width * (cosine + 1.0), tolerance)
+    basis = _basis(order)
+    nodes = _follow(problem, start, heading, 0.5 * width * (basis.nodes + 1.0), tolerance)
     if nodes is None:
         return 0.4
-    coefficients = chebyshev.chebfit(cosine, nodes, order)
+    coefficients = basis.from_values @ nodes
     tail, enough = float(np.abs(coefficients[-2:]).max()), tolerance * problem.scale
     if tail <= enough:
-        piece, length = _by_arclength(coefficients, width)
+        piece, length = _by_arclength(coefficients)
         inside = np.vander(np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True)
         misfit = problem.residuals(inside @ piece) / problem.magnitude
         residual = float(np.linalg.norm(misfit, axis=1).max())
@@ -103,6 +106,32 @@ def _attempt(
     return min(0.75, max(0.3, 0.9 * (enough / tail) ** (1.0 / order)))
 
 
+@dataclass(frozen=True)
+class _Basis:
+    """Chebyshev polynomials up to an order: ``nodes`` from -1 to 1, the matrices that make coefficients
+    ``from_values`` at the nodes and monomials ``to_powers``, and the matrices that differentiate and integrate."""
+
+    nodes: np.ndarray
+    from_values: np.ndarray
+    to_powers: np.ndarray
+    derivative: np.ndarray
+    integral: np.ndarray
+
+
+@lru_cache(maxsize=64)
+def _basis(order: int) -> _Basis:
+    nodes = -np.cos(np.pi * np.arange(order + 1) / order)
+    unit = np.eye(order + 1)
+    to_powers = np.zeros((order + 1, order + 1))
+    for k in range(order + 1):
+        powers = chebyshev.cheb2poly(unit[k])
+        to_powers[: len(powers), k] = powers
+    from_values = np.linalg.inv(chebyshev.chebvander(nodes, order))
+    return _Basis(
+        nodes, from_values, to_powers, chebyshev.chebder(unit, axis=0), chebyshev.chebint(unit, lbnd=-1, axis=0)
+    )
+
+
 def _follow(
     problem: Problem, start: np.ndarray, heading: np.ndarray, offsets: np.ndarray, tolerance: float
 ) -> np.ndarray | None:
@@ -111,6 +140,7 @@ def _follow(
     Each is predicted by the polynomial through the last few points before it.
     """
     points = [start]
+    factored = Bordered(problem.jacobian(start) / problem.magnitude, heading)
     for k in range(1, len(offsets)):
         reach = offsets[k] - offsets[k - 1]
         if k == 1:
@@ -119,7 +149,7 @@ def _follow(
             last = slice(max(0, k - 10), k)
             guess = _extrapolate(offsets[last], np.array(points[last]), offsets[k])
         guess = guess + (offsets[k] - (guess - start) @ heading) * heading
-        point, gap = correct_across(problem, guess, heading, tolerance)
+        point, gap = correct_across(problem, guess, heading, tolerance, factored)
         if gap > 100 * tolerance or np.linalg.norm(point - points[-1]) > 4 * reach:
             return None
         points.append(point)
@@ -136,22 +166,19 @@ def _extrapolate(at: np.ndarray, values: np.ndarray, target: float) -> np.ndarra
     return table[0]
 
 
-def _by_arclength(coefficients: np.ndarray, width: float) -> tuple[np.ndarray, float]:
-    """The Chebyshev piece on a hyperplane coordinate of ``width`` as monomials in arclength, and its length."""
+def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:
+    """A Chebyshev piece (order + 1, n) on any coordinate as monomials in arclength on [-1, 1], and its length."""
     order = len(coefficients) - 1
-    fine = -np.cos(np.pi * np.arange(3 * order + 1) / (3 * order))
-    slope = chebyshev.chebval(fine, chebyshev.chebder(coefficients))
-    speed = chebyshev.chebfit(fine, np.linalg.norm(slope, axis=0), 3 * order)
-    arclength = chebyshev.chebint(speed, lbnd=-1)
-    length = float(chebyshev.chebval(1.0, arclength))
-    nodes = -np.cos(np.pi * np.arange(order + 1) / order)
-    target = 0.5 * length * (nodes + 1.0)
-    x = nodes.copy()
+    basis, fine = _basis(order), _basis(3 * order)
+    slope = chebyshev.chebvander(fine.nodes, order - 1) @ (basis.derivative @ coefficients)
+    speed = fine.from_values @ np.linalg.norm(slope, axis=1)
+    arclength = fine.integral @ speed
+    length = float(arclength.sum())  # every Chebyshev polynomial is 1 at 1
+    target, x = 0.5 * length * (basis.nodes + 1.0), basis.nodes.copy()
     for _ in range(8):
-        x = np.clip(x - (chebyshev.chebval(x, arclength) - target) / chebyshev.chebval(x, speed), -1.0, 1.0)
-    values = chebyshev.chebval(x, coefficients).T
-    fitted = chebyshev.chebfit(nodes, values, order)
-    basis = np.zeros((order + 1, order + 1))
-    for k in range(order + 1):
-        basis[k, : k + 1] = chebyshev.cheb2poly(np.eye(order + 1)[k])[: k + 1]
-    return basis.T @ fitted, length
+        step = (chebyshev.chebval(x, arclength) - target) / chebyshev.chebval(x, speed)
+        x = np.clip(x - step, -1.0, 1.0)
+        if np.abs(step).max() < 1e-15:
+            break
+    values = chebyshev.chebvander(x, order) @ coefficients
+    return basis.to_powers @ (basis.from_values @ values), length

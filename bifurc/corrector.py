@@ -5,20 +5,31 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse import issparse
+
+from bifurc.bordered import Bordered
 
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
 __all__ = ["correct_across", "null_vector", "project_by_least_squares", "project_to_sphere_by_newton"]
 
+LARGE = 64  # unknowns beyond which tangents come from bordered systems instead of an SVD
+SLOW = 0.2  # residual left by one step, as a share, above which a factorisation made elsewhere is given up
+
 
 def null_vector(problem: Problem, point: np.ndarray, along: np.ndarray | None = None) -> np.ndarray:
-    """Unit tangent (n,) of the curve through ``point``: the last right singular vector of F'.
+    """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
 
-    The vector of an SVD has no sign: it is turned to agree with ``along`` where that is given. Where several
-    singular values vanish, ``along`` is projected on their null space.
+    It has no sign of its own: it is turned to agree with ``along`` where that is given. Where the null space is
+    larger, ``along`` is projected on it. A large problem is bordered instead of decomposed.
     """
-    _, sigma, right = np.linalg.svd(problem.jacobians(point[None])[0], full_matrices=True)
+    jacobian = problem.jacobian(point)
+    if problem.n > LARGE or issparse(jacobian):
+        border = np.random.default_rng(0).normal(size=problem.n) if along is None else along
+        first = Bordered(jacobian, border / np.linalg.norm(border)).null_vector()
+        return Bordered(jacobian, first).null_vector()
+    _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
     padded = np.concatenate([sigma, np.zeros(len(right) - len(sigma))])
     null = right[padded <= max(padded[-1], 1e-9 * padded[0])]
     if along is None:
@@ -29,25 +40,31 @@ def null_vector(problem: Problem, point: np.ndarray, along: np.ndarray | None = 
 
 
 def correct_across(
-    problem: Problem, point: np.ndarray, tangent: np.ndarray, tolerance: float, iterations: int = 12
+    problem: Problem, point: np.ndarray, tangent: np.ndarray, tolerance: float, factored: Bordered | None = None
 ) -> tuple[np.ndarray, float]:
     """``point`` corrected onto the curve in the hyperplane across ``tangent``, and the relative residual left.
 
-    Gauss-Newton on ``[F'; t] d = [-F; 0]`` in the least-squares sense: it converges quadratically as
-    long as the system is consistent, whatever the number of redundant equations, and to the smallest
-    residual where it is not.
+    Gauss-Newton on ``[F'; t] d = [-F; 0]`` in the least-squares sense, with a factorisation made nearby
+    (``factored``, of the same tangent) as long as the residual falls fast enough with it, and a fresh one where
+    it does not. It converges as long as the system is consistent, whatever the number of redundant equations,
+    and to the smallest residual where it is not.
     """
-    u, best, best_gap = point.copy(), point, np.inf
-    for _ in range(iterations):
+    u, best, best_gap, previous, fresh = point.copy(), point, np.inf, np.inf, False
+    for _ in range(30):
         residual = problem.residuals(u[None])[0] / problem.magnitude
         gap = float(np.linalg.norm(residual))
-        if not gap < best_gap:
+        if gap < best_gap:
+            best, best_gap = u, gap
+        if gap <= 0.01 * tolerance or not np.isfinite(gap) or (fresh and gap >= previous):
             break
-        best, best_gap = u.copy(), gap
-        if gap <= 0.01 * tolerance:
-            break
-        matrix = np.vstack([problem.jacobians(u[None])[0] / problem.magnitude, tangent])
-        u = u + np.linalg.lstsq(matrix, np.append(-residual, 0.0), rcond=1e-12)[0]
+        if factored is None or gap > SLOW * previous:
+            factored, fresh = Bordered(problem.jacobian(best) / problem.magnitude, tangent), True
+            u, residual = best, problem.residuals(best[None])[0] / problem.magnitude
+            gap = best_gap
+        else:
+            fresh = False
+        previous = gap
+        u = u + factored.solve(-residual)
     return best, best_gap
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from scipy.sparse import issparse
 
 from bifurc.collocation import march_by_collocation
 from bifurc.corrector import project_by_least_squares, project_to_sphere_by_newton
@@ -80,6 +82,10 @@ class Problem:
         """F' (k, m, n) at points (k, n)."""
         raise NotImplementedError
 
+    def jacobian(self, point: np.ndarray) -> Any:
+        """F' (m, n) at one point (n,): an array, or a sparse matrix where that is how it is made."""
+        return self.jacobians(point[None])[0]
+
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,), here by central differences of F'."""
         step = 1e-5 * (1.0 + np.abs(point))
@@ -138,7 +144,7 @@ class Problem:
 class FunctionProblem(Problem):
     """A problem from a plain Python callable ``function``: (n,) -> (m,).
 
-    Derivatives come from ``jacobian``: (n,) -> (m, n) where given, else by complex step where the function
+    Derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where given, else by complex step where the function
     lets complex numbers through, else by central differences; ``derivatives`` says which. ``bounds`` (n, 2)
     is the region from which `explore` draws starts and in which curves are followed. Raises
     `ProblemError` for bounds out of order and for a function that gives no finite vector.
@@ -149,7 +155,7 @@ class FunctionProblem(Problem):
         function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
         bounds: Sequence[Sequence[float]],
         *,
-        jacobian: Callable[[np.ndarray], np.ndarray] | None = None,
+        jacobian: Callable[[np.ndarray], Any] | None = None,
         names: Sequence[str] | None = None,
         units: Sequence[str] | None = None,
         periods: Sequence[float] | None = None,
@@ -172,8 +178,7 @@ class FunctionProblem(Problem):
         if value.ndim != 1 or not np.all(np.isfinite(value)):
             raise ProblemError("value of the function", value, "a vector of finite numbers")
         self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
-        size = np.linalg.norm(self.jacobians(probes), ord=2, axis=(1, 2))
-        self.magnitude = float(np.median(size)) or 1.0
+        self.magnitude = float(np.median([_spectral_norm(self.jacobian(u)) for u in probes])) or 1.0
         self.scale = float(np.median(high - low)) / 4.0
 
     def _choose_derivatives(self, probe: np.ndarray) -> str:
@@ -203,12 +208,22 @@ class FunctionProblem(Problem):
         """F (k, m) at points (k, n)."""
         return np.array([np.asarray(self._function(u), dtype=float) for u in np.atleast_2d(points)])
 
+    def jacobian(self, point: np.ndarray) -> Any:
+        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it so."""
+        if self._jacobian is None:
+            return self._complex_step(point) if self.derivatives == "complex step" else self._central_difference(point)
+        made = self._jacobian(point)
+        return made if issparse(made) else np.asarray(made, dtype=float)
+
     def jacobians(self, points: np.ndarray) -> np.ndarray:
-        """F' (k, m, n) at points (k, n)."""
-        if self._jacobian is not None:
-            make = self._jacobian
-        elif self.derivatives == "complex step":
-            make = self._complex_step
-        else:
-            make = self._central_difference
-        return np.array([np.asarray(make(u), dtype=float) for u in np.atleast_2d(points)])
+        """F' (k, m, n) at points (k, n), dense."""
+        made = [self.jacobian(u) for u in np.atleast_2d(points)]
+        return np.array([j.toarray() if issparse(j) else j for j in made])
+
+
+def _spectral_norm(matrix: Any) -> float:
+    """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1 |A|_inf)."""
+    if issparse(matrix):
+        size = abs(matrix)
+        return float(np.sqrt(size.sum(axis=0).max() * size.sum(axis=1).max()))
+    return float(np.linalg.norm(matrix, ord=2))

@@ -1,0 +1,60 @@
+"""The bordered matrix [F'; t]: factored once, used for every correction of a piece."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.linalg import lu_factor, lu_solve, qr, solve_triangular
+from scipy.sparse import csc_array, issparse, vstack
+from scipy.sparse.linalg import splu
+
+__all__ = ["Bordered"]
+
+RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
+
+
+class Bordered:
+    """Factorisation of
+
+        [ F' ]   (m, n), dense or sparse
+        [ t  ]   (n,)
+
+    Sparse with m = n - 1 by sparse LU, dense with m = n - 1 by LU, otherwise by QR with column pivoting, which
+    solves in the least-squares sense whatever the number of redundant equations and leaves out what has no rank.
+    """
+
+    def __init__(self, jacobian: Any, tangent: np.ndarray):
+        m, n = jacobian.shape
+        self._rows = m
+        if issparse(jacobian):
+            if m == n - 1:
+                self._solve = splu(csc_array(vstack([jacobian, csc_array(tangent[None])]))).solve
+                return
+            jacobian = jacobian.toarray()
+        matrix = np.vstack([jacobian, tangent])
+        if m == n - 1:
+            factors = lu_factor(matrix, check_finite=False)
+            pivots = np.abs(np.diag(factors[0]))
+            if pivots.min() > RANK * pivots.max():
+                self._solve = lambda right: lu_solve(factors, right, check_finite=False)
+                return
+        q, r, order = qr(matrix, mode="economic", pivoting=True, check_finite=False)
+        diagonal = np.abs(np.diag(r))
+        rank = int(np.count_nonzero(diagonal > RANK * diagonal[0]))
+
+        def solve(right: np.ndarray) -> np.ndarray:
+            out = np.zeros(n)
+            out[order[:rank]] = solve_triangular(r[:rank, :rank], q[:, :rank].T @ right, check_finite=False)
+            return out
+
+        self._solve = solve
+
+    def solve(self, residual: np.ndarray, along: float = 0.0) -> np.ndarray:
+        """d (n,) with F' d = ``residual`` (m,) and t . d = ``along``, in the least-squares sense."""
+        return self._solve(np.append(residual, along))
+
+    def null_vector(self) -> np.ndarray:
+        """Unit vector (n,) along d with F' d = 0 and t . d > 0."""
+        vector = self.solve(np.zeros(self._rows), 1.0)
+        return vector / np.linalg.norm(vector)
