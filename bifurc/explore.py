@@ -15,6 +15,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface, wrap
 from bifurc.branch import Branch, Outcome
 from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
+from bifurc.interrupts import HeldInterrupt
 from bifurc.monitor import Profile, dead_points, profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
 from bifurc.section import section
@@ -70,9 +71,11 @@ def explore(
     interrupted = False
     gathered = seeds
     try:
-        if gathered is None:
-            gathered = problem.seeds(np.random.default_rng(seed), starts)
-        _work_through(problem, gathered, found, settings, progress)
+        with HeldInterrupt() as held:
+            if gathered is None:
+                gathered = problem.seeds(np.random.default_rng(seed), starts)
+            held.check()
+            _work_through(problem, gathered, found, settings, progress, held)
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
@@ -91,7 +94,7 @@ def explore(
 
 def _work_through(
     problem: Problem, seeds: Seeds, found: _Findings, settings: TraceSettings,
-    progress: Callable[[str, int], None] | None,
+    progress: Callable[[str, int], None] | None, held: HeldInterrupt,
 ) -> None:  # fmt: skip
     """Trace from every seed that lies on nothing known, and from every half-branch that shows up on the way."""
     if not len(seeds.points):
@@ -111,6 +114,7 @@ def _work_through(
         matched = len(found.branches)
         if progress is not None:
             progress("forms", matched)
+        held.check()
 
 
 def _take_seed(
