@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from bifurc.interrupts import HeldInterrupt
 from studies.status import EchoHandler, ExitCode, StatusLine, compilation_announced
 from studies.sweep.command import sweep_command
 
@@ -148,27 +149,23 @@ def map_command(
         raise BadInput("--digits: it has no place in the JSON document; leave out --json")
     if out is not None:
         _prepare(out)
-    atlas = _explore(linkage, parameters, starts, seed, tolerance)
-    from studies.summary import make_summary
-    from studies.verdict import judge
+    with HeldInterrupt():  # Ctrl-C ends the search, but not before what was found is shown and written
+        atlas = _explore(linkage, parameters, starts, seed, tolerance)
+        from studies.summary import make_summary
+        from studies.verdict import judge
 
-    verdict, summary = judge(atlas), make_summary(atlas)
-    if as_json:
-        import json
+        verdict, summary = judge(atlas), make_summary(atlas)
+        click.echo(_as_json(atlas) if as_json else summary)
+        if out is not None:
+            from studies.files import write_data, write_figures
 
-        from studies.document import make_document
-
-        click.echo(json.dumps(make_document(atlas), allow_nan=False))
-    else:
-        click.echo(summary)
+            written = write_data(atlas, out, summary)
     if digits:
         from studies.confirmation import describe_confirmation
 
         click.echo("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
-        from studies.files import write_results
-
-        written = write_results(atlas, out, summary)
+        written += write_figures(atlas, out)
         click.echo(f"wrote {', '.join(path.name for path in written)} to {out}", err=True)
     if verdict.code is not ExitCode.MAPPED and as_json:
         click.echo(verdict.sentence, err=True)
@@ -243,6 +240,14 @@ def _explore(linkage: str, parameters: tuple[str, ...], starts: int, seed: int, 
             )
     finally:
         status.wipe()
+
+
+def _as_json(atlas: Atlas) -> str:
+    import json
+
+    from studies.document import make_document
+
+    return json.dumps(make_document(atlas), allow_nan=False)
 
 
 def _load(path: str) -> Atlas:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from bifurc.atlas import Atlas
 
-__all__ = ["prepare_folder", "staging", "write_results"]
+__all__ = ["prepare_folder", "staging", "write_data", "write_figures"]
 
 
 def prepare_folder(folder: Path) -> None:
@@ -20,10 +20,10 @@ def prepare_folder(folder: Path) -> None:
         pass
 
 
-def write_results(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
-    """Write atlas.nc, graph.graphml, summary.txt and the figures; returns the paths in that order.
+def write_data(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
+    """Write atlas.nc, graph.graphml and summary.txt; returns the paths.
 
-    Every step works in a hidden folder inside ``folder`` and its files are renamed when they are complete.
+    Files are made in a hidden folder inside ``folder`` and renamed when they are complete.
     """
     from bifurc.dataset import save_atlas
     from bifurc.graphml import write_graphml
@@ -31,14 +31,18 @@ def write_results(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
     written: list[Path] = []
     with staging(folder, written) as stage:
         save_atlas(atlas, stage / "atlas.nc")
-    with staging(folder, written) as stage:
         write_graphml(atlas, stage / "graph.graphml")
         (stage / "summary.txt").write_text(summary + "\n", encoding="utf-8")
-    if atlas.forms:
-        from bifurc.plotting import save_figures
+    return written
 
-        with staging(folder, written) as stage:
-            save_figures(atlas, stage)
+
+def write_figures(atlas: Atlas, folder: Path) -> list[Path]:
+    """Write the figures, all or none, as `write_data` does; returns the paths."""
+    from bifurc.plotting import save_figures
+
+    written: list[Path] = []
+    with staging(folder, written) as stage:
+        save_figures(atlas, stage)
     return written
 
 

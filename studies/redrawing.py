@@ -10,7 +10,7 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
-from studies.files import staging, write_results
+from studies.files import staging, write_data, write_figures
 from studies.status import compilation_announced
 from studies.summary import make_summary
 
@@ -57,7 +57,7 @@ class Redrawing:
         lines = [_judged(claim) for claim in self.claims(atlas)]
         summary = make_summary(atlas) + "\n\nWhat the source says\n" + "\n".join(lines)
         click.echo(summary)
-        written = write_results(atlas, out, summary)
+        written = write_data(atlas, out, summary) + write_figures(atlas, out)
         with staging(out, written) as stage:
             figure = plot_transition_map(atlas, joints=self.joints)
             for ending in ("png", "svg"):

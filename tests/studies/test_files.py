@@ -8,7 +8,7 @@ from click.testing import CliRunner
 import bifurc.explore
 from linkages.closure import LoopClosure
 from studies.cli import main
-from studies.files import prepare_folder, write_results
+from studies.files import prepare_folder, write_data
 
 
 def run(*arguments):
@@ -99,6 +99,6 @@ def test_results_replace_older_ones(tmp_path):
     from linkages.mapping import map_by_name
 
     (tmp_path / "summary.txt").write_text("old")
-    written = write_results(map_by_name("bennett"), tmp_path, "new")
+    written = write_data(map_by_name("bennett"), tmp_path, "new")
     assert (tmp_path / "summary.txt").read_text() == "new\n"
     assert sorted(path.name for path in written) == names(tmp_path)
