@@ -12,7 +12,7 @@ from bifurc.bordered import Bordered
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["correct_across", "null_vector", "project_by_least_squares", "project_to_sphere_by_newton"]
+__all__ = ["correct_across", "correct_normal", "null_vector", "project_by_least_squares", "project_to_sphere_by_newton"]
 
 LARGE = 64  # unknowns beyond which tangents come from bordered systems instead of an SVD
 SLOW = 0.2  # residual left by one step, as a share, above which a factorisation made elsewhere is given up
@@ -54,18 +54,39 @@ def correct_across(
         residual = problem.residuals(u[None])[0] / problem.magnitude
         gap = float(np.linalg.norm(residual))
         if gap < best_gap:
-            best, best_gap = u, gap
-        if gap <= 0.01 * tolerance or not np.isfinite(gap) or (fresh and gap >= previous):
+            best, best_gap, at_best = u, gap, residual
+        if not np.isfinite(gap) or (fresh and gap >= previous):
             break
         if factored is None or gap > SLOW * previous:
             factored, fresh = Bordered(problem.jacobian(best) / problem.magnitude, tangent), True
-            u, residual = best, problem.residuals(best[None])[0] / problem.magnitude
-            gap = best_gap
+            u, residual, gap = best, at_best, best_gap
         else:
             fresh = False
         previous = gap
-        u = u + factored.solve(-residual)
+        step = factored.solve(-residual)
+        u = u + step
+        if np.linalg.norm(step) <= 0.01 * tolerance * problem.scale:
+            return u, gap  # the residual before a last step that is too small to matter
     return best, best_gap
+
+
+def correct_normal(problem: Problem, points: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Solutions (k, n) straight above ``points`` (k, n) of tangent planes (k, n, 2), and the relative residuals (k,).
+
+    Gauss-Newton on ``[F'; T^T] d = [-F; 0]``, as for curves.
+    """
+    points = points.copy()
+    across = np.swapaxes(bases, 1, 2)
+    for _ in range(8):
+        residual = problem.residuals(points) / problem.magnitude
+        matrix = np.concatenate([problem.jacobians(points) / problem.magnitude, across], axis=1)
+        right = np.concatenate([-residual, np.zeros((len(points), across.shape[1]))], axis=1)
+        step = np.einsum("kij,kj->ki", np.linalg.pinv(matrix, rcond=1e-10), right)
+        size = np.linalg.norm(step, axis=1)
+        points += step * np.minimum(1.0, 0.5 * problem.scale / (size + 1e-300))[:, None]
+        if size.max(initial=0.0) < 1e-9 * problem.scale:
+            break
+    return points, np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude
 
 
 def project_by_least_squares(

@@ -295,7 +295,12 @@ def _closure_gap(problem: Problem, seeds: Seeds, found: _Findings) -> float:
 def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch]) -> MeetingPoint:
     """A singular point with the branches that pass it or end there; where they and the section disagree, a note."""
     within = SAME * problem.scale + 10 * point.error
-    through = [(i, float(s)) for i, branch in enumerate(branches) for s in branch.passes(point.u, within)]
+    through = [
+        (i, float(s))
+        for i, branch in enumerate(branches)
+        for s in branch.passes(point.u, within)
+        if branch.outcome is not Outcome.STALLED or 0.01 * problem.scale < s < branch.length - 0.01 * problem.scale
+    ]
     ends = [(i, s) for i, branch in enumerate(branches) for s in _ends_at(problem, branch, point)]
     tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(-1, problem.n)
     explained, seen = 2 * len(through) + len(ends), len(point.half_branches)
