@@ -313,13 +313,12 @@ def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch
 
 def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
     """Arclengths of the ends of a branch that stalled before a cusp: near the point, along a half-branch."""
-    found = []
-    for s in (0.0, branch.length) if branch.outcome is Outcome.STALLED else ():
-        offset = problem.difference(branch(s), point.u)
-        distance = float(np.linalg.norm(offset))
-        if distance < 0.05 * problem.scale and any(
-            np.linalg.norm(offset - distance * h) < 0.3 * distance for h in point.half_branches
-        ):
+    near, found = 0.02 * problem.scale, []
+    for s, inside in ((0.0, near), (branch.length, branch.length - near)):
+        gap = np.linalg.norm(problem.difference(branch(s), point.u))
+        offset = problem.difference(branch(inside), point.u)
+        along = point.half_branches @ offset / np.linalg.norm(offset)
+        if branch.outcome is Outcome.STALLED and gap < near and along.max(initial=-1.0) > 0.95:
             found.append(s)
     return found
 
