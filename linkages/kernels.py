@@ -127,10 +127,10 @@ def hessians(theta, geometry):
 
 @register_jitable
 def _factor(matrix, scale):
-    """Householder QR of ``matrix`` (rows >= columns) in place; the smallest |diagonal| of R comes back."""
+    """Householder QR of ``matrix`` in place; the smallest |diagonal| of R comes back."""
     rows, columns = matrix.shape
     smallest = np.inf
-    for k in range(columns):
+    for k in range(min(rows, columns)):
         norm = 0.0
         for i in range(k, rows):
             norm += matrix[i, k] * matrix[i, k]
@@ -158,8 +158,11 @@ def _factor(matrix, scale):
 
 @register_jitable
 def _solve(matrix, scale, right, solution):
-    """Least-squares solution for one right-hand side (overwritten) from `_factor`."""
+    """Least-squares solution for one right-hand side (overwritten) from `_factor`; with more columns than rows the
+    last unknowns are 0."""
     rows, columns = matrix.shape
+    solution[:] = 0.0
+    columns = min(rows, columns)
     for k in range(columns):
         dot = right[k]
         for i in range(k + 1, rows):
@@ -173,6 +176,54 @@ def _solve(matrix, scale, right, solution):
         for j in range(k + 1, columns):
             total -= matrix[k, j] * solution[j]
         solution[k] = total / matrix[k, k] if matrix[k, k] != 0.0 else 0.0
+
+
+@register_jitable
+def _solve_by_rank(matrix, right, order, solution):
+    """Least-squares solution of a system of any rank and shape, both overwritten, by QR with column pivoting.
+
+    Pivots below 1e-13 of the first count as zero, and so do the unknowns (by ``order``) that they belong to.
+    """
+    rows, columns = matrix.shape
+    solution[:] = 0.0
+    for j in range(columns):
+        order[j] = j
+    rank, first = 0, 0.0
+    for k in range(min(rows, columns)):
+        best, largest = k, -1.0
+        for j in range(k, columns):
+            square = 0.0
+            for i in range(k, rows):
+                square += matrix[i, j] * matrix[i, j]
+            if square > largest:
+                best, largest = j, square
+        norm = np.sqrt(largest)
+        first = max(first, norm)
+        if norm <= 1e-13 * first:
+            break
+        order[k], order[best] = order[best], order[k]
+        for i in range(rows):
+            matrix[i, k], matrix[i, best] = matrix[i, best], matrix[i, k]
+        diagonal = -norm if matrix[k, k] > 0 else norm
+        pivot = matrix[k, k] - diagonal
+        for j in range(k + 1, columns + 1):  # the last one is the right-hand side
+            dot = matrix[k, j] if j < columns else right[k]
+            for i in range(k + 1, rows):
+                dot += matrix[i, k] / pivot * (matrix[i, j] if j < columns else right[i])
+            dot *= -pivot / diagonal
+            for i in range(k, rows):
+                share = dot if i == k else dot * matrix[i, k] / pivot
+                if j < columns:
+                    matrix[i, j] -= share
+                else:
+                    right[i] -= share
+        matrix[k, k] = diagonal
+        rank = k + 1
+    for k in range(rank - 1, -1, -1):
+        total = right[k]
+        for j in range(k + 1, rank):
+            total -= matrix[k, j] * solution[order[j]]
+        solution[order[k]] = total / matrix[k, k]
 
 
 # --- Taylor series of the motion ----------------------------------------------------------------------
@@ -490,8 +541,8 @@ def project_to_sphere(starts, center, radius, geometry, iterations):
     """
     k, n = starts.shape
     points, gaps, last = starts.copy(), np.empty(k), np.empty(k)
-    residual, matrix, scale = np.empty(6), np.empty((7, n)), np.empty(n)
-    right, step = np.empty(7), np.empty(n)
+    residual, matrix, order = np.empty(6), np.empty((7, n)), np.empty(n, dtype=np.int64)
+    right, step, size = np.empty(7), np.empty(n), 0.0
     for start in range(k):
         theta = points[start]
         for _ in range(iterations):
@@ -502,8 +553,7 @@ def project_to_sphere(starts, center, radius, geometry, iterations):
                 square += matrix[6, i] * matrix[6, i]
             right[:6] = -residual
             right[6] = 0.5 * radius * (1.0 - square)
-            _factor(matrix, scale)
-            _solve(matrix, scale, right, step)
+            _solve_by_rank(matrix, right, order, step)
             size = np.sqrt(np.sum(step * step))
             cut = min(1.0, radius / (3.0 * size + 1e-300))
             theta += cut * step
