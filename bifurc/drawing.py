@@ -158,7 +158,7 @@ def _groups(atlas: Atlas, plane: tuple[int, ...]) -> list[tuple[str, np.ndarray]
     pick = [plane[0], plane[-1]]
     span = np.array([s.half if np.isfinite(s.half) else np.inf for s in scales])
     every = np.concatenate([curve.branch.sample(50)[:, pick] for curve in atlas.forms] or [np.zeros((1, 2))])
-    near = 0.01 * np.where(np.isfinite(span), 2 * span, np.maximum(np.ptp(every, axis=0), 1e-300))
+    near = 0.01 * np.where(np.isfinite(span), 2 * span, np.maximum(np.ptp(every, axis=0), 1e-6))
     groups: list[tuple[list[str], np.ndarray]] = []
     for point in atlas.points:
         spot = place_in_frame(point.point.u[None, pick], scales)[0]
