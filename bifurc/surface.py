@@ -1,0 +1,197 @@
+"""A surface of solutions as an atlas of charts: area, Euler characteristic, connected parts and paths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import Enum
+from functools import cached_property
+
+import networkx as nx
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+
+__all__ = ["ChartAtlas", "Covering"]
+
+Projection = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+class Covering(Enum):
+    """Why no more charts were made, with what to do next."""
+
+    COMPLETE = "complete: every part of the surface inside the bounds is covered"
+    SINGULAR = "incomplete: no chart fits at some places; look for singular points of the surface there"
+    CHART_LIMIT = "incomplete: the largest number of charts is reached; allow more of them, or a larger radius"
+    OUT_OF_TIME = "incomplete: the time is over; allow more of it and continue from these charts"
+
+
+@dataclass(frozen=True)
+class ChartAtlas:
+    """A surface of solutions, or several, as charts that overlap.
+
+    ``centers`` (c, n) are solutions, ``bases`` (c, n, 2) orthonormal bases of the tangent planes there, ``radii`` (c,)
+    those of the disks. The polygon of a chart lists the ``vertices`` (v, n) around it, solutions that it shares with
+    its neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one behind the other.
+    ``neighbours`` (p, 2) are the pairs of charts whose polygons have an edge in common. ``project`` refines paths; an
+    atlas read from a file has none.
+    """
+
+    centers: np.ndarray
+    bases: np.ndarray
+    radii: np.ndarray
+    neighbours: np.ndarray
+    vertices: np.ndarray
+    polygons: np.ndarray
+    polygon_sizes: np.ndarray
+    periods: np.ndarray
+    outcome: Covering
+    project: Projection | None = field(default=None, compare=False, repr=False)
+
+    def __len__(self) -> int:
+        return len(self.centers)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the whole surface inside the bounds is covered."""
+        return self.outcome is Covering.COMPLETE
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """Corners (t, 3, n) of flat triangles that follow the surface: from each centre to the edges of its polygon.
+
+        The corners are solutions; those of one triangle lie together, across the ends of a period where need be.
+        """
+        owner, first, second = self._edges
+        corners = self.centers[owner]
+        sides = [corners + self._apart(self.vertices[v], corners) for v in (first, second)]
+        return np.stack([corners, *sides], axis=1)
+
+    @cached_property
+    def area(self) -> float:
+        """Area of the triangles: below that of a surface all covered by a share of (radius x curvature)^2 / 8."""
+        a, b = (self.triangles[:, k] - self.triangles[:, 0] for k in (1, 2))
+        gram = np.einsum("ti,ti->t", a, a) * np.einsum("ti,ti->t", b, b) - np.einsum("ti,ti->t", a, b) ** 2
+        return float(0.5 * np.sqrt(np.maximum(gram, 0.0)).sum())
+
+    @cached_property
+    def border(self) -> int:
+        """Number of edges that belong to one polygon alone: where surface meets bounds, or the covering ends."""
+        return int(np.count_nonzero(self._edge_counts == 1))
+
+    @cached_property
+    def euler_characteristic(self) -> int | None:
+        """Vertices - edges + polygons; None for an incomplete covering, or where polygons do not fit together."""
+        counts = self._edge_counts
+        if not self.complete or np.any(counts > 2):
+            return None
+        return len(np.unique(self._edges[1])) - len(counts) + len(self.centers)
+
+    def parts(self) -> tuple[ChartAtlas, ...]:
+        """The connected surfaces, the one with most charts first."""
+        count, label = connected_components(
+            csr_array((np.ones(len(self.neighbours)), tuple(self.neighbours.T)), shape=(len(self),) * 2), directed=False
+        )
+        order = sorted(range(count), key=lambda k: -int(np.count_nonzero(label == k)))
+        return tuple(self._only(np.flatnonzero(label == k)) for k in order)
+
+    def holds(self, points: np.ndarray) -> np.ndarray:
+        """Which solutions (k, n) lie in a chart (k,)."""
+        return np.array([self._chart_of(point) is not None for point in np.atleast_2d(points)], dtype=bool)
+
+    # --- paths ----------------------------------------------------------------------------------------
+
+    def path(self, start: np.ndarray, goal: np.ndarray, spacing: float | None = None) -> np.ndarray:
+        """Solutions (k, n) from ``start`` to ``goal`` (n,), without jumps: the shortest chain of charts, pulled tight.
+
+        Neighbouring points are about ``spacing`` apart (half the median radius unless given); the goal may come out
+        shifted by whole periods. Raises `ValueError` where an end lies in no chart, or where no chain of charts leads
+        from one to the other. Without ``project`` points between the centres are those of the chords.
+        """
+        ends = [self._chart_of(np.asarray(point, dtype=float)) for point in (start, goal)]
+        if ends[0] is None or ends[1] is None:
+            raise ValueError(f"the {'start' if ends[0] is None else 'goal'} lies in no chart of the surface")
+        chain = self._chain(ends[0], ends[1])
+        points = [np.asarray(start, dtype=float), *self.centers[chain[1:-1]], np.asarray(goal, dtype=float)]
+        for i in range(1, len(points)):
+            points[i] = points[i - 1] + self._apart(points[i], points[i - 1])
+        spacing = spacing or 0.5 * float(np.median(self.radii))
+        path = _evenly(np.array(points), spacing)
+        for _ in range(12 if self.project is not None and len(path) > 2 else 0):
+            smooth = path.copy()
+            smooth[1:-1] = 0.25 * path[:-2] + 0.5 * path[1:-1] + 0.25 * path[2:]
+            path[1:-1] = self._projected(smooth[1:-1])
+        return path
+
+    def _projected(self, points: np.ndarray) -> np.ndarray:
+        assert self.project is not None
+        found, gaps = self.project(points)
+        moved = self._apart(found, points)
+        good = (gaps < 1e-10) & (np.linalg.norm(moved, axis=1) < float(self.radii.max()))
+        return points + np.where(good[:, None], moved, 0.0)
+
+    def _chain(self, first: int, last: int) -> list[int]:
+        """Numbers of the charts on the shortest way from one to another, both included."""
+        i, j = self.neighbours.T
+        weights = np.linalg.norm(self._apart(self.centers[i], self.centers[j]), axis=1)
+        graph = nx.Graph()
+        graph.add_nodes_from(range(len(self)))
+        graph.add_weighted_edges_from(zip(i.tolist(), j.tolist(), weights.tolist(), strict=True))
+        try:
+            return nx.shortest_path(graph, first, last, weight="weight")
+        except nx.NetworkXNoPath:
+            raise ValueError("no chain of charts leads from the start to the goal") from None
+
+    def _chart_of(self, point: np.ndarray) -> int | None:
+        """Number of the chart nearest to a solution, None where it lies in no disk or well above all of them."""
+        away = self._apart(point, self.centers)
+        y = np.einsum("ki,kij->kj", away, self.bases)
+        size = np.linalg.norm(y, axis=1)
+        height = np.linalg.norm(away - np.einsum("kij,kj->ki", self.bases, y), axis=1)
+        fits = (size < 1.1 * self.radii) & (height < 0.25 * size + 1e-9)
+        return int(np.argmin(np.where(fits, size / self.radii, np.inf))) if np.any(fits) else None
+
+    # --- the complex of polygons ----------------------------------------------------------------------
+
+    @cached_property
+    def _edges(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Chart (e,), first and second vertex (e,) of every edge of every polygon."""
+        owner = np.repeat(np.arange(len(self.centers)), self.polygon_sizes)
+        ends = np.cumsum(self.polygon_sizes)
+        following = np.arange(1, len(self.polygons) + 1)
+        full = self.polygon_sizes > 0
+        following[ends[full] - 1] = (ends - self.polygon_sizes)[full]
+        return owner, self.polygons, self.polygons[following]
+
+    @cached_property
+    def _edge_counts(self) -> np.ndarray:
+        """To how many polygons each edge belongs."""
+        _, first, second = self._edges
+        pairs = np.sort(np.stack([first, second], axis=1), axis=1)
+        return np.unique(pairs, axis=0, return_counts=True)[1]
+
+    def _only(self, charts: np.ndarray) -> ChartAtlas:
+        """The atlas of these charts alone."""
+        number = np.full(len(self.centers), -1)
+        number[charts] = np.arange(len(charts))
+        inside = np.all(number[self.neighbours] >= 0, axis=1)
+        polygons = self.polygons[np.repeat(number >= 0, self.polygon_sizes)]
+        used, renumbered = np.unique(polygons, return_inverse=True)
+        return ChartAtlas(
+            self.centers[charts], self.bases[charts], self.radii[charts], number[self.neighbours[inside]],
+            self.vertices[used], renumbered, self.polygon_sizes[charts], self.periods, self.outcome, self.project,
+        )  # fmt: skip
+
+    def _apart(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """a - b with periodic unknowns taken to within half a period of zero."""
+        gap = a - b
+        periodic = np.isfinite(self.periods)
+        gap[..., periodic] -= self.periods[periodic] * np.round(gap[..., periodic] / self.periods[periodic])
+        return gap
+
+
+def _evenly(points: np.ndarray, spacing: float) -> np.ndarray:
+    """Points about ``spacing`` apart along the chords between ``points`` (k, n), the ends included."""
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = np.linspace(0.0, s[-1], max(2, 1 + round(s[-1] / spacing)))
+    return np.stack([np.interp(at, s, column) for column in points.T], axis=1)

@@ -1,0 +1,219 @@
+"""Components of dimension 2 and more: their dimension, and charts that cover surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from bifurc.charts import cover_surface
+from bifurc.dimension import local_dimensions
+from bifurc.problem import FunctionProblem, Problem, ProblemError
+from bifurc.surface import Covering
+from linkages.closure import LoopClosure
+from linkages.double_goldberg import double_subtractive_goldberg
+from linkages.loop import Loop, loop_from_axes
+
+
+def planar(*lengths: float) -> LoopClosure:
+    return LoopClosure(Loop(lengths, (0,) * len(lengths), (0,) * len(lengths)))
+
+
+def spherical(*twists: float) -> LoopClosure:
+    return LoopClosure(Loop((0,) * len(twists), twists, (0,) * len(twists)))
+
+
+def general(n: int) -> LoopClosure:
+    rng = np.random.default_rng(n)
+    return LoopClosure(Loop(*(tuple(rng.uniform(low, high, n)) for low, high in ((0.5, 1.5), (0.4, 2.6), (-0.5, 0.5)))))
+
+
+def equal_double_goldberg() -> LoopClosure:
+    """The double-subtractive-Goldberg loop whose links 23, 34, 56, 61 are alike (b = d)."""
+    alpha, beta, gamma = np.radians([66, 50, 28])
+    return LoopClosure(double_subtractive_goldberg(1.7 * np.sin(alpha), alpha, beta, gamma, beta))
+
+
+def sarrus() -> LoopClosure:
+    """Two legs of three parallel joints each, with links that are alike in each leg."""
+    points = [(0, 1, 0), (0, 1.5, 1), (0, 1, 2), (1, 0, 2), (1.7, 0, 1), (1, 0, 0)]
+    return LoopClosure(loop_from_axes(points, [(1, 0, 0)] * 3 + [(0, 1, 0)] * 3)[0])
+
+
+class Level(Problem):
+    """The surface where a function of three unknowns is zero."""
+
+    def __init__(self, function: Callable, gradient: Callable, size: float):
+        self.names, self.units, self.periods = ("x", "y", "z"), ("",) * 3, np.full(3, np.inf)
+        self.bounds = np.full((3, 2), [-size, size])
+        self.residuals = lambda points: function(*points.T)[:, None]
+        self.jacobians = lambda points: np.stack(gradient(*points.T), axis=1)[:, None]
+
+
+SPHERE = Level(lambda x, y, z: (x * x + y * y + z * z - 1) / 2, lambda x, y, z: (x, y, z), 2.0)
+
+
+def torus(tube: float) -> Level:
+    """The torus about the z-axis with radii 1 and ``tube``."""
+
+    def gradient(x, y, z):
+        r = np.hypot(x, y)
+        return (r - 1) * x / r, (r - 1) * y / r, z
+
+    return Level(lambda x, y, z: ((np.hypot(x, y) - 1) ** 2 + z * z - tube**2) / 2, gradient, 2.0)
+
+
+def seeds(problem: Problem, count: int = 20) -> np.ndarray:
+    return problem.seeds(np.random.default_rng(1), count).points
+
+
+# --- dimension ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("problem", "dimension"),
+    [
+        (planar(1, 1.2, 0.9, 1.3, 1.1), 2),
+        (planar(1, 1.2, 0.9, 1.3, 1.1, 0.8), 3),
+        (planar(1, 2, 1, 2, 1, 2, 1, 2), 5),
+        (spherical(0.9, 1.1, 1.3, 1.0, 1.2), 2),
+        (general(7), 1),
+        (general(8), 2),
+        (general(9), 3),
+        (general(12), 6),
+        (LoopClosure(Loop((0, 1, 0, 1), (0, 0.7, 0, 0.7), (0, 0, 0, 0))), 2),  # two pairs of coincident axes
+    ],
+    ids=["planar 5R", "planar 6R", "planar 8R", "spherical 5R", "7R", "8R", "9R", "12R", "coincident axes"],
+)
+def test_every_seed_of_a_loop_lies_on_a_component_of_the_right_dimension(problem: Problem, dimension: int) -> None:
+    found = local_dimensions(problem, seeds(problem, 60)[-200:])
+    assert len(found.dimension) > 20 and np.all(found.dimension == dimension) and np.all(found.regular)
+
+
+def test_a_plane_and_the_line_through_it_have_their_own_dimensions() -> None:
+    problem = FunctionProblem(lambda u: np.array([u[2] * u[0], u[2] * u[1]]), [(-1, 1)] * 3)
+    found = local_dimensions(problem, np.array([[0.3, 0.2, 0.0], [0.0, 0.0, 0.4], [0.0, 0.0, 0.0]]))
+    assert found.dimension.tolist() == [2, 1, 2]
+    assert found.regular.tolist() == [True, True, False]
+
+
+def test_the_dimension_of_a_shaky_plane_is_not_its_corank() -> None:
+    problem = FunctionProblem(lambda u: np.array([u[2] ** 2]), [(-1, 1)] * 3)
+    found = local_dimensions(problem, np.array([[0.3, 0.2, 0.0]]))
+    assert (found.dimension[0], found.nullity[0], found.regular[0]) == (2, 3, False)
+
+
+def test_a_curve_at_a_bifurcation_keeps_dimension_one() -> None:
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2)
+    found = local_dimensions(problem, np.array([[0.0, 0.0], [0.5, 0.0]]))
+    assert found.dimension.tolist() == [1, 1] and found.nullity.tolist() == [2, 1]
+
+
+# --- charts -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("problem", "area", "euler"), [(SPHERE, 4 * np.pi, 2), (torus(0.4), 1.6 * np.pi**2, 0)], ids=["sphere", "torus"]
+)
+def test_area_and_euler_characteristic_of_a_closed_surface_are_found(problem: Problem, area: float, euler: int) -> None:
+    charts = cover_surface(problem, seeds(problem))
+    assert charts.complete and charts.euler_characteristic == euler and charts.border == 0
+    assert charts.area == pytest.approx(area, rel=0.01)  # flat triangles: (radius x curvature)^2 / 8 with 0.24 at most
+    assert np.linalg.norm(problem.residuals(charts.vertices), axis=1).max() < 1e-10
+
+
+def test_smaller_charts_give_the_area_to_second_order() -> None:
+    errors = [4 * np.pi - cover_surface(SPHERE, seeds(SPHERE, 1), radius=r).area for r in (0.2, 0.1)]
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.15)
+
+
+def test_charts_are_solutions_with_tangent_planes() -> None:
+    charts = cover_surface(SPHERE, seeds(SPHERE))
+    assert np.abs(np.linalg.norm(charts.centers, axis=1) - 1).max() < 1e-12
+    assert np.abs(np.einsum("ki,kij->kj", charts.centers, charts.bases)).max() < 1e-9
+    assert np.abs(np.swapaxes(charts.bases, 1, 2) @ charts.bases - np.eye(2)).max() < 1e-12
+
+
+def test_a_surface_that_leaves_the_bounds_has_a_border_and_its_area_inside() -> None:
+    problem = Level(lambda x, y, z: z - 0.5 * x, lambda x, y, z: (-0.5 + 0 * x, 0 * y, 1 + 0 * z), 1.0)
+    charts = cover_surface(problem, seeds(problem, 1))
+    assert charts.complete and charts.border > 0 and charts.euler_characteristic == 1
+    assert charts.area == pytest.approx(4 * np.hypot(1, 0.5), rel=1e-6)
+
+
+def test_two_spheres_are_two_surfaces() -> None:
+    def function(x, y, z):
+        return ((x + 1) ** 2 + y * y + z * z - 0.25) * ((x - 1) ** 2 + y * y + z * z - 0.36)
+
+    problem = FunctionProblem(lambda u: np.array([function(*u)]), [(-2, 2)] * 3)
+    starts = np.array([[-0.5, 0, 0], [0.4, 0, 0]])
+    parts = cover_surface(problem, starts).parts()
+    assert [part.euler_characteristic for part in parts] == [2, 2]
+    assert sorted(part.area for part in parts) == pytest.approx([np.pi, 1.44 * np.pi], rel=0.01)
+
+
+def test_two_planes_that_cross_are_told_apart() -> None:
+    problem = FunctionProblem(lambda u: np.array([u[1] * u[2]]), [(-1, 1)] * 3)
+    parts = cover_surface(problem, np.array([[0.3, 0.4, 0.0], [-0.2, 0.0, 0.7]])).parts()
+    assert [part.euler_characteristic for part in parts] == [1, 1]
+    assert [part.area for part in parts] == pytest.approx([4, 4], rel=0.01)
+
+
+def test_a_cone_is_covered_but_for_its_tip_and_says_so() -> None:
+    problem = Level(lambda x, y, z: z * z - x * x - y * y, lambda x, y, z: (-2 * x, -2 * y, 2 * z), 1.0)
+    charts = cover_surface(problem, np.array([[0.3, 0.4, 0.5]]))
+    assert charts.outcome is Covering.SINGULAR and charts.euler_characteristic is None
+    assert np.linalg.norm(charts.centers, axis=1).min() < 0.05
+
+
+def test_the_charts_of_a_planar_5r_loop_form_a_surface_of_genus_four() -> None:
+    # Havel 1991, Some examples of the use of distances as coordinates for Euclidean geometry: the equilateral pentagon
+    problem = planar(1, 1, 1, 1, 1)
+    charts = cover_surface(problem, seeds(problem)[:1], radius=0.7)
+    assert charts.complete and charts.euler_characteristic == -6 and len(charts.parts()) == 1
+
+
+def test_the_trivial_component_of_the_double_goldberg_loop_is_a_flat_torus() -> None:
+    problem = equal_double_goldberg()
+    charts = cover_surface(problem, np.array([[0.3, 0.5, np.pi, -0.5, -0.3, np.pi]]), radius=1.0)
+    assert charts.complete and charts.euler_characteristic == 0
+    assert charts.area == pytest.approx(
+        8 * np.pi**2, rel=1e-6
+    )  # theta1 and theta2 turn freely, each with another joint
+
+
+def test_a_covering_stops_at_its_limits_and_is_continued_from_there() -> None:
+    start = seeds(SPHERE, 1)
+    few = cover_surface(SPHERE, start, charts=30)
+    assert few.outcome is Covering.CHART_LIMIT and len(few) == 30 and few.euler_characteristic is None
+    none = cover_surface(SPHERE, start, seconds=1e-9)
+    assert none.outcome is Covering.OUT_OF_TIME and "continue" in none.outcome.value
+    whole = cover_surface(SPHERE, start, known=few)
+    assert whole.complete and np.array_equal(whole.centers[:30], few.centers) and whole.euler_characteristic == 2
+
+
+def test_a_path_on_the_sphere_is_nearly_a_great_circle() -> None:
+    charts = cover_surface(SPHERE, seeds(SPHERE))
+    start, goal = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.8, 0.0])
+    path = charts.path(start, goal, spacing=0.05)
+    assert np.array_equal(path[0], start) and np.allclose(path[-1], goal)
+    assert np.abs(np.linalg.norm(path, axis=1) - 1).max() < 1e-12
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    assert steps.sum() < 1.15 * np.pi / 2 and steps.max() < 0.15
+
+
+def test_a_path_on_a_torus_of_angles_has_no_jump_where_a_period_ends() -> None:
+    problem = equal_double_goldberg()
+    start, goal = (np.array([a, b, np.pi, -b, -a, np.pi]) for a, b in ((3.0, 0.2), (-3.0, 0.4)))
+    path = cover_surface(problem, start[None], radius=1.0).path(start, goal, spacing=0.1)
+    assert np.abs(np.diff(path, axis=0)).max() < 0.2 and path[-1, 0] == pytest.approx(2 * np.pi - 3)
+    with pytest.raises(ValueError, match="goal lies in no chart"):
+        cover_surface(problem, start[None], radius=1.0).path(start, np.zeros(6))
+
+
+def test_wrong_seeds_and_limits_are_refused() -> None:
+    with pytest.raises(ProblemError, match="shape of the seeds"):
+        cover_surface(SPHERE, np.zeros(3))
+    with pytest.raises(ProblemError, match="radius"):
+        cover_surface(SPHERE, np.zeros((1, 3)), radius=0.0)
