@@ -161,7 +161,7 @@ class FunctionProblem(Problem):
         periods: Sequence[float] | None = None,
     ):
         self.bounds = np.array(bounds, dtype=float)
-        if self.bounds.ndim != 2 or self.bounds.shape[1] != 2 or np.any(self.bounds[:, 0] >= self.bounds[:, 1]):
+        if self.bounds.ndim != 2 or self.bounds.shape[1] != 2 or not np.all(self.bounds[:, 0] < self.bounds[:, 1]):
             raise ProblemError("bounds", self.bounds.tolist(), "rows of (low, high) with low < high")
         n = len(self.bounds)
         self.names = tuple(names) if names else tuple(f"u{i + 1}" for i in range(n))
@@ -170,6 +170,8 @@ class FunctionProblem(Problem):
         for what, given in (("names", self.names), ("units", self.units), ("periods", self.periods)):
             if len(given) != n:
                 raise ProblemError(f"number of {what}", len(given), f"{n}, the number of bounds")
+        if not np.all(self.periods > 0):
+            raise ProblemError("periods", self.periods.tolist(), "positive, inf where an unknown has none")
         self._function, self._jacobian = function, jacobian
         low = np.where(np.isfinite(self.bounds[:, 0]), self.bounds[:, 0], -1.0)
         high = np.where(np.isfinite(self.bounds[:, 1]), self.bounds[:, 1], 1.0)
