@@ -46,6 +46,7 @@ DEFAULT_SETTINGS = TraceSettings()
 # Next to a crossing rounding bends the curve F = 1e-16 from one branch into the other: a radius below this is first
 # taken for a sign of one, and a smooth piece across is tried.
 CAUTIOUS = 1e-4
+AT_ONCE = 14  # pieces made before the end of the curve is looked for
 
 
 def trace_branch(
@@ -107,25 +108,25 @@ class _Track:
 
 def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: TraceSettings) -> Branch:
     """The curve from ``start`` along ``tangent`` until it closes, leaves the region, stalls or grows too long."""
-    scale, count = problem.scale, 28
+    scale = problem.scale
     nothing = np.empty(0)
     track = _Track(np.empty((0, settings.order + 1, problem.n)), nothing, nothing, nothing)
     point, heading = start, tangent
     shortest = cautious = max(CAUTIOUS, settings.shortest) * scale
     while True:
         run = problem.march(
-            point, heading, settings.order, settings.tolerance, shortest, settings.longest * scale, count
+            point, heading, settings.order, settings.tolerance, shortest, settings.longest * scale, AT_ONCE
         )
         if run.status == MarchStatus.OPEN:
             return _assemble(problem, track, Outcome.OPEN, 0.0, float(run.residuals[-1]))
         known = len(track.pieces)
         track = track.extended(known, run.pieces, track.reached + np.cumsum(run.steps), run.radii, run.residuals)
-        end = _end_of_curve(problem, track, max(known - 1, 0))
+        end = _end_of_curve(problem, track, max(known - 1, 0), settings.tolerance)
         if end is None and run.status == MarchStatus.STALLED:
             bridged = _bridge(problem, track, settings) if shortest == cautious else None
             if bridged is not None:
                 track = bridged
-                end = _end_of_curve(problem, track, len(track.pieces) - 1)
+                end = _end_of_curve(problem, track, len(track.pieces) - 1, settings.tolerance)
             elif shortest > settings.shortest * scale:
                 shortest = settings.shortest * scale  # no singular point to jump over: a sharp bend, to be followed
             else:
@@ -138,7 +139,6 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
             return _assemble(problem, track, Outcome.STEP_LIMIT, track.reached)
         if len(track.pieces):
             point, heading = track.at(-1, track.reached)
-        count = 16
 
 
 def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track | None:
@@ -183,21 +183,24 @@ def _assemble(problem: Problem, track: _Track, outcome: Outcome, length: float, 
     )  # fmt: skip
 
 
-def _end_of_curve(problem: Problem, track: _Track, first: int) -> tuple[Outcome, float] | None:
+def _end_of_curve(
+    problem: Problem, track: _Track, first: int, tolerance: float
+) -> tuple[Outcome, float] | None:
     """Where the curve, from piece ``first`` on, comes back to its start or first leaves the bounds."""
     if not len(track.pieces):
         return None
-    closing, leaving = _closing(problem, track, first), _leaving(problem, track, first)
+    closing, leaving = _closing(problem, track, max(first, 1), tolerance), _leaving(problem, track, first)
     if closing is not None and (leaving is None or closing < leaving):
         return Outcome.CLOSED, closing
     return None if leaving is None else (Outcome.LEFT_REGION, leaving)
 
 
-def _closing(problem: Problem, track: _Track, first: int) -> float | None:
+def _closing(problem: Problem, track: _Track, first: int, tolerance: float) -> float | None:
     """Arclength at which the curve passes its start again in the same direction, modulo the periods."""
     pieces, centers, radii = track.pieces, track.centers, track.radii
     order = pieces.shape[1] - 1
     start, slope = track.at(0, 0.0)
+    close = max(1e-9, 30 * tolerance) * problem.scale
     away = np.linalg.norm(problem.difference(pieces[first:, 0], start), axis=1)
     for i in first + np.flatnonzero(away < 1.1 * radii[first:]):
         grid = np.linspace(-1.0, 1.0, 17)
@@ -207,11 +210,14 @@ def _closing(problem: Problem, track: _Track, first: int) -> float | None:
             powers = x ** np.arange(order + 1)
             offset = problem.difference(powers @ pieces[i], start)
             tangent = (np.arange(1, order + 1) * powers[:-1]) @ pieces[i][1:]
-            x = x - offset @ tangent / (tangent @ tangent)
+            step = offset @ tangent / (tangent @ tangent)
+            x = x - step
+            if abs(step) < 1e-15:
+                break
         s = centers[i] + x * radii[i]
         same_way = tangent @ slope > 0.9 * np.linalg.norm(tangent)
         # across a start beside a crossing the tangent turns no more than the pieces' own error allows
-        if abs(x) <= 1.02 and s > 0.5 * radii[0] and same_way and np.linalg.norm(offset) < 1e-9 * problem.scale:
+        if abs(x) <= 1.02 and s > 0.5 * radii[0] and same_way and np.linalg.norm(offset) < close:
             return float(s)
     return None
 
