@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from linkages.catalogue import entry
+from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import Entry, FormPattern
 from linkages.file import read_linkage, read_precisely
 from linkages.loop import GeometryError, Loop
@@ -33,7 +33,7 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Choice:
         if parameters:
             raise GeometryError("--param", parameters[0], "left out with a file, which holds the whole geometry")
         return Choice(read_linkage(text)[0])
-    found = entry(text)
+    found = _entry(text)
     values = found.complete(dict(_parameter(found, item) for item in parameters))
     patterns = found.patterns(**values) if found.patterns is not None else ()
     return Choice(found.build(**values), patterns)
@@ -51,6 +51,15 @@ def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
     found = entry(text)
     values = found.complete(dict(_parameter(found, item) for item in parameters))
     return found.build(**{key: mpmath.mpf(value) for key, value in values.items()})
+
+
+def _entry(text: str) -> Entry:
+    """The entry called ``text``; where there is none but a file of that name, it is among the nearest."""
+    try:
+        return entry(text)
+    except UnknownLinkageError as error:
+        file = f"{text}.toml"
+        raise UnknownLinkageError(text, (file, *error.nearest)) if Path(file).is_file() else error from None
 
 
 def _is_file(text: str) -> bool:

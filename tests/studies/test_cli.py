@@ -249,6 +249,13 @@ def test_a_file_that_is_wrong_ends_with_its_name_and_what_is_wrong(write):
     assert "mine.toml: key: 'twist' (the nearest is 'twists')" in result.stderr
 
 
+def test_a_name_without_the_ending_of_a_file_leads_to_the_file(write, monkeypatch):
+    monkeypatch.chdir(write(MINE).parent)
+    result = bifurc("map", "mine")
+    assert result.exit_code == 2
+    assert "the nearest names are mine.toml" in result.stderr
+
+
 def test_a_file_takes_no_parameters(write):
     result = bifurc("map", write(MINE), "--param", "a=1")
     assert result.exit_code == 2
