@@ -64,7 +64,7 @@ def compilation_announced() -> Iterator[None]:
         def on_start(self, event: Any) -> None:
             if not self.began:
                 self.began = time.monotonic()
-                click.echo("compiling kernels (once, kept on disk; up to half a minute) ...", err=True)
+                click.echo("compiling kernels (once, kept on disk; about half a minute) ...", err=True)
 
         def on_end(self, event: Any) -> None:
             self.ended = time.monotonic()
