@@ -107,5 +107,5 @@ def test_a_point_of_the_wrong_shape_is_refused(point):
 
 
 def test_a_point_that_is_not_finite_is_refused():
-    with pytest.raises(ProblemError, match="start.*finite"):
+    with pytest.raises(ProblemError, match=r"start.*finite"):
         FunctionProblem(circle, BOX).check_point([0.0, np.nan], "start")
