@@ -20,7 +20,7 @@ from bifurc.corrector import correct_across
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["bridge_by_collocation", "march_by_collocation"]
+__all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
 
 RAN, STALLED, OPEN = 0, 1, 2
 
@@ -164,6 +164,11 @@ def _extrapolate(at: np.ndarray, values: np.ndarray, target: float) -> np.ndarra
         span = (right - left)[:, None]
         table = ((target - left)[:, None] * table[1:] - (target - right)[:, None] * table[:-1]) / span
     return table[0]
+
+
+def reparametrised(piece: np.ndarray) -> tuple[np.ndarray, float]:
+    """A piece (order + 1, n) of monomials on [-1, 1], in any parameter, with arclength as parameter; and its length."""
+    return _by_arclength(np.linalg.solve(_basis(len(piece) - 1).to_powers, piece))
 
 
 def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:
