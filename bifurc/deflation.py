@@ -1,8 +1,8 @@
 """Curves along which F' has a lower rank throughout: shaky motions, double components.
 
-There F = 0 does not determine the curve well enough to correct a point onto it: across it F grows with the square of the
-distance. One step of deflation (Ojika 1987; Leykin, Verschelde and Zhao 2006) adds a null vector v that is not the
-tangent as further unknown,
+There F = 0 does not determine the curve well enough to correct a point onto it: across it F grows with the
+square of the distance. One step of deflation (Ojika 1987; Leykin, Verschelde and Zhao 2006) adds a null vector
+v that is not the tangent as further unknown,
 
     F(u) = 0,   F'(u) v = 0,   a . v = 1,   t . v = 0,
 
