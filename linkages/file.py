@@ -24,7 +24,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import mpmath
 import numpy as np
 
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop, loop_from_axes
@@ -73,6 +72,8 @@ def read_precisely(path: Path | str) -> Loop:
     The decimals of a table are taken as they are written, degrees turned into radians exactly; joint axes give the
     same loop as `read_linkage`, its doubles taken as exact. Raises `LinkageFileError`.
     """
+    import mpmath
+
     loop, configuration = read_linkage(path)
     if configuration is not None:
         return loop

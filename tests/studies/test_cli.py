@@ -1,6 +1,8 @@
 """The command line, in one process; what is written to disk, and signals, are in their own files."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -97,6 +99,15 @@ def test_json_is_one_document_with_the_documented_keys_and_nothing_else():
     assert document["seed"] == 7
     assert document["tolerance"] == 1e-13
     assert document["completeness"]["level"] in ("complete slices", "estimated")
+
+
+def test_json_loads_nothing_that_it_does_not_need():
+    script = (
+        "import sys, studies.cli as c; c.main(['map', 'bennett', '--json'], standalone_mode=False)\n"
+        "print([m for m in ('matplotlib', 'xarray', 'sympy', 'mpmath') if m in sys.modules], file=sys.stderr)"
+    )
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert result.stderr.splitlines()[-1] == "[]"
 
 
 def test_json_speaks_of_radians_joints_from_1_and_relative_residuals():
