@@ -1,0 +1,46 @@
+"""What every method returns: a curve that can be evaluated anywhere, and why there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline, CubicSpline
+
+__all__ = ["Curve", "MethodFailure", "through_points", "through_points_and_tangents"]
+
+
+class MethodFailure(RuntimeError):
+    """The method cannot follow this curve to its end; the message says why."""
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve over a parameter from 0 to ``end``; ``points`` is the number of points or pieces it was made of."""
+
+    evaluate: Callable[[np.ndarray], np.ndarray]
+    end: float
+    points: int
+
+    def sample(self, count: int) -> np.ndarray:
+        """Points (count, n) at equally spaced parameters."""
+        return self.evaluate(np.linspace(0.0, self.end, count))
+
+
+def through_points_and_tangents(points: list[np.ndarray], tangents: list[np.ndarray], length: float) -> Curve:
+    """Cubic Hermite pieces through points and unit tangents, cut off at arclength ``length``.
+
+    The arclength of a piece is its chord, times 1 + angle^2 / 24 for the arc above it.
+    """
+    u, t = np.array(points), np.array(tangents)
+    turned = np.linalg.norm(np.diff(t, axis=0), axis=1)
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(u, axis=0), axis=1) * (1 + turned**2 / 24))])
+    return Curve(CubicHermiteSpline(s, u, t), min(length, s[-1]), len(u))
+
+
+def through_points(points: list[np.ndarray], length: float) -> Curve:
+    """A cubic spline through points over their chord length, cut off at ``length``."""
+    u = np.array(points)
+    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(u, axis=0), axis=1))])
+    return Curve(CubicSpline(s, u), min(length, s[-1]), len(u))

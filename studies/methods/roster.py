@@ -1,0 +1,63 @@
+"""Every method of the study by its name, as a function of a case and a tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from studies.methods import natural, null_field, peers, point_by_point, this_project
+from studies.methods.cases import Case
+from studies.methods.curve import Curve
+
+__all__ = ["ORDERS", "Method", "comparison_methods", "orders_of_this_project"]
+
+ORDERS = (2, 4, 8, 12, 16, 20, 24)
+Follow = Callable[..., Curve]
+
+
+@dataclass(frozen=True)
+class Method:
+    """A way to follow a curve: ``follow(case, tolerance)``. ``order`` is that of this project's pieces, else 0."""
+
+    name: str
+    follow: Callable[[Case, float], Curve]
+    order: int = 0
+
+
+def orders_of_this_project() -> list[Method]:
+    """This project at every order."""
+
+    def follow(order: int, case: Case, tolerance: float) -> Curve:
+        return this_project.trace(case.problem, case.start, case.tangent, case.length, order, tolerance)
+
+    return [Method(f"order {order}", partial(follow, order), order) for order in ORDERS]
+
+
+def comparison_methods() -> list[Method]:
+    """The usual ways, and the packages that are installed."""
+    methods = [
+        _by_arclength("pseudo-arclength, tangent", point_by_point.pseudo_arclength_tangent),
+        _by_arclength("pseudo-arclength, secant", point_by_point.pseudo_arclength_secant),
+        _by_arclength("SVD predictor-corrector", point_by_point.svd_predictor_corrector),
+        Method("natural parameter", _natural),
+    ]
+    for solver in null_field.SOLVERS:
+        for projected in (False, True) if solver != "LSODA" else (False,):
+            follow = partial(null_field.integrate_null_field, solver=solver, projected=projected)
+            methods.append(_by_arclength(f"solve_ivp {solver}" + (", projected" if projected else ""), follow))
+    if peers.has_pycont():
+        methods.append(_by_arclength("pycont-lite", peers.pycont_lite))
+    return methods
+
+
+def _by_arclength(name: str, follow: Follow) -> Method:
+    def run(case: Case, tolerance: float) -> Curve:
+        return follow(case.problem, case.start, case.tangent, case.length, tolerance)
+
+    return Method(name, run)
+
+
+def _natural(case: Case, tolerance: float) -> Curve:
+    parameter, travel = case.parameter
+    return natural.natural_parameter(case.problem, case.start, travel, parameter, tolerance)

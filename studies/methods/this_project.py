@@ -1,0 +1,26 @@
+"""The method of this project: pieces of high order, through the public interface."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.continuation import TraceSettings, trace_branch
+from bifurc.problem import Problem
+from studies.methods.curve import Curve, MethodFailure
+
+__all__ = ["trace"]
+
+
+def trace(
+    problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, order: int, tolerance: float
+) -> Curve:
+    """`bifurc.continuation.trace_branch` at one order and tolerance.
+
+    An open curve is followed both ways, from bound to bound: more than the other methods are asked for.
+    """
+    settings = TraceSettings(order=order, tolerance=tolerance, max_length=10 * length / problem.scale)
+    branch: Branch = trace_branch(problem, start, tangent, settings)
+    if branch.length < 0.999 * length:
+        raise MethodFailure(branch.outcome.value)
+    return Curve(branch, branch.length, len(branch.pieces))
