@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.certificate import certify_atlas
 from bifurc.explore import explore
 from linkages.catalogue import entry
 from linkages.closure import LoopClosure
@@ -21,13 +22,16 @@ __all__ = ["map_by_name", "map_linkage"]
 NAMING, CLOSING = 400, 4000  # samples of a form for its name, and for its largest closure error
 
 
-def map_linkage(loop: Loop, patterns: Sequence[FormPattern] = (), **options: Any) -> Atlas:
+def map_linkage(
+    loop: Loop, patterns: Sequence[FormPattern] = (), *, certify: bool = False, **options: Any
+) -> Atlas:
     """The transition map of a loop: every form with its name, every bifurcation, every near miss.
 
     ``patterns`` are the forms that a source names, ``options`` those of `bifurc.explore.explore` (``starts``,
     ``seed``, ``settings``, ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
     ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest closure error seen along it
-    relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists in rad.
+    relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists in rad. With
+    ``certify`` they also hold the ``certificate`` of `bifurc.certificate`.
     """
     problem = LoopClosure(loop)
     atlas = explore(problem, **options)
@@ -44,7 +48,8 @@ def map_linkage(loop: Loop, patterns: Sequence[FormPattern] = (), **options: Any
     lengths, twists, offsets = (values.tolist() for values in loop.arrays)
     linkage = {"name": loop.name, "lengths": lengths, "twists": twists, "offsets": offsets}
     named = atlas.renamed([identity.name for identity in identities], labels)
-    return replace(named, info={**atlas.info, "linkage": linkage})
+    named = replace(named, info={**atlas.info, "linkage": linkage})
+    return certify_atlas(problem, named) if certify else named
 
 
 def map_by_name(name: str, *, starts: int = 200, seed: int = 0, **parameters: Any) -> Atlas:

@@ -30,10 +30,21 @@ def make_summary(atlas: Atlas) -> str:
         _points("Other singular points", atlas, [p for p in atlas.points if p.name.startswith("S")]),
         _near_misses(atlas),
         _rigid(atlas),
+        _certificates(atlas),
         f"Completeness ({atlas.completeness.level}): {atlas.completeness.statement}.",
         f"Explored in {atlas.info['seconds']:.3f} s, seed {atlas.info['seed']}.",
     ]
     return "\n\n".join(part for part in parts if part)
+
+
+def _certificates(atlas: Atlas) -> str:
+    certificates = [(form.name, form.labels.get("certificate")) for form in atlas.forms]
+    rows = [
+        (name, c["status"], f"{c['points']}", f"{c['bound']:.3g}", f"{len(c['gaps'])}", f"{len(c['reversals'])}")
+        for name, c in certificates if c
+    ]  # fmt: skip
+    heads = ("name", "status", "points", "bound K", "gaps", "alarms")
+    return "Certificates (each form is one arc of solutions)\n" + table(heads, rows) if rows else ""
 
 
 def describe_entry(found: Entry) -> str:

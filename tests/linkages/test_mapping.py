@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linkages.catalogue import UnknownLinkageError
+from linkages.catalogue import UnknownLinkageError, entry
 from linkages.loop import GeometryError, Loop
 from linkages.mapping import map_by_name, map_linkage
 
@@ -36,3 +36,8 @@ def test_a_name_or_a_parameter_that_does_not_exist_is_refused():
         map_by_name("benet")
     with pytest.raises(GeometryError, match="one of a, alpha, beta"):
         map_by_name("bennett", gamma=1.0)
+
+
+def test_a_map_is_certified_on_request():
+    atlas = map_linkage(entry("bennett").build(), certify=True, starts=20)
+    assert atlas.forms[0].labels["certificate"]["status"] == "certified"
