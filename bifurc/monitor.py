@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize.elementwise import find_root
 
 from bifurc.branch import Branch
 from bifurc.problem import Problem
+from bifurc.roots import bracketed_roots
 
 __all__ = ["Profile", "dead_points", "profile_branch", "roots_along", "singular_value_minima"]
 
@@ -145,11 +145,11 @@ def roots_along(branch: Branch, function: Callable[[np.ndarray], np.ndarray]) ->
     if not len(index):
         return [np.empty(0)] * values.shape[1]
 
-    def of_interest(x: np.ndarray, which: np.ndarray) -> np.ndarray:
+    def of_interest(x: np.ndarray) -> np.ndarray:
         return np.take_along_axis(function(x), which[:, None], axis=1)[:, 0]
 
-    found = find_root(of_interest, (s[index], s[index + 1]), args=(which,))
-    return [found.x[which == q] for q in range(values.shape[1])]
+    roots = bracketed_roots(of_interest, s[index], s[index + 1])
+    return [roots[which == q] for q in range(values.shape[1])]
 
 
 def dead_points(branch: Branch) -> list[np.ndarray]:
