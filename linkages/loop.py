@@ -8,6 +8,7 @@ closed when ``T_1 T_2 ... T_n = I``. Entry i of ``lengths`` is a_{i,i+1}, of ``t
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,6 +19,7 @@ import numpy as np
 __all__ = ["MAX_JOINTS", "MIN_JOINTS", "GeometryError", "Loop", "loop_from_axes"]
 
 MIN_JOINTS, MAX_JOINTS = 4, 12
+NUMBERS = (int, float, np.integer, np.floating)
 
 
 class GeometryError(ValueError):
@@ -57,7 +59,7 @@ class Loop:
                 )
         for which in ("lengths", "twists", "offsets"):
             for i, value in enumerate(getattr(self, which), start=1):
-                if isinstance(value, int | float | np.number) and not np.isfinite(value):
+                if isinstance(value, NUMBERS) and not math.isfinite(value):
                     raise GeometryError(f"{which}[{i}]", value, "a finite number")
 
     @property
