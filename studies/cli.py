@@ -22,6 +22,7 @@ Exit codes:
   2    bad input
   3    the linkage does not move: rigid, or no real configuration
   4    there is no route
+  5    for identify: no linkage of the catalogue has this geometry
   130  interrupted; what was found is shown and written
 """
 EXPLORING = (
@@ -120,20 +121,49 @@ def show(name: str) -> None:
     click.echo(describe_entry(entry(name)))
 
 
+@main.command(epilog=EXIT_CODES)
+@click.argument("linkage", metavar="FILE.toml|NAME")
+@click.option("--tolerance", default=1e-8, show_default=True, help="How far a table may be from the linkage it is.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON document and nothing else; angles in radians.")
+def identify(linkage: str, tolerance: float, as_json: bool) -> None:
+    """Name the linkages of the catalogue that a table is a case of, whichever way it is read.
+
+    Other first joint, direction, sense of axes and links, mirror image and scale make no difference. Where none
+    fits, the nearest are shown with the numbers that are off.
+
+    \b
+    Example:
+      bifurc identify my_linkage.toml
+    """
+    from linkages.identify import identify as identify_loop
+    from studies.choice import choose_linkage
+    from studies.identify import NOT_KNOWN, describe_identification, make_identification_document
+
+    found = identify_loop(choose_linkage(linkage).loop, tolerance)
+    if as_json:
+        import json
+
+        click.echo(json.dumps(make_identification_document(found), allow_nan=False))
+    else:
+        click.echo(describe_identification(found))
+    click.get_current_context().exit(0 if found.matches or found.locked else NOT_KNOWN)
+
+
 @main.command("map", epilog=EXIT_CODES)
 @click.argument("linkage", metavar="NAME|FILE.toml")
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for dataset, graph, summary and figures."
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON document and nothing else; angles in radians.")
+@click.option("--certify", is_flag=True, help="Prove that no form jumps from one arc to another, and say where.")
 @click.option(
     "--digits", type=click.IntRange(20, 1000),
     help="Find every singular point again in arithmetic of so many digits, and show how many of the map's agree.",
 )
 @exploring
 def map_command(
-    linkage: str, parameters: tuple[str, ...], out: Path | None, as_json: bool, digits: int | None, starts: int,
-    seed: int, tolerance: float, verbose: bool,
+    linkage: str, parameters: tuple[str, ...], out: Path | None, as_json: bool, certify: bool, digits: int | None,
+    starts: int, seed: int, tolerance: float, verbose: bool,
 ) -> None:  # fmt: skip
     """Map every motion form of a linkage, every bifurcation, and the graph between them.
 
@@ -150,7 +180,7 @@ def map_command(
     if out is not None:
         _prepare(out)
     with HeldInterrupt():  # Ctrl-C ends the search, but not before what was found is shown and written
-        atlas = _explore(linkage, parameters, starts, seed, tolerance)
+        atlas = _explore(linkage, parameters, starts, seed, tolerance, certify)
         from studies.summary import make_summary
         from studies.verdict import judge
 
@@ -225,7 +255,9 @@ def _prepare(out: Path) -> None:
         raise BadInput(f"--out {out}: nothing can be written there ({error.strerror})") from None
 
 
-def _explore(linkage: str, parameters: tuple[str, ...], starts: int, seed: int, tolerance: float) -> Atlas:
+def _explore(
+    linkage: str, parameters: tuple[str, ...], starts: int, seed: int, tolerance: float, certify: bool = False
+) -> Atlas:
     from bifurc.continuation import TraceSettings
     from linkages.mapping import map_linkage
     from studies.choice import choose_linkage
@@ -236,8 +268,9 @@ def _explore(linkage: str, parameters: tuple[str, ...], starts: int, seed: int, 
     try:
         with compilation_announced():
             return map_linkage(
-                chosen.loop, chosen.patterns, starts=starts, seed=seed, settings=settings, progress=status
-            )
+                chosen.loop, chosen.patterns, certify=certify, starts=starts, seed=seed, settings=settings,
+                progress=status,
+            )  # fmt: skip
     finally:
         status.wipe()
 
