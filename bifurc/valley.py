@@ -199,4 +199,4 @@ def _leaves(center: np.ndarray, radius: float) -> Callable[[np.ndarray], bool]:
 
 
 def _distance(a: Valley, b: Valley) -> float:
-    return float(cKDTree(a.dense()).query(b.dense())[0].min())
+    return float(np.min(cKDTree(a.dense()).query(b.dense())[0]))

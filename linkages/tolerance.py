@@ -19,5 +19,8 @@ def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop
         raise GeometryError("error", error, "a finite number, not negative")
     size = error * loop.characteristic_length
     units = (size, error, size)
-    made = [values + unit * rng.normal(size=loop.n) for values, unit in zip(loop.arrays, units, strict=True)]
-    return Loop(*(tuple(values.tolist()) for values in made), loop.name)
+    lengths, twists, offsets = (
+        tuple((values + unit * rng.normal(size=loop.n)).tolist())
+        for values, unit in zip(loop.arrays, units, strict=True)
+    )
+    return Loop(lengths, twists, offsets, loop.name)

@@ -12,6 +12,7 @@ import click
 from bifurc.interrupts import HeldInterrupt
 from studies.status import EchoHandler, ExitCode, StatusLine, compilation_announced
 from studies.sweep.command import sweep_command
+from studies.tolerance_command import tolerance_command
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -234,6 +235,7 @@ def route(
 
 
 main.add_command(sweep_command)
+main.add_command(tolerance_command)
 
 
 def _listen(verbose: bool) -> None:

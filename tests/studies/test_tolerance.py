@@ -8,7 +8,8 @@ from linkages.catalogue import entry
 from linkages.loop import GeometryError
 from linkages.mapping import map_by_name
 from linkages.tolerance import make_with_errors
-from studies.tolerance import climb, half_branches, measure, slope, tolerance_command
+from studies.tolerance import climb, half_branches, measure, slope
+from studies.tolerance_command import tolerance_command
 
 
 @pytest.fixture(scope="module")
