@@ -11,20 +11,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import cos, sin
+from typing import Any
 
 import numpy as np
 
 from linkages.entry import FormPattern
 
-__all__ = ["patterns"]
+__all__ = ["original_equations", "patterns", "revised_equations"]
 
+Values = tuple[Any, ...]
 Coefficients = tuple[float, ...]  # of sin1, cos1, sin, cos, sin1 sin, sin1 cos, cos1 sin, cos1 cos, 1
 
 
-def _original(a: Coefficients, alpha: Coefficients, R: Coefficients) -> tuple[Coefficients, Coefficients]:
-    """Coefficients (A, ..., H, L) of the equations for theta2 and theta3 (eqs 4.2.15, 4.2.22)."""
+def original_equations(a: Values, c: Values, s: Values, R: Values) -> tuple[Values, Values]:
+    """Coefficients (A, ..., H, L) of the equations for theta2 and theta3 (eqs 4.2.15, 4.2.22).
+
+    ``a``, ``R`` are the three lengths and offsets, ``c``, ``s`` cosines and sines of the twists, of any number type.
+    """
     (a12, a23, a34), (r1, r2, r3) = a, R
-    (c12, c23, c34), (s12, s23, s34) = map(cos, alpha), map(sin, alpha)
+    (c12, c23, c34), (s12, s23, s34) = c, s
     second = (
         a34 * s12 * c23 + a12 * s34,
         -(r3 * s12 * c23 * s34 + r2 * s12 * s34),
@@ -50,31 +55,31 @@ def _original(a: Coefficients, alpha: Coefficients, R: Coefficients) -> tuple[Co
     return second, third
 
 
-def _revised(a: Coefficients, alpha: Coefficients) -> tuple[Coefficients, Coefficients]:
-    """The same for theta_{i+3} = -theta_i and zero offsets (eqs 4.3.6, 4.3.8)."""
-    a12, a23, a34 = a
-    (c12, c23, c34), (s12, s23, s34) = map(cos, alpha), map(sin, alpha)
+def revised_equations(a: Values, c: Values, s: Values, R: Values) -> tuple[Values, Values]:
+    """The same for opposite offsets and theta_{i+3} = -theta_i (eqs 4.3.6, 4.3.8; the latter is not in the text)."""
+    (a12, a23, a34), (r1, r2, r3) = a, R
+    (c12, c23, c34), (s12, s23, s34) = c, s
     second = (
         a34 * s12 * c23 - a12 * s34,
-        0.0,
+        r3 * s12 * c23 * s34 + r2 * s12 * s34,
         -(a23 * s12 * c34 - a12 * s23),
-        0.0,
-        0.0,
+        r3 * s12 * s23 * c34 - r1 * s12 * s23,
+        -r3 * s23 * s34,
         a34 * c12 * s23 - a23 * s34,
         -(a23 * c12 * s34 - a34 * s23),
-        0.0,
-        0.0,
+        r3 * c12 * s23 * s34,
+        r1 * (c12 * c23 - c34) + r2 * (c23 - c12 * c34) + r3 * (1 - c12 * c23 * c34),
     )
     third = (
         -(a12 * c23 * s34 - a34 * s12),
-        0.0,
+        r2 * s12 * c23 * s34 + r3 * s12 * s34,
         -(a23 * c12 * s34 - a34 * s23),
-        0.0,
-        0.0,
+        r2 * c12 * s23 * s34 + r1 * s23 * s34,
+        r2 * s12 * s23,
         -(a12 * s23 * c34 - a23 * s12),
         -(a23 * s12 * c34 - a12 * s23),
-        0.0,
-        0.0,
+        r2 * s12 * s23 * c34,
+        r1 * (c12 - c23 * c34) + r2 * (1 - c12 * c23 * c34) + r3 * (c23 - c12 * c34),
     )
     return second, third
 
@@ -129,8 +134,9 @@ def patterns(
 
     Lengths and offsets in one unit, twists in rad.
     """
-    a, alpha = (a12, a23, a34), (alpha12, alpha23, alpha34)
-    found = _three("original", "", +1, _original(a, alpha, (R1, R2, R3)))
+    a, alpha, offsets = (a12, a23, a34), (alpha12, alpha23, alpha34), (R1, R2, R3)
+    cosines, sines = tuple(map(cos, alpha)), tuple(map(sin, alpha))
+    found = _three("original", "", +1, original_equations(a, cosines, sines, offsets))
     if max(abs(R1), abs(R2), abs(R3)) == 0 and max(a) > 0:
-        found += _three("revised", "'", -1, _revised(a, alpha))
+        found += _three("revised", "'", -1, revised_equations(a, cosines, sines, offsets))
     return tuple(found)

@@ -63,7 +63,8 @@ def closed_chain(*links: Link, offsets: Sequence[Any] | None = None) -> Loop:
 
 def half_angle_ratio(x: Any, y: Any) -> Any:
     """sin((x + y)/2) / sin((x - y)/2), the factor of every Bennett closure equation; twists in rad."""
-    return sin((x + y) / 2) / sin((x - y) / 2)
+    p, q = tan(x / 2), tan(y / 2)
+    return (p + q) / (p - q)
 
 
 def syncopated_link(base: Link, product: Any) -> Link:
