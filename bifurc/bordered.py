@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,14 @@ from scipy.linalg import lu_factor, lu_solve, qr, solve_triangular
 from scipy.sparse import csc_array, issparse, vstack
 from scipy.sparse.linalg import splu
 
-__all__ = ["Bordered"]
+__all__ = ["Bordered", "as_dense"]
 
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
+
+
+def as_dense(matrix: Any) -> np.ndarray:
+    """A dense or sparse matrix as an array."""
+    return np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=float)
 
 
 class Bordered:
@@ -27,12 +33,12 @@ class Bordered:
     def __init__(self, jacobian: Any, tangent: np.ndarray):
         m, n = jacobian.shape
         self._rows = m
-        if issparse(jacobian):
-            if m == n - 1:
-                self._solve = splu(csc_array(vstack([jacobian, csc_array(tangent[None])]))).solve
-                return
-            jacobian = jacobian.toarray()
-        matrix = np.vstack([jacobian, tangent])
+        self._solve: Callable[[np.ndarray], np.ndarray]
+        if issparse(jacobian) and m == n - 1:
+            stacked: Any = vstack([csc_array(jacobian), csc_array(tangent[None])])
+            self._solve = splu(csc_array(stacked)).solve
+            return
+        matrix = np.vstack([as_dense(jacobian), tangent])
         if m == n - 1:
             factors = lu_factor(matrix, check_finite=False)
             pivots = np.abs(np.diag(factors[0]))

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.sparse import issparse
+from scipy.sparse import csc_array, issparse
 
+from bifurc.bordered import as_dense
 from bifurc.collocation import march_by_collocation
 from bifurc.corrector import project_by_least_squares, project_to_sphere_by_newton
 from bifurc.seeding import Seeds, random_seeds
@@ -144,9 +145,9 @@ class Problem:
 class FunctionProblem(Problem):
     """A problem from a plain Python callable ``function``: (n,) -> (m,).
 
-    Derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where given, else by complex step where the function
-    lets complex numbers through, else by central differences; ``derivatives`` says which. ``bounds`` (n, 2)
-    is the region from which `explore` draws starts and in which curves are followed. Raises
+    Derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where given, else by complex step where
+    the function lets complex numbers through, else by central differences; ``derivatives`` says which.
+    ``bounds`` (n, 2) is the region from which `explore` draws starts and in which curves are followed. Raises
     `ProblemError` for bounds out of order and for a function that gives no finite vector.
     """
 
@@ -220,12 +221,12 @@ class FunctionProblem(Problem):
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n), dense."""
         made = [self.jacobian(u) for u in np.atleast_2d(points)]
-        return np.array([j.toarray() if issparse(j) else j for j in made])
+        return np.array([as_dense(j) for j in made])
 
 
 def _spectral_norm(matrix: Any) -> float:
     """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1 |A|_inf)."""
     if issparse(matrix):
-        size = abs(matrix)
+        size: Any = abs(csc_array(matrix))
         return float(np.sqrt(size.sum(axis=0).max() * size.sum(axis=1).max()))
     return float(np.linalg.norm(matrix, ord=2))
