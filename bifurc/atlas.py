@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 from typing import Any
 
 import networkx as nx
@@ -17,6 +17,7 @@ from bifurc.problem import ProblemError
 from bifurc.route import Leg, Route, RouteError, find_route, wrap
 from bifurc.seeding import Completeness
 from bifurc.singular import Kind, SingularPoint
+from bifurc.surface import ChartAtlas
 
 __all__ = ["Atlas", "Event", "Form", "Leg", "MeetingPoint", "Route", "RouteError", "Surface", "wrap"]
 
@@ -42,7 +43,8 @@ class Form:
 @dataclass(frozen=True)
 class MeetingPoint:
     """A singular point with its name, its ``kind`` once all forms are known, and the ``passes``: (index of the
-    form, arclength) for every time a form goes through it. ``tangents`` (p, n) are those of the passes."""
+    form, arclength) for every time a form goes through it. ``tangents`` (p, n) are those of the passes,
+    ``surfaces`` the indices of the surfaces on which it lies."""
 
     name: str
     kind: Kind
@@ -50,6 +52,7 @@ class MeetingPoint:
     passes: tuple[tuple[int, float], ...]
     tangents: np.ndarray
     note: str = ""
+    surfaces: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -65,10 +68,20 @@ class Event:
 
 @dataclass(frozen=True)
 class Surface:
-    """Solutions (k, n) seen on components of ``dimension`` 2 or more."""
+    """A component of ``dimension`` 2 or more: solutions (k, n) seen on it, and ``charts`` that cover it.
+
+    Without charts it may be several components of that dimension: whether they are connected is not known.
+    """
 
     dimension: int
     samples: np.ndarray
+    name: str = ""
+    charts: ChartAtlas | None = None
+
+    @property
+    def complete(self) -> bool:
+        """Whether charts cover all of it."""
+        return self.charts is not None and self.charts.complete
 
 
 @dataclass(frozen=True)
@@ -185,7 +198,8 @@ class Atlas:
     def graph(self) -> nx.MultiGraph:
         """Graph of forms: nodes are the names of the forms, edges the bifurcations at which two of them meet.
 
-        A bifurcation that one form passes more than once is a loop on that form.
+        A bifurcation that one form passes more than once is a loop on that form. Surfaces are nodes as well, with their
+        ``dimension``, joined to the forms that meet them and to the surfaces with which they share a singular point.
         """
         graph = nx.MultiGraph()
         for form in self.forms:
@@ -195,6 +209,13 @@ class Atlas:
             passing = sorted(i for i, _ in point.passes)
             for i, j in sorted(set(combinations(passing, 2))):
                 graph.add_edge(self.forms[i].name, self.forms[j].name, key=point.name, bifurcation=point.name)
+        for surface in self.surfaces:
+            graph.add_node(surface.name, dimension=surface.dimension)
+        for point in self.points:
+            met = [self.surfaces[k].name for k in point.surfaces]
+            through = [self.forms[i].name for i in sorted({i for i, _ in point.passes})]
+            for one, other in [*product(through, met), *combinations(met, 2)]:
+                graph.add_edge(one, other, key=point.name, bifurcation=point.name)
         return graph
 
     # --- routes ---------------------------------------------------------------------------------------

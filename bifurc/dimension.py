@@ -8,16 +8,19 @@ tell: it is larger at singular points, and all along components that are shaky. 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bifurc.deadline import Deadline
-from bifurc.problem import Problem
 
-__all__ = ["LocalDimensions", "local_dimensions", "null_spaces"]
+if TYPE_CHECKING:
+    from bifurc.problem import Problem
+
+__all__ = ["LocalDimensions", "is_on_surface", "local_dimensions", "null_spaces"]
 
 NULL = 1e-7  # singular value, over the problem's magnitude, below which a direction belongs to the null space
-RADII = (1e-3, 1e-5)  # of the probes, over the problem's scale; the smaller one for points next to singular ones
+RADIUS = 5e-3  # of the probes, over the scale: at much less, degenerate singular points would look like surfaces
 KEPT = 0.05  # a probe that loses a larger share of itself when it is projected does not lie along the solutions
 CHUNK = 256  # points probed between two looks at the clock
 
@@ -70,18 +73,18 @@ def local_dimensions(problem: Problem, points: np.ndarray, deadline: Deadline | 
     return LocalDimensions(dimension, nullity, regular)
 
 
+def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
+    """Whether a solution (n,) lies on a component of dimension 2 or more with the rank that belongs to it."""
+    found = local_dimensions(problem, point[None])
+    return bool(found.dimension[0] == found.nullity[0] > 1)
+
+
 def _dimensions_of_nullity(problem: Problem, points: np.ndarray, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Dimension and regularity of points (b, n) whose null spaces (b, k, n) all have dimension k."""
     count, k = basis.shape[:2]
     if k == 0:
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
-    regular = np.zeros(count, dtype=bool)
-    for radius in RADII:
-        rest = np.flatnonzero(~regular)
-        _, _, loss = _probe(problem, points[rest], basis[rest], radius)
-        regular[rest] = loss.max(axis=1, initial=0.0) < KEPT
-        if np.all(regular):
-            break
+    regular = _probe(problem, points, basis, RADIUS)[2].max(axis=1) < KEPT
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
         dimension[i] = _dimension_beside(problem, points[i], basis[i])
@@ -109,7 +112,7 @@ def _probe(
 
 def _dimension_beside(problem: Problem, point: np.ndarray, basis: np.ndarray) -> int:
     """Dimension about a point some of whose probes were lost."""
-    ends, reached, loss = (a[0] for a in _probe(problem, point[None], basis[None], RADII[0]))
+    ends, reached, loss = (a[0] for a in _probe(problem, point[None], basis[None], RADIUS))
     ends, reached = ends[np.isfinite(loss)], reached[np.isfinite(loss)]
     away = np.linalg.norm(reached, axis=1) > 0.1
     if not np.any(away):
@@ -121,7 +124,7 @@ def _dimension_beside(problem: Problem, point: np.ndarray, basis: np.ndarray) ->
         own = right[i, problem.n - nullity[i] :][None]
         if nullity[i] <= found or not nullity[i]:
             continue
-        if _probe(problem, ends[away][i][None], own, 0.01 * RADII[0])[2].max() < KEPT:
+        if _probe(problem, ends[away][i][None], own, 0.01 * RADIUS)[2].max() < KEPT:
             found = int(nullity[i])
     if found or np.any(nullity < len(basis)):
         return found if found else -1

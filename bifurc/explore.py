@@ -14,11 +14,14 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface, wrap
 from bifurc.branch import Branch, Outcome
+from bifurc.components import Components, lies_on, singular_points_of, sort_out
 from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
+from bifurc.deadline import Deadline
+from bifurc.deflation import Deflated, lower_rank_direction
+from bifurc.dimension import is_on_surface
 from bifurc.interrupts import HeldInterrupt
 from bifurc.monitor import Profile, dead_points, profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
-from bifurc.section import section
 from bifurc.seeding import Completeness, Seeds, missed_probability
 from bifurc.singular import Kind, SingularPoint, classify_singular_point, locate_singular_point
 
@@ -27,9 +30,8 @@ __all__ = ["explore"]
 log = logging.getLogger(__name__)
 
 SAME = 1e-6  # distance, in units of the problem's scale, below which a seed lies on a traced curve
-INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R"}
+INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R", Kind.DIMENSION_CHANGE: "D"}
 NEARLY = 1e-3  # singular value, over the problem's magnitude, below which a singular point is looked for
-SURFACE_CHECKS = 12  # how many seeds of nullity 2 are examined one by one once a surface is known
 
 
 @dataclass
@@ -42,9 +44,10 @@ class _Findings:
     located: list[list[float]] = field(default_factory=list)  # arclengths of minima that are singular points
     points: list[SingularPoint] = field(default_factory=list)
     rigid: list[np.ndarray] = field(default_factory=list)
-    surface: list[np.ndarray] = field(default_factory=list)
+    components: Components = field(default_factory=Components)
     gaps: list[float] = field(default_factory=list)  # residuals of starts that only nearly solve the system
     owner: dict[int, tuple[str, int]] = field(default_factory=dict)
+    deadline: Deadline = field(default_factory=Deadline)
 
 
 def explore(
@@ -55,6 +58,8 @@ def explore(
     seeds: Seeds | None = None,
     settings: TraceSettings = DEFAULT_SETTINGS,
     progress: Callable[[str, int], None] | None = None,
+    budget: float = np.inf,
+    charts: int = 1500,
 ) -> Atlas:
     """All solution curves of a problem, all singular points on them, nothing twice.
 
@@ -62,12 +67,16 @@ def explore(
     drawn with ``seed``) unless given. Every branch found is traced whole and monitored; from every singular
     point the directions in which other branches leave become further starts. ``progress`` is called with what
     was found and how many. Ctrl-C ends the search early: the atlas holds what was found, and
-    ``info["interrupted"]`` is true.
+    ``info["interrupted"]`` is true. The search also ends when the ``budget`` (s) is used up, but for the step
+    it is in: the completeness says so, and ``info["out_of_time"]``. Surfaces are covered with up to ``charts`` charts.
     """
+    if not budget > 0:
+        raise ProblemError("budget", budget, "a positive number of seconds")
     if starts < 1 and seeds is None:
         raise ProblemError("starts", starts, "at least 1")
     began = time.perf_counter()
-    found = _Findings()
+    deadline = Deadline(budget)
+    found = _Findings(deadline=deadline)
     interrupted = False
     gathered = seeds
     try:
@@ -76,6 +85,7 @@ def explore(
                 gathered = problem.seeds(np.random.default_rng(seed), starts)
             held.check()
             _work_through(problem, gathered, found, settings, progress, held)
+            _work_on_surfaces(problem, gathered, found, settings, charts)
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
@@ -84,7 +94,8 @@ def explore(
         gathered = Seeds(nothing, np.empty(0, dtype=bool), np.empty(0), nothing)
     info = {
         "seed": seed, "starts": starts, "settings": asdict(settings), "interrupted": interrupted,
-        "derivatives": problem.derivatives, "seconds": time.perf_counter() - began,
+        "budget": budget, "out_of_time": deadline.passed, "derivatives": problem.derivatives,
+        "seconds": time.perf_counter() - began,
     }  # fmt: skip
     return _assemble(problem, found, gathered, interrupted, info)
 
@@ -101,9 +112,13 @@ def _work_through(
         return
     values = singular_values(problem, seeds.points)
     # the clearest first: those whose curve is far from singular
-    waiting = list(np.argsort(-values[:, max(problem.n - 2, 0)], kind="stable"))
+    order = np.argsort(-values[:, max(problem.n - 2, 0)], kind="stable")
+    found.components = sort_out(problem, seeds.points, values, found.deadline)
+    for dimension, numbers in found.components.seeds.items():
+        found.owner.update((k, ("component of dimension", dimension)) for k in numbers)
+    waiting = [k for k in order.tolist() if k not in found.owner]
     matched = 0
-    while waiting:
+    while waiting and not found.deadline.passed:
         i = waiting.pop(0)
         found.owner[i] = _take_seed(problem, seeds.points[i], values[i], found, settings)
         for number in range(matched, len(found.branches)):
@@ -128,9 +143,13 @@ def _take_seed(
         known = _nearest(problem, point, [p.u for p in found.points], 1e-4)
         if known is not None:
             return "point", known
-        if values[n - 2] < 1e-9 and (len(found.surface) > SURFACE_CHECKS or _on_surface(problem, point)):
-            found.surface.append(point)
-            return "surface", 0
+        for number, branch in enumerate(found.branches):
+            if branch.nearest(point)[0][0] < 1e-4 * problem.scale:
+                return "form", number  # where the rank is low a seed is good to half the digits only
+        along = lower_rank_direction(problem, point)
+        if along is not None:
+            number = len(found.branches)
+            return ("form", number) if _trace_lower_rank(problem, point, along, found, settings) else ("no solution", 0)
         nullity = int(np.count_nonzero(values < 1e-4))
         located = _examine(problem, point, nullity, found, reach=1e-2)
         if located is not None:
@@ -147,13 +166,33 @@ def _take_seed(
     return "rigid", _known_or_new(problem, point, found.rigid)
 
 
-def _on_surface(problem: Problem, point: np.ndarray) -> bool:
-    """Whether the solution set about a point has dimension 2 or more."""
-    jacobian = problem.jacobians(point[None])[0] / problem.magnitude
-    _, sigma, right = np.linalg.svd(jacobian)
-    padded = np.concatenate([sigma, np.zeros(len(right) - len(sigma))])
-    null_space = right[padded < 1e-7].T
-    return null_space.shape[1] > 1 and section(problem, point, null_space, 1e-2 * problem.scale).dimension > 1
+def _trace_lower_rank(
+    problem: Problem, point: np.ndarray, along: np.ndarray, found: _Findings, settings: TraceSettings
+) -> bool:
+    """Trace the curve of lower rank through ``point``; what may cross it is left to other seeds."""
+    branch = trace_branch(Deflated(problem), point, along, settings)
+    if not len(branch.pieces) or branch.length < 1e-3 * problem.scale:
+        log.info("no curve of lower rank through %s: %s", point, branch.outcome.value)
+        return False
+    _add_branch(problem, branch, found)
+    return True
+
+
+def _work_on_surfaces(
+    problem: Problem, seeds: Seeds, found: _Findings, settings: TraceSettings, charts: int
+) -> None:
+    """Cover the surfaces with charts, locate singular points on them, and trace the curves that leave there."""
+    found.components.cover(problem, seeds.points, charts, found.deadline)
+    if found.components.charts is None:
+        return
+    for located in singular_points_of(problem, found.components.charts, found.deadline):
+        if found.deadline.passed:
+            break
+        point = _point_of(problem, *located, found)
+        starts: list[tuple[np.ndarray, np.ndarray | None]] = [
+            (point.u + point.radius * h, h) for h in point.half_branches
+        ]
+        _trace_and_follow(problem, starts, found, settings)
 
 
 def _trace_and_follow(
@@ -161,7 +200,7 @@ def _trace_and_follow(
 ) -> bool:
     """Trace the branches through the starts and everything that hangs on them; False where there is no curve."""
     traced = False
-    while queue:
+    while queue and not found.deadline.passed:
         point, along = queue.pop()
         if any(branch.nearest(point)[0][0] < SAME * problem.scale for branch in found.branches):
             continue
@@ -191,6 +230,8 @@ def _add_branch(
         candidates += [(0.0, 10 * NEARLY), (branch.length, 10 * NEARLY)]
     starts: list[tuple[np.ndarray, np.ndarray | None]] = []
     for at, small in candidates:
+        if found.deadline.passed:
+            break
         nullity = int(np.count_nonzero(singular_values(problem, branch(at)[None])[0] < small))
         known = len(found.points)
         point = _examine(problem, branch(at), nullity, found, reach=0.05) if nullity > 1 else None
@@ -208,16 +249,22 @@ def _examine(
     """Locate and classify the singular point near a configuration; one already known is returned as it is."""
     for k in sorted({max(nullity, 2), 2, 3}, key=lambda k: abs(k - nullity)):
         result = locate_singular_point(problem, near, k, reach * problem.scale) if k <= problem.n else None
-        if result is None:
+        if result is None or is_on_surface(problem, result[0]):
             continue
-        u, null_space, error = result
-        known = _nearest(problem, u, [p.u for p in found.points], SAME + 10 * error / problem.scale)
-        if known is not None:
-            return found.points[known]
-        point = classify_singular_point(problem, u, null_space, error)
-        found.points.append(point)
-        return point
+        return _point_of(problem, *result, found)
     return None
+
+
+def _point_of(
+    problem: Problem, u: np.ndarray, null_space: np.ndarray, error: float, found: _Findings
+) -> SingularPoint:
+    """The known singular point that a located one is, or a new one, classified."""
+    known = _nearest(problem, u, [p.u for p in found.points], SAME + 10 * error / problem.scale)
+    if known is not None:
+        return found.points[known]
+    point = classify_singular_point(problem, u, null_space, error)
+    found.points.append(point)
+    return point
 
 
 def _nearest(problem: Problem, point: np.ndarray, others: list[np.ndarray], within: float) -> int | None:
@@ -244,7 +291,11 @@ def _assemble(problem: Problem, found: _Findings, seeds: Seeds, interrupted: boo
     """The atlas of the findings, in an order that does not depend on the seeds."""
     order = sorted(range(len(found.branches)), key=lambda i: (-round(found.branches[i].length, 6), i))
     branches = [found.branches[i] for i in order]
-    points = [_meeting_point(problem, p, branches) for p in found.points]
+    surfaces = tuple(
+        replace(surface, name=f"surface {i}")
+        for i, surface in enumerate(found.components.surfaces(seeds.points), start=1)
+    )
+    points = [_meeting_point(problem, p, branches, surfaces) for p in found.points]
     points = sorted(points, key=lambda p: (p.kind.value, *np.round(wrap(p.point.u, problem.periods), 6)))
     points = [replace(p, name=f"{INITIALS.get(p.kind, 'S')}{i}") for i, p in enumerate(points, start=1)]
     component = _components(len(branches), points)
@@ -259,11 +310,11 @@ def _assemble(problem: Problem, found: _Findings, seeds: Seeds, interrupted: boo
             if float(s) not in found.located[k] and v < 0.5 * profile.smallest.max()
         ]
         dead += [Event(i, float(s), branch(s), index=j) for j, roots in enumerate(dead_points(branch)) for s in roots]
-    mobile = bool(found.branches or found.surface)
+    mobile = bool(found.branches or surfaces)
     return Atlas(
         names=problem.names, units=problem.units, periods=problem.periods, forms=tuple(forms), points=tuple(points),
         near_misses=tuple(near), dead_points=tuple(dead), rigid=np.array(found.rigid).reshape(-1, problem.n),
-        surfaces=(Surface(2, np.array(found.surface)),) if found.surface else (),
+        surfaces=surfaces,
         completeness=_completeness(found, seeds, interrupted),
         closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found), info=info,
     )  # fmt: skip
@@ -292,8 +343,11 @@ def _closure_gap(problem: Problem, seeds: Seeds, found: _Findings) -> float:
     return float(np.median(gaps)) if len(gaps) else np.inf
 
 
-def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch]) -> MeetingPoint:
-    """A singular point with the branches that pass it or end there; where they and the section disagree, a note."""
+def _meeting_point(
+    problem: Problem, point: SingularPoint, branches: list[Branch], surfaces: tuple[Surface, ...]
+) -> MeetingPoint:
+    """A singular point with the branches that pass it or end there, and the surfaces on which it lies; where the
+    branches and the section disagree, a note."""
     within = SAME * problem.scale + 10 * point.error
     through = [
         (i, float(s))
@@ -305,10 +359,12 @@ def _meeting_point(problem: Problem, point: SingularPoint, branches: list[Branch
     tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(-1, problem.n)
     explained, seen = 2 * len(through) + len(ends), len(point.half_branches)
     kind, note = point.kind, ""
-    if point.dimension < 2 and explained != seen:
+    if explained != seen:
         note = f"{explained} half-branches were traced, the section shows {seen}"
-        kind = Kind.BIFURCATION if explained > 2 else Kind.UNDECIDED
-    return MeetingPoint("", kind, point, tuple(through + ends), tangents, note)
+        crossing = Kind.BIFURCATION if explained > 2 else Kind.UNDECIDED
+        kind = Kind.DIMENSION_CHANGE if point.dimension > 1 else crossing
+    met = lies_on(surfaces, point.u, problem.periods) if point.dimension > 1 else ()
+    return MeetingPoint("", kind, point, tuple(through + ends), tangents, note, met)
 
 
 def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
@@ -328,10 +384,11 @@ def _components(count: int, points: list[MeetingPoint]) -> list[int]:
     graph = nx.Graph()
     graph.add_nodes_from(range(count))
     for point in points:
-        indices = [i for i, _ in point.passes]
+        indices = [i for i, _ in point.passes] + [("surface", k) for k in point.surfaces]
         graph.add_edges_from(pairwise(indices))
     out = [0] * count
-    for number, members in enumerate(sorted(nx.connected_components(graph), key=min)):
+    parts = ([i for i in members if isinstance(i, int)] for members in nx.connected_components(graph))
+    for number, members in enumerate(sorted(filter(None, parts), key=min)):
         for i in members:
             out[i] = number
     return out
@@ -347,6 +404,10 @@ def _completeness(found: _Findings, seeds: Seeds, interrupted: bool) -> Complete
         f"{closed} of {closed + len(seeds.gaps)} random starts reached a solution, each listed here: one more start "
         f"would reach something new with a probability of at most {missed:.2g} (95 % confidence)"
     )
+    if found.deadline.passed:
+        left = len(seeds.points) - len(found.owner)
+        reason = f"the budget of {found.deadline.seconds:.4g} s was used up with {left} starts not looked at; "
+        return Completeness("out of time", reason + estimate, missed if not left else 1.0)
     if interrupted:
         return Completeness("interrupted", "the search was interrupted; " + estimate, missed)
     level = "complete slices" if seeds.complete else "estimated"

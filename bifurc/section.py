@@ -11,7 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize.elementwise import find_minimum, find_root
+from scipy.optimize.elementwise import find_minimum
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from bifurc.dimension import NULL, local_dimensions, null_spaces
+from bifurc.roots import bracketed_roots
 
 if TYPE_CHECKING:
     from bifurc.problem import Problem
@@ -19,12 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["ReducedEquations", "Section", "section"]
 
 ANGLES = 96  # samples on the circle of a null space of dimension 2
+MOST_TESTED = 40  # solutions of higher nullity on a sphere whose local dimension is looked at
 
 
 @dataclass(frozen=True)
 class Section:
-    """Solutions on a small sphere about a point: ``points`` (h, n), one for each half-branch, and the local
-    ``dimension`` of the solution set (2 stands for 2 or more: the section is not finite)."""
+    """Solutions on a small sphere about a point: ``points`` (h, n), one for each half-branch of a curve, and the local
+    ``dimension`` of the solution set: where it is 2 or more, the sphere meets more than the curves."""
 
     points: np.ndarray
     dimension: int
@@ -81,7 +88,7 @@ def _circle_section(equations: ReducedEquations) -> Section:
     values = equations(_unit(angles))
     size = float(np.linalg.norm(values, axis=1).max())
     if size < 30 * equations.noise:
-        return Section(equations.points(_unit(angles)), 2)
+        return Section(equations.points(_unit(angles))[:0], 2)
     leading = np.linalg.svd(values, full_matrices=False)[2][0]
 
     def combined(angle: np.ndarray, sign: np.ndarray) -> np.ndarray:
@@ -89,7 +96,7 @@ def _circle_section(equations: ReducedEquations) -> Section:
 
     h = values @ leading
     low, high, touching = _brackets(angles, h, combined, 30 * equations.noise + 1e-9 * size)
-    roots = find_root(combined, (low, high), args=(np.ones_like(low),)).x if len(low) else np.empty(0)
+    roots = bracketed_roots(lambda x: combined(x, np.ones_like(x)), low, high, 1e-12) if len(low) else np.empty(0)
     candidates = np.concatenate([roots, touching])
     if not len(candidates):
         return Section(np.empty((0, len(equations.points(_unit(angles[:1]))[0]))), 0)
@@ -131,9 +138,24 @@ def _sphere_section(problem: Problem, point: np.ndarray, null_space: np.ndarray,
     found, gaps, last = problem.project_to_sphere(starts, point, radius)
     # next to the point F is of order radius^2 whatever the direction: the residual must be far below that
     good = found[(gaps < 1e-8 * (radius / problem.scale) ** 2 + 5e-15) & (last < 1e-4 * radius)]
-    clusters: list[np.ndarray] = []
-    for candidate in good:
-        if all(np.linalg.norm(candidate - other) > 1e-4 * radius for other in clusters):
-            clusters.append(candidate)
-    dimension = 2 if len(clusters) > max(12, len(starts) // 4) else int(bool(clusters))
-    return Section(np.array(clusters).reshape(-1, problem.n), dimension)
+    if not len(good):
+        return Section(np.empty((0, problem.n)), 0)
+    near = cKDTree(good).query_pairs(1e-4 * radius, output_type="ndarray")
+    links = csr_array((np.ones(len(near)), tuple(near.T)), shape=(len(good),) * 2)
+    clusters = good[np.unique(connected_components(links, directed=False)[1], return_index=True)[1]]
+    return _told_apart(problem, clusters)
+
+
+def _told_apart(problem: Problem, found: np.ndarray) -> Section:
+    """The section of solutions (h, n) on a sphere: those on curves are its points, those on surfaces its dimension.
+
+    A curve may be shaky, and a solution of higher nullity on it; the dimension of the nearby solutions decides.
+    """
+    sigma, _ = null_spaces(problem, found)
+    doubtful = np.flatnonzero(sigma[:, -2] < NULL)
+    tested = doubtful[:: max(1, len(doubtful) // MOST_TESTED)]
+    dimension = local_dimensions(problem, found[tested]).dimension
+    if np.all(dimension < 2):
+        return Section(found, 1)
+    apart = np.setdiff1d(np.arange(len(found)), doubtful)
+    return Section(found[apart], int(dimension.max()))

@@ -20,7 +20,8 @@ class Kind(Enum):
     RANK_DROP = "rank drop"  # one smooth branch passes
     CUSP = "cusp"  # two half-branches leave to the same side
     ISOLATED = "isolated"  # no branch passes
-    DIMENSION_CHANGE = "dimension change"  # it lies on a component of dimension 2 or more
+    DIMENSION_CHANGE = "dimension change"  # branches meet a component of dimension 2 or more
+    SURFACE = "singular point of a surface"  # it lies on a component of dimension 2 or more, and no branch passes
     UNDECIDED = "undecided"
 
 
@@ -49,7 +50,7 @@ class SingularPoint:
     def kind(self) -> Kind:
         """What the half-branches alone say."""
         if self.dimension > 1:
-            return Kind.DIMENSION_CHANGE
+            return Kind.DIMENSION_CHANGE if len(self.half_branches) else Kind.SURFACE
         if self.dimension < 0:
             return Kind.UNDECIDED
         count = len(self.half_branches)
@@ -206,7 +207,7 @@ def classify_singular_point(
     agreed = False
     for _ in range(4):
         outer, inner = (section(problem, point, null_space, r) for r in (radius, radius / 2))
-        agreed = inner.dimension == outer.dimension and (inner.dimension > 1 or len(inner.points) == len(outer.points))
+        agreed = inner.dimension == outer.dimension and len(inner.points) == len(outer.points)
         if agreed:
             break
         radius /= 4
@@ -214,7 +215,7 @@ def classify_singular_point(
     decided = tangents is not None and 2 * len(tangents) == len(half) and agreed
     return SingularPoint(
         u=point, rank=problem.n - k, null_space=null_space, error=error,
-        half_branches=half if agreed and outer.dimension < 2 else half[:0],
+        half_branches=half if agreed else half[:0],
         tangents=tangents if decided and tangents is not None else np.empty((0, len(point))),
         dimension=outer.dimension if agreed else -1, order=2 if decided else 0, radius=radius,
     )  # fmt: skip

@@ -512,7 +512,8 @@ def project(starts, geometry, noise, iterations):
         for _ in range(iterations):
             if gap <= noise:
                 break
-            _damped_step(jacobian, residual, factor * gap, step)
+            # without a floor the step along the null space would be rounding over rounding, next to a solution
+            _damped_step(jacobian, residual, max(factor * gap, 1e-14), step)
             for i in range(n):
                 trial[i] = theta[i] + step[i]
             _residual_jacobian(trial, geometry, trial_residual, trial_jacobian)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
+import networkx as nx
 import numpy as np
 import pytest
 
 from bifurc.charts import cover_surface
 from bifurc.dimension import local_dimensions
+from bifurc.explore import explore
 from bifurc.problem import FunctionProblem, Problem, ProblemError
+from bifurc.seeding import Seeds
+from bifurc.singular import Kind
 from bifurc.surface import Covering
 from linkages.closure import LoopClosure
 from linkages.double_goldberg import double_subtractive_goldberg
@@ -148,7 +153,7 @@ def test_two_spheres_are_two_surfaces() -> None:
 
     problem = FunctionProblem(lambda u: np.array([function(*u)]), [(-2, 2)] * 3)
     starts = np.array([[-0.5, 0, 0], [0.4, 0, 0]])
-    parts = cover_surface(problem, starts).parts()
+    parts = cover_surface(problem, starts, radius=0.4).parts()
     assert [part.euler_characteristic for part in parts] == [2, 2]
     assert sorted(part.area for part in parts) == pytest.approx([np.pi, 1.44 * np.pi], rel=0.01)
 
@@ -217,3 +222,77 @@ def test_wrong_seeds_and_limits_are_refused() -> None:
         cover_surface(SPHERE, np.zeros(3))
     with pytest.raises(ProblemError, match="radius"):
         cover_surface(SPHERE, np.zeros((1, 3)), radius=0.0)
+
+
+# --- in a search --------------------------------------------------------------------------------------
+
+
+def test_the_double_goldberg_loop_with_equal_links_has_forms_and_a_torus_that_they_never_meet() -> None:
+    problem = equal_double_goldberg()
+    atlas = explore(problem)
+    assert len(atlas.forms) == 2 and len(atlas.bifurcations) == 2 and len(atlas.points) == 2
+    (surface,) = atlas.surfaces
+    assert surface.dimension == 2 and surface.complete and surface.charts.euler_characteristic == 0
+    # theta3 = theta6 = pi, theta4 = -theta2, theta5 = -theta1
+    halves = np.stack([surface.samples[:, 2] - np.pi, surface.samples[:, 1] + surface.samples[:, 3]]) / 2
+    assert np.abs(np.sin(halves)).max() < 1e-9
+    regular = np.linalg.svd(problem.jacobians(surface.charts.centers), compute_uv=False)[:, 3]
+    assert regular.min() > 0.1  # rank 4 all over: no singular point, and so no way out
+    assert not nx.has_path(atlas.graph, atlas.forms[0].name, surface.name)
+
+
+def test_a_sarrus_loop_with_folded_legs_changes_mobility_where_its_forms_meet_the_torus() -> None:
+    atlas = explore(sarrus())
+    assert len(atlas.forms) == 2 and [s.dimension for s in atlas.surfaces] == [2]
+    assert [p.kind for p in atlas.points] == [Kind.DIMENSION_CHANGE] * 4
+    for point in atlas.points:
+        assert len(point.point.half_branches) == 2 and len(point.passes) == 1
+        assert point.surfaces == (0,) and point.note == ""
+    assert nx.is_connected(atlas.graph) and len({form.component for form in atlas.forms}) == 1
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.4], ids=["line", "parabola"])
+def test_a_curve_through_a_plane_is_found_with_both_of_its_halves(bend: float) -> None:
+    problem = FunctionProblem(lambda u: np.array([u[2] * u[0], u[2] * (u[1] - bend * u[2] ** 2)]), [(-1, 1)] * 3)
+    atlas = explore(problem, starts=100)
+    (point,) = atlas.points
+    assert point.kind is Kind.DIMENSION_CHANGE and np.abs(point.point.u).max() < 1e-10
+    assert len(point.point.half_branches) == 2 and len(point.passes) == 1 and point.surfaces == (0,)
+    assert len(atlas.forms) == 1 and atlas.surfaces[0].complete
+    assert list(atlas.graph.edges(keys=True)) == [("Form 1", "surface 1", point.name)]
+
+
+def test_curves_that_meet_a_plane_are_found_from_the_plane_alone() -> None:
+    def cross(u: np.ndarray) -> np.ndarray:  # the plane z = 0 and the lines x = y = 0 and x = y, z = x - 0.5
+        one, other = np.array([u[0], u[1]]), np.array([u[0] - u[1], u[2] - u[0] + 0.5])
+        return u[2] * np.outer(one, other).ravel()
+
+    problem = FunctionProblem(cross, [(-1, 1)] * 3)
+    on_plane = np.array([[0.3, -0.5, 0.0]])
+    given = Seeds(on_plane, np.ones(1, dtype=bool), np.empty(0), np.empty((0, 3)))
+    atlas = explore(problem, seeds=given)
+    assert len(atlas.forms) == 2 and len(atlas.bifurcations) == 1  # the lines cross at z = -0.5
+    meeting = [p.point.u for p in atlas.points if p.kind is Kind.DIMENSION_CHANGE]
+    assert np.abs(np.sort(meeting, axis=0) - [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0]]).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("problem", "dimension"),
+    [(planar(1, 1.2, 0.9, 1.3, 1.1, 0.8), 3), (planar(1, 2, 1, 2, 1, 2, 1, 2), 5), (general(9), 3), (general(12), 6)],
+    ids=["planar 6R", "planar 8R", "9R", "12R"],
+)
+def test_components_of_higher_dimension_are_reported_with_it_and_nothing_else(problem, dimension: int) -> None:
+    atlas = explore(problem)
+    assert [surface.dimension for surface in atlas.surfaces] == [dimension]
+    assert not atlas.forms and not atlas.points and not len(atlas.rigid)
+
+
+def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
+    began = time.perf_counter()
+    atlas = explore(general(8), budget=1.0)
+    assert time.perf_counter() - began < 5.0
+    assert atlas.info["out_of_time"] and atlas.completeness.level == "out of time"
+    assert atlas.surfaces[0].dimension == 2 and atlas.surfaces[0].charts.outcome is Covering.OUT_OF_TIME
+    assert not explore(planar(1, 2, 1.4, 2.2), budget=60.0).info["out_of_time"]
+    with pytest.raises(ProblemError, match="budget"):
+        explore(general(8), budget=0.0)
