@@ -114,7 +114,8 @@ def _candidates(entry: Entry, view: View, unit: float) -> Iterator[tuple[dict[st
 
 
 def _built(entry: Entry, guesses: list[dict[str, float]]) -> Iterator[tuple[dict[str, float], np.ndarray]]:
-    for parameters in guesses:
+    for guess in guesses:
+        parameters = {name: float(value) for name, value in guess.items()}
         values = _build(entry, parameters)
         if values is not None and np.all(np.isfinite(values)):
             yield parameters, values

@@ -95,9 +95,9 @@ def _double_goldberg(sign: int, special: bool) -> Callable[[Rows], Guesses]:
     return hint
 
 
-def _difference(name: str, of: int, less: int, sign: int = 1) -> Callable[[Rows], Guesses]:
-    """The twist ``name`` is sign times (twist ``of`` less twist ``less``), columns of the table."""
-    return lambda form: iter([{name: (sign * (form[1, of] - form[1, less])) % pi}])
+def _difference(name: str, of: int, less: int) -> Callable[[Rows], Guesses]:
+    """The twist ``name`` is that in column ``of`` less that in column ``less``, or the opposite for a link c - b."""
+    return lambda form: iter([{name: (sign * (form[1, of] - form[1, less])) % pi} for sign in (1, -1)])
 
 
 def _back_to_back(sign: int) -> Callable[[Rows], Guesses]:
@@ -207,10 +207,9 @@ HINTS: dict[str, Callable[[Rows], Guesses]] = {
     "torus-4r": lambda form: iter([{"r1": form[0, 0], "s1": form[0, 1], "chi1": form[1, 0], "theta1": 0.0}]),
 }
 for _kind, _name in (("mixed", "mixed-double"), ("goldberg", "double"), ("subtractive", "double-subtractive")):
-    _sign = 1 if _kind == "goldberg" else -1
     HINTS[f"{_name}-goldberg-type-i"] = _type_one(_kind)
     for _order in ("ii", "iii", "iv"):
-        HINTS[f"{_name}-goldberg-type-{_order}"] = _difference("gamma", 1, 5, _sign)
+        HINTS[f"{_name}-goldberg-type-{_order}"] = _difference("gamma", 1, 5)
 for _word, _sign in (("sum", 1), ("difference", -1)):
     HINTS[f"back-to-back-double-goldberg-{_word}"] = _back_to_back(_sign)
     HINTS[f"isomerized-back-to-back-double-goldberg-{_word}"] = _back_to_back(_sign)

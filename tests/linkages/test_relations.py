@@ -1,0 +1,80 @@
+"""The relations between linkages hold for random members."""
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from linkages.catalogue import catalogue, entry
+from linkages.constructions import isomerize
+from linkages.identify import identify
+from linkages.loop import GeometryError, Loop
+from linkages.relations import RELATIONS, RelationKind, relation_graph, relations_of
+
+
+def members(name, rng, count=2):
+    """Random members, as many as asked for."""
+    found = []
+    while len(found) < count:
+        try:
+            found.append(entry(name).build(**entry(name).draw(rng)))
+        except GeometryError:
+            continue
+    return found
+
+
+def is_case(loop, name, tolerance=1e-8):
+    return identify(loop, tolerance, [entry(name)], locking=False).names == (name,)
+
+
+def of_kind(*kinds):
+    chosen = [r for r in RELATIONS if r.kind in kinds]
+    return pytest.mark.parametrize("relation", chosen, ids=[f"{r.first}-{r.second}" for r in chosen])
+
+
+@of_kind(RelationKind.SPECIAL_CASE, RelationKind.SAME)
+def test_members_of_the_special_linkage_are_members_of_the_general_one(relation):
+    assert all(is_case(loop, relation.second) for loop in members(relation.first, np.random.default_rng(11)))
+
+
+@of_kind(RelationKind.SPECIAL_CASE)
+def test_not_every_member_of_the_general_linkage_is_a_special_one(relation):
+    (loop,) = members(relation.second, np.random.default_rng(12), 1)
+    assert not is_case(loop, relation.first)
+
+
+@of_kind(RelationKind.SAME)
+def test_linkages_that_are_the_same_are_so_both_ways(relation):
+    assert all(is_case(loop, relation.first) for loop in members(relation.second, np.random.default_rng(13)))
+
+
+@of_kind(RelationKind.ISOMER)
+def test_exchanging_the_links_at_the_joint_gives_the_isomer(relation):
+    (loop,) = members(relation.second, np.random.default_rng(14), 1)
+    assert is_case(isomerize(loop, relation.joint), relation.first)
+
+
+@of_kind(RelationKind.DEGENERATE)
+def test_without_the_vanishing_link_the_smaller_linkage_is_left(relation):
+    loop = entry(relation.first).build(**{relation.vanishing: 1e-7})
+    k = int(np.argmin(loop.lengths))
+    lengths, twists, offsets = (v[:k] + v[k + 1 :] for v in (loop.lengths, loop.twists, loop.offsets))
+    assert loop.lengths[k] < 1e-6
+    assert is_case(Loop(lengths, twists, offsets), relation.second, 1e-6)
+
+
+def test_the_special_cases_make_no_circle():
+    graph = relation_graph()
+    kept = [(u, v) for u, v, data in graph.edges(data=True) if data["kind"] is RelationKind.SPECIAL_CASE]
+    assert nx.is_directed_acyclic_graph(nx.DiGraph(kept))
+
+
+def test_the_graph_has_every_linkage_and_nothing_else():
+    graph = relation_graph()
+    assert set(graph) == set(catalogue())
+    assert all(data["source"] for _, _, data in graph.edges(data=True))
+    assert graph.number_of_edges() == len(RELATIONS)
+
+
+def test_a_linkage_knows_what_it_is_a_case_of():
+    kinds = {(r.kind, r.second) for r in relations_of("special-double-subtractive-goldberg")}
+    assert (RelationKind.SPECIAL_CASE, "double-subtractive-goldberg") in kinds
