@@ -19,13 +19,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint
 from bifurc.branch import Branch, Outcome
 from bifurc.layout import Variable, atlas_variables, split_rows, variable
 from bifurc.monitor import Profile
 from bifurc.plain import from_text, to_text
 from bifurc.seeding import Completeness
 from bifurc.singular import Kind, SingularPoint
+from bifurc.surface_layout import read_surfaces
 
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
@@ -170,9 +171,7 @@ def _read(dataset: xr.Dataset, source: str) -> Atlas:
         near_misses=_read_events(get, "near_miss", "value"),
         dead_points=_read_events(get, "dead_point", "index"),
         rigid=get["rigid_assembly"],
-        surfaces=tuple(
-            Surface(int(d), samples) for d, samples in zip(get["surface_dimension"], surfaces, strict=True)
-        ),
+        surfaces=read_surfaces(get, surfaces),
         completeness=Completeness(
             str(attributes["completeness_level"]),
             str(attributes["completeness_statement"]),
@@ -232,6 +231,7 @@ def _read_point(get: dict[str, np.ndarray], i: int) -> MeetingPoint:
         passes=tuple(passes),
         tangents=part("pass_tangent", "pass"),
         note=str(get["point_note"][i]),
+        surfaces=tuple(part("met_surface", "meeting").tolist()),
     )
 
 

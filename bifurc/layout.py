@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Sized
 from typing import Any
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.plain import to_text
+from bifurc.surface_layout import surface_variables
 
 __all__ = ["Variable", "atlas_variables", "split_rows", "variable"]
 
@@ -102,6 +103,10 @@ def _point_variables(points: Sequence[MeetingPoint], n: int, joint: str, unit: s
         "point_dimension": variable("point", _ints(p.dimension for p in found), "dimension of the solutions nearby"),
         "point_order": variable("point", _ints(p.order for p in found), "order that decided; 0: the section alone"),
         "point_radius": variable("point", _floats(p.radius for p in found), "radius of the section", unit),
+        "met_surface": variable(
+            "meeting", _ints(k for p in points for k in p.surfaces), "index of a surface it lies on"
+        ),
+        "meeting_count": _sizes("point", [p.surfaces for p in points], "meeting"),
         "pass_form": variable("pass", joined[:, 0].astype(int), "index of the form that passes, from 0"),
         "pass_arclength": variable("pass", joined[:, 1], "arclength at which it passes", unit),
     }  # fmt: skip
@@ -134,6 +139,7 @@ def _solution_variables(atlas: Atlas, joint: str, unit: str) -> dict[str, Variab
     return {
         "rigid_assembly": variable(("assembly", joint), _rows(atlas.rigid, n), "isolated solution", unit),
         "surface_dimension": variable("surface", _ints(s.dimension for s in atlas.surfaces), "dimension"),
+        **surface_variables(atlas.surfaces, n, joint, unit, variable),
         "surface_sample_count": _sizes("surface", surfaces, "surface_sample"),
         "surface_configuration": variable(
             ("surface_sample", joint), _joined(surfaces, (n,)), "solution on a surface", unit
@@ -141,7 +147,7 @@ def _solution_variables(atlas: Atlas, joint: str, unit: str) -> dict[str, Variab
     }
 
 
-def _sizes(owner: str, rows: Sequence[np.ndarray], dimension: str) -> Variable:
+def _sizes(owner: str, rows: Sequence[Sized], dimension: str) -> Variable:
     """Row sizes of a ragged array."""
     names, values, attributes = variable(owner, _ints(len(r) for r in rows), f"number of {dimension} entries")
     return names, values, attributes | {"sample_dimension": dimension}

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from bifurc.charts import cover_surface
+from bifurc.dataset import load_atlas, save_atlas
 from bifurc.dimension import local_dimensions
 from bifurc.explore import explore
 from bifurc.problem import FunctionProblem, Problem, ProblemError
@@ -296,3 +297,15 @@ def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
     assert not explore(planar(1, 2, 1.4, 2.2), budget=60.0).info["out_of_time"]
     with pytest.raises(ProblemError, match="budget"):
         explore(general(8), budget=0.0)
+
+
+def test_charts_and_meeting_points_survive_a_dataset(tmp_path) -> None:
+    atlas = explore(sarrus())
+    again = load_atlas(save_atlas(atlas, tmp_path / "sarrus.nc"))
+    old, new = atlas.surfaces[0], again.surfaces[0]
+    assert (new.name, new.dimension, new.complete) == (old.name, 2, True)
+    for name in ("centers", "bases", "radii", "neighbours", "vertices", "polygons", "polygon_sizes"):
+        assert np.array_equal(getattr(old.charts, name), getattr(new.charts, name))
+    assert new.charts.area == old.charts.area and new.charts.euler_characteristic == 0
+    assert [p.surfaces for p in again.points] == [(0,)] * 4
+    assert nx.utils.graphs_equal(atlas.graph, again.graph)
