@@ -43,13 +43,18 @@ def plot_form_graph(atlas: Atlas, figure: Figure | None = None) -> Figure:
     return figure
 
 
+def _of_forms(atlas: Atlas) -> nx.MultiGraph:
+    """The graph of an atlas without the surfaces."""
+    return atlas.graph.subgraph([form.name for form in atlas.forms])
+
+
 def _places(atlas: Atlas) -> dict[str, np.ndarray]:
     """Where each form stands: every component laid out by itself, side by side."""
     places: dict[str, np.ndarray] = {}
     left = 0.0
-    for members in sorted(nx.connected_components(atlas.graph), key=lambda m: min(map(atlas.form, m))):
+    for members in sorted(nx.connected_components(_of_forms(atlas)), key=lambda m: min(map(atlas.form, m))):
         names = sorted(members, key=atlas.form)
-        spots = _layout(nx.Graph(atlas.graph.subgraph(names)), names)
+        spots = _layout(nx.Graph(_of_forms(atlas).subgraph(names)), names)
         spots[:, 0] += left - spots[:, 0].min()
         left = spots[:, 0].max() + REACH
         places |= dict(zip(names, spots, strict=True))
@@ -79,7 +84,7 @@ def _layout(graph: nx.Graph, names: list[str]) -> np.ndarray:
 def _draw_edges(axes: Axes, atlas: Atlas, places: dict[str, np.ndarray]) -> None:
     """Edges between the same two forms bow apart; each carries its name where no other name is near."""
     between: dict[tuple[str, str], list[str]] = {}
-    for a, b, key in atlas.graph.edges(keys=True):
+    for a, b, key in _of_forms(atlas).edges(keys=True):
         first, last = sorted((a, b), key=atlas.form)
         between.setdefault((first, last), []).append(key)
     named = np.array(list(places.values())).reshape(-1, 2)

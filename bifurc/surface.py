@@ -70,9 +70,14 @@ class ChartAtlas:
     @cached_property
     def area(self) -> float:
         """Area of the triangles: below that of a surface all covered by a share of (radius x curvature)^2 / 8."""
+        return float(self.triangle_areas.sum())
+
+    @cached_property
+    def triangle_areas(self) -> np.ndarray:
+        """Area (t,) of every triangle."""
         a, b = (self.triangles[:, k] - self.triangles[:, 0] for k in (1, 2))
         gram = np.einsum("ti,ti->t", a, a) * np.einsum("ti,ti->t", b, b) - np.einsum("ti,ti->t", a, b) ** 2
-        return float(0.5 * np.sqrt(np.maximum(gram, 0.0)).sum())
+        return 0.5 * np.sqrt(np.maximum(gram, 0.0))
 
     @cached_property
     def border(self) -> int:

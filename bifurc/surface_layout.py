@@ -22,7 +22,7 @@ def surface_variables(
     charts = [surface.charts for surface in surfaces]
 
     def rows(name: str, shape: tuple[int, ...], dtype: type = float) -> np.ndarray:
-        found = [np.asarray(getattr(c, name), dtype=dtype) for c in charts if c is not None]
+        found: list[np.ndarray] = [np.asarray(getattr(c, name), dtype=dtype) for c in charts if c is not None]
         return np.concatenate([np.empty((0, *shape), dtype=dtype), *found])
 
     outcomes = np.array([c.outcome.name if c is not None else "" for c in charts], dtype=str)
@@ -59,6 +59,11 @@ def read_surfaces(get: dict[str, np.ndarray], samples: Sequence[np.ndarray]) -> 
     out = []
     for i, (dimension, seen) in enumerate(zip(get["surface_dimension"], samples, strict=True)):
         outcome = str(get["covering"][i])
-        charts = ChartAtlas(*(c[i] for c in columns), get["period"], Covering[outcome]) if outcome else None
+        charts = _charts([c[i] for c in columns], get["period"], outcome) if outcome else None
         out.append(Surface(int(dimension), seen, str(get["surface_name"][i]), charts))
     return tuple(out)
+
+
+def _charts(columns: list[np.ndarray], periods: np.ndarray, outcome: str) -> ChartAtlas:
+    centers, bases, radii, neighbours, vertices, polygons, sizes = columns
+    return ChartAtlas(centers, bases, radii, neighbours, vertices, polygons, sizes, periods, Covering[outcome])

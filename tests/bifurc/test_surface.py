@@ -13,10 +13,12 @@ from bifurc.charts import cover_surface
 from bifurc.dataset import load_atlas, save_atlas
 from bifurc.dimension import local_dimensions
 from bifurc.explore import explore
+from bifurc.form_graph import plot_form_graph
 from bifurc.problem import FunctionProblem, Problem, ProblemError
 from bifurc.seeding import Seeds
 from bifurc.singular import Kind
 from bifurc.surface import Covering
+from bifurc.surface_plot import plot_charts
 from linkages.closure import LoopClosure
 from linkages.double_goldberg import double_subtractive_goldberg
 from linkages.loop import Loop, loop_from_axes
@@ -309,3 +311,12 @@ def test_charts_and_meeting_points_survive_a_dataset(tmp_path) -> None:
     assert new.charts.area == old.charts.area and new.charts.euler_characteristic == 0
     assert [p.surfaces for p in again.points] == [(0,)] * 4
     assert nx.utils.graphs_equal(atlas.graph, again.graph)
+
+
+def test_the_picture_of_a_surface_has_all_its_triangles_and_the_graph_of_forms_still_draws() -> None:
+    charts = cover_surface(SPHERE, seeds(SPHERE, 1))
+    axes = plot_charts(charts, np.eye(3)[:2]).axes[0]
+    assert len(axes.collections[0].get_paths()) == len(charts.triangles)
+    assert np.abs(axes.dataLim.get_points()).max() == pytest.approx(1.0, abs=0.03)
+    problem = FunctionProblem(lambda u: np.array([u[2] * u[0], u[2] * u[1]]), [(-1, 1)] * 3)
+    assert plot_form_graph(explore(problem, starts=20)).axes
