@@ -149,9 +149,11 @@ def _no_route(atlas: Atlas, graph: nx.MultiGraph, start: str | np.ndarray, goal:
     reached = nx.node_connected_component(graph, START)
     indices = sorted({arc["form"] for *_, arc in graph.edges(reached, data=True)})
     names = ", ".join(repr(atlas.forms[i].name) for i in indices)
+    over = sorted({atlas.surfaces[k].name for p in atlas.points if p.name in reached for k in p.surfaces})
+    hint = f"; {' and '.join(over)} can be entered from there: see the path of its charts" if over else ""
     return (
-        f"there is no route from {_describe(start)} to {_describe(goal)}: they lie in different components, "
-        f"and only {names} can be reached from the start"
+        f"there is no route from {_describe(start)} to {_describe(goal)} along forms: "
+        f"only {names} can be reached from the start{hint}"
     )
 
 
