@@ -46,6 +46,8 @@ DEFAULT_SETTINGS = TraceSettings()
 # Next to a crossing rounding bends the curve F = 1e-16 from one branch into the other: a radius below this is first
 # taken for a sign of one, and a smooth piece across is tried.
 CAUTIOUS = 1e-4
+RESOLVED = 1e-6  # two points farther apart, in scales, are never taken for one
+ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
 AT_ONCE = 14  # pieces made before the end of the curve is looked for
 
 
@@ -118,7 +120,7 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
             point, heading, settings.order, settings.tolerance, shortest, settings.longest * scale, AT_ONCE
         )
         if run.status == MarchStatus.OPEN:
-            return _assemble(problem, track, Outcome.OPEN, 0.0, float(run.residuals[-1]))
+            return _assemble(problem, track, Outcome.OPEN, 0.0, gap=float(run.residuals[-1]))
         known = len(track.pieces)
         track = track.extended(known, run.pieces, track.reached + np.cumsum(run.steps), run.radii, run.residuals)
         end = _end_of_curve(problem, track, max(known - 1, 0), settings.tolerance)
@@ -173,34 +175,50 @@ def _breaks(centers: np.ndarray, radii: np.ndarray, length: float) -> np.ndarray
     return np.concatenate([[0.0], inner, [length]])
 
 
-def _assemble(problem: Problem, track: _Track, outcome: Outcome, length: float, gap: float = 0.0) -> Branch:
-    """The branch of the pieces up to arclength ``length``."""
-    breaks = _breaks(track.centers, track.radii, length) if len(track.pieces) else np.zeros(1)
-    keep = int(np.searchsorted(breaks[:-1], length, side="left"))
+def _assemble(
+    problem: Problem, track: _Track, outcome: Outcome, end: float, begin: float = 0.0, gap: float = 0.0
+) -> Branch:
+    """The branch of the pieces from arclength ``begin`` to ``end``."""
+    breaks = _breaks(track.centers, track.radii, end) if len(track.pieces) else np.zeros(1)
+    keep = slice(int(np.searchsorted(breaks[1:], begin, side="right")), int(np.searchsorted(breaks[:-1], end)))
+    inner = breaks[keep][1:] - begin
     return Branch(
-        track.pieces[:keep], track.centers[:keep], track.radii[:keep], np.append(breaks[:keep], length),
-        track.residuals[:keep], problem.periods, outcome, gap,
+        track.pieces[keep], track.centers[keep] - begin, track.radii[keep],
+        np.concatenate([[0.0], inner, [end - begin]]) if len(track.pieces) else np.zeros(1),
+        track.residuals[keep], problem.periods, outcome, gap,
     )  # fmt: skip
 
 
 def _end_of_curve(
     problem: Problem, track: _Track, first: int, tolerance: float
-) -> tuple[Outcome, float] | None:
-    """Where the curve, from piece ``first`` on, comes back to its start or first leaves the bounds."""
+) -> tuple[Outcome, float, float] | None:
+    """Where the curve, from piece ``first`` on, closes or first leaves the bounds: outcome, end and begin.
+
+    It closes when it passes its start again, or the clearest of its first points: a start beside a
+    singular point may lie off the curve by more than it shows.
+    """
     if not len(track.pieces):
         return None
-    closing, leaving = _closing(problem, track, max(first, 1), tolerance), _leaving(problem, track, first)
+    anchor = int(np.argmax(track.radii[:ANCHORS]))
+    closing = _closing(problem, track, first, 0, 0.0, tolerance)
+    begin = 0.0
+    if closing is None:
+        begin = float(track.centers[anchor])
+        closing = _closing(problem, track, anchor, anchor, begin, tolerance)
+    leaving = _leaving(problem, track, first)
     if closing is not None and (leaving is None or closing < leaving):
-        return Outcome.CLOSED, closing
-    return None if leaving is None else (Outcome.LEFT_REGION, leaving)
+        return Outcome.CLOSED, closing, begin
+    return None if leaving is None else (Outcome.LEFT_REGION, leaving, 0.0)
 
 
-def _closing(problem: Problem, track: _Track, first: int, tolerance: float) -> float | None:
-    """Arclength at which the curve passes its start again in the same direction, modulo the periods."""
+def _closing(
+    problem: Problem, track: _Track, first: int, begun: int, begin: float, tolerance: float
+) -> float | None:
+    """Arclength at which the curve passes again, in the same direction, the point of piece ``begun`` at ``begin``."""
     pieces, centers, radii = track.pieces, track.centers, track.radii
     order = pieces.shape[1] - 1
-    start, slope = track.at(0, 0.0)
-    close = max(1e-9, 30 * tolerance) * problem.scale
+    start, slope = track.at(begun, begin)
+    close, close_residual = max(1e-9, 30 * tolerance) * problem.scale, max(1e-14, 0.1 * tolerance) * problem.scale
     away = np.linalg.norm(problem.difference(pieces[first:, 0], start), axis=1)
     for i in first + np.flatnonzero(away < 1.1 * radii[first:]):
         grid = np.linspace(-1.0, 1.0, 17)
@@ -216,8 +234,12 @@ def _closing(problem: Problem, track: _Track, first: int, tolerance: float) -> f
                 break
         s = centers[i] + x * radii[i]
         same_way = tangent @ slope > 0.9 * np.linalg.norm(tangent)
-        # across a start beside a crossing the tangent turns no more than the pieces' own error allows
-        if abs(x) <= 1.02 and s > 0.5 * radii[0] and same_way and np.linalg.norm(offset) < close:
+        apart = float(np.linalg.norm(offset))
+        again = s > begin + 0.5 * radii[begun]
+        if abs(x) > 1.02 or not again or not same_way or apart > RESOLVED * problem.scale:
+            continue
+        # where a singular value is small a point is known no better than rounding over it
+        if apart < close or np.linalg.norm(problem.jacobian(start) @ offset) < close_residual * problem.magnitude:
             return float(s)
     return None
 

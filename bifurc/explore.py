@@ -30,6 +30,7 @@ __all__ = ["explore"]
 log = logging.getLogger(__name__)
 
 SAME = 1e-6  # distance, in units of the problem's scale, below which a seed lies on a traced curve
+STUB = 2e-2  # length, in scales, below which a branch that stalls at both ends is none
 INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R", Kind.DIMENSION_CHANGE: "D"}
 NEARLY = 1e-3  # singular value, over the problem's magnitude, below which a singular point is looked for
 
@@ -171,7 +172,7 @@ def _trace_lower_rank(
 ) -> bool:
     """Trace the curve of lower rank through ``point``; what may cross it is left to other seeds."""
     branch = trace_branch(Deflated(problem), point, along, settings)
-    if not len(branch.pieces) or branch.length < 1e-3 * problem.scale:
+    if not _is_curve(problem, branch):
         log.info("no curve of lower rank through %s: %s", point, branch.outcome.value)
         return False
     _add_branch(problem, branch, found)
@@ -207,12 +208,26 @@ def _trace_and_follow(
         branch = trace_branch(problem, point, along, settings)
         if branch.outcome is Outcome.OPEN:
             found.gaps.append(branch.gap)
-        if not len(branch.pieces) or branch.length < 1e-3 * problem.scale:
+        if not _is_curve(problem, branch):
             log.info("no curve through %s: %s", point, branch.outcome.value)
             continue
         traced = True
+        if any(_is_the_same(problem, branch, known) for known in found.branches):
+            continue  # the start lay beside the curve, by rounding over a small singular value
         queue = queue + _add_branch(problem, branch, found)
     return traced
+
+
+def _is_curve(problem: Problem, branch: Branch) -> bool:
+    """Whether a traced branch is more than the trace of rounding beside a singular point."""
+    shortest = STUB if branch.outcome is Outcome.STALLED else STUB / 20
+    return bool(len(branch.pieces)) and branch.length > shortest * problem.scale
+
+
+def _is_the_same(problem: Problem, branch: Branch, known: Branch) -> bool:
+    """Whether a branch runs along a known one."""
+    distance, _ = known.nearest(branch(branch.length * np.array([0.11, 0.29, 0.47, 0.71, 0.93])))
+    return bool(np.all(distance < SAME * problem.scale))
 
 
 def _add_branch(
@@ -370,11 +385,13 @@ def _meeting_point(
 def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
     """Arclengths of the ends of a branch that stalled before a cusp: near the point, along a half-branch."""
     near, found = 0.02 * problem.scale, []
+    if branch.outcome is not Outcome.STALLED or not len(point.half_branches):
+        return []
     for s, inside in ((0.0, near), (branch.length, branch.length - near)):
         gap = np.linalg.norm(problem.difference(branch(s), point.u))
         offset = problem.difference(branch(inside), point.u)
-        along = point.half_branches @ offset / np.linalg.norm(offset)
-        if branch.outcome is Outcome.STALLED and gap < near and along.max(initial=-1.0) > 0.95:
+        along = float((point.half_branches @ offset).max()) / max(float(np.linalg.norm(offset)), 1e-300)
+        if gap < near and along > 0.95:
             found.append(s)
     return found
 
