@@ -55,13 +55,14 @@ class Run:
 
 
 def measure(case: Case, method: Method, tolerance: float, floor: float, budget: float) -> Run:
-    """The median of as many runs as fit into ``budget`` seconds, 2 to 9, after one that warms up."""
+    """The median of as many runs as fit into ``budget`` seconds, 2 to 9, after one that warms up; a run that takes
+    twice as long as that counts itself."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # overflow on the way to a failure that is reported
             curve, seconds = _timed(case, method, tolerance)
-            repeats = min(9, max(2, int(budget / max(seconds, 1e-6))))
-            times = [_timed(case, method, tolerance)[1] for _ in range(repeats)]
+            repeats = min(9, max(2 if seconds < 2 * budget else 0, int(budget / max(seconds, 1e-6))))
+            times = [_timed(case, method, tolerance)[1] for _ in range(repeats)] or [seconds]
             error = max(largest_distance(case, curve.sample(COVER)), floor)
     except (MethodFailure, ArithmeticError, ValueError, np.linalg.LinAlgError) as failure:
         return Run(case.name, method.name, method.order, tolerance, np.nan, np.inf, 0, str(failure).partition("\n")[0])

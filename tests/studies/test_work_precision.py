@@ -1,0 +1,66 @@
+"""The methods of comparison follow simple curves, and the study reads its runs right."""
+
+import numpy as np
+import pytest
+
+from studies.methods.cases import circle, linkage_cases, pitchfork
+from studies.methods.curve import MethodFailure
+from studies.methods.exact import distance_in_digits, largest_distance
+from studies.methods.roster import comparison_methods, orders_of_this_project
+from studies.work_precision import Run, fastest, measure, ratios, recommend
+
+METHODS = [*orders_of_this_project(), *comparison_methods()]
+
+
+@pytest.fixture(scope="module")
+def bennett():
+    return next(case for case in linkage_cases() if case.name == "bennett")
+
+
+@pytest.mark.parametrize("method", METHODS, ids=lambda m: m.name)
+def test_every_method_follows_a_bennett_linkage_once_around(bennett, method):
+    # a tolerance is met up to the factor by which errors of steps add up along the curve
+    loose_only = method.name in ("pycont-lite", "order 2")  # slow at tighter tolerances
+    for tolerance, bound in ((1e-3, 1e-1), (1e-5, 1e-2))[: 1 if loose_only else 2]:
+        curve = method.follow(bennett, tolerance)
+        assert largest_distance(bennett, curve.sample(2000)) < bound
+
+
+def test_natural_parameters_cannot_go_around_a_circle():
+    natural = next(m for m in METHODS if m.name == "natural parameter")
+    with pytest.raises(MethodFailure, match="dead point"):
+        natural.follow(circle(), 1e-4)
+    run = measure(circle(), natural, 1e-4, 1e-16, 0.0)
+    assert run.error == np.inf
+    assert "dead point" in run.note
+
+
+def test_a_distance_far_below_rounding_is_measured():
+    case = circle()
+    point = np.array([0.6, 0.8])  # the two decimals are not exact in binary: some 1e-17 from the circle
+    assert 1e-18 < distance_in_digits(case, point) < 1e-16
+    assert distance_in_digits(case, point * (1 + 1e-9)) == pytest.approx(1e-9, rel=1e-6)
+
+
+def test_half_a_curve_has_an_infinite_error():
+    case = pitchfork()
+    assert largest_distance(case, case.reference.sample(2000)) < 1e-13
+    half = case.reference(np.linspace(0, 0.5 * case.length, 2000))
+    assert largest_distance(case, half) == np.inf
+
+
+def runs_of(method, order, seconds, errors):
+    return [Run("c", method, order, 10.0**-k, t, e, 1) for k, (t, e) in enumerate(zip(seconds, errors, strict=True), 3)]
+
+
+def test_ratios_compare_the_fastest_runs_within_an_error():
+    runs = runs_of("order 16", 16, (1.0, 2.0), (1e-5, 1e-12)) + runs_of("slow", 0, (3.0, 8.0), (1e-4, 1e-9))
+    (row,) = ratios(runs)
+    assert (row["1e-04"], row["1e-06"], row["1e-08"]) == (3.0, 4.0, 4.0)
+    assert np.isnan(row["1e-10"])
+    assert fastest(runs, 1e-10) == 2.0
+
+
+def test_the_recommended_tolerance_is_the_loosest_that_is_tight_enough():
+    runs = runs_of("order 8", 8, (1.0, 2.0, 4.0), (1e-8, 1e-12, 1e-13)) + runs_of("order 4", 4, (8.0,), (1e-13,))
+    assert recommend(runs) == {4: (4.0, 1e-3), 8: (1.0, 1e-4)}
