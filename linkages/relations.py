@@ -2,7 +2,7 @@
 
 "special case of" and "same linkage as" hold up to `linkages.equivalence` and are checked by `linkages.identify` on
 random members; where no source states them, that is where they come from. Of the special cases only the nearest are
-listed: the others follow along the graph. The sixteen 5R of two pairs of tori are one node each and all the same.
+listed: the others follow along the graph.
 """
 
 from __future__ import annotations
@@ -45,6 +45,7 @@ class Relation:
 
 
 FOUND = "found by identification"
+TORI_5R = tuple(name for name in catalogue() if name.startswith("torus-5r"))
 
 
 def _special(source: str, general: str, *names: str) -> list[Relation]:
@@ -64,6 +65,7 @@ _SPECIAL = [
     *_special("Hunt (1990)", "parallelogram", "rhombus"),
     *_special("Hunt (1990)", "kite", "rhombus"),
     *_special("Song (2013), eq. 2.3.3", "generalized-goldberg-5r", "goldberg-5r", "subtractive-goldberg-5r"),
+    *_special("Bil and Budniak (2015), geometry; " + FOUND, "generalized-goldberg-5r", *TORI_5R),
     *_special("Baker (1979)", "goldberg-5r", "myard-asymmetric-5r"),
     *_special("Chen and You (2008a)", "extended-myard-5r", "myard-plane-symmetric-5r"),
     *_special(FOUND, "generalized-goldberg-5r", "extended-myard-5r"),
@@ -138,8 +140,7 @@ _CONSTRUCTED = [
     *_built("Yu and Baker (1981)", "taken from a primary Bennett loop", "waldron-collinear", "yu-baker-two-ratios"),
     *_built("Song (2013), section 5.3", "a spatial triangle on opposite links", "bennett",
             "reconfigurable-bricard-1", "reconfigurable-bricard-2"),
-    *_built("Bil and Budniak (2015)", "two pairs of tori", "torus-4r",
-            *(name for name in catalogue() if name.startswith("torus-5r"))),
+    *_built("Bil and Budniak (2015)", "two pairs of tori", "torus-4r", *TORI_5R),
 ]  # fmt: skip
 
 _DEGENERATE = [

@@ -26,8 +26,8 @@ def is_case(loop, name, tolerance=1e-8):
     return identify(loop, tolerance, [entry(name)], locking=False).names == (name,)
 
 
-def of_kind(*kinds):
-    chosen = [r for r in RELATIONS if r.kind in kinds]
+def of_kind(*kinds, tori=True):
+    chosen = [r for r in RELATIONS if r.kind in kinds and (tori or not r.first.startswith("torus"))]
     return pytest.mark.parametrize("relation", chosen, ids=[f"{r.first}-{r.second}" for r in chosen])
 
 
@@ -36,7 +36,7 @@ def test_members_of_the_special_linkage_are_members_of_the_general_one(relation)
     assert all(is_case(loop, relation.second) for loop in members(relation.first, np.random.default_rng(11)))
 
 
-@of_kind(RelationKind.SPECIAL_CASE)
+@of_kind(RelationKind.SPECIAL_CASE, tori=False)  # each of their variants has members of most shapes
 def test_not_every_member_of_the_general_linkage_is_a_special_one(relation):
     (loop,) = members(relation.second, np.random.default_rng(12), 1)
     assert not is_case(loop, relation.first)
