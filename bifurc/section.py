@@ -61,7 +61,7 @@ class ReducedEquations:
         for _ in range(10):
             step = self._problem.residuals(base + w) / self._problem.magnitude @ self._inverse.T
             w -= step
-            if np.abs(step).max() < 1e-15 * self._problem.scale:
+            if np.abs(step).max(initial=0.0) < 1e-15 * self._problem.scale:
                 break
         return base + w
 
