@@ -34,18 +34,25 @@ class Scene:
 
 
 def make_scene(loop: Loop, theta: np.ndarray) -> Scene:
-    """The scene of the configuration ``theta`` (n,), rad. A spherical loop is drawn with its axes through a point."""
+    """The scene of the configuration ``theta`` (n,), rad. Links of a spherical loop are chords of the unit sphere."""
     frames = loop.frames(theta)
     direction, arrive = frames[:-1, :3, 2], frames[:-1, :3, 3]
     leave = arrive + loop.arrays[2][:, None] * direction
-    following = frames[1:, :3, 3]
+    if np.ptp(np.concatenate([arrive, leave]), axis=0).max() < 1e-12:
+        return _spherical(frames[:, :3, 2])
     centre = (arrive + leave).mean(axis=0) / 2
-    arrive, leave, following = arrive - centre, leave - centre, following - centre
+    arrive, leave, following = arrive - centre, leave - centre, frames[1:, :3, 3] - centre
     middle = (arrive + leave) / 2
-    extent = max(float(np.linalg.norm(middle, axis=1).max()), 1e-12)
-    half = np.abs(loop.arrays[2]) / 2 + (REACH * extent if extent > 1e-12 else 1.0)
+    half = np.abs(loop.arrays[2]) / 2 + REACH * float(np.linalg.norm(middle, axis=1).max())
     axes = np.stack([middle - half[:, None] * direction, middle + half[:, None] * direction], axis=1)
     return Scene(axes, np.stack([leave, following], axis=1), np.stack([arrive, leave], axis=1), middle)
+
+
+def _spherical(directions: np.ndarray) -> Scene:
+    """The scene of axes through the origin along ``directions`` (n + 1, 3), the last being the first again."""
+    ends = directions[:-1]
+    axes = np.stack([0 * ends, (1 + REACH) * ends], axis=1)
+    return Scene(axes, np.stack([ends, directions[1:]], axis=1), np.stack([ends, ends], axis=1), ends)
 
 
 def best_view(scene: Scene) -> tuple[float, float]:

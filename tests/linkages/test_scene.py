@@ -41,6 +41,9 @@ def test_a_square_seen_from_the_best_direction_keeps_its_corners_apart():
     assert clearance(scene.joints, scene.normals) == pytest.approx((1.0, 1.0))
 
 
-def test_a_spherical_linkage_is_drawn_by_its_axes():
-    scene = make_scene(entry("spherical-four-bar").build(), np.zeros(4))
-    assert np.allclose(np.linalg.norm(np.diff(scene.axes, axis=1)[:, 0], axis=1), 2)
+def test_links_of_a_spherical_linkage_are_chords_of_the_unit_sphere():
+    loop = entry("spherical-four-bar").build()
+    scene = make_scene(loop, np.array([0.3, 1.0, -2.0, 0.5]))
+    assert np.allclose(scene.axes[:, 0], 0)
+    chords = np.linalg.norm(np.diff(scene.normals, axis=1)[:, 0], axis=1)
+    assert np.allclose(chords, 2 * np.sin(loop.arrays[1] / 2))
