@@ -1,0 +1,42 @@
+"""Write docs/errata.md: every misprint with source, equation, print, correction and measured amounts.
+
+Run as ``python -m studies.errata_page [FILE]``.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from linkages.errata import ERRATA
+
+__all__ = ["HEAD", "errata_page"]
+
+HEAD = """# Misprints in the sources
+
+Each row is measured by the program: by how much the printed equation fails, and what the corrected one leaves. For
+closed forms the amount is the closure defect max |T_1 ... T_n - I| (median over input angles for the print, largest for
+the correction). For geometric conditions it is the smallest singular value at the rigid assemblies of the loop built
+by them, or the smallest closure residual with joint 1 held at 1 rad; 0 means that the loop moves. Equations between
+numbers are evaluated as they stand. Scanned copies were used: a slip may be the scanner's. `bifurc verify NAME`
+measures the rows of one linkage again.
+
+| source | equation | linkage | printed | correct | print fails by | correction leaves |
+|---|---|---|---|---|---|---|
+"""
+
+
+def errata_page() -> str:
+    """The page as Markdown."""
+    rows = []
+    for erratum in ERRATA:
+        printed, corrected = erratum.measure()
+        left = "0" if corrected < 1e-11 and corrected != 0 else f"{corrected:.0e}"
+        left = "below 1e-11" if left == "0" else "0"
+        cells = (erratum.source, erratum.equation, erratum.linkage, erratum.printed, erratum.corrected)
+        rows.append("| " + " | ".join([*(cell.replace("|", r"\|") for cell in cells), f"{printed:.1g}", left]) + " |")
+    return HEAD + "\n".join(rows) + "\n"
+
+
+if __name__ == "__main__":
+    Path(sys.argv[1] if len(sys.argv) > 1 else "docs/errata.md").write_text(errata_page(), encoding="utf-8")
