@@ -19,7 +19,7 @@ SOLVERS: dict[str, Callable[..., OdeSolver]] = {"RK45": RK45, "DOP853": DOP853, 
 
 def integrate_null_field(
     problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, tolerance: float,
-    solver: str, projected: bool,
+    solver: str, projected: bool, longest: float = np.inf,
 ) -> Curve:  # fmt: skip
     """The curve as the solver's own dense output, with relative and absolute tolerance ``tolerance``.
 
@@ -39,7 +39,7 @@ def integrate_null_field(
         return t
 
     allowed = max(tolerance, 1e-13)
-    ode: Any = SOLVERS[solver](field, 0.0, start, length, rtol=max(allowed, 3e-14), atol=allowed)
+    ode: Any = SOLVERS[solver](field, 0.0, start, length, rtol=max(allowed, 3e-14), atol=allowed, max_step=longest)
     times, pieces = [0.0], []
     while ode.status == "running":
         message = ode.step()

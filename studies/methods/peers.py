@@ -10,7 +10,7 @@ from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure, through_points
 from studies.methods.point_by_point import turn_per_step
 
-__all__ = ["has_pycont", "pycont_lite"]
+__all__ = ["count_branch_points", "has_pycont", "pycont_lite"]
 
 
 def has_pycont() -> bool:
@@ -50,3 +50,27 @@ def pycont_lite(problem: Problem, start: np.ndarray, tangent: np.ndarray, length
     if len(points) < 4:
         raise MethodFailure("it stops at once")
     return through_points(list(points), length)
+
+
+def count_branch_points(problem: Problem, start: np.ndarray, length: float, step: float, increasing: bool) -> int:
+    """How many bifurcation points pycont-lite reports on the curve through ``start``, followed one way for ``length``.
+
+    With its own detection, at equal steps. Redundant equations are mixed as in `pycont_lite`.
+    """
+    import pycont
+
+    rows = len(problem.residuals(start[None])[0])
+    mix = np.linalg.qr(np.random.default_rng(0).normal(size=(rows, rows)))[0][: problem.n - 1]
+
+    def system(u: np.ndarray, p: float) -> np.ndarray:
+        value = problem.residuals(np.append(u, p)[None])[0]
+        return value if rows == problem.n - 1 else mix @ value
+
+    options = {
+        "tolerance": 1e-10, "analyze_stability": False, "hopf_detection": False,
+        "initial_directions": "increase_p" if increasing else "decrease_p",
+    }  # fmt: skip
+    result = pycont.arclengthContinuation(
+        system, start[:-1].copy(), float(start[-1]), 1e-3 * step, step, step, int(length / step), options, "OFF"
+    )
+    return sum(event.kind == "BP" for event in result.events)

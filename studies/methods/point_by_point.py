@@ -20,7 +20,7 @@ def turn_per_step(tolerance: float) -> float:
 
 
 def pseudo_arclength_tangent(
-    problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, tolerance: float
+    problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, tolerance: float, longest: float = LONGEST
 ) -> Curve:
     """Pseudo-arclength continuation (Keller 1977) with the tangent as predictor and cubic Hermite pieces.
 
@@ -42,7 +42,7 @@ def pseudo_arclength_tangent(
         u, t = new, slope
         points.append(u)
         tangents.append(t)
-        h = min(h * min(2.0, max(0.5, turn / (angle + 1e-300))), LONGEST * problem.scale)
+        h = min(h * min(2.0, max(0.5, turn / (angle + 1e-300))), longest * problem.scale)
     return through_points_and_tangents(points, tangents, length)
 
 

@@ -1,0 +1,158 @@
+"""Curves on which methods fail, each with the answer that is right and a test that does not depend on any method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from bifurc.problem import FunctionProblem, Problem
+from linkages.catalogue import entry
+from linkages.closure import LoopClosure
+from linkages.loop import Loop
+
+__all__ = ["Crossing", "Ladder", "crossings", "ladders", "near_parallelogram", "pitchfork"]
+
+Test = Callable[[np.ndarray], bool]
+
+
+@dataclass(frozen=True)
+class Ladder:
+    """A near miss of width ``gap``: from ``start`` along ``tangent`` for ``length``; ``stays`` tells whether points
+    (k, n) all lie on the true arc, ``arrives`` whether the last of them is at its end. ``parameter`` is the unknown
+    that natural-parameter stepping sets, over ``travel``."""
+
+    name: str
+    gap: float
+    problem: Problem
+    start: np.ndarray
+    tangent: np.ndarray
+    length: float
+    stays: Test
+    arrives: Test
+    parameter: int
+    travel: float
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """A curve from ``start`` with ``count`` bifurcations on it; ``whole`` is the number of all branches that hang
+    together with it. ``length`` is how far to follow the curve, ``start`` lies in the middle of it where it is open."""
+
+    name: str
+    problem: Problem
+    start: np.ndarray
+    length: float
+    count: int
+
+
+# --- near misses of any width -------------------------------------------------------------------------
+
+
+class _Pitchfork(FunctionProblem):
+    """lambda x - x^3 + e, with the bound on its second derivative that a certificate needs."""
+
+    def __init__(self, e: float):
+        super().__init__(
+            lambda u: np.array([u[0] * u[1] - u[1] ** 3 + e]), [[-1.0, 1.0], [-1.5, 1.5]],
+            jacobian=lambda u: np.array([[u[1], u[0] - 3 * u[1] ** 2]]),
+        )  # fmt: skip
+
+    def curvature_bound(self) -> float:
+        """The norm of [[0, 1], [1, -6 x]] where |x| <= 1.5, over the magnitude."""
+        return (4.5 + sqrt(4.5**2 + 1.0)) / self.magnitude
+
+
+def pitchfork(gap: float) -> Ladder:
+    """The imperfect pitchfork lambda x - x^3 + e = 0, e = gap^2 / 8, along the arc with x > 0.
+
+    At the corner it is the hyperbola lambda x = -e, whose two arcs are 2 sqrt(2 e) = ``gap`` apart.
+    """
+    e = gap**2 / 8
+    problem = _Pitchfork(e)
+    x = e / 0.9
+    for _ in range(6):
+        x -= (-0.9 * x - x**3 + e) / (-0.9 - 3 * x * x)
+    tangent = np.array([0.9 + 3 * x * x, x])
+    return Ladder(
+        "imperfect pitchfork", gap, problem, np.array([-0.9, x]), tangent / np.linalg.norm(tangent), 2.2,
+        stays=lambda u: bool(np.all(u[:, 1] > 0)), arrives=lambda u: bool(abs(u[-1, 1]) > 0.7),
+        parameter=0, travel=1.7,
+    )  # fmt: skip
+
+
+def near_parallelogram(gap: float) -> Ladder:
+    """The four-bar 1, 2, 1 + e, 2 with e = gap^2 / 3, whose two circuits come within ``gap`` (rad at joint 3).
+
+    On each circuit sin(theta3) keeps its sign, since links 23 and 34 cannot be flat for any e > 0.
+    """
+    e = gap**2 / 3
+    zero = (0.0,) * 4
+    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + e, 2.0), zero, zero))
+    angle = 0.7  # the parallelogram itself, then corrected
+    start = problem.project(np.array([[angle, np.pi - angle, angle, np.pi - angle]]))[0][0]
+    tangent = np.linalg.svd(problem.jacobians(start[None])[0])[2][-1]
+    tangent *= np.sign(tangent[0])
+    sign = np.sign(np.sin(start[2]))
+    return Ladder(
+        "near-parallelogram", gap, problem, start, tangent, 12.0,
+        stays=lambda u: bool(np.all(sign * np.sin(u[:, 2]) > 0)),
+        arrives=lambda u: bool(abs(u[-1, 0] - start[0]) > 5.0), parameter=0, travel=2 * np.pi,
+    )  # fmt: skip
+
+
+def ladders(gaps: np.ndarray) -> list[Ladder]:
+    """Both ladders; the near-parallelogram down to the smallest error that a double near 1 can hold."""
+    return [pitchfork(g) for g in gaps] + [near_parallelogram(g) for g in gaps if g**2 / 3 > 2e-15]
+
+
+# --- points that are there, or only seem to be --------------------------------------------------------
+
+
+def _plane(function: Callable[[np.ndarray], list[float]]) -> Problem:
+    """A plane curve with its singular point moved away from the origin, where rounding would vanish."""
+    away = np.array([0.1234, -0.0567])
+    return FunctionProblem(lambda u: np.array(function(u - away)), [[-1.1, 1.0], [-1.05, 1.2]])
+
+
+def _at(x: float, y: float) -> np.ndarray:
+    return np.array([x + 0.1234, y - 0.0567])
+
+
+def crossings() -> list[Crossing]:
+    """Plane curves with a known singular point, and linkages with known maps."""
+    plane = [
+        Crossing("transcritical", _plane(lambda u: [u[0] * u[1] - u[1] ** 2]), _at(0.5, 0.5), 1.6, 1),
+        Crossing("pitchfork from the side", _plane(lambda u: [u[0] * u[1] - u[1] ** 3]), _at(0.49, 0.7), 2.0, 1),
+        Crossing("triple crossing", _plane(lambda u: [u[1] * (u[1] ** 2 - u[0] ** 2)]), _at(0.5, 0.5), 1.6, 1),
+        Crossing("tacnode", _plane(lambda u: [u[1] ** 2 - u[0] ** 4]), _at(0.6, 0.36), 1.5, 1),
+        Crossing("double crossing", _plane(lambda u: [u[1] * (u[1] - u[0] ** 2 + 0.04)]), _at(0.6, 0.0), 1.2, 2),
+    ]
+    miss = 2.5e-7  # the square of half its width
+    start = _at(0.5, sqrt(0.25 - miss))
+    plane.append(Crossing("near miss 1e-3", _plane(lambda u: [u[0] ** 2 - u[1] ** 2 - miss]), start, 1.4, 0))
+    return plane + [_loop(*case) for case in LOOPS]
+
+
+LOOPS = (
+    ("Bennett, raw", "bennett", 0),
+    ("serial Goldberg 6R", "serial-goldberg-6r", 0),
+    ("double collapse (rank drops)", "bricard-octahedral-doubly-collapsible", 0),
+    ("parallelogram", "parallelogram", 2),
+    ("special double-Goldberg", "special-double-subtractive-goldberg", 2),
+)
+
+
+def _loop(title: str, name: str, count: int) -> Crossing:
+    """A linkage of the catalogue, once around the first form that random starts reach far from singular points."""
+    from bifurc.continuation import trace_branch
+
+    problem = LoopClosure(entry(name).build())
+    starts, gaps = problem.project(np.random.default_rng(0).uniform(-3, 3, (60, problem.n)))
+    good = starts[gaps < 1e-13]
+    sigma = np.linalg.svd(problem.jacobians(good), compute_uv=False)
+    curve = sigma[:, problem.n - 1] < 1e-9 if sigma.shape[1] >= problem.n else np.ones(len(good), dtype=bool)
+    start = good[curve][np.argmax(sigma[curve, problem.n - 2])]
+    return Crossing(title, problem, start, trace_branch(problem, start).length, count)

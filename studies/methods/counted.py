@@ -1,0 +1,52 @@
+"""A problem that counts how often its equations are evaluated."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from bifurc.problem import March, Problem
+
+__all__ = ["Counted"]
+
+A_PIECE = 10  # evaluations of F and F' that a compiled Taylor piece costs: corrections, checks, and the series itself
+
+
+class Counted(Problem):
+    """``problem`` with the number of ``evaluations`` so far: points at which F or F' was asked for, one each."""
+
+    def __init__(self, problem: Problem):
+        self._problem, self.evaluations = problem, 0
+        for name in ("names", "units", "periods", "bounds", "magnitude", "scale", "derivatives", "curvature_residual"):
+            setattr(self, name, getattr(problem, name))
+        if type(problem).march is Problem.march:  # by collocation, through the evaluations below
+            self._compiled = False
+        else:
+            self._compiled = True
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        self.evaluations += len(points)
+        return self._problem.residuals(points)
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        self.evaluations += len(points)
+        return self._problem.jacobians(points)
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point."""
+        return self._problem.hessian(point)
+
+    def curvature_bound(self) -> float | None:
+        """As of the problem."""
+        return self._problem.curvature_bound()
+
+    def march(self, *arguments: Any) -> March:
+        """Pieces of the curve; compiled ones are taken to cost `A_PIECE` evaluations each."""
+        if not self._compiled:
+            return super().march(*arguments)
+        made = self._problem.march(*arguments)
+        self.evaluations += A_PIECE * max(1, len(made.pieces))
+        return made

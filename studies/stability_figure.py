@@ -1,0 +1,68 @@
+"""The figure of the stability study."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+if TYPE_CHECKING:
+    from studies.stability import Run
+
+__all__ = ["draw_stability"]
+
+LOOKS = {
+    "right": ("#009988", "o"), "failed": ("#bbbbbb", "s"), "jumped": ("#cc3311", "X"),
+    "missed": ("#ee7733", "v"), "invented": ("#cc3311", "^"),
+}  # fmt: skip
+WORDS = {
+    "right": "right", "failed": "says that it failed", "jumped": "jumps to the other arc, and says nothing",
+    "missed": "reports too few", "invented": "reports too many",
+}  # fmt: skip
+
+
+def draw_stability(runs: Sequence[Run]) -> Figure:
+    """A mark for every run: near misses over their width, three steps to a method; and the curves with bifurcations."""
+    ladder, points = [r for r in runs if r.step], [r for r in runs if not r.step]
+    cases = list(dict.fromkeys(r.case for r in ladder))
+    figure = Figure(figsize=(5.2 * len(cases) + 5.4, 6.2), layout="constrained")
+    panels = figure.subplots(1, len(cases) + 1, width_ratios=[1.0] * len(cases) + [1.05], squeeze=False)[0]
+    for axes, case in zip(panels, cases, strict=False):
+        _draw_ladder(axes, [r for r in ladder if r.case == case], case, axes is panels[0])
+    _draw_points(panels[-1], points)
+    handles = [Line2D([], [], color=c, marker=m, ls="", label=WORDS[v]) for v, (c, m) in LOOKS.items()]
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
+    return figure
+
+
+def _draw_ladder(axes: Axes, runs: Sequence[Run], title: str, named: bool) -> None:
+    rows = list(dict.fromkeys((r.method, r.step) for r in runs))
+    for run in runs:
+        colour, marker = LOOKS[run.verdict]
+        axes.plot(run.difficulty, -rows.index((run.method, run.step)), marker, color=colour, ms=6)
+    labels = [f"{method}, {step}" if k % 3 == 0 else step for k, (method, step) in enumerate(rows)]
+    axes.set_yticks(-np.arange(len(rows)), labels if named else [""] * len(rows), fontsize=8)
+    for k in range(3, len(rows), 3):
+        axes.axhline(0.5 - k, color="#dddddd", lw=0.8)
+    axes.set(xscale="log", xlabel="width of the near miss", title=title)
+    axes.invert_xaxis()
+    axes.grid(axis="x", alpha=0.3)
+
+
+def _draw_points(axes: Axes, runs: Sequence[Run]) -> None:
+    methods, cases = list(dict.fromkeys(r.method for r in runs)), list(dict.fromkeys(r.case for r in runs))
+    for run in runs:
+        colour, marker = LOOKS[run.verdict]
+        x, y = methods.index(run.method), -cases.index(run.case)
+        axes.plot(x, y, marker, color=colour, ms=9)
+        if run.verdict != "failed":
+            axes.annotate(str(run.found), (x, y), (9, -3), textcoords="offset points", fontsize=9)
+    counts = {r.case: int(r.difficulty) for r in runs}
+    axes.set_yticks(-np.arange(len(cases)), [f"{case} ({counts[case]})" for case in cases], fontsize=8)
+    axes.set_xticks(range(len(methods)), [m.replace(" ", "\n", 1) for m in methods], fontsize=8)
+    axes.set(xlim=(-0.5, len(methods) - 0.3), title="bifurcations reported (true number)")
+    axes.grid(alpha=0.3)
