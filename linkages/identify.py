@@ -16,6 +16,7 @@ from functools import cache
 import numpy as np
 
 from linkages.catalogue import catalogue
+from linkages.condition_residuals import condition_residual
 from linkages.constructions import lock
 from linkages.entry import Entry
 from linkages.equivalence import Reading, table
@@ -36,7 +37,8 @@ class Match:
     ``parameters`` has lengths in the unit of the table, angles in rad; ``member`` is the table (3, n) of that member,
     read and signed as the given one; ``residuals`` (3, n) are given less member, lengths and offsets relative to the
     characteristic length, twists in rad; ``distance`` is their norm. ``freedom`` says how many parameters matter at
-    this member, scale included; it is 0 for a guess too far off to be fitted.
+    this member, scale included; it is 0 for a guess too far off to be fitted. ``conditions`` pairs each condition of
+    the entry with how far the given table is from it, see `linkages.condition_residuals`.
     """
 
     entry: Entry
@@ -46,6 +48,7 @@ class Match:
     residuals: np.ndarray
     distance: float
     freedom: int
+    conditions: tuple[tuple[str, float | None], ...]
 
 
 @dataclass(frozen=True)
@@ -102,7 +105,11 @@ def _match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> Matc
         for name, value in member.parameters.items()
     }
     expected = given - residuals * [[unit], [1.0], [unit]]
-    return Match(entry, parameters, member.view.reading, expected, residuals, member.distance, member.freedom)
+    labelled = member.signs.of(member.view.values) / [[unit], [1.0], [unit]]  # reversing twice is not reversing
+    conditions = tuple((text, condition_residual(text, labelled)) for text in entry.conditions)
+    return Match(
+        entry, parameters, member.view.reading, expected, residuals, member.distance, member.freedom, conditions
+    )
 
 
 def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:

@@ -32,14 +32,21 @@ def _match(match: Match) -> str:
     return (
         f"{_head(match)}\n  {_parameters(match)}\n  read {match.reading}\n"
         f"  off by at most {lengths:.1e} in lengths, {twists:.1e} rad in twists, {offsets:.1e} in offsets, of:\n"
-        + "\n".join(f"    {condition}" for condition in match.entry.conditions)
+        + _conditions(match)
     )
+
+
+def _conditions(match: Match) -> str:
+    """The conditions of the entry, each with how far the table is from it where it is an equation in its numbers."""
+    shown = (f"    {text}" + ("" if size is None else f"  [off by {size:.1e}]") for text, size in match.conditions)
+    return "\n".join(shown)
 
 
 def _near(match: Match) -> str:
     order = np.argsort(-np.abs(match.residuals), axis=None)[:WORST]
     lines = [_number(match, *(int(i) for i in np.unravel_index(k, match.residuals.shape))) for k in order]
-    return f"Near: {_head(match)}\n  {_parameters(match)}\n  off by {match.distance:.2g}:\n" + "\n".join(lines)
+    head = f"Near: {_head(match)}\n  {_parameters(match)}\n  off by {match.distance:.2g}:"
+    return "\n".join([head, *lines, _conditions(match)])
 
 
 def _number(match: Match, row: int, column: int) -> str:
@@ -93,6 +100,7 @@ def _document(match: Match) -> dict[str, Any]:
         "parameters": match.parameters,
         "distance": match.distance,
         "freedom": match.freedom,
+        "conditions": [{"text": text, "residual": size} for text, size in match.conditions],
         "member": match.member.tolist(),
         "residuals": match.residuals.tolist(),
     }
