@@ -196,7 +196,7 @@ def _root(a: np.ndarray, b: np.ndarray, c: np.ndarray, sign: int) -> tuple[Pair,
     is negative by rounding alone is taken as zero.
     """
     square = b * b - 4 * a * c
-    reached = square > -1e-13 * (b * b + np.abs(4 * a * c))
+    reached = square > -1e-13 * (np.abs(a) + np.abs(b) + np.abs(c)) ** 2
     size = sign * np.sqrt(np.maximum(square, 0.0))
     one, other = (size - b, 2 * a), (2 * c, -b - size)
     lengths = np.hypot(*one), np.hypot(*other)

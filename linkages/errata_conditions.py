@@ -7,7 +7,6 @@ from functools import partial
 from math import cos, pi, radians, sin
 
 from linkages.catalogue import entry
-from linkages.goldberg_5r import extended_myard
 from linkages.link import Link, bennett_links, closed_chain, half_angle_ratio, syncopated_link
 from linkages.loop import Loop
 from linkages.mobility import held_gap, survey
@@ -92,7 +91,7 @@ CONDITIONS: tuple[Row, ...] = (
         "alpha34 = pi - 2 alpha with R3 = R4",
         "cos(alpha34/2) = sin(alpha) / sqrt(1 + (R3 sin(beta)/b)^2)",
         partial(_with_twist, "extended-myard-5r", 3, lambda loop: pi - 2 * loop.twists[0]),
-        lambda: extended_myard(1.0, *TWISTS[:2], 0.4),
+        _corrected("extended-myard-5r"),
     ),
     (
         SONG,

@@ -13,6 +13,7 @@ from bifurc.interrupts import HeldInterrupt
 from studies.status import EchoHandler, ExitCode, StatusLine, compilation_announced
 from studies.sweep.command import sweep_command
 from studies.tolerance_command import tolerance_command
+from studies.verify_command import verify_command
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -24,6 +25,7 @@ Exit codes:
   3    the linkage does not move: rigid, or no real configuration
   4    there is no route
   5    for identify: no linkage of the catalogue has this geometry
+  6    for verify: something does not hold
   130  interrupted; what was found is shown and written
 """
 EXPLORING = (
@@ -236,6 +238,7 @@ def route(
 
 main.add_command(sweep_command)
 main.add_command(tolerance_command)
+main.add_command(verify_command)
 
 
 def _listen(verbose: bool) -> None:
