@@ -46,7 +46,8 @@ def draw_case(title: str, runs: Sequence[Run], path: Path) -> None:
     for method in dict.fromkeys(run.method for run in runs if not run.order):
         colour, marker = COLOURS.get(method, ("#555555", "."))
         _line(axes, [r for r in runs if r.method == method], method, colour, marker, 0.9)
-    axes.set(xscale="log", yscale="log", xlabel="largest distance to the exact curve", ylabel="processor time (ms)", title=title)
+    axes.set(xscale="log", yscale="log", title=title)
+    axes.set(xlabel="largest distance to the exact curve", ylabel="processor time (ms)")
     axes.invert_xaxis()
     axes.grid(alpha=0.3)
     axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
@@ -77,7 +78,7 @@ def draw_ratios(table: Sequence[Mapping[str, Any]], titles: Mapping[str, str], p
     axes.axvline(1.0, color="0.3", lw=1)
     axes.set(xscale="log", xlabel="time to come within 1e-8 of the whole curve, over that of this project (order 16)")
     axes.set_yticks(range(len(methods)), methods)
-    axes.invert_yaxis()
+    axes.set_ylim(len(methods) - 0.5, -0.5)
     axes.grid(alpha=0.3, axis="x")
     axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
     figure.savefig(path, dpi=150)

@@ -12,6 +12,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.continuation import TraceSettings, trace_branch
+from bifurc.corrector import null_vector
 from bifurc.monitor import dead_points
 from bifurc.problem import FunctionProblem, Problem
 from linkages.catalogue import entry
@@ -183,4 +184,6 @@ def bratu(n: int) -> Case:
 
     bounds = [(-1.0, 20.0)] * n + [(0.0, 5.0)]
     problem = FunctionProblem(residual, bounds, jacobian=jacobian)
-    return Case(f"bratu-{n}", f"Bratu, {n} unknowns", problem, np.zeros(n + 1), np.eye(n + 1)[-1], exact)
+    start = np.zeros(n + 1)
+    tangent = null_vector(problem, start, np.eye(n + 1)[-1])
+    return Case(f"bratu-{n}", f"Bratu, {n} unknowns", problem, start, tangent, exact)

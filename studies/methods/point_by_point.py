@@ -11,7 +11,7 @@ from studies.methods.linear import evaluate, solve_bordered
 __all__ = ["pseudo_arclength_secant", "pseudo_arclength_tangent", "svd_predictor_corrector"]
 
 NEWTON = 8  # corrections of one point
-LONGEST = 0.5  # largest step, rad or unknowns over their scale
+LONGEST = 0.6  # largest step over the turn of a step: straight stretches are not smooth ones
 
 
 def turn_per_step(tolerance: float) -> float:
@@ -20,12 +20,15 @@ def turn_per_step(tolerance: float) -> float:
 
 
 def pseudo_arclength_tangent(
-    problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, tolerance: float, longest: float = LONGEST
-) -> Curve:
+    problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, tolerance: float,
+    longest: float | None = None,
+) -> Curve:  # fmt: skip
     """Pseudo-arclength continuation (Keller 1977) with the tangent as predictor and cubic Hermite pieces.
 
-    Steps turn the tangent by an equal angle, halved where Newton's method does not converge.
+    Steps turn the tangent by an equal angle, halved where Newton's method does not converge; the ``longest``, over the
+    problem's scale, is `LONGEST` times that angle unless given.
     """
+    longest = LONGEST * turn_per_step(tolerance) if longest is None else longest
     turn, u, t, h = turn_per_step(tolerance), start, tangent, turn_per_step(tolerance) * 0.1
     points, tangents, travelled = [u], [t], 0.0
     while travelled < length:
@@ -51,7 +54,7 @@ def pseudo_arclength_secant(
 ) -> Curve:
     """Pseudo-arclength continuation with the secant through the last two points as predictor, and a cubic spline."""
     turn, u, t, h = turn_per_step(tolerance), start, tangent, turn_per_step(tolerance) * 0.1
-    points, travelled = [u], 0.0
+    points, travelled, tried = [u], 0.0, h
     while travelled < length + 2 * h:
         found = _correct(problem, u + h * t, t, tolerance)
         if found is None:
@@ -60,13 +63,14 @@ def pseudo_arclength_secant(
         chord = found[0] - u
         size = float(np.linalg.norm(chord))
         angle = float(np.linalg.norm(chord / size - t))
-        if angle > 2 * turn and len(points) > 1:
+        if angle > 2 * turn and h > tried / 16 and len(points) > 1:  # the last secant itself lags behind the tangent
             h = _halved(h)
             continue
         travelled += size
         u, t = found[0], chord / size
         points.append(u)
-        h = min(h * min(1.5, max(0.5, turn / (angle + 1e-300))), LONGEST * problem.scale)
+        h = min(h * min(1.5, max(0.5, turn / (angle + 1e-300))), LONGEST * turn * problem.scale)
+        tried = h
     return through_points(points, length)
 
 
