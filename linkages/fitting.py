@@ -109,7 +109,7 @@ def _candidates(entry: Entry, view: View, unit: float) -> Iterator[tuple[dict[st
         members = list(_built(entry, [{**plain, **at} for at in grid]))
         if members:
             gaps = compare(view.values, np.array([values for _, values in members]), unit).blind
-            for k in np.argsort(gaps)[:FITTED]:
+            for k in np.argsort(gaps)[: 2 * FITTED]:
                 yield _descend(entry, members[k], view.values, unit, tuple(axes))
 
 

@@ -95,9 +95,15 @@ def _double_goldberg(sign: int, special: bool) -> Callable[[Rows], Guesses]:
     return hint
 
 
-def _difference(name: str, of: int, less: int) -> Callable[[Rows], Guesses]:
-    """The twist ``name`` is that in column ``of`` less that in column ``less``, or the opposite for a link c - b."""
-    return lambda form: iter([{name: (sign * (form[1, of] - form[1, less])) % pi} for sign in (1, -1)])
+def _difference(name: str, of: int, other: int) -> Callable[[Rows], Guesses]:
+    """The twist ``name`` when that in column ``of`` is it added to, or subtracted from, that in column ``other``, or
+    the opposite: a link c - b reads b - c where that is longer."""
+
+    def hint(form: Rows) -> Guesses:
+        whole, part = form[1, of], form[1, other]
+        yield from ({name: twist % pi} for twist in (whole - part, part - whole, whole + part))
+
+    return hint
 
 
 def _back_to_back(sign: int) -> Callable[[Rows], Guesses]:
@@ -140,7 +146,7 @@ def _yu_baker(form: Rows) -> Guesses:
     """A cubic equation for tan(beta/2): delta is beta less the twist of link 56, epsilon beta plus that of link 12."""
     t = form[1]
     a, c = float(np.tan(t[5] / 2)), float(np.tan(t[3] / 2))
-    for s, r in itertools.product(half_tangents(t[0]), half_tangents(t[4])):
+    for s, r in itertools.product(*(half_tangents(t[k]) + half_tangents(-t[k]) for k in (0, 4))):
         x, one = np.poly1d([1.0, 0.0]), np.poly1d([1.0])
         delta = (x - r, one + r * x)  # numerator and denominator of tan(delta/2)
         left = (a * c * delta[1] + x * delta[0]) * (a + c) * (one - s * x)

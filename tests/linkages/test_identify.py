@@ -149,3 +149,12 @@ def test_parameters_stand_in_the_table_or_have_a_formula(name):
     elif hidden:
         hints = list(HINTS[name](normal_form(table(found.build()))))
         assert not hints or hidden <= set(hints[0])
+
+
+@pytest.mark.parametrize("kind", ["mixed-double", "double-subtractive"])
+@pytest.mark.parametrize("order", ["ii", "iii", "iv"])
+def test_a_difference_of_links_may_be_negative(kind, order):
+    found = entry(f"{kind}-goldberg-type-{order}")
+    loop = found.build(beta=0.4, gamma=0.9)
+    assert min(loop.lengths) < 0
+    assert identify(loop, entries=[found], locking=False).names == (found.name,)
