@@ -25,7 +25,7 @@ __all__ = ["Atlas", "Event", "Form", "Leg", "MeetingPoint", "Route", "RouteError
 @dataclass(frozen=True)
 class Form:
     """A smooth motion branch with its name, the singular values along it, the smallest regular one of them, minima
-    included, and the number of the component it belongs to. ``labels`` holds what a recogniser said of it."""
+    included (0 where it passes a singular point), and the number of the component it belongs to. ``labels`` holds what a recogniser said of it."""
 
     name: str
     branch: Branch
@@ -198,8 +198,9 @@ class Atlas:
     def graph(self) -> nx.MultiGraph:
         """Graph of forms: nodes are the names of the forms, edges the bifurcations at which two of them meet.
 
-        A bifurcation that one form passes more than once is a loop on that form. Surfaces are nodes as well, with their
-        ``dimension``, joined to the forms that meet them and to the surfaces with which they share a singular point.
+        A bifurcation that one form passes more than once is a loop on that form. Surfaces are nodes as well,
+        with their ``dimension``, joined to the forms that meet them and to the surfaces with which they share a
+        singular point.
         """
         graph = nx.MultiGraph()
         for form in self.forms:
@@ -223,9 +224,10 @@ class Atlas:
     def route(self, start: str | np.ndarray, goal: str | np.ndarray, count: int = 400) -> Route:
         """The shortest chain of arcs from ``start`` to ``goal``, with a path of about ``count`` points.
 
-        Either is a configuration (n,) on a form, or the name of a form, which stands for the middle of its longest
-        arc. The path begins at ``start`` (a form's point is taken into half a period about zero) and has no jumps.
-        Raises `RouteError` for an unknown name, a configuration on no form, or where no route exists.
+        Either is a configuration (n,) on a form, or the name of a form, which stands for the middle of its
+        longest arc. The path begins at ``start`` (a form's point is taken into half a period about zero) and
+        has no jumps. Raises `RouteError` for an unknown name, a configuration on no form, or where no route
+        exists.
         """
         return find_route(self, start, goal, count)
 

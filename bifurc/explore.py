@@ -4,51 +4,31 @@ from __future__ import annotations
 
 import logging
 import time
-from collections import Counter
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field, replace
-from itertools import pairwise
+from dataclasses import asdict
 
-import networkx as nx
 import numpy as np
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface, wrap
+from bifurc.atlas import Atlas
 from bifurc.branch import Branch, Outcome
-from bifurc.components import Components, lies_on, singular_points_of, sort_out
+from bifurc.components import singular_points_of, sort_out
 from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
 from bifurc.deadline import Deadline
 from bifurc.deflation import Deflated, lower_rank_direction
 from bifurc.dimension import is_on_surface
+from bifurc.findings import SAME, Findings, assemble_atlas
 from bifurc.interrupts import HeldInterrupt
-from bifurc.monitor import Profile, dead_points, profile_branch, singular_value_minima, singular_values
+from bifurc.monitor import profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
-from bifurc.seeding import Completeness, Seeds, missed_probability
-from bifurc.singular import Kind, SingularPoint, classify_singular_point, locate_singular_point
+from bifurc.seeding import Seeds
+from bifurc.singular import SingularPoint, classify_singular_point, locate_singular_point
 
 __all__ = ["explore"]
 
 log = logging.getLogger(__name__)
 
-SAME = 1e-6  # distance, in units of the problem's scale, below which a seed lies on a traced curve
 STUB = 2e-2  # length, in scales, below which a branch that stalls at both ends is none
-INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R", Kind.DIMENSION_CHANGE: "D"}
 NEARLY = 1e-3  # singular value, over the problem's magnitude, below which a singular point is looked for
-
-
-@dataclass
-class _Findings:
-    """What is known so far. ``owner`` labels every seed with what it lies on: (kind, number)."""
-
-    branches: list[Branch] = field(default_factory=list)
-    profiles: list[Profile] = field(default_factory=list)
-    minima: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
-    located: list[list[float]] = field(default_factory=list)  # arclengths of minima that are singular points
-    points: list[SingularPoint] = field(default_factory=list)
-    rigid: list[np.ndarray] = field(default_factory=list)
-    components: Components = field(default_factory=Components)
-    gaps: list[float] = field(default_factory=list)  # residuals of starts that only nearly solve the system
-    owner: dict[int, tuple[str, int]] = field(default_factory=dict)
-    deadline: Deadline = field(default_factory=Deadline)
 
 
 def explore(
@@ -77,7 +57,7 @@ def explore(
         raise ProblemError("starts", starts, "at least 1")
     began = time.perf_counter()
     deadline = Deadline(budget)
-    found = _Findings(deadline=deadline)
+    found = Findings(deadline=deadline)
     interrupted = False
     gathered = seeds
     try:
@@ -98,14 +78,14 @@ def explore(
         "budget": budget, "out_of_time": deadline.passed, "derivatives": problem.derivatives,
         "seconds": time.perf_counter() - began,
     }  # fmt: skip
-    return _assemble(problem, found, gathered, interrupted, info)
+    return assemble_atlas(problem, found, gathered, interrupted, info)
 
 
 # --- the search ---------------------------------------------------------------------------------------
 
 
 def _work_through(
-    problem: Problem, seeds: Seeds, found: _Findings, settings: TraceSettings,
+    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings,
     progress: Callable[[str, int], None] | None, held: HeldInterrupt,
 ) -> None:  # fmt: skip
     """Trace from every seed that lies on nothing known, and from every half-branch that shows up on the way."""
@@ -134,7 +114,7 @@ def _work_through(
 
 
 def _take_seed(
-    problem: Problem, point: np.ndarray, values: np.ndarray, found: _Findings, settings: TraceSettings
+    problem: Problem, point: np.ndarray, values: np.ndarray, found: Findings, settings: TraceSettings
 ) -> tuple[str, int]:
     """Find out what a seed lies on: a curve, a rigid assembly, a singular point, or a surface."""
     n = problem.n
@@ -168,7 +148,7 @@ def _take_seed(
 
 
 def _trace_lower_rank(
-    problem: Problem, point: np.ndarray, along: np.ndarray, found: _Findings, settings: TraceSettings
+    problem: Problem, point: np.ndarray, along: np.ndarray, found: Findings, settings: TraceSettings
 ) -> bool:
     """Trace the curve of lower rank through ``point``; what may cross it is left to other seeds."""
     branch = trace_branch(Deflated(problem), point, along, settings)
@@ -180,7 +160,7 @@ def _trace_lower_rank(
 
 
 def _work_on_surfaces(
-    problem: Problem, seeds: Seeds, found: _Findings, settings: TraceSettings, charts: int
+    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings, charts: int
 ) -> None:
     """Cover the surfaces with charts, locate singular points on them, and trace the curves that leave there."""
     found.components.cover(problem, seeds.points, charts, found.deadline)
@@ -197,7 +177,7 @@ def _work_on_surfaces(
 
 
 def _trace_and_follow(
-    problem: Problem, queue: list[tuple[np.ndarray, np.ndarray | None]], found: _Findings, settings: TraceSettings
+    problem: Problem, queue: list[tuple[np.ndarray, np.ndarray | None]], found: Findings, settings: TraceSettings
 ) -> bool:
     """Trace the branches through the starts and everything that hangs on them; False where there is no curve."""
     traced = False
@@ -231,7 +211,7 @@ def _is_the_same(problem: Problem, branch: Branch, known: Branch) -> bool:
 
 
 def _add_branch(
-    problem: Problem, branch: Branch, found: _Findings
+    problem: Problem, branch: Branch, found: Findings
 ) -> list[tuple[np.ndarray, np.ndarray | None]]:
     """Record a traced branch and the singular points on it; starts on all branches through them come back."""
     profile = profile_branch(problem, branch)
@@ -259,7 +239,7 @@ def _add_branch(
 
 
 def _examine(
-    problem: Problem, near: np.ndarray, nullity: int, found: _Findings, reach: float
+    problem: Problem, near: np.ndarray, nullity: int, found: Findings, reach: float
 ) -> SingularPoint | None:
     """Locate and classify the singular point near a configuration; one already known is returned as it is."""
     for k in sorted({max(nullity, 2), 2, 3}, key=lambda k: abs(k - nullity)):
@@ -271,7 +251,7 @@ def _examine(
 
 
 def _point_of(
-    problem: Problem, u: np.ndarray, null_space: np.ndarray, error: float, found: _Findings
+    problem: Problem, u: np.ndarray, null_space: np.ndarray, error: float, found: Findings
 ) -> SingularPoint:
     """The known singular point that a located one is, or a new one, classified."""
     known = _nearest(problem, u, [p.u for p in found.points], SAME + 10 * error / problem.scale)
@@ -297,135 +277,3 @@ def _known_or_new(problem: Problem, point: np.ndarray, known: list[np.ndarray]) 
         known.append(point)
         return len(known) - 1
     return number
-
-
-# --- putting the atlas together -----------------------------------------------------------------------
-
-
-def _assemble(problem: Problem, found: _Findings, seeds: Seeds, interrupted: bool, info: dict[str, object]) -> Atlas:
-    """The atlas of the findings, in an order that does not depend on the seeds."""
-    order = sorted(range(len(found.branches)), key=lambda i: (-round(found.branches[i].length, 6), i))
-    branches = [found.branches[i] for i in order]
-    surfaces = tuple(
-        replace(surface, name=f"surface {i}")
-        for i, surface in enumerate(found.components.surfaces(seeds.points), start=1)
-    )
-    points = [_meeting_point(problem, p, branches, surfaces) for p in found.points]
-    points = sorted(points, key=lambda p: (p.kind.value, *np.round(wrap(p.point.u, problem.periods), 6)))
-    points = [replace(p, name=f"{INITIALS.get(p.kind, 'S')}{i}") for i, p in enumerate(points, start=1)]
-    component = _components(len(branches), points)
-    forms, near, dead = [], [], []
-    for i, k in enumerate(order):
-        branch, profile, minima = found.branches[k], found.profiles[k], found.minima[k]
-        smallest = float(min(minima[1].min(initial=np.inf), profile.smallest.min()))
-        forms.append(Form(f"Form {i + 1}", branch, profile, smallest, component[i]))
-        near += [
-            Event(i, float(s), branch(s), float(v))
-            for s, v in zip(*minima, strict=True)
-            if float(s) not in found.located[k] and v < 0.5 * profile.smallest.max()
-        ]
-        dead += [Event(i, float(s), branch(s), index=j) for j, roots in enumerate(dead_points(branch)) for s in roots]
-    mobile = bool(found.branches or surfaces)
-    return Atlas(
-        names=problem.names, units=problem.units, periods=problem.periods, forms=tuple(forms), points=tuple(points),
-        near_misses=tuple(near), dead_points=tuple(dead), rigid=np.array(found.rigid).reshape(-1, problem.n),
-        surfaces=surfaces,
-        completeness=_completeness(found, seeds, interrupted),
-        closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found), info=info,
-    )  # fmt: skip
-
-
-def _closure_gap(problem: Problem, seeds: Seeds, found: _Findings) -> float:
-    """Median residual along the valley in which the system is nearly solved, where it has no curve of solutions.
-
-    From every start that did not solve the system, Gauss-Newton steps of rank n - 1 run down to the valley but
-    not along it, so that an isolated solution at its end does not hide the gap. Where there is no valley, the
-    residuals themselves.
-    """
-    points = seeds.missed.copy()
-    for _ in range(12):
-        if not len(points):
-            break
-        residual = problem.residuals(points) / problem.magnitude
-        left, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude, full_matrices=False)
-        inverse = np.zeros_like(sigma)
-        kept = sigma[:, : problem.n - 1] > 1e-6 * sigma[:, :1]
-        inverse[:, : problem.n - 1][kept] = 1.0 / sigma[:, : problem.n - 1][kept]
-        step = np.einsum("kji,kj,kmj,km->ki", right, inverse, left, residual)
-        points -= step * np.minimum(1.0, 0.5 * problem.scale / (np.linalg.norm(step, axis=1) + 1e-300))[:, None]
-    gaps = np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude if len(points) else np.empty(0)
-    gaps = np.concatenate([np.maximum(gaps, seeds.gaps), found.gaps])
-    return float(np.median(gaps)) if len(gaps) else np.inf
-
-
-def _meeting_point(
-    problem: Problem, point: SingularPoint, branches: list[Branch], surfaces: tuple[Surface, ...]
-) -> MeetingPoint:
-    """A singular point with the branches that pass it or end there, and the surfaces on which it lies; where the
-    branches and the section disagree, a note."""
-    within = SAME * problem.scale + 10 * point.error
-    through = [
-        (i, float(s))
-        for i, branch in enumerate(branches)
-        for s in branch.passes(point.u, within)
-        if branch.outcome is not Outcome.STALLED or 0.01 * problem.scale < s < branch.length - 0.01 * problem.scale
-    ]
-    ends = [(i, s) for i, branch in enumerate(branches) for s in _ends_at(problem, branch, point)]
-    tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(-1, problem.n)
-    explained, seen = 2 * len(through) + len(ends), len(point.half_branches)
-    kind, note = point.kind, ""
-    if explained != seen:
-        note = f"{explained} half-branches were traced, the section shows {seen}"
-        crossing = Kind.BIFURCATION if explained > 2 else Kind.UNDECIDED
-        kind = Kind.DIMENSION_CHANGE if point.dimension > 1 else crossing
-    met = lies_on(surfaces, point.u, problem.periods) if point.dimension > 1 else ()
-    return MeetingPoint("", kind, point, tuple(through + ends), tangents, note, met)
-
-
-def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
-    """Arclengths of the ends of a branch that stalled before a cusp: near the point, along a half-branch."""
-    near, found = 0.02 * problem.scale, []
-    if branch.outcome is not Outcome.STALLED or not len(point.half_branches):
-        return []
-    for s, inside in ((0.0, near), (branch.length, branch.length - near)):
-        gap = np.linalg.norm(problem.difference(branch(s), point.u))
-        offset = problem.difference(branch(inside), point.u)
-        along = float((point.half_branches @ offset).max()) / max(float(np.linalg.norm(offset)), 1e-300)
-        if gap < near and along > 0.95:
-            found.append(s)
-    return found
-
-
-def _components(count: int, points: list[MeetingPoint]) -> list[int]:
-    """Number of the connected component of every form, counted from 0 in the order of the forms."""
-    graph = nx.Graph()
-    graph.add_nodes_from(range(count))
-    for point in points:
-        indices = [i for i, _ in point.passes] + [("surface", k) for k in point.surfaces]
-        graph.add_edges_from(pairwise(indices))
-    out = [0] * count
-    parts = ([i for i in members if isinstance(i, int)] for members in nx.connected_components(graph))
-    for number, members in enumerate(sorted(filter(None, parts), key=min)):
-        for i in members:
-            out[i] = number
-    return out
-
-
-def _completeness(found: _Findings, seeds: Seeds, interrupted: bool) -> Completeness:
-    """What the seeds prove, and the estimate for the rest."""
-    hits = Counter(owner for i, owner in found.owner.items() if seeds.random[i])
-    closed = sum(hits.values())
-    hits["no solution", 0] = len(seeds.gaps)
-    missed = missed_probability(list(hits.values()))
-    estimate = (
-        f"{closed} of {closed + len(seeds.gaps)} random starts reached a solution, each listed here: one more start "
-        f"would reach something new with a probability of at most {missed:.2g} (95 % confidence)"
-    )
-    if found.deadline.passed:
-        left = len(seeds.points) - len(found.owner)
-        reason = f"the budget of {found.deadline.seconds:.4g} s was used up with {left} starts not looked at; "
-        return Completeness("out of time", reason + estimate, missed if not left else 1.0)
-    if interrupted:
-        return Completeness("interrupted", "the search was interrupted; " + estimate, missed)
-    level = "complete slices" if seeds.complete else "estimated"
-    return Completeness(level, f"{seeds.statement}; {estimate}" if seeds.statement else estimate, missed)

@@ -9,7 +9,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form, Surface, wrap
 
-__all__ = ["make_document", "smallest_singular_value"]
+__all__ = ["make_document"]
 
 
 def make_document(atlas: Atlas) -> dict[str, Any]:
@@ -56,12 +56,6 @@ def make_document(atlas: Atlas) -> dict[str, Any]:
     }
 
 
-def smallest_singular_value(atlas: Atlas, index: int) -> float:
-    """The smallest regular singular value along a form: 0 where it passes a singular point."""
-    passes = any(i == index for point in atlas.points for i, _ in point.passes)
-    return 0.0 if passes else atlas.forms[index].min_singular_value
-
-
 def _form(atlas: Atlas, index: int, form: Form) -> dict[str, Any]:
     branch = form.branch
     return {
@@ -74,7 +68,7 @@ def _form(atlas: Atlas, index: int, form: Form) -> dict[str, Any]:
         "symmetry": form.labels["symmetry"],
         "sample": _angles(atlas, branch(_far_from_singular(atlas, index))),
         "max_residual": float(form.labels["max_residual"]),
-        "min_singular_value": smallest_singular_value(atlas, index),
+        "min_singular_value": form.min_singular_value,
         "component": form.component,
     }
 

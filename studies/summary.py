@@ -10,7 +10,6 @@ import numpy as np
 
 from bifurc.atlas import Atlas, MeetingPoint, Route, wrap
 from linkages.entry import Entry
-from studies.document import smallest_singular_value
 from studies.verdict import judge
 
 __all__ = ["describe_entry", "describe_geometry", "describe_route", "make_summary", "table"]
@@ -117,7 +116,7 @@ def _forms(atlas: Atlas) -> str:
         rows.append((
             form.name, "yes" if branch.closed else branch.outcome.name.lower().replace("_", " "),
             f"{np.degrees(branch.length):.6g}", " ".join(f"{w:+d}" if w else "0" for w in branch.winding),
-            _inactive(form.labels), form.labels["symmetry"] or "-", f"{smallest_singular_value(atlas, i):.3g}",
+            _inactive(form.labels), form.labels["symmetry"] or "-", f"{form.min_singular_value:.3g}",
             f"{form.labels['max_residual']:.1e}",
         ))  # fmt: skip
     heads = ("name", "closed", "length (deg)", "winding", "inactive joints", "symmetry", "smallest s.v.", "residual")
