@@ -168,17 +168,21 @@ def _explore(case: Crossing, problem: Problem) -> int:
 
 def _walk(case: Crossing, problem: Problem, step: float = 0.02) -> Points:
     """The curve in equal steps by the SVD predictor-corrector, from the start to the side of the singular point."""
-    tangent = np.linalg.svd(problem.jacobians(case.start[None])[0])[2][-1]
-    center = np.array([0.1234, -0.0567]) if problem.n == 2 else case.start + tangent
-    tangent = tangent * np.sign((center - case.start) @ tangent)
-    tolerance = _tolerance(2 * step)
-    curve = point_by_point.svd_predictor_corrector(problem, case.start, tangent, case.length, tolerance)
+    follow = point_by_point.svd_predictor_corrector
+    curve = follow(problem, case.start, _heading(case, problem), case.length, _tolerance(2 * step))
     return curve.sample(max(8, int(case.length / step)))
 
 
-def _pycont(case: Crossing, problem: Problem) -> int:
+def _heading(case: Crossing, problem: Problem) -> np.ndarray:
+    """The tangent at the start, towards the singular point of a plane curve."""
     tangent = np.linalg.svd(problem.jacobians(case.start[None])[0])[2][-1]
-    return peers.count_branch_points(problem, case.start, case.length, 0.02, bool(tangent[-1] > 0))
+    center = np.array([0.1234, -0.0567]) if problem.n == 2 else case.start + tangent
+    return tangent * np.sign((center - case.start) @ tangent)
+
+
+def _pycont(case: Crossing, problem: Problem) -> int:
+    increasing = bool(_heading(case, problem)[-1] > 0)
+    return peers.count_branch_points(problem, case.start, case.length, 0.02, increasing)
 
 
 def report_points(case: Crossing, name: str, reporter: Reporter) -> Run:

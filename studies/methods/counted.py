@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from bifurc.problem import March, Problem
+from studies.methods.curve import MethodFailure
 
 __all__ = ["Counted"]
 
@@ -14,10 +15,13 @@ A_PIECE = 10  # evaluations of F and F' that a compiled Taylor piece costs: corr
 
 
 class Counted(Problem):
-    """``problem`` with the number of ``evaluations`` so far: points at which F or F' was asked for, one each."""
+    """``problem`` with the number of ``evaluations`` so far: points at which F or F' was asked for, one each.
 
-    def __init__(self, problem: Problem):
-        self._problem, self.evaluations = problem, 0
+    Raises `MethodFailure` beyond ``budget`` evaluations.
+    """
+
+    def __init__(self, problem: Problem, budget: int = 100_000):
+        self._problem, self.evaluations, self.budget = problem, 0, budget
         for name in ("names", "units", "periods", "bounds", "magnitude", "scale", "derivatives", "curvature_residual"):
             setattr(self, name, getattr(problem, name))
         if type(problem).march is Problem.march:  # by collocation, through the evaluations below
@@ -27,13 +31,18 @@ class Counted(Problem):
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
-        self.evaluations += len(points)
+        self._count(len(points))
         return self._problem.residuals(points)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n)."""
-        self.evaluations += len(points)
+        self._count(len(points))
         return self._problem.jacobians(points)
+
+    def _count(self, more: int) -> None:
+        self.evaluations += more
+        if self.evaluations > self.budget:
+            raise MethodFailure(f"it is not done after {self.budget} evaluations")
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point."""
