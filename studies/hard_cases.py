@@ -117,6 +117,11 @@ def _plane(function: Callable[[np.ndarray], list[float]]) -> Problem:
     return FunctionProblem(lambda u: np.array(function(u - away)), [[-1.1, 1.0], [-1.05, 1.2]])
 
 
+def _line_and_parabola(u: np.ndarray) -> list[float]:
+    above = u[1] - 0.5 * u[0]
+    return [above * (above - u[0] ** 2 + 0.04)]
+
+
 def _at(x: float, y: float) -> np.ndarray:
     return np.array([x + 0.1234, y - 0.0567])
 
@@ -128,7 +133,7 @@ def crossings() -> list[Crossing]:
         Crossing("pitchfork from the side", _plane(lambda u: [u[0] * u[1] - u[1] ** 3]), _at(0.49, 0.7), 2.0, 1),
         Crossing("triple crossing", _plane(lambda u: [u[1] * (u[1] ** 2 - u[0] ** 2)]), _at(0.5, 0.5), 1.6, 1),
         Crossing("tacnode", _plane(lambda u: [u[1] ** 2 - u[0] ** 4]), _at(0.6, 0.36), 1.5, 1),
-        Crossing("double crossing", _plane(lambda u: [u[1] * (u[1] - u[0] ** 2 + 0.04)]), _at(0.6, 0.0), 1.2, 2),
+        Crossing("double crossing", _plane(_line_and_parabola), _at(0.6, 0.3), 1.2, 2),
     ]
     miss = 2.5e-7  # the square of half its width
     start = _at(0.5, sqrt(0.25 - miss))

@@ -55,7 +55,7 @@ def pycont_lite(problem: Problem, start: np.ndarray, tangent: np.ndarray, length
 def count_branch_points(problem: Problem, start: np.ndarray, length: float, step: float, increasing: bool) -> int:
     """How many bifurcation points pycont-lite reports on the curve through ``start``, followed one way for ``length``.
 
-    With its own detection, at equal steps. Redundant equations are mixed as in `pycont_lite`.
+    With its own detection, at equal steps; one that it reports again on another branch counts once. Redundant equations are mixed as in `pycont_lite`.
     """
     import pycont
 
@@ -73,4 +73,9 @@ def count_branch_points(problem: Problem, start: np.ndarray, length: float, step
     result = pycont.arclengthContinuation(
         system, start[:-1].copy(), float(start[-1]), 1e-3 * step, step, step, int(length / step), options, "OFF"
     )
-    return sum(event.kind == "BP" for event in result.events)
+    distinct: list[np.ndarray] = []
+    for event in result.events:
+        point = np.append(event.u, event.p)
+        if event.kind == "BP" and all(np.linalg.norm(point - other) > step for other in distinct):
+            distinct.append(point)
+    return len(distinct)
