@@ -55,7 +55,8 @@ def pycont_lite(problem: Problem, start: np.ndarray, tangent: np.ndarray, length
 def count_branch_points(problem: Problem, start: np.ndarray, length: float, step: float, increasing: bool) -> int:
     """How many bifurcation points pycont-lite reports on the curve through ``start``, followed one way for ``length``.
 
-    With its own detection, at equal steps; one that it reports again on another branch counts once. Redundant equations are mixed as in `pycont_lite`.
+    With its own detection, at equal steps; one that it reports again on another branch counts once. Redundant
+    equations are mixed as in `pycont_lite`.
     """
     import pycont
 
