@@ -1,0 +1,117 @@
+"""Negative controls: change a linkage by a thousandth, entry by entry, and see whether it still moves.
+
+Run as ``python -m studies.negative_controls [FILE]``; writes docs/negative_controls.md. Every length, twist and offset
+of the table is changed alone, which breaks whatever condition holds it; then entries that are alike are changed
+together, which keeps their equality and breaks what else ties them: ratios, sums, or nothing, if they are free.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from linkages.catalogue import catalogue
+from linkages.loop import Loop
+from linkages.mobility import survey
+
+__all__ = ["BREAK", "Control", "break_conditions", "controls", "controls_page"]
+
+BREAK = 1e-3  # of the characteristic length, or rad
+TYPES = (("lengths", "a"), ("twists", "alpha"), ("offsets", "R"))
+
+
+@dataclass(frozen=True)
+class Control:
+    """What became of a loop when ``changed`` was changed: ``mobility`` 0 if it no longer moves.
+
+    ``stiffness`` is the smallest singular value at the rigid assemblies, nan where there is none: no real
+    configuration, or flat ones alone that are isolated.
+    """
+
+    changed: str
+    mobility: int
+    stiffness: float
+
+
+def _name(letter: str, i: int, n: int) -> str:
+    return f"R{i + 1}" if letter == "R" else f"{letter}{i + 1}{(i + 1) % n + 1}"
+
+
+def _changed(loop: Loop, which: str, signs: dict[int, float]) -> Loop:
+    step = BREAK * (1.0 if which == "twists" else loop.characteristic_length)
+    values = {key: list(getattr(loop, key)) for key, _ in TYPES}
+    for i, sign in signs.items():
+        values[which][i] += sign * step
+    return Loop(tuple(values["lengths"]), tuple(values["twists"]), tuple(values["offsets"]))
+
+
+def break_conditions(loop: Loop) -> Iterator[tuple[str, Loop]]:
+    """Every entry of the table changed alone, then every group of entries of equal size, not 0, changed together."""
+    for (which, letter), row in zip(TYPES, loop.arrays, strict=True):
+        for i in range(loop.n):
+            yield _name(letter, i, loop.n), _changed(loop, which, {i: 1.0})
+        sizes = np.abs(row)
+        seen: set[int] = set()
+        for i in range(loop.n):
+            group = [j for j in range(loop.n) if abs(sizes[j] - sizes[i]) < 1e-9 and sizes[i] > 1e-9]
+            if len(group) > 1 and i not in seen:
+                seen.update(group)
+                text = ", ".join(_name(letter, j, loop.n) for j in group)
+                yield f"{text} together", _changed(loop, which, {j: float(np.sign(row[j])) for j in group})
+
+
+def controls(loop: Loop, starts: int = 20) -> list[Control]:
+    """The controls of one loop."""
+    out = []
+    for changed, broken in break_conditions(loop):
+        found = survey(broken, starts)
+        out.append(Control(changed, found.mobility, found.stiffness))
+    return out
+
+
+HEAD = """# Negative controls
+
+Each linkage of the catalogue, with its default parameters, changed by a thousandth (of the characteristic length, or
+rad): every entry of its table alone, then entries of equal size together. "Stops" counts the changes after which no
+motion curve is left. The smallest singular value at any rigid assembly found then says how nearly it moves; it is
+small beside flat configurations, where the linkage itself is nearly singular. "Still moves" lists the changes that
+leave it mobile: these entries are free, or no condition of their own. Misprinted conditions are in
+[errata.md](errata.md).
+
+Findings: no change of a single entry leaves a linkage mobile, but for the lengths of planar and the twists of spherical
+four-bars, which are free. Of changes together, those of the Mavroidis and Roth, Dietmaier and Bricard families keep
+a stated symmetry. Length and twist of the links 12 and 45 (a + c or a - c) of the double-Goldberg linkages WDG and
+DSG are stated as conditions, but the loop moves whatever they are as long as the two links are alike: it has then the
+links of a linkage of Mavroidis and Roth without offsets.
+
+Written by `python -m studies.negative_controls`.
+
+| linkage | changes | stops | smallest singular value | still moves after a change of |
+|---|---|---|---|---|
+"""
+
+
+def controls_page() -> str:
+    """The page as Markdown."""
+    rows = []
+    for name, found in catalogue().items():
+        checked = controls(found.build())
+        stopped = [control for control in checked if not control.mobility]
+        moving = "; ".join(control.changed for control in checked if control.mobility) or "nothing"
+        stiffness = _smallest([control.stiffness for control in stopped])
+        rows.append(f"| {name} | {len(checked)} | {len(stopped)} | {stiffness} | {moving} |")
+    return HEAD + "\n".join(rows) + "\n"
+
+
+def _smallest(values: list[float]) -> str:
+    known = [value for value in values if np.isfinite(value)]
+    return f"{min(known):.0e}" if known else "-"
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/negative_controls.md")
+    target.write_text(controls_page(), encoding="utf-8")
