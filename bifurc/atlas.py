@@ -24,8 +24,9 @@ __all__ = ["Atlas", "Event", "Form", "Leg", "MeetingPoint", "Route", "RouteError
 
 @dataclass(frozen=True)
 class Form:
-    """A smooth motion branch with its name, the singular values along it, the smallest regular one of them, minima
-    included (0 where it passes a singular point), and the number of the component it belongs to. ``labels`` holds what a recogniser said of it."""
+    """A smooth motion branch with its name, the singular values along it, the smallest regular one of them (0 where
+    it passes a singular point), and the number of the component it belongs to. ``labels`` holds what a
+    recogniser said of it."""
 
     name: str
     branch: Branch

@@ -8,8 +8,9 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.collocation import bridge_by_collocation
-from bifurc.corrector import null_vector
+from bifurc.corrector import LARGE, null_vector
 from bifurc.problem import MarchStatus, Problem, ProblemError
+from bifurc.singular import locate_singular_point
 
 __all__ = ["TraceSettings", "trace_branch"]
 
@@ -150,6 +151,8 @@ def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track 
     curve is smooth there all the same: a piece by collocation, from as far before the point as beyond it, needs
     no series.
     """
+    if not _is_near_singular(problem, track.at(-1, track.reached)[0]):
+        return None
     for reach in (0.1, 0.2, 0.05, 0.4, 0.02):
         begin = track.reached - reach * problem.scale
         before = np.flatnonzero(track.centers <= begin)
@@ -160,12 +163,40 @@ def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track 
             tolerance = slack * settings.tolerance
             point, heading = track.at(last, begin)
             made = bridge_by_collocation(problem, point, heading, settings.order, tolerance, 2 * reach * problem.scale)
-            if made is not None:
+            enough = 10.0 * settings.tolerance
+            if made is not None and made[2] <= enough and _spans_a_crossing(problem, made[0], tolerance):
                 piece, length, residual = made
                 return track.extended(
                     last + 1, piece[None], np.array([begin + length / 2]), np.array([length / 2]), np.array([residual])
                 )
     return None
+
+
+def _is_near_singular(problem: Problem, point: np.ndarray) -> bool:
+    """Whether a singular point can be located near ``point``, so that a bridge is worth trying."""
+    if problem.n > LARGE:
+        return False
+    values = np.linalg.svd(problem.jacobians(point[None])[0] / problem.magnitude, compute_uv=False)
+    small = problem.n - int(np.count_nonzero(values > 1e-2))
+    return any(
+        locate_singular_point(problem, point, k, 0.05 * problem.scale) is not None
+        for k in sorted({2, min(small, 4)}) if k > 1
+    )
+
+
+def _spans_a_crossing(problem: Problem, piece: np.ndarray, tolerance: float) -> bool:
+    """Whether a bridge meets the weakest equation to rounding, as it does where branches really cross.
+
+    Straight across a near miss of width w that equation is off by w^2, while its singular value goes to zero: a
+    residual that no correction of the size of ``tolerance`` explains.
+    """
+    points = np.vander(np.linspace(-1.0, 1.0, 61), len(piece), increasing=True) @ piece
+    residuals = problem.residuals(points) / problem.magnitude
+    left, sigma, _ = np.linalg.svd(problem.jacobians(points) / problem.magnitude)
+    if sigma.shape[1] < problem.n - 1:
+        return True
+    weak = np.abs(np.einsum("km,km->k", left[:, :, problem.n - 2], residuals))
+    return bool(np.all(weak <= 10.0 * tolerance * sigma[:, problem.n - 2] + 1e-14))
 
 
 def _breaks(centers: np.ndarray, radii: np.ndarray, length: float) -> np.ndarray:

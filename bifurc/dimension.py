@@ -17,7 +17,7 @@ from bifurc.deadline import Deadline
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["LocalDimensions", "is_on_surface", "local_dimensions", "null_spaces"]
+__all__ = ["LocalDimensions", "local_dimensions", "null_spaces"]
 
 NULL = 1e-7  # singular value, over the problem's magnitude, below which a direction belongs to the null space
 RADIUS = 5e-3  # of the probes, over the scale: at much less, degenerate singular points would look like surfaces
@@ -71,12 +71,6 @@ def local_dimensions(problem: Problem, points: np.ndarray, deadline: Deadline | 
             basis = right[rows - begin, problem.n - k :]
             dimension[rows], regular[rows] = _dimensions_of_nullity(problem, points[rows], basis)
     return LocalDimensions(dimension, nullity, regular)
-
-
-def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
-    """Whether a solution (n,) lies on a component of dimension 2 or more with the rank that belongs to it."""
-    found = local_dimensions(problem, point[None])
-    return bool(found.dimension[0] == found.nullity[0] > 1)
 
 
 def _dimensions_of_nullity(problem: Problem, points: np.ndarray, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -15,11 +15,11 @@ from bifurc.components import singular_points_of, sort_out
 from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
 from bifurc.deadline import Deadline
 from bifurc.deflation import Deflated, lower_rank_direction
-from bifurc.dimension import is_on_surface
 from bifurc.findings import SAME, Findings, assemble_atlas
 from bifurc.interrupts import HeldInterrupt
 from bifurc.monitor import profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
+from bifurc.section import is_on_surface
 from bifurc.seeding import Seeds
 from bifurc.singular import SingularPoint, classify_singular_point, locate_singular_point
 
@@ -254,7 +254,7 @@ def _point_of(
     problem: Problem, u: np.ndarray, null_space: np.ndarray, error: float, found: Findings
 ) -> SingularPoint:
     """The known singular point that a located one is, or a new one, classified."""
-    known = _nearest(problem, u, [p.u for p in found.points], SAME + 10 * error / problem.scale)
+    known = _nearest(problem, u, [p.u for p in found.points], SAME + 2 * error / problem.scale)
     if known is not None:
         return found.points[known]
     point = classify_singular_point(problem, u, null_space, error)

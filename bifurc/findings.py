@@ -104,12 +104,13 @@ def _meeting_point(
 ) -> MeetingPoint:
     """A singular point with the branches that pass it or end there, and the surfaces on which it lies; where the
     branches and the section disagree, a note."""
-    within = SAME * problem.scale + 10 * point.error
+    within = SAME * problem.scale + 2 * point.error
+    inner = 0.05 * problem.scale  # nearer to a stalled end it is the end that counts
     through = [
         (i, float(s))
         for i, branch in enumerate(branches)
         for s in branch.passes(point.u, within)
-        if branch.outcome is not Outcome.STALLED or 0.01 * problem.scale < s < branch.length - 0.01 * problem.scale
+        if branch.outcome is not Outcome.STALLED or inner < s < branch.length - inner
     ]
     ends = [(i, s) for i, branch in enumerate(branches) for s in _ends_at(problem, branch, point)]
     tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(-1, problem.n)

@@ -22,9 +22,10 @@ from bifurc.roots import bracketed_roots
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["ReducedEquations", "Section", "section"]
+__all__ = ["ReducedEquations", "Section", "is_on_surface", "section"]
 
 ANGLES = 96  # samples on the circle of a null space of dimension 2
+MARGIN = 8.0  # times the rounding of the reduced equations: what is smaller counts as zero
 MOST_TESTED = 40  # solutions of higher nullity on a sphere whose local dimension is looked at
 
 
@@ -78,6 +79,18 @@ def section(problem: Problem, point: np.ndarray, null_space: np.ndarray, radius:
     return _sphere_section(problem, point, null_space, radius)
 
 
+def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
+    """Whether a solution (n,) lies on a component of dimension 2 or more with the rank that belongs to it.
+
+    Where many branches meet, F is so flat that probes nearby look like solutions: the section has the last word.
+    """
+    found = local_dimensions(problem, point[None])
+    if not found.dimension[0] == found.nullity[0] > 1:
+        return False
+    null_space = np.linalg.svd(problem.jacobians(point[None])[0])[2][problem.n - found.nullity[0] :].T
+    return section(problem, point, null_space, 2e-2 * problem.scale).dimension > 1
+
+
 # --- nullity 2: every zero on a circle ----------------------------------------------------------------
 
 
@@ -87,7 +100,7 @@ def _circle_section(equations: ReducedEquations) -> Section:
     angles = 0.01 + 2 * np.pi * np.arange(ANGLES) / ANGLES
     values = equations(_unit(angles))
     size = float(np.linalg.norm(values, axis=1).max())
-    if size < 30 * equations.noise:
+    if size < MARGIN * equations.noise:
         return Section(equations.points(_unit(angles))[:0], 2)
     leading = np.linalg.svd(values, full_matrices=False)[2][0]
 
@@ -95,13 +108,13 @@ def _circle_section(equations: ReducedEquations) -> Section:
         return sign * (equations(_unit(np.ravel(angle))) @ leading).reshape(np.shape(angle))
 
     h = values @ leading
-    low, high, touching = _brackets(angles, h, combined, 30 * equations.noise + 1e-9 * size)
+    low, high, touching = _brackets(angles, h, combined, MARGIN * equations.noise + 1e-9 * size)
     roots = bracketed_roots(lambda x: combined(x, np.ones_like(x)), low, high, 1e-12) if len(low) else np.empty(0)
     candidates = np.concatenate([roots, touching])
     if not len(candidates):
         return Section(np.empty((0, len(equations.points(_unit(angles[:1]))[0]))), 0)
     left_over = np.linalg.norm(equations(_unit(candidates)), axis=1)
-    found = equations.points(_unit(candidates[left_over < 1e-6 * size + 30 * equations.noise]))
+    found = equations.points(_unit(candidates[left_over < 1e-6 * size + MARGIN * equations.noise]))
     return Section(found, 1 if len(found) else 0)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -11,6 +12,8 @@ from bifurc.problem import Problem
 from bifurc.section import section
 
 __all__ = ["Kind", "SingularPoint", "classify_singular_point", "locate_singular_point", "second_order_tangents"]
+
+RADII = (2e-2, 4e-2, 8e-2, 5e-3, 1.25e-3)  # of the sections, over the scale, in the order in which they are tried
 
 
 class Kind(Enum):
@@ -85,11 +88,12 @@ def locate_singular_point(
     u = start.copy()
     basis = np.linalg.svd(problem.jacobians(u[None])[0])[2][n - k :].T
     moves: list[float] = []
-    condition, unknowns = 0.0, 0
+    condition, unknowns, weak = 0.0, 0, np.empty((0, n))
     for _ in range(iterations):
         matrix, right = _augmented_system(problem, u, basis)
         left, sigma, transposed = np.linalg.svd(matrix, full_matrices=False)
         kept = sigma > 1e-12 * sigma[0]
+        weak = transposed[sigma < 1e-6 * sigma[0]][:, :n]
         if np.count_nonzero(kept) < unknowns:
             break  # of higher order, and so near that the next step would be rounding
         unknowns, condition = int(np.count_nonzero(kept)), float(sigma[0] / sigma[kept][-1])
@@ -100,14 +104,36 @@ def locate_singular_point(
         if np.linalg.norm(problem.difference(u, start)) > reach:
             return None
         stagnant = len(moves) > 4 and moves[-1] > 0.9 * moves[-2]
-        if moves[-1] < 1e-15 * condition * problem.scale or (stagnant and moves[-1] < 1e-7 * problem.scale):
+        if moves[-1] < 1e-15 * min(condition, 1e6) * problem.scale or (stagnant and moves[-1] < 1e-7 * problem.scale):
             break
     values = np.linalg.svd(problem.jacobians(u[None])[0] / problem.magnitude, compute_uv=False)
     residual = np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
     tail = values[n - k] if len(values) > n - k else 0.0
-    if residual > 1e-11 or tail > 1e-7 or not moves or moves[-1] > 1e-5 * problem.scale:
+    if residual > 1e-11 or tail > 1e-7 or not moves or moves[-1] > 1e-4 * problem.scale:
         return None
-    return u, basis, _location_error(moves, condition) * problem.scale
+    error = _location_error(moves, condition) * problem.scale
+    for direction in weak:
+        if np.linalg.norm(direction) > 0.1:
+            u, doubt = _centred(problem, u, direction / np.linalg.norm(direction), k, reach)
+            error = max(error, doubt)
+    return u, basis, error
+
+
+def _centred(
+    problem: Problem, u: np.ndarray, direction: np.ndarray, nullity: int, reach: float
+) -> tuple[np.ndarray, float]:
+    """The middle of the stretch through ``u`` along ``direction`` on which the singular point cannot be told from
+    rounding, and half of its length: the point lies on it."""
+    tau = reach * np.geomspace(1e-7, 1.0, 120)
+    ends = []
+    for sign in (1.0, -1.0):
+        line = u + sign * tau[:, None] * direction
+        sigma = np.linalg.svd(problem.jacobians(line) / problem.magnitude, compute_uv=False)
+        small = sigma[:, problem.n - nullity] if sigma.shape[1] > problem.n - nullity else np.zeros(len(line))
+        off = small + np.linalg.norm(problem.residuals(line), axis=1) / problem.magnitude
+        beyond = np.flatnonzero(off > 1e-12)
+        ends.append(float(tau[beyond[0]]) if len(beyond) else reach)
+    return u + 0.5 * (ends[0] - ends[1]) * direction, 0.5 * (ends[0] + ends[1])
 
 
 def _augmented_system(problem: Problem, u: np.ndarray, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -194,23 +220,23 @@ def _have_common_root(pair: np.ndarray) -> bool:
 
 
 def classify_singular_point(
-    problem: Problem, point: np.ndarray, null_space: np.ndarray, error: float, radius: float = 2e-2
+    problem: Problem, point: np.ndarray, null_space: np.ndarray, error: float, radii: Sequence[float] = RADII
 ) -> SingularPoint:
     """The located point with its half-branches, tangents and local dimension.
 
-    The section is made at ``radius`` and at half of it (in units of the problem's scale); where the two
-    disagree the radius shrinks. Tangents of second order are kept where their number agrees with the section.
+    The section is made at the first of ``radii`` and at half of it (in units of the problem's scale); where the two
+    disagree, at the next: at a larger one branches that touch separate, at a smaller one other
+    singular points stay outside. Tangents of second order are kept where their number agrees with the section.
     """
     k = null_space.shape[1]
     tangents = second_order_tangents(problem, point, null_space)
-    radius *= problem.scale
     agreed = False
-    for _ in range(4):
+    for share in radii:
+        radius = share * problem.scale
         outer, inner = (section(problem, point, null_space, r) for r in (radius, radius / 2))
         agreed = inner.dimension == outer.dimension and len(inner.points) == len(outer.points)
         if agreed:
             break
-        radius /= 4
     half = (outer.points - point) / radius
     decided = tangents is not None and 2 * len(tangents) == len(half) and agreed
     return SingularPoint(
