@@ -12,7 +12,7 @@ map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
 
 test: .venv/ready  ## all tests, the examples of README and docs among them
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto
 
 lint: .venv/ready  ## ruff and mypy
 	$(BIN)/python -m ruff check .

@@ -151,7 +151,7 @@ def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track 
     curve is smooth there all the same: a piece by collocation, from as far before the point as beyond it, needs
     no series.
     """
-    if not _is_near_singular(problem, track.at(-1, track.reached)[0]):
+    if not len(track.pieces) or not _is_near_singular(problem, track.at(-1, track.reached)[0]):
         return None
     for reach in (0.1, 0.2, 0.05, 0.4, 0.02):
         begin = track.reached - reach * problem.scale
