@@ -36,6 +36,10 @@ EXPLORING = (
     click.option("--starts", default=200, type=click.IntRange(min=1), show_default=True, help="Random starts."),
     click.option("--seed", default=0, type=click.IntRange(min=0), show_default=True, help="Seed of the random starts."),
     click.option("--tolerance", default=1e-13, show_default=True, help="How closely curves are followed."),
+    click.option(
+        "--budget", type=click.FloatRange(min=0, min_open=True), default=float("inf"), metavar="SECONDS",
+        help="End the search after so long, with what was found.  [default: none]",
+    ),
     click.option("-v", "--verbose", is_flag=True, help="Say more on standard error."),
 )  # fmt: skip
 
@@ -166,7 +170,7 @@ def identify(linkage: str, tolerance: float, as_json: bool) -> None:
 @exploring
 def map_command(
     linkage: str, parameters: tuple[str, ...], out: Path | None, as_json: bool, certify: bool, digits: int | None,
-    starts: int, seed: int, tolerance: float, verbose: bool,
+    verbose: bool, **search: Any,
 ) -> None:  # fmt: skip
     """Map every motion form of a linkage, every bifurcation, and the graph between them.
 
@@ -183,7 +187,7 @@ def map_command(
     if out is not None:
         _prepare(out)
     with HeldInterrupt():  # Ctrl-C ends the search, but not before what was found is shown and written
-        atlas = _explore(linkage, parameters, starts, seed, tolerance, certify)
+        atlas = _explore(linkage, parameters, certify, **search)
         from studies.summary import make_summary
         from studies.verdict import judge
 
@@ -211,9 +215,8 @@ def map_command(
 @click.argument("goal", metavar="TO")
 @exploring
 def route(
-    source: str, start: str, goal: str, parameters: tuple[str, ...], starts: int, seed: int, tolerance: float,
-    verbose: bool,
-) -> None:  # fmt: skip
+    source: str, start: str, goal: str, parameters: tuple[str, ...], verbose: bool, **search: Any
+) -> None:
     """Show how to take a linkage from one form to another.
 
     FROM and TO are names of forms as `bifurc map` shows them, or the part of a name that tells them apart.
@@ -224,7 +227,7 @@ def route(
       bifurc route out/atlas.nc "Form III" "Form IV"
     """
     _listen(verbose)
-    atlas = _load(source) if source.endswith(".nc") else _explore(source, parameters, starts, seed, tolerance)
+    atlas = _load(source) if source.endswith(".nc") else _explore(source, parameters, **search)
     from bifurc.atlas import RouteError
     from studies.summary import describe_route
 
@@ -261,7 +264,7 @@ def _prepare(out: Path) -> None:
 
 
 def _explore(
-    linkage: str, parameters: tuple[str, ...], starts: int, seed: int, tolerance: float, certify: bool = False
+    linkage: str, parameters: tuple[str, ...], certify: bool = False, *, tolerance: float, **search: Any
 ) -> Atlas:
     from bifurc.continuation import TraceSettings
     from linkages.mapping import map_linkage
@@ -273,9 +276,8 @@ def _explore(
     try:
         with compilation_announced():
             return map_linkage(
-                chosen.loop, chosen.patterns, certify=certify, starts=starts, seed=seed, settings=settings,
-                progress=status,
-            )  # fmt: skip
+                chosen.loop, chosen.patterns, certify=certify, settings=settings, progress=status, **search
+            )
     finally:
         status.wipe()
 
