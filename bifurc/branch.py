@@ -98,11 +98,6 @@ class Branch:
         """Points (count, n) at equally spaced arclengths."""
         return self(self.arclengths(count))
 
-    def travel(self, start: float, end: float) -> np.ndarray:
-        """Total variation (n,) of each unknown from arclength ``start`` to ``end`` (end >= start)."""
-        s = np.linspace(start, end, max(16, int(64 * (end - start) / max(self.radii.max(), 1e-300))))
-        return np.abs(np.diff(self(s), axis=0)).sum(axis=0)
-
     @cached_property
     def _index(self) -> tuple[cKDTree, np.ndarray, np.ndarray]:
         s = np.concatenate(

@@ -146,7 +146,8 @@ def _least_squares(matrix: Any, right: Any, negligible: Any) -> list[Any]:
     count = matrix.cols
     columns, rest = [list(matrix[:, j]) for j in range(count)], list(right)
     chosen: list[tuple[int, Any, list[Any], dict[int, Any]]] = []  # column, length, projection of the right-hand side
-    left, upper = set(range(count)), {j: {} for j in range(count)}  # type: ignore[var-annotated]
+    left = set(range(count))
+    upper: dict[int, dict[int, Any]] = {j: {} for j in range(count)}
     largest = mpmath.mpf(0)
     while left:
         sizes = {j: mpmath.fdot(columns[j], columns[j]) for j in left}

@@ -179,4 +179,5 @@ def _ints(values: Iterable[int]) -> np.ndarray:
 
 
 def texts(values: Iterable[str]) -> np.ndarray:
+    """The values as an array of strings."""
     return np.array(list(values), dtype=str)

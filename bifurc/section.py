@@ -7,6 +7,7 @@ passes, whatever the order at which their tangents or curvatures separate.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -118,7 +119,9 @@ def _circle_section(equations: ReducedEquations) -> Section:
     return Section(found, 1 if len(found) else 0)
 
 
-def _brackets(angles, h, combined, zero):  # type: ignore[no-untyped-def]
+def _brackets(
+    angles: np.ndarray, h: np.ndarray, combined: Callable[[np.ndarray, np.ndarray], np.ndarray], zero: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Brackets (low, high) of the sign changes of ``h`` on the circle, and the angles where it only touches zero."""
     step, after = angles[1] - angles[0], np.roll(h, -1)
     changes = np.flatnonzero(np.sign(h) * np.sign(after) < 0)

@@ -28,10 +28,10 @@ def map_linkage(
     """The transition map of a loop: every form with its name, every bifurcation, every near miss.
 
     ``patterns`` are the forms that a source names, ``options`` those of `bifurc.explore.explore` (``starts``,
-    ``seed``, ``settings``, ``budget``, ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
-    ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest closure error seen along it
-    relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists in rad. With
-    ``certify`` they also hold the ``certificate`` of `bifurc.certificate`.
+    ``seed``, ``settings``, ``budget``, ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from
+    1) and their ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest closure error
+    seen along it relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists
+    in rad. With ``certify`` they also hold the ``certificate`` of `bifurc.certificate`.
     """
     problem = LoopClosure(loop)
     atlas = explore(problem, **options)

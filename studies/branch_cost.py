@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import click
@@ -45,7 +46,7 @@ def cost_of(series: str, loop: Loop) -> list[Cost]:
     for point in points[gaps < 1e-13]:
         branch = trace_branch(problem, point)
         if branch.closed and all(abs(branch.length - known.length) > 1e-6 for known in out):
-            seconds = median_time(lambda p=point: trace_branch(problem, p), budget=0.1)  # type: ignore[misc]
+            seconds = median_time(partial(trace_branch, problem, point), budget=0.1)
             gap = float(profile_branch(problem, branch).smallest.min())
             out.append(Cost(series, loop.n, branch.length, len(branch.pieces), gap, seconds))
     return out
