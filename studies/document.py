@@ -74,7 +74,7 @@ def _form(atlas: Atlas, index: int, form: Form) -> dict[str, Any]:
 
 
 def _surface(atlas: Atlas, number: int, surface: Surface) -> dict[str, Any]:
-    """A component of dimension 2 or more, of which only single configurations are known."""
+    """A component of dimension 2 or more, shown by one configuration."""
     return {
         "name": f"surface {number + 1}",
         "dimension": surface.dimension,

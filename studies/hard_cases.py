@@ -122,6 +122,14 @@ def _line_and_parabola(u: np.ndarray) -> list[float]:
     return [above * (above - u[0] ** 2 + 0.04)]
 
 
+def _point_and_line(u: np.ndarray) -> list[float]:
+    return [(u[0] ** 2 + u[1] ** 2) * (u[0] - 0.05)]
+
+
+def _oval_and_line(u: np.ndarray) -> list[float]:
+    return [(u[0] ** 2 + u[1] ** 2 - 1e-4) * (u[0] - 0.05)]
+
+
 def _at(x: float, y: float) -> np.ndarray:
     return np.array([x + 0.1234, y - 0.0567])
 
@@ -134,6 +142,9 @@ def crossings() -> list[Crossing]:
         Crossing("triple crossing", _plane(lambda u: [u[1] * (u[1] ** 2 - u[0] ** 2)]), _at(0.5, 0.5), 1.6, 1),
         Crossing("tacnode", _plane(lambda u: [u[1] ** 2 - u[0] ** 4]), _at(0.6, 0.36), 1.5, 1),
         Crossing("double crossing", _plane(_line_and_parabola), _at(0.6, 0.3), 1.2, 2),
+        Crossing("cusp", _plane(lambda u: [u[1] ** 2 - u[0] ** 3]), _at(0.64, 0.512), 1.6, 0),
+        Crossing("isolated point beside a line", _plane(_point_and_line), _at(0.05, 0.5), 1.0, 0),
+        Crossing("small oval beside a line", _plane(_oval_and_line), _at(0.05, 0.5), 1.0, 0),
     ]
     miss = 2.5e-7  # the square of half its width
     start = _at(0.5, sqrt(0.25 - miss))

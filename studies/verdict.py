@@ -44,7 +44,7 @@ def judge(atlas: Atlas) -> Verdict:
 def _mobile(atlas: Atlas) -> str:
     if atlas.surfaces:
         dimension = max(surface.dimension for surface in atlas.surfaces)
-        sentence = f"The linkage moves with mobility {dimension} or more"
+        sentence = f"The linkage moves with mobility {dimension}"
         if atlas.forms:
             sentence += f", and has {counted(len(atlas.forms), 'form')} of mobility 1"
         return sentence + "."
