@@ -2,8 +2,10 @@
 
 For closed forms the measure is the closure defect max |T_1 ... T_n - I|: the median over input angles for the print,
 the largest for the correction. For conditions it is the smallest singular value at the rigid assemblies of the loop
-built by them, or the smallest closure residual with joint 1 held; 0 if the loop moves. Equations between numbers are
-evaluated as they stand. Misprints that are not equations (numbers of figures, words) are not listed.
+built by them, or the smallest closure residual with joint 1 held; 0 if the loop moves. Equations between numbers and
+matrices are evaluated as they stand. Where the root of a form changes, the measure is the gap in its angles there. Of
+formulas lost in the copy the amount is for what stands in their place. Misprints that are not equations (numbers of
+figures, words), and conditions that are only stricter than needed, are not listed.
 """
 
 from __future__ import annotations
@@ -29,6 +31,10 @@ from linkages.errata_forms import (
     with_constant,
     with_joints,
 )
+from linkages.errata_matrices import MATRIX_ROWS
+from linkages.errata_switching import SWITCHING_ROWS
+from linkages.errata_symmetric import SYMMETRIC_ROWS
+from linkages.errata_tori import TORI_ROWS
 
 __all__ = ["ERRATA", "Erratum", "errata_of"]
 
@@ -182,4 +188,5 @@ ERRATA: tuple[Erratum, ...] = (
         for row in CONDITIONS
     ),
     *CLOSED,
+    *(Erratum(*row) for row in (*MATRIX_ROWS, *SWITCHING_ROWS, *SYMMETRIC_ROWS, *TORI_ROWS)),
 )

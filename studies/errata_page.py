@@ -18,8 +18,9 @@ Each row is measured by the program: by how much the printed equation fails, and
 closed forms the amount is the closure defect max |T_1 ... T_n - I| (median over input angles for the print, largest for
 the correction). For geometric conditions it is the smallest singular value at the rigid assemblies of the loop built
 by them, or the smallest closure residual with joint 1 held at 1 rad; 0 means that the loop moves. Equations between
-numbers are evaluated as they stand. Scanned copies were used: a slip may be the scanner's. `bifurc verify NAME`
-measures the rows of one linkage again.
+numbers or matrices are evaluated as they stand. Where the root of a form changes, the amount is the gap in its angles
+there; of formulas lost in the copy it is for what stands in their place. Scanned copies were used: a slip may be the
+scanner's. `bifurc verify NAME` measures the rows of one linkage again.
 
 | source | equation | linkage | printed | correct | print fails by | correction leaves |
 |---|---|---|---|---|---|---|

@@ -32,4 +32,4 @@ def test_page_of_the_docs_has_no_other_rows():
 
 def test_every_misprint_belongs_to_a_linkage_of_the_catalogue():
     assert all(entry(erratum.linkage) for erratum in ERRATA)
-    assert {e.equation for e in errata_of("wohlhart-double-goldberg")} == {"(5.2.4)", "(5.2.5)"}
+    assert {e.equation for e in errata_of("wohlhart-double-goldberg")} >= {"(5.2.4)", "(5.2.5)", "(5.4), (5.5)"}
