@@ -69,7 +69,7 @@ def _factors() -> tuple[float, float]:
 
 
 def _corrector() -> tuple[float, float]:
-    """Equation (A17), 0.05 rad off: closure defect after one correction with E, which doubles it; after five with -E."""
+    """Equation (A17), 0.05 rad off: closure defect after one correction with E, and after five with -E."""
     loop, path = _along("bricard-line-symmetric")
 
     def after(sign: int, corrections: int) -> float:
