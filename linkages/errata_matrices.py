@@ -161,6 +161,27 @@ def _distance_of_planes() -> tuple[float, float]:
     return float(np.median(out[0][good])), float(out[1][good].max())
 
 
+def _meeting(point: np.ndarray, axis: np.ndarray, other: np.ndarray, other_axis: np.ndarray) -> np.ndarray:
+    """Where two lines meet."""
+    along = np.linalg.lstsq(np.stack([axis, -other_axis], axis=1), other - point, rcond=None)[0]
+    return np.asarray(point + along[0] * axis)
+
+
+def _line_of_meetings() -> tuple[float, float]:
+    """Equation (25): n, and n divided by its length, beside the unit vector from O'' to O'."""
+    alpha, out = radians(100), []
+    loop, path = _along("wohlhart-symmetric", a=1.3, alpha=alpha)
+    for theta in path[np.abs(np.sin(path[:, 0]) * np.sin(path[:, 1])) > 0.3]:
+        frames, (x, y) = loop.frames(theta), theta[:2]
+        lines = [(frames[i, :3, 3], frames[i, :3, 2]) for i in (6, 4, 1, 5)]
+        line = _meeting(*lines[0], *lines[1]) - _meeting(*lines[2], *lines[3])
+        third = (np.cos(x) + 1) / np.sin(x) / np.tan(alpha) + (np.cos(y) + 1) / (np.sin(y) * np.sin(alpha))
+        n = np.array([1, -np.sin(x) / (1 - np.cos(x)), third])
+        out.append([_gap(v, line / np.linalg.norm(line)) for v in (n, n / np.linalg.norm(n))])
+    gaps = np.array(out)
+    return float(np.median(gaps[:, 0])), float(gaps[:, 1].max())
+
+
 SONG, WOHLHART = "Song 2013", "Racila and Dahan 2010"
 BOTH = "Song 2013; Song and Chen 2012 (mixed)"
 MATRIX_ROWS: tuple[Row, ...] = (
@@ -201,6 +222,14 @@ MATRIX_ROWS: tuple[Row, ...] = (
     (SONG, "(A2), (A6)", "bricard-line-symmetric", "T = T^L T^theta", "T = T^theta T^L", _factors),
     (SONG, "(A17)", "bricard-line-symmetric", "sum of T_i^p dtheta_i = E", "... = -E", _corrector),
     (WOHLHART, "(17)", "wohlhart-symmetric", "C3 with (cos(theta) + 1)(...)", "(cos(phi) + 1)(...)", _even_plane),
+    (
+        WOHLHART,
+        "(25)",
+        "wohlhart-symmetric",
+        "unit vector n with n_x = 1",
+        "n divided by its length",
+        _line_of_meetings,
+    ),
     (
         WOHLHART,
         "(29)",
