@@ -1,0 +1,114 @@
+"""Random linkages that nearly bifurcate: is the traced arc the true one?
+
+    python -m studies.near_bifurcations [--count 1000] [--seed 0]
+
+Every linkage is off one that bifurcates by 1e-8 to 1e-2, and is traced twice, with steps of at most 0.1 and 0.5. Exact
+relations of its motion (`studies.near_misses`) decide whether the curve stayed on its arc. A trace is right when it did
+and came back to its start; flagged when it is wrong or unfinished, and its outcome or its certificate says so; all
+else is a jump without a word.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import click
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.certificate import certify_branch
+from bifurc.continuation import TraceSettings, trace_branch
+from bifurc.monitor import profile_branch
+from studies.near_misses import NearMiss, near_misses
+from studies.summary import table
+
+__all__ = ["STEPS", "Trace", "describe", "follow"]
+
+STEPS = (0.1, 0.5)
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One trace of one linkage: ``verdict`` is right, flagged or jump; ``certified`` whether its certificate holds."""
+
+    family: str
+    size: float
+    step: float
+    verdict: str
+    certified: bool
+    outcome: str
+    pieces: int
+    seconds: float
+
+
+def follow(case: NearMiss, step: float, certify: bool = False) -> Trace:
+    """Trace one linkage and judge it; without ``certify`` only wrong curves are held against their certificates."""
+    began = time.process_time()
+    branch = trace_branch(case.problem, case.start, None, TraceSettings(longest=step / case.problem.scale))
+    seconds = time.process_time() - began
+    right = is_right(case, branch)
+    certified = branch.closed and (certify or not right) and _certified(case, branch)
+    verdict = "right" if right else "jump" if certified else "flagged"
+    return Trace(case.family, case.size, step, verdict, certified, branch.outcome.name, len(branch.pieces), seconds)
+
+
+def is_right(case: NearMiss, branch: Branch) -> bool:
+    """Whether a branch came back to its start on its own arc, in one line."""
+    return branch.closed and _joins(branch) and case.stays(branch)
+
+
+def _certified(case: NearMiss, branch: Branch) -> bool:
+    return certify_branch(case.problem, branch, profile_branch(case.problem, branch)).status == "certified"
+
+
+def _joins(branch: Branch) -> bool:
+    """Whether neighbouring pieces meet, in the same direction."""
+    inner = branch.breaks[1:-1]
+    tiny = 1e-9 * np.minimum(np.diff(branch.breaks)[:-1], np.diff(branch.breaks)[1:])
+    before, after = branch(inner - tiny), branch(inner + tiny)
+    turn = np.sum(branch(inner - tiny, 1) * branch(inner + tiny, 1), axis=1)
+    return bool(np.all(np.linalg.norm(after - before, axis=1) < 1e-8) and np.all(turn > 0.9))
+
+
+def describe(traces: Sequence[Trace]) -> str:
+    """A row for every family and step, and one for all."""
+    rows = []
+    groups = [(f, s) for f in dict.fromkeys(t.family for t in traces) for s in STEPS]
+    for family, step in [*groups, ("all", 0.0)]:
+        some = [t for t in traces if family == "all" or (t.family, t.step) == (family, step)]
+        counts = [sum(t.verdict == v for t in some) for v in ("right", "flagged", "jump")]
+        pieces, seconds = [t.pieces for t in some], [t.seconds for t in some]
+        rows.append((
+            family, f"{step:g}" if step else "", str(len(some)), str(counts[0]), str(counts[1]),
+            str(counts[2]), f"{np.median(pieces):.0f}", str(max(pieces)), f"{1e3 * np.median(seconds):.1f}",
+        ))  # fmt: skip
+    heads = ("family", "step", "traces", "right", "flagged", "jumps", "pieces", "most", "ms")
+    return table(heads, rows)
+
+
+@click.command(help=__doc__)
+@click.option("--count", type=click.IntRange(1), default=1000, show_default=True, help="How many linkages.")
+@click.option("--seed", type=int, default=0, show_default=True)
+@click.option("--certify", is_flag=True, help="Certify the right curves, too.")
+def main(count: int, seed: int, certify: bool) -> None:
+    """Run the study and print its table, with a line for every trace that is not right."""
+    traces = []
+    for number, case in enumerate(near_misses(count, np.random.default_rng(seed))):
+        for step in STEPS:
+            trace = follow(case, step, certify)
+            traces.append(trace)
+            if trace.verdict != "right":
+                click.echo(
+                    f"{trace.verdict}: linkage {number}, {trace.family}, off by {trace.size:.1e}, step {step}, "
+                    f"{trace.outcome}, {trace.pieces} pieces"
+                )
+    click.echo(describe(traces))
+    if certify:
+        sure = sum(t.certified for t in traces)
+        click.echo(f"{sure} of {len(traces)} traces are certified without regard to located singular points")
+
+
+if __name__ == "__main__":
+    main()
