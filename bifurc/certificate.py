@@ -31,6 +31,7 @@ __all__ = ["Certificate", "certify_atlas", "certify_branch"]
 
 SHARE = 1.0 / (2.0 * np.sqrt(2.0))  # of sigma / K: how far neighbouring points may be apart
 HANDOVER = 1e-3  # distance, in scales, at which an arc is handed over to a located singular point
+MOST = 60_000  # points of one arc: a curve that needs more is left uncertified where it does
 ROUNDS = 6  # of halving where the first choice of points was too coarse
 
 
@@ -85,7 +86,7 @@ def certify_branch(
         for _ in range(ROUNDS):
             apart, reach, frame = _reach(problem, branch, s, bound)
             wide = apart > reach
-            if not np.any(wide):
+            if not np.any(wide) or len(s) > MOST:
                 break
             s = np.sort(np.concatenate([s, 0.5 * (s[:-1] + s[1:])[wide]]))
         else:
@@ -131,7 +132,8 @@ def _first_choice(
         local = np.minimum(local, np.maximum(distance * _slope(s, sigma, singular), 1e-12))
     spacing = 0.9 * SHARE * np.minimum(local[1:], local[:-1]) / bound
     count = np.concatenate([[0.0], np.cumsum(np.diff(grid) / spacing)])
-    return np.interp(np.linspace(0.0, count[-1], int(np.ceil(count[-1])) + 2), count, grid)
+    chosen = int(min(np.ceil(count[-1]), MOST)) + 2
+    return np.interp(np.linspace(0.0, count[-1], chosen), count, grid)
 
 
 def _slope(s: np.ndarray, sigma: np.ndarray, singular: Sequence[float]) -> float:

@@ -1,0 +1,68 @@
+"""Singular points of every kind with a known answer, and arcs that nearly meet."""
+
+import numpy as np
+import pytest
+
+from bifurc.branch import Outcome
+from bifurc.certificate import certify_branch
+from bifurc.continuation import TraceSettings, trace_branch
+from bifurc.explore import explore
+from bifurc.monitor import profile_branch
+from bifurc.problem import FunctionProblem
+from bifurc.singular import Kind
+from linkages.closure import LoopClosure
+from linkages.loop import Loop
+
+BOX = [[-1.1, 1.0], [-1.05, 1.2]]
+AT_THE_ORIGIN = {  # polynomial, its kind, number of half-branches, number of forms
+    "two lines": (lambda x, y: x * y, Kind.BIFURCATION, 4, 2),
+    "pitchfork": (lambda x, y: x * y - y**3, Kind.BIFURCATION, 4, 2),
+    "three lines": (lambda x, y: y * (y - x) * (y + 2 * x), Kind.BIFURCATION, 6, 3),
+    "four lines": (lambda x, y: y * (y - x) * (y + x) * (x - 0.3 * y), Kind.BIFURCATION, 8, 4),
+    "tacnode": (lambda x, y: y * (y - x**2), Kind.BIFURCATION, 4, 2),
+    "two parabolas": (lambda x, y: (y - x**2) * (y + x**2), Kind.BIFURCATION, 4, 2),
+    "two cubics": (lambda x, y: (y - x**3) * (y + x**3), Kind.BIFURCATION, 4, 2),
+    "cusp": (lambda x, y: y**2 - x**3, Kind.CUSP, 2, 2),
+    "cusp of the second kind": (lambda x, y: y**2 - x**5, Kind.CUSP, 2, 2),
+    "isolated point": (lambda x, y: x**2 + 2 * y**2, Kind.ISOLATED, 0, 0),
+}
+
+
+@pytest.mark.parametrize("longest", [0.1, 2.0])
+@pytest.mark.parametrize("name", AT_THE_ORIGIN)
+def test_a_singular_point_of_any_kind_is_found_once_with_its_half_branches(name, longest):
+    polynomial, kind, half_branches, forms = AT_THE_ORIGIN[name]
+    problem = FunctionProblem(lambda u: np.array([polynomial(*u)]), BOX)
+    atlas = explore(problem, starts=40, settings=TraceSettings(longest=longest))
+    assert [(p.kind, len(p.point.half_branches), p.note) for p in atlas.points] == [(kind, half_branches, "")]
+    assert len(atlas.forms) == forms
+    # what is stated holds also where convergence was linear, beside 1e-12 for the points that are exact to rounding
+    assert np.linalg.norm(atlas.points[0].point.u) <= atlas.points[0].point.error + 1e-12
+
+
+@pytest.mark.parametrize("longest", [0.1, 0.5])
+@pytest.mark.parametrize("error", [1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
+def test_a_near_parallelogram_is_followed_on_its_true_circuit(error, longest):
+    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
+    start = problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0]
+    branch = trace_branch(problem, start, settings=TraceSettings(longest=longest))
+    # the long link on one side lets one crank turn fully: the parallelogram's two circuits are one, split in halves
+    assert branch.outcome is Outcome.CLOSED
+    assert sorted(np.abs(branch.winding)) == [0, 0, 1, 1]
+    allowed = 60 + 30 * longest**-0.5  # pieces: as for a plain four-bar, and some more for every decade of 1/error
+    assert len(branch.pieces) < allowed + 8 * np.log10(1 / error)
+
+
+@pytest.mark.parametrize("error", [1e-1, 1e-2, 1e-4])
+def test_a_near_parallelogram_is_certified(error):
+    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
+    branch = trace_branch(problem, problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0])
+    assert certify_branch(problem, branch, profile_branch(problem, branch)).status == "certified"
+
+
+@pytest.mark.parametrize("error", [1e-11, 1e-12, 1e-13])
+def test_below_the_resolution_of_doubles_a_wrong_circuit_is_never_called_certified(error):
+    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
+    branch = trace_branch(problem, problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0])
+    right = branch.closed and sorted(np.abs(branch.winding)) == [0, 0, 1, 1]
+    assert right or certify_branch(problem, branch, profile_branch(problem, branch)).status == "not certified"
