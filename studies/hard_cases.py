@@ -99,7 +99,7 @@ def near_parallelogram(gap: float) -> Ladder:
     return Ladder(
         "near-parallelogram", gap, problem, start, tangent, 12.0,
         stays=lambda u: bool(np.all(sign * np.sin(u[:, 2]) > 0)),
-        arrives=lambda u: bool(abs(u[-1, 0] - start[0]) > 5.0), parameter=0, travel=2 * np.pi,
+        arrives=lambda u: bool(abs(u[-1, 0] - u[0, 0]) > 5.0), parameter=0, travel=2 * np.pi,
     )  # fmt: skip
 
 

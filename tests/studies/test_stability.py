@@ -34,7 +34,7 @@ def test_a_curve_on_the_other_arc_is_seen():
 
 
 @pytest.mark.parametrize("make", [pitchfork, near_parallelogram])
-@pytest.mark.parametrize("step", ["medium", "coarse"])
+@pytest.mark.parametrize("step", ["fine", "medium", "coarse"])
 @pytest.mark.parametrize("gap", [1e-1, 1e-3, 1e-5])
 def test_this_project_follows_the_true_arc(make, step, gap):
     assert follow_ladder(make(gap), "this project", followers()["this project"], step).verdict == "right"
