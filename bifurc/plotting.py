@@ -97,8 +97,13 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
     low, high = _range_of_singular_values(atlas)
     with rc_context(SETTINGS):
         size = (4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4)
-        figure = figure or Figure(figsize=size, layout="constrained")
+        figure = figure or Figure(figsize=size)
         panels = figure.subplots(rows, columns, squeeze=False, sharey=True)
+        width, height = figure.get_size_inches()  # margins in inches: no layout engine need measure the text
+        figure.subplots_adjust(
+            left=0.85 / width, right=1 - 0.2 / width, bottom=0.6 / height, top=1 - 0.45 / height,
+            wspace=0.3 / (width / columns - 0.3), hspace=0.75 / (height / rows - 0.75),
+        )  # fmt: skip
         for axes in panels.flat[count:]:
             axes.set_visible(False)
         for i, axes in enumerate(panels.flat[: len(atlas.forms)]):
