@@ -443,7 +443,8 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
             back, apart = _meet(
                 pieces[made - 1], pieces[made], radius, -beyond * radius, place, direction, other, slope
             )
-            if apart <= 100.0 * tolerance + 1e-14:
+            # a point of the curve is known to rounding over the smallest singular value, no better
+            if apart <= 100.0 * tolerance + 4.0 * noise / sigmas[made]:
                 steps[made] = radius - back
                 status = RAN
                 made += 1
