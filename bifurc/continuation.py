@@ -155,10 +155,9 @@ def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track 
         return None
     for reach in (0.1, 0.2, 0.05, 0.4, 0.02):
         begin = track.reached - reach * problem.scale
-        before = np.flatnonzero(track.centers <= begin)
-        if not len(before):
+        if begin < track.centers[0]:
             continue
-        last = int(before[-1])
+        last = int(np.argmin(np.abs(track.centers - begin) / track.radii))  # pieces reach back as well as on
         for slack in (10.0, 100.0):
             tolerance = slack * settings.tolerance
             point, heading = track.at(last, begin)

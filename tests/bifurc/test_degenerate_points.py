@@ -10,6 +10,7 @@ from bifurc.explore import explore
 from bifurc.monitor import profile_branch
 from bifurc.problem import FunctionProblem
 from bifurc.singular import Kind
+from linkages.catalogue import entry
 from linkages.closure import LoopClosure
 from linkages.loop import Loop
 
@@ -66,3 +67,17 @@ def test_below_the_resolution_of_doubles_a_wrong_circuit_is_never_called_certifi
     branch = trace_branch(problem, problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0])
     right = branch.closed and sorted(np.abs(branch.winding)) == [0, 0, 1, 1]
     assert right or certify_branch(problem, branch, profile_branch(problem, branch)).status == "not certified"
+
+
+def test_neighbouring_pieces_overlap_also_where_a_bridge_was_laid():
+    """A member of the special Wohlhart double-Goldberg family whose Form I crosses another at a small angle."""
+    found = entry("special-wohlhart-double-goldberg")
+    rng = np.random.default_rng(0)
+    for _ in range(22):
+        values = found.draw(rng)
+    problem = LoopClosure(found.build(**values))
+    for form in explore(problem, starts=60).forms:
+        for start in form.branch(form.branch.length * np.linspace(0, 1, 6)):
+            branch = trace_branch(problem, start)
+            assert np.all(np.diff(branch.centers) <= (branch.radii[:-1] + branch.radii[1:]) * (1 + 1e-9))
+            assert np.abs(problem.residuals(branch.sample(4000))).max() < 1e-12
