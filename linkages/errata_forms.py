@@ -67,12 +67,14 @@ def with_joints(form: ClosedForm, **pairs: Pair) -> ClosedForm:
 
 
 def inverted_factor(form: ClosedForm) -> ClosedForm:
+    """The form with tan(theta3/2) = m_c tan(theta1/2), the factor upside down."""
     third = (constant("m_c") * S1, C1)
     fifth = minus((0, 1), plus(reciprocal(FIRST, constant("m_a")), third))
     return with_joints(form, j3=third, j5=fifth)
 
 
 def printed_type_one(form: ClosedForm) -> ClosedForm:
+    """The closed form of Type I as printed, with m2, m4 and m6 in the places of m1, m3 and m4."""
     m2, m4, m6 = (constant(f"m_{k}") for k in (2, 4, 6))
     q = reciprocal(FOURTH, -m2)  # tan(theta4/2) = -m2/Q
     outer = minus(q, reciprocal(FIRST, m2))
@@ -84,6 +86,7 @@ def printed_type_one(form: ClosedForm) -> ClosedForm:
 
 
 def with_constant(form: ClosedForm, **values: Any) -> ClosedForm:
+    """The form with further or other constants."""
     return replace(form, constants={**form.constants, **values})
 
 
@@ -124,8 +127,9 @@ def printed_second_form(form: ClosedForm) -> ClosedForm:
 
 
 def special_length() -> tuple[float, float]:
-    exact = sin(radians(60)) / sin(radians(125))
-    return abs(1.5072 - exact), abs(1.0572 - exact) if abs(1.0572 - exact) > 5e-5 else 0.0
+    """Equation (5.2.34): b = sin(beta)/sin(alpha), to the four decimals that are printed."""
+    rounded = round(sin(radians(60)) / sin(radians(125)), 4)
+    return abs(1.5072 - rounded), abs(1.0572 - rounded)
 
 
 def cosine_multipliers() -> tuple[float, float]:

@@ -24,6 +24,7 @@ from dataclasses import asdict, dataclass, fields
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
@@ -121,9 +122,9 @@ def _null_field(case: Ladder, problem: Problem, step: float, projected: bool) ->
     return curve.sample(DENSE)
 
 
-def _along(follow: Callable[..., object], case: Ladder, problem: Problem, step: float) -> Points:
+def _along(follow: Callable[..., Any], case: Ladder, problem: Problem, step: float) -> Points:
     curve = follow(problem, case.start, case.tangent, case.length, _tolerance(step))
-    return curve.sample(DENSE)  # type: ignore[attr-defined]
+    return curve.sample(DENSE)
 
 
 def follow_ladder(case: Ladder, name: str, follower: Follower, step: str) -> Run:
