@@ -73,7 +73,7 @@ def measure(case: Case, method: Method, tolerance: float, floor: float, budget: 
 def _timed(case: Case, method: Method, tolerance: float) -> tuple[Curve, float]:
     began = time.process_time()
     curve = method.follow(case, tolerance)
-    return curve, time.process_time() - began
+    return curve, time.process_time() - began if curve.seconds is None else curve.seconds
 
 
 def measure_case(case: Case, methods: Iterable[Method], longest: float) -> tuple[list[Run], float]:

@@ -17,11 +17,15 @@ class MethodFailure(RuntimeError):
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve over a parameter from 0 to ``end``; ``points`` is the number of points or pieces it was made of."""
+    """A curve over a parameter from 0 to ``end``; ``points`` is the number of points or pieces it was made of.
+
+    ``seconds`` is the processor time it took where that is spent in a program of its own, else None.
+    """
 
     evaluate: Callable[[np.ndarray], np.ndarray]
     end: float
     points: int
+    seconds: float | None = None
 
     def sample(self, count: int) -> np.ndarray:
         """Points (count, n) at equally spaced parameters."""
@@ -39,8 +43,8 @@ def through_points_and_tangents(points: list[np.ndarray], tangents: list[np.ndar
     return Curve(CubicHermiteSpline(s, u, t), min(length, s[-1]), len(u))
 
 
-def through_points(points: list[np.ndarray], length: float) -> Curve:
+def through_points(points: list[np.ndarray], length: float, seconds: float | None = None) -> Curve:
     """A cubic spline through points over their chord length, cut off at ``length``."""
     u = np.array(points)
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(u, axis=0), axis=1))])
-    return Curve(CubicSpline(s, u), min(length, s[-1]), len(u))
+    return Curve(CubicSpline(s, u), min(length, s[-1]), len(u), seconds)

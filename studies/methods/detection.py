@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.problem import Problem
+from studies.methods.linear import mixtures
 
 __all__ = ["by_determinant", "by_singular_value"]
 
@@ -19,7 +20,7 @@ def by_determinant(problem: Problem, points: np.ndarray) -> int:
     """
     m = len(problem.residuals(points[:1])[0])
     n = points.shape[1]
-    mix = np.eye(m) if m == n - 1 else np.linalg.qr(np.random.default_rng(0).normal(size=(m, m)))[0][: n - 1]
+    mix = np.eye(m) if m == n - 1 else mixtures(m, n - 1)
     chords = np.gradient(points, axis=0)
     frames = np.concatenate([mix @ problem.jacobians(points), chords[:, None, :]], axis=1)
     sign = np.sign(np.linalg.det(frames))

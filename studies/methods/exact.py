@@ -45,9 +45,15 @@ def distances(case: Case, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def largest_distance(case: Case, points: np.ndarray) -> float:
     """Largest distance of densely sampled points to the exact curve; infinite where they leave out a part of it.
 
-    By way of the reference curve, whose own error is of the order of rounding.
+    By way of the reference curve, whose own error is of the order of rounding. What a method adds beyond the ends of
+    an open curve is not compared: its own arclength tells it only roughly where to stop.
     """
     distance, s = distances(case, points)
+    if not case.reference.closed:
+        inside = (s > 0.0) & (s < case.length)
+        if not np.any(inside):
+            return np.inf
+        distance, s = distance[inside], s[inside]
     ordered = np.sort(s)
     ends = [ordered[0], case.length - ordered[-1]]
     if case.reference.closed:

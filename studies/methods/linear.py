@@ -11,7 +11,7 @@ from scipy.sparse.linalg import splu
 
 from bifurc.problem import Problem
 
-__all__ = ["evaluate", "solve_bordered"]
+__all__ = ["evaluate", "mixtures", "solve_bordered"]
 
 
 def evaluate(problem: Problem, u: np.ndarray) -> tuple[np.ndarray, Any]:
@@ -30,3 +30,11 @@ def solve_bordered(jacobian: Any, tangent: np.ndarray, right: np.ndarray) -> np.
     if m + 1 == n:
         return lapack.dgesv(matrix, right)[2]
     return lapack.dgels(matrix, right)[1][:n]
+
+
+def mixtures(rows: int, wanted: int) -> np.ndarray:
+    """A fixed random matrix (wanted, rows) with orthonormal rows that makes ``rows`` redundant equations ``wanted``.
+
+    Wherever they have the rank ``wanted`` so has, for almost every such matrix, their mixture.
+    """
+    return np.linalg.qr(np.random.default_rng(0).normal(size=(rows, rows)))[0][:wanted]

@@ -8,6 +8,7 @@ import numpy as np
 
 from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure, through_points
+from studies.methods.linear import mixtures
 from studies.methods.point_by_point import turn_per_step
 
 __all__ = ["count_branch_points", "has_pycont", "pycont_lite"]
@@ -28,7 +29,7 @@ def pycont_lite(problem: Problem, start: np.ndarray, tangent: np.ndarray, length
 
     rows = len(problem.residuals(start[None])[0])
     square = rows == problem.n - 1
-    mix = np.linalg.qr(np.random.default_rng(0).normal(size=(rows, rows)))[0][: problem.n - 1]
+    mix = mixtures(rows, problem.n - 1)
 
     def system(u: np.ndarray, p: float) -> np.ndarray:
         value = problem.residuals(np.append(u, p)[None])[0]
@@ -61,7 +62,7 @@ def count_branch_points(problem: Problem, start: np.ndarray, length: float, step
     import pycont
 
     rows = len(problem.residuals(start[None])[0])
-    mix = np.linalg.qr(np.random.default_rng(0).normal(size=(rows, rows)))[0][: problem.n - 1]
+    mix = mixtures(rows, problem.n - 1)
 
     def system(u: np.ndarray, p: float) -> np.ndarray:
         value = problem.residuals(np.append(u, p)[None])[0]

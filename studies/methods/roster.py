@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from studies.methods import natural, null_field, peers, point_by_point, this_project
+from studies.methods import auto07p, natural, null_field, peers, point_by_point, this_project
 from studies.methods.cases import Case
 from studies.methods.curve import Curve
 
@@ -48,6 +48,8 @@ def comparison_methods() -> list[Method]:
             methods.append(_by_arclength(f"solve_ivp {solver}" + (", projected" if projected else ""), follow))
     if peers.has_pycont():
         methods.append(_by_arclength("pycont-lite", peers.pycont_lite))
+    if auto07p.has_auto():
+        methods.append(Method("AUTO-07p", auto07p.auto_07p))
     return methods
 
 

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from studies.methods.cases import circle, linkage_cases, pitchfork
-from studies.methods.curve import MethodFailure
+from studies.methods.auto07p import auto_07p, has_auto
+from studies.methods.cases import bratu, circle, linkage_cases, pitchfork
+from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import distance_in_digits, largest_distance
-from studies.methods.roster import comparison_methods, orders_of_this_project
+from studies.methods.roster import Method, comparison_methods, orders_of_this_project
 from studies.work_precision import Run, fastest, measure, ratios, recommend
 
 METHODS = [*orders_of_this_project(), *comparison_methods()]
@@ -26,6 +27,22 @@ def test_every_method_follows_a_bennett_linkage_once_around(bennett, method):
         assert largest_distance(bennett, curve.sample(2000)) < bound
 
 
+@pytest.mark.skipif(not has_auto(), reason="AUTO-07p or gfortran is not installed")
+@pytest.mark.parametrize("name", ["circle", "pitchfork", "bratu", "bennett", "general-7r"])
+def test_auto_follows_every_kind_of_problem_and_says_how_long_it_took(name):
+    cases = {case.name: case for case in linkage_cases()} if name in ("bennett", "general-7r") else {}
+    case = cases.get(name) or {"circle": circle, "pitchfork": pitchfork, "bratu": lambda: bratu(10)}[name]()
+    curve = auto_07p(case, 1e-6)
+    assert largest_distance(case, curve.sample(2000)) < 1e-5
+    assert 0.0 < curve.seconds < 10.0
+
+
+def test_a_method_that_runs_elsewhere_states_its_own_time():
+    case = circle()
+    elsewhere = Method("elsewhere", lambda case, tolerance: Curve(case.reference, case.length, 1, seconds=42.0))
+    assert measure(case, elsewhere, 1e-4, 1e-16, 0.0).seconds == 42.0
+
+
 def test_natural_parameters_cannot_go_around_a_circle():
     natural = next(m for m in METHODS if m.name == "natural parameter")
     with pytest.raises(MethodFailure, match="dead point"):
@@ -40,6 +57,13 @@ def test_a_distance_far_below_rounding_is_measured():
     point = np.array([0.6, 0.8])  # the two decimals are not exact in binary: some 1e-17 from the circle
     assert 1e-18 < distance_in_digits(case, point) < 1e-16
     assert distance_in_digits(case, point * (1 + 1e-9)) == pytest.approx(1e-9, rel=1e-6)
+
+
+def test_what_lies_beyond_the_ends_of_an_open_curve_is_not_compared():
+    case = pitchfork()
+    beyond = case.reference(case.length) + np.outer(np.linspace(0.0, 0.1, 50), case.reference(case.length, 1))
+    whole = case.reference(np.linspace(0, case.length, 2000))
+    assert largest_distance(case, np.concatenate([whole, beyond])) < 1e-13
 
 
 def test_half_a_curve_has_an_infinite_error():
