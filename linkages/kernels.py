@@ -7,6 +7,9 @@ not notice an edit in another one.
 The closure residual of a configuration is (2 sign(q_0) q_v, p): the vector part of the unit quaternion of
 the loop product and its translation over the characteristic length. The vector part vanishes for the
 identity alone; the skew part of the rotation matrix, used in the sources, also vanishes at half turns.
+
+``coupling`` is None where the unknowns are the n angles themselves, or an (n, k + 1) array [M c] where there are k
+of them: theta = M v + c. numba compiles one variant for each, and a plain loop does not pay for the other.
 """
 
 from __future__ import annotations
@@ -230,7 +233,38 @@ def _solve_by_rank(matrix, right, order, solution):
 
 
 @register_jitable
-def _settle(theta, tangent, geometry, matrix, scale, noise):
+def _angles(unknowns, coupling):
+    """Joint angles (n,) of the unknowns."""
+    if coupling is None:
+        return unknowns
+    n, last = coupling.shape[0], coupling.shape[1] - 1
+    theta = np.empty(n)
+    for i in range(n):
+        theta[i] = coupling[i, last]
+        for j in range(last):
+            theta[i] += coupling[i, j] * unknowns[j]
+    return theta
+
+
+@register_jitable
+def _closure(unknowns, geometry, coupling, residual, jacobian):
+    """Fill the residual (6,) and its derivative (6, k) by the unknowns."""
+    if coupling is None:
+        _residual_jacobian(unknowns, geometry, residual, jacobian)
+    else:
+        n = coupling.shape[0]
+        full = np.empty((6, n))
+        _residual_jacobian(_angles(unknowns, coupling), geometry, residual, full)
+        for row in range(6):
+            for j in range(unknowns.shape[0]):
+                total = 0.0
+                for i in range(n):
+                    total += full[row, i] * coupling[i, j]
+                jacobian[row, j] = total
+
+
+@register_jitable
+def _settle(theta, tangent, geometry, coupling, matrix, scale, noise):
     """Correct ``theta`` onto the curve across ``tangent`` and turn ``tangent`` into the curve's, in place.
 
     One Gauss-Newton iteration solves min |[J; t] d + [F; 0]| by QR. Below ``noise`` the residual is
@@ -242,7 +276,7 @@ def _settle(theta, tangent, geometry, matrix, scale, noise):
     residual, right, step = np.empty(6), np.empty(7), np.empty(n)
     moved, norm, smallest = 0.0, np.inf, 0.0
     for _ in range(6):
-        _residual_jacobian(theta, geometry, residual, matrix[:6])
+        _closure(theta, geometry, coupling, residual, matrix[:6])
         previous, norm = norm, np.sqrt(np.sum(residual * residual))
         matrix[6] = tangent
         smallest = _factor(matrix, scale)
@@ -255,7 +289,7 @@ def _settle(theta, tangent, geometry, matrix, scale, noise):
     right[:6], right[6] = 0.0, 1.0
     _solve(matrix, scale, right, step)
     tangent[:] = step / np.sqrt(np.sum(step * step))
-    _residual_jacobian(theta, geometry, residual, matrix[:6])
+    _closure(theta, geometry, coupling, residual, matrix[:6])
     matrix[6] = tangent
     smallest = _factor(matrix, scale)
     return moved, norm, smallest
@@ -273,19 +307,22 @@ def _bracket_accumulate(a, b, out):
 
 
 @register_jitable
-def _series(theta, tangent, geometry, matrix, scale, order, coefficients):
-    """Fill Taylor coefficients (order + 1, n) of theta(s), s the arclength, from the factored [J; t].
+def _series(unknowns, tangent, geometry, coupling, matrix, scale, order, coefficients):
+    """Fill Taylor coefficients (order + 1, k) of v(s), s the arclength, from the factored [J; t].
 
     With S_i(s) the screw of joint i and V_i(s) the twist of the joints before it, dS_i/ds = [V_i, S_i] and
-    sum_i S_i dtheta_i/ds = 0, |dtheta/ds| = 1: order by order one product of series and one solve.
+    sum_i S_i dtheta_i/ds = 0, |dv/ds| = 1: order by order one product of series and one solve. ``rates`` are those of
+    the angles, ``own`` those of the unknowns.
     """
-    n = theta.shape[0]
+    theta = _angles(unknowns, coupling)
+    n, count = theta.shape[0], unknowns.shape[0]
     screws, twists = np.zeros((order + 1, n, 6)), np.zeros((order + 1, n, 6))
-    rates, right, step = np.zeros((order, n)), np.empty(7), np.empty(n)
+    rates, right, step = np.zeros((order, n)), np.empty(7), np.empty(count)
+    own = rates if coupling is None else np.zeros((order, count))
     start, quaternion, translation = np.empty((6, n)), np.empty(4), np.empty(3)
     _forward(theta, geometry, start, quaternion, translation)
     screws[0] = start.T
-    coefficients[0] = theta
+    coefficients[0] = unknowns
     for k in range(order):
         right[:] = 0.0
         for m in range(1, k + 1):
@@ -294,14 +331,18 @@ def _series(theta, tangent, geometry, matrix, scale, order, coefficients):
                 for row in range(6):
                     right[row] -= screws[m, i, row] * rate
         if k == 0:
-            rates[0] = tangent
+            own[0] = tangent
         else:
             for m in range(1, k):
-                for i in range(n):
-                    right[6] -= 0.5 * rates[m, i] * rates[k - m, i]
+                for i in range(count):
+                    right[6] -= 0.5 * own[m, i] * own[k - m, i]
             _solve(matrix, scale, right, step)
-            rates[k] = step
-        coefficients[k + 1] = rates[k] / (k + 1)
+            own[k] = step
+        if coupling is not None:
+            for i in range(n):
+                for j in range(count):
+                    rates[k, i] += coupling[i, j] * own[k, j]
+        coefficients[k + 1] = own[k] / (k + 1)
         if k == order - 1:
             break
         for i in range(1, n):
@@ -341,12 +382,12 @@ def _trusted_radius(coefficients, tolerance, longest):
 
 
 @register_jitable
-def _largest_residual(coefficients, radius, geometry, theta, tangent, screws, quaternion, translation):
+def _largest_residual(coefficients, radius, geometry, coupling, place, heading, screws, quaternion, translation):
     """Largest closure residual of the piece over six points of its trusted interval."""
     worst = 0.0
     for fraction in (-1.0, -0.8, -0.45, 0.45, 0.8, 1.0):
-        _evaluate(coefficients, fraction * radius, theta, tangent)
-        _forward(theta, geometry, screws, quaternion, translation)
+        _evaluate(coefficients, fraction * radius, place, heading)
+        _forward(_angles(place, coupling), geometry, screws, quaternion, translation)
         total = 0.0
         for row in range(3):
             total += 4.0 * quaternion[row + 1] ** 2 + translation[row] ** 2
@@ -355,15 +396,17 @@ def _largest_residual(coefficients, radius, geometry, theta, tangent, screws, qu
 
 
 @register_jitable
-def _expand(theta, tangent, geometry, matrix, scale, order, tolerance, longest, coefficients):
+def _expand(theta, tangent, geometry, coupling, matrix, scale, order, tolerance, longest, coefficients):
     """Fill the series at a settled point; its trusted radius (0 for none) and largest residual come back."""
     n = theta.shape[0]
     place, heading = np.empty(n), np.empty(n)
-    screws, quaternion, translation = np.empty((6, n)), np.empty(4), np.empty(3)
-    _series(theta, tangent, geometry, matrix, scale, order, coefficients)
+    screws, quaternion, translation = np.empty((6, geometry.shape[1])), np.empty(4), np.empty(3)
+    _series(theta, tangent, geometry, coupling, matrix, scale, order, coefficients)
     radius = _trusted_radius(coefficients, tolerance, longest)
     for _ in range(20):
-        worst = _largest_residual(coefficients, radius, geometry, place, heading, screws, quaternion, translation)
+        worst = _largest_residual(
+            coefficients, radius, geometry, coupling, place, heading, screws, quaternion, translation
+        )
         if worst <= 3.0 * tolerance + 4e-15:
             return radius, worst
         radius *= 0.85
@@ -392,7 +435,7 @@ RAN, STALLED, OPEN = 0, 1, 2
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
+def march(theta, tangent, geometry, order, tolerance, shortest, longest, count, coupling=None):
     """Up to ``count`` consecutive Taylor pieces of the motion from ``theta`` along ``tangent``.
 
     Returns (status, pieces (k, order + 1, n), steps (k,), radii (k,), residuals (k,), sigmas (k,)). Piece i is
@@ -400,7 +443,7 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
     centre of piece i - 1 (0 for the first), in the variable (s - centre) / radii[i], trusted from -1 to 1;
     neighbouring pieces overlap. ``sigmas`` estimate the smallest regular singular value at the centres. Status
     RAN: all pieces made; STALLED: no trusted step of ``shortest`` is left; OPEN: the loop does not close,
-    ``residuals[-1]`` is the gap.
+    ``residuals[-1]`` is the gap. With a ``coupling`` all of this is in its unknowns: theta stands for v.
 
     A piece is trusted on both sides of its centre, so the next centre lies almost two radii on. Near a
     bifurcation at distance d the radius is about d and somewhat more: a centre on either side covers the
@@ -414,12 +457,12 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
     place, direction = np.empty(n), np.empty(n)
     noise = 1e-15
     limit = 20.0 * tolerance + 1e-13
-    _, gap, sigmas[0] = _settle(point, heading, geometry, matrix, scale, noise)
+    _, gap, sigmas[0] = _settle(point, heading, geometry, coupling, matrix, scale, noise)
     residuals[0] = gap
     if gap > limit:
         return OPEN, pieces[:0], steps[:0], radii[:0], residuals[:1], sigmas[:0]
     radii[0], residuals[0] = _expand(
-        point, heading, geometry, matrix, scale, order, tolerance, longest, pieces[0]
+        point, heading, geometry, coupling, matrix, scale, order, tolerance, longest, pieces[0]
     )
     if radii[0] < shortest:
         return STALLED, pieces[:0], steps[:0], radii[:0], residuals[:0], sigmas[:0]
@@ -432,11 +475,11 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count):
             hop = (1.0 + beyond) * radius
             _evaluate(pieces[made - 1], hop, point, heading)
             heading /= np.sqrt(np.sum(heading * heading))
-            moved, gap, sigmas[made] = _settle(point, heading, geometry, matrix, scale, noise)
+            moved, gap, sigmas[made] = _settle(point, heading, geometry, coupling, matrix, scale, noise)
             if moved > 1e-2 * radius or gap > limit:
                 continue
             radii[made], residuals[made] = _expand(
-                point, heading, geometry, matrix, scale, order, tolerance, longest, pieces[made]
+                point, heading, geometry, coupling, matrix, scale, order, tolerance, longest, pieces[made]
             )
             if radii[made] <= beyond * radius:
                 continue
