@@ -107,7 +107,7 @@ def _checked(n: int, matrix: np.ndarray, offset: np.ndarray | None) -> tuple[np.
 
 
 def _period(ratios: np.ndarray) -> float:
-    """The smallest turn (rad) of an unknown after which all joints it turns have come round, inf where none is short."""
+    """The smallest turn (rad) of an unknown that brings all joints it turns round, inf where none is short."""
     found = [Fraction(float(r)).limit_denominator(LARGEST_DENOMINATOR) for r in ratios]
     if any(abs(float(f) - r) > 1e-12 * abs(r) for f, r in zip(found, ratios, strict=True)):
         return math.inf

@@ -2,9 +2,13 @@
 
 import json
 
+import numpy as np
+import pytest
+
 from linkages.catalogue import entry
+from linkages.closure import LoopClosure
 from studies.bench import machine, median_time
-from studies.branch_cost import cost_of
+from studies.branch_cost import Cost, cost_of, exponent, line, random_loop
 
 
 def test_the_machine_is_described_in_plain_json():
@@ -21,7 +25,22 @@ def test_a_median_takes_one_run_to_warm_up_and_at_least_three_more():
 
 
 def test_the_branch_of_a_bennett_linkage_is_costed_once():
-    (cost,) = cost_of("loops", entry("bennett").build())
+    (cost,) = cost_of("loops", LoopClosure(entry("bennett").build()))
     assert (cost.joints, cost.series) == (4, "loops")
     assert cost.pieces > 4
     assert cost.gap > 1e-3
+
+
+@pytest.mark.parametrize(("joints", "unknowns"), [(7, 7), (8, 7), (12, 7)])
+def test_a_general_loop_is_geared_until_seven_unknowns_are_left(joints, unknowns):
+    problem = random_loop(joints, np.random.default_rng(0))
+    assert problem.loop.n == joints
+    assert problem.n == unknowns
+    assert np.array_equal(problem.periods, np.full(unknowns, 2 * np.pi))
+
+
+def test_the_lines_through_the_costs_are_those_they_were_made_of():
+    costs = [Cost("loops", n, 3.0 * n, 7, 0.1, 7 * (5.0 + 2.0 * n), 0.0) for n in range(4, 13)]
+    assert line(costs, lambda c: c.seconds) == pytest.approx([2.0, 5.0])
+    cubes = [Cost("loops", 7, x, 7, 0.1, 2.0 * x**3, 0.0) for x in (1.0, 2.0, 5.0)]
+    assert exponent(cubes) == pytest.approx(3.0)
