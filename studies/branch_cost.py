@@ -32,7 +32,7 @@ __all__ = ["Cost", "cost_against_gap", "cost_of_loops"]
 
 @dataclass(frozen=True)
 class Cost:
-    """One closed branch: joints, arclength (rad), pieces, smallest regular singular value, seconds in all and compiled."""
+    """One closed branch: joints, arclength (rad), pieces, smallest regular singular value, seconds, those compiled."""
 
     series: str
     joints: int
