@@ -273,14 +273,14 @@ def _settle(theta, tangent, geometry, coupling, matrix, scale, noise):
     the smallest diagonal entry of R, a free estimate of the smallest regular singular value.
     """
     n = theta.shape[0]
-    residual, right, step = np.empty(6), np.empty(7), np.empty(n)
-    moved, norm, smallest = 0.0, np.inf, 0.0
-    for _ in range(6):
-        _closure(theta, geometry, coupling, residual, matrix[:6])
+    residual, jacobian, right, step = np.empty(6), np.empty((6, n)), np.empty(7), np.empty(n)
+    moved, norm = 0.0, np.inf
+    for iteration in range(7):
+        _closure(theta, geometry, coupling, residual, jacobian)
         previous, norm = norm, np.sqrt(np.sum(residual * residual))
-        matrix[6] = tangent
-        smallest = _factor(matrix, scale)
-        if norm <= noise or norm > 0.5 * previous:
+        matrix[:6], matrix[6] = jacobian, tangent
+        _factor(matrix, scale)
+        if norm <= noise or norm > 0.5 * previous or iteration == 6:
             break
         right[:6], right[6] = -residual, 0.0
         _solve(matrix, scale, right, step)
@@ -289,8 +289,7 @@ def _settle(theta, tangent, geometry, coupling, matrix, scale, noise):
     right[:6], right[6] = 0.0, 1.0
     _solve(matrix, scale, right, step)
     tangent[:] = step / np.sqrt(np.sum(step * step))
-    _closure(theta, geometry, coupling, residual, matrix[:6])
-    matrix[6] = tangent
+    matrix[:6], matrix[6] = jacobian, tangent
     smallest = _factor(matrix, scale)
     return moved, norm, smallest
 
@@ -570,7 +569,7 @@ def project(starts, geometry, noise, iterations):
             else:
                 factor *= 8.0
                 failures += 1
-                if failures > 12:
+                if failures > 12 or gap <= 10.0 * noise:  # so near a solution it is rounding that does not fall
                     break
         gaps[start] = gap
     return points, gaps
