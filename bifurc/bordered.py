@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.linalg import lu_factor, lu_solve, qr, solve_triangular
+from scipy.linalg import lapack, qr, solve_triangular
 from scipy.sparse import csc_array, issparse, vstack
 from scipy.sparse.linalg import splu
 
@@ -38,12 +38,13 @@ class Bordered:
             stacked: Any = vstack([csc_array(jacobian), csc_array(tangent[None])])
             self._solve = splu(csc_array(stacked)).solve
             return
-        matrix = np.vstack([as_dense(jacobian), tangent])
+        matrix = np.empty((m + 1, n))
+        matrix[:-1], matrix[-1] = as_dense(jacobian), tangent
         if m == n - 1:
-            factors = lu_factor(matrix, check_finite=False)
-            pivots = np.abs(np.diag(factors[0]))
+            factors, order, _ = lapack.dgetrf(matrix)  # the wrappers of SciPy cost more than a small system
+            pivots = np.abs(np.diag(factors))
             if pivots.min() > RANK * pivots.max():
-                self._solve = lambda right: lu_solve(factors, right, check_finite=False)
+                self._solve = lambda right: lapack.dgetrs(factors, order, right)[0]
                 return
         q, r, order = qr(matrix, mode="economic", pivoting=True, check_finite=False)
         diagonal = np.abs(np.diag(r))
@@ -58,7 +59,9 @@ class Bordered:
 
     def solve(self, residual: np.ndarray, along: float = 0.0) -> np.ndarray:
         """d (n,) with F' d = ``residual`` (m,) and t . d = ``along``, in the least-squares sense."""
-        return self._solve(np.append(residual, along))
+        right = np.empty(self._rows + 1)
+        right[:-1], right[-1] = residual, along
+        return self._solve(right)
 
     def null_vector(self) -> np.ndarray:
         """Unit vector (n,) along d with F' d = 0 and t . d > 0."""

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
 
 RAN, STALLED, OPEN = 0, 1, 2
+PREDICT_FROM = 10  # nodes through which the next one is predicted
 
 
 def march_by_collocation(
@@ -30,7 +31,7 @@ def march_by_collocation(
     longest: float, count: int,
 ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     """(status, pieces, steps, radii, residuals) as in `bifurc.problem.March`."""
-    point, gap = correct_across(problem, start, tangent, tolerance)
+    point, gap, _ = correct_across(problem, start, tangent, tolerance)
     pieces: list[np.ndarray] = []
     radii: list[float] = []
     residuals: list[float] = []
@@ -38,7 +39,8 @@ def march_by_collocation(
     if gap > 100 * tolerance + 1e-12:
         return OPEN, np.empty((0, order + 1, problem.n)), np.empty(0), np.empty(0), np.array([gap])
     heading, width = Bordered(problem.jacobian(point) / problem.magnitude, tangent).null_vector(), longest / 4
-    while len(pieces) < count:
+    low, high = problem.bounds.T
+    while len(pieces) < count and (not pieces or np.all((low <= point) & (point <= high))):
         piece, length, residual, width = _piece(problem, point, heading, order, tolerance, shortest, width)
         if piece is None:
             status = STALLED
@@ -89,7 +91,7 @@ def _attempt(
 ) -> tuple[np.ndarray, float, float, float] | float:
     """A piece of the given width with the next width to try, or the factor by which the width is to shrink."""
     basis = _basis(order)
-    nodes = _follow(problem, start, heading, 0.5 * width * (basis.nodes + 1.0), tolerance)
+    nodes = _follow(problem, start, heading, basis, width, tolerance)
     if nodes is None:
         return 0.4
     coefficients = basis.from_values @ nodes
@@ -109,13 +111,15 @@ def _attempt(
 @dataclass(frozen=True)
 class _Basis:
     """Chebyshev polynomials up to an order: ``nodes`` from -1 to 1, the matrices that make coefficients
-    ``from_values`` at the nodes and monomials ``to_powers``, and the matrices that differentiate and integrate."""
+    ``from_values`` at the nodes and monomials ``to_powers``, the matrices that differentiate and integrate, and the
+    weights (k,) for each k by which the first k nodes predict the next."""
 
     nodes: np.ndarray
     from_values: np.ndarray
     to_powers: np.ndarray
     derivative: np.ndarray
     integral: np.ndarray
+    predictors: tuple[np.ndarray, ...]
 
 
 @lru_cache(maxsize=64)
@@ -128,42 +132,42 @@ def _basis(order: int) -> _Basis:
         to_powers[: len(powers), k] = powers
     from_values = np.linalg.inv(chebyshev.chebvander(nodes, order))
     return _Basis(
-        nodes, from_values, to_powers, chebyshev.chebder(unit, axis=0), chebyshev.chebint(unit, lbnd=-1, axis=0)
-    )
+        nodes, from_values, to_powers, chebyshev.chebder(unit, axis=0), chebyshev.chebint(unit, lbnd=-1, axis=0),
+        tuple(_predictor(nodes, k) for k in range(order + 1)),
+    )  # fmt: skip
 
 
 def _follow(
-    problem: Problem, start: np.ndarray, heading: np.ndarray, offsets: np.ndarray, tolerance: float
+    problem: Problem, start: np.ndarray, heading: np.ndarray, basis: _Basis, width: float, tolerance: float
 ) -> np.ndarray | None:
-    """Curve points (k, n) at ``offsets`` along ``heading`` from ``start``; None where correction fails.
+    """Curve points (k, n) at the nodes of a piece, which lies along ``heading`` from ``start``; None where correction
+    fails.
 
-    Each is predicted by the polynomial through the last few points before it.
+    Each is predicted by the polynomial through the last few points before it, and corrected with the factorisation
+    that served the one before it.
     """
-    points = [start]
-    factored = Bordered(problem.jacobian(start) / problem.magnitude, heading)
+    offsets = 0.5 * width * (basis.nodes + 1.0)
+    points = np.empty((len(offsets), len(start)))
+    points[0] = start
+    factored: Bordered | None = Bordered(problem.jacobian(start) / problem.magnitude, heading)
     for k in range(1, len(offsets)):
         reach = offsets[k] - offsets[k - 1]
-        if k == 1:
-            guess = start + reach * heading
-        else:
-            last = slice(max(0, k - 10), k)
-            guess = _extrapolate(offsets[last], np.array(points[last]), offsets[k])
+        guess = basis.predictors[k] @ points[:k] if k > 1 else start
         guess = guess + (offsets[k] - (guess - start) @ heading) * heading
-        point, gap = correct_across(problem, guess, heading, tolerance, factored)
-        if gap > 100 * tolerance or np.linalg.norm(point - points[-1]) > 4 * reach:
+        points[k], gap, factored = correct_across(problem, guess, heading, tolerance, factored)
+        if gap > 100 * tolerance or np.linalg.norm(points[k] - points[k - 1]) > 4 * reach:
             return None
-        points.append(point)
-    return np.array(points)
+    return points
 
 
-def _extrapolate(at: np.ndarray, values: np.ndarray, target: float) -> np.ndarray:
-    """Value at ``target`` of the polynomial through ``values`` (Neville)."""
-    table = values.copy()
-    for level in range(1, len(at)):
-        left, right = at[: len(at) - level], at[level:]
-        span = (right - left)[:, None]
-        table = ((target - left)[:, None] * table[1:] - (target - right)[:, None] * table[:-1]) / span
-    return table[0]
+def _predictor(nodes: np.ndarray, k: int) -> np.ndarray:
+    """Weights (k,) by which the values at the first ``k`` nodes give that of the polynomial through the last
+    `PREDICT_FROM` of them at node ``k`` (Lagrange)."""
+    weights, first = np.zeros(k), max(0, k - PREDICT_FROM)
+    for i in range(first, k):
+        others = np.delete(nodes[first:k], i - first)
+        weights[i] = np.prod((nodes[k] - others) / (nodes[i] - others))
+    return weights
 
 
 def reparametrised(piece: np.ndarray) -> tuple[np.ndarray, float]:
@@ -175,15 +179,20 @@ def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:
     """A Chebyshev piece (order + 1, n) on any coordinate as monomials in arclength on [-1, 1], and its length."""
     order = len(coefficients) - 1
     basis, fine = _basis(order), _basis(3 * order)
-    slope = chebyshev.chebvander(fine.nodes, order - 1) @ (basis.derivative @ coefficients)
+    slope = _polynomials(fine.nodes, order - 1) @ (basis.derivative @ coefficients)
     speed = fine.from_values @ np.linalg.norm(slope, axis=1)
     arclength = fine.integral @ speed
     length = float(arclength.sum())  # every Chebyshev polynomial is 1 at 1
     target, x = 0.5 * length * (basis.nodes + 1.0), basis.nodes.copy()
     for _ in range(8):
-        step = (chebyshev.chebval(x, arclength) - target) / chebyshev.chebval(x, speed)
+        values = _polynomials(x, len(speed))
+        step = (values @ arclength - target) / (values[:, :-1] @ speed)
         x = np.clip(x - step, -1.0, 1.0)
-        if np.abs(step).max() < 1e-15:
+        if np.abs(step).max() < 1e-8:  # the next would be its square
             break
-    values = chebyshev.chebvander(x, order) @ coefficients
-    return basis.to_powers @ (basis.from_values @ values), length
+    return basis.to_powers @ (basis.from_values @ (_polynomials(x, order) @ coefficients)), length
+
+
+def _polynomials(x: np.ndarray, order: int) -> np.ndarray:
+    """Chebyshev polynomials (k, order + 1) at x (k,) within [-1, 1]."""
+    return np.cos(np.outer(np.arccos(x), np.arange(order + 1)))

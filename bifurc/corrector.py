@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["correct_across", "correct_normal", "null_vector", "project_by_least_squares", "project_to_sphere_by_newton"]
 
 LARGE = 64  # unknowns beyond which tangents come from bordered systems instead of an SVD
-SLOW = 0.2  # residual left by one step, as a share, above which a factorisation made elsewhere is given up
+SLOW = 0.05  # residual left by one step, as a share, above which a factorisation made elsewhere is given up
 
 
 def null_vector(problem: Problem, point: np.ndarray, along: np.ndarray | None = None) -> np.ndarray:
@@ -41,23 +41,27 @@ def null_vector(problem: Problem, point: np.ndarray, along: np.ndarray | None = 
 
 def correct_across(
     problem: Problem, point: np.ndarray, tangent: np.ndarray, tolerance: float, factored: Bordered | None = None
-) -> tuple[np.ndarray, float]:
-    """``point`` corrected onto the curve in the hyperplane across ``tangent``, and the relative residual left.
+) -> tuple[np.ndarray, float, Bordered | None]:
+    """``point`` corrected onto the curve in the hyperplane across ``tangent``, the relative residual left, and the
+    factorisation used last.
 
     Gauss-Newton on ``[F'; t] d = [-F; 0]`` in the least-squares sense, with a factorisation made nearby
     (``factored``, of the same tangent) as long as the residual falls fast enough with it, and a fresh one where
     it does not. It converges as long as the system is consistent, whatever the number of redundant equations,
     and to the smallest residual where it is not.
     """
+    limit = 0.01 * tolerance * problem.scale
     u, best, best_gap, previous, fresh = point.copy(), point, np.inf, np.inf, False
     for _ in range(30):
         residual = problem.residuals(u[None])[0] / problem.magnitude
-        gap = float(np.linalg.norm(residual))
+        gap = float(np.sqrt(residual @ residual))
         if gap < best_gap:
             best, best_gap, at_best = u, gap, residual
+        slow = gap > SLOW * previous
         if not np.isfinite(gap) or (fresh and gap >= previous):
             break
-        if factored is None or gap > SLOW * previous:
+        rate = gap / previous if previous < np.inf else 1.0
+        if factored is None or slow:
             factored, fresh = Bordered(problem.jacobian(best) / problem.magnitude, tangent), True
             u, residual, gap = best, at_best, best_gap
         else:
@@ -65,9 +69,9 @@ def correct_across(
         previous = gap
         step = factored.solve(-residual)
         u = u + step
-        if np.linalg.norm(step) <= 0.01 * tolerance * problem.scale:
-            return u, gap  # the residual before a last step that is too small to matter
-    return best, best_gap
+        if np.sqrt(step @ step) * max(rate, 0.01) <= limit:
+            return u, gap, factored  # the residual before a last step after which the next is too small to matter
+    return best, best_gap, factored
 
 
 def correct_normal(problem: Problem, points: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

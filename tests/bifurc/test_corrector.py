@@ -44,7 +44,7 @@ def test_a_correction_across_the_tangent_reaches_rounding_whatever_the_weights_o
     tangent = np.array([1.0, 2 * t, 3 * t * t])
     tangent /= np.linalg.norm(tangent)
     start = np.array([t, t**2, t**3]) + 0.02 * np.array([0.3, -0.5, 0.8])
-    point, gap = correct_across(problem, start, tangent, 1e-13)
+    point, gap, _ = correct_across(problem, start, tangent, 1e-13)
     assert gap < 1e-14
     assert point[1:] == pytest.approx([point[0] ** 2, point[0] ** 3], abs=1e-12)  # 1e-15 over a weight of 1e-3
     assert abs((point - start) @ tangent) < 1e-3 * 0.02  # across the tangent to second order of the correction
@@ -53,7 +53,7 @@ def test_a_correction_across_the_tangent_reaches_rounding_whatever_the_weights_o
 def test_a_correction_of_inconsistent_equations_ends_at_the_smallest_residual():
     # y = 0 and y = 0.01 with x free: the valley is y = 0.005 with a residual of 0.005 sqrt(2)
     problem = FunctionProblem(lambda u: np.array([u[1], u[1] - 0.01]), BOX[:2])
-    point, gap = correct_across(problem, np.array([0.3, 0.4]), np.array([1.0, 0.0]), 1e-13)
+    point, gap, _ = correct_across(problem, np.array([0.3, 0.4]), np.array([1.0, 0.0]), 1e-13)
     assert point == pytest.approx([0.3, 0.005], abs=1e-12)
     assert gap * problem.magnitude == pytest.approx(0.005 * np.sqrt(2), abs=1e-12)
 
@@ -97,6 +97,6 @@ def test_points_on_a_small_sphere_about_a_crossing_are_those_of_both_branches():
 
 def test_cylinder_and_plane_meet_in_a_curve_of_rank_two_of_three_equations():
     problem = FunctionProblem(cylinder_and_plane, BOX)
-    point, gap = correct_across(problem, np.array([0.6, 0.9, 0.4]), np.array([0.5, -0.5, 0.5]), 1e-13)
+    point, gap, _ = correct_across(problem, np.array([0.6, 0.9, 0.4]), np.array([0.5, -0.5, 0.5]), 1e-13)
     assert gap < 1e-14
     assert [np.hypot(point[0], point[1]), point[2]] == pytest.approx([1.0, point[0]], abs=1e-14)
