@@ -13,7 +13,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.monitor import Profile
-from bifurc.problem import ProblemError
+from bifurc.problem import Problem, ProblemError
 from bifurc.route import Leg, Route, RouteError, find_route, wrap
 from bifurc.seeding import Completeness
 from bifurc.singular import Kind, SingularPoint
@@ -126,18 +126,16 @@ class Atlas:
 
     def form(self, name: str) -> int:
         """Index of the form called ``name``, in full or by an unambiguous beginning; raises `RouteError`."""
-        exact = [i for i, f in enumerate(self.forms) if f.name == name]
-        lowered = name.lower()
-        begins = [
-            i for i, f in enumerate(self.forms)
-            if f.name.lower().startswith(lowered) and not f.name[len(name) : len(name) + 1].isalnum()
-        ]  # fmt: skip
-        contains = [i for i, f in enumerate(self.forms) if lowered in f.name.lower()]
-        for found in (exact, begins, contains):
-            if len(found) == 1:
-                return found[0]
-        known = ", ".join(repr(f.name) for f in self.forms)
-        raise RouteError(f"form {name!r}: it must be one of {known}")
+        return _find(name, [form.name for form in self.forms])
+
+    def full_name(self, name: str) -> str:
+        """The full name of the form, or else the surface, called ``name``, found as by `form`; raises `RouteError`."""
+        names = [form.name for form in self.forms]
+        try:
+            return names[_find(name, names)]
+        except RouteError:
+            names += [surface.name for surface in self.surfaces]
+            return names[_find(name, names)]
 
     def renamed(self, names: Sequence[str], labels: Sequence[Mapping[str, Any]] | None = None) -> Atlas:
         """The same atlas with other names for its forms, and labels."""
@@ -222,15 +220,19 @@ class Atlas:
 
     # --- routes ---------------------------------------------------------------------------------------
 
-    def route(self, start: str | np.ndarray, goal: str | np.ndarray, count: int = 400) -> Route:
-        """The shortest chain of arcs from ``start`` to ``goal``, with a path of about ``count`` points.
+    def route(
+        self, start: str | np.ndarray, goal: str | np.ndarray, count: int = 400, problem: Problem | None = None
+    ) -> Route:
+        """The shortest way from ``start`` to ``goal`` along forms and over surfaces, its path about ``count`` points.
 
-        Either is a configuration (n,) on a form, or the name of a form, which stands for the middle of its
-        longest arc. The path begins at ``start`` (a form's point is taken into half a period about zero) and
-        has no jumps. Raises `RouteError` for an unknown name, a configuration on no form, or where no route
-        exists.
+        Either is a configuration (n,) on a form or a surface, or the name of one: it stands for the middle of a form's
+        longest arc, or for the chart of a surface farthest from its singular points. Forms and surfaces are left at
+        singular points. A leg over a surface is a geodesic near the shortest chain of charts. The path begins at
+        ``start`` (the point of a name is taken into half a period about zero) and has no jumps. An atlas read from a
+        file needs the ``problem`` for legs over surfaces. Raises `RouteError` for an unknown name, a
+        configuration on no form or surface, a component that is only sampled, or where no route exists.
         """
-        return find_route(self, start, goal, count)
+        return find_route(self, start, goal, count, problem)
 
     # --- files ----------------------------------------------------------------------------------------
 
@@ -247,3 +249,17 @@ class Atlas:
 
         return from_dataset(dataset)
 
+
+def _find(name: str, names: Sequence[str]) -> int:
+    """Index of the one of the ``names`` that is ``name``, or begins with it, or contains it; raises `RouteError`."""
+    lowered = name.lower()
+    exact = [i for i, known in enumerate(names) if known == name]
+    begins = [
+        i for i, known in enumerate(names)
+        if known.lower().startswith(lowered) and not known[len(name) : len(name) + 1].isalnum()
+    ]  # fmt: skip
+    contains = [i for i, known in enumerate(names) if lowered in known.lower()]
+    for found in (exact, begins, contains):
+        if len(found) == 1:
+            return found[0]
+    raise RouteError(f"form {name!r}: it must be one of {', '.join(map(repr, names))}")

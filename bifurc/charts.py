@@ -17,7 +17,7 @@ import numpy as np
 
 from bifurc.corrector import correct_normal
 from bifurc.deadline import Deadline
-from bifurc.dimension import NULL, null_spaces
+from bifurc.dimension import null_spaces, tangent_planes
 from bifurc.polygon import clip, octagon
 from bifurc.problem import Problem, ProblemError
 from bifurc.stitching import assemble_charts
@@ -91,14 +91,14 @@ class _Cover:
                 return Covering.CHART_LIMIT
             direction = y / np.linalg.norm(y)
             center = self.centers[i] + self.radii[i] * self.bases[i] @ direction
-            if not self._make(center, self.bases[i]):
+            if not self._make(center, self.bases[i], 1.4 * self.radii[i]):
                 self.dead[i].append(direction)
         return Covering.SINGULAR if self.stopped else Covering.COMPLETE
 
     def start(self, seed: np.ndarray) -> bool:
         """Make the first chart of a surface about a regular solution (n,)."""
         _, right = null_spaces(self.problem, seed[None])
-        return self._make(seed, right[0, -2:].T)
+        return self._make(seed, right[0, -2:].T, self.largest)
 
     def _open_vertex(self, i: int) -> np.ndarray | None:
         """A vertex (2,) of polygon i outside the disk, in no direction known to lead nowhere; None if there is none."""
@@ -111,10 +111,11 @@ class _Cover:
                 return y
         return None
 
-    def _make(self, start: np.ndarray, basis: np.ndarray) -> bool:
-        """Make the chart about the solution above ``start`` in the plane ``basis``; False where none fits there."""
+    def _make(self, start: np.ndarray, basis: np.ndarray, radius: float) -> bool:
+        """Make the chart, of at most ``radius``, about the solution above ``start`` in the plane ``basis``; False where
+        none fits there."""
         center, gap = correct_normal(self.problem, start[None], basis[None])
-        turned = _tangents(self.problem, center, basis)[0]
+        turned = tangent_planes(self.problem, center, basis)[0]
         if gap[0] > 1e-10 or np.linalg.norm(center[0] - start) > 0.5 * self.largest:
             self.stopped = True
             return False
@@ -124,23 +125,23 @@ class _Cover:
         near, x, _ = self._neighbours(center[0], turned, self.largest)
         if len(near) and np.min(np.linalg.norm(x, axis=1) / self.radii[near]) < 0.2:
             return False  # covered already, although the polygon does not show it
-        radius = self._fitting_radius(center[0], turned)
+        radius = self._fitting_radius(center[0], turned, min(radius, self.largest))
         if radius == 0.0:
             self.stopped = True
             return False
         self.add(center[0], turned, radius)
         return True
 
-    def _fitting_radius(self, center: np.ndarray, basis: np.ndarray) -> float:
-        """The largest radius at which the surface stays close to the disk and tangent planes agree; 0 if too small."""
-        radius = self.largest
+    def _fitting_radius(self, center: np.ndarray, basis: np.ndarray, radius: float) -> float:
+        """The largest one up to ``radius`` at which the surface stays close to the disk and tangent planes agree; 0 if
+        too small."""
         while radius >= SMALLEST * self.largest:
             angles = np.pi / 4 * np.arange(8)
             flat = center + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1) @ basis.T
             points, gaps = correct_normal(self.problem, flat, np.broadcast_to(basis, (8, *basis.shape)))
             height = np.linalg.norm(points - flat, axis=1).max() / radius
             if gaps.max() < 1e-9 and height < BEND:
-                turned = _tangents(self.problem, points, basis)
+                turned = tangent_planes(self.problem, points, basis)
                 if np.linalg.svd(basis.T @ turned, compute_uv=False)[:, -1].min() > AGREE:
                     return radius
             radius *= float(np.clip(0.9 * BEND / height, 0.5, 0.8)) if np.isfinite(height) else 0.5
@@ -208,18 +209,3 @@ def _cut(
         return vertices, labels
     offset = (distance**2 + 0.5 * height**2 + radius**2 - other**2) / (2.0 * distance)
     return clip(vertices, labels, x / distance, offset, label)
-
-
-def _tangents(problem: Problem, points: np.ndarray, basis: np.ndarray) -> np.ndarray:
-    """Bases (k, n, 2) of the tangent planes at solutions (k, n), turned as little as possible against ``basis`` (n, 2).
-
-    Where the null space is larger, at singular points, the part of it that is nearest to ``basis`` is taken.
-    """
-    sigma, right = null_spaces(problem, points)
-    nullity = np.maximum(np.count_nonzero(sigma < NULL, axis=1), 2)
-    out = np.empty((len(points), *basis.shape))
-    for i, k in enumerate(nullity):
-        null = right[i, problem.n - k :].T
-        left, _, across = np.linalg.svd(null.T @ basis, full_matrices=False)
-        out[i] = null @ left @ across
-    return out

@@ -10,6 +10,7 @@ from bifurc.atlas import Surface
 from bifurc.charts import cover_surface
 from bifurc.deadline import Deadline
 from bifurc.dimension import NULL, local_dimensions, null_spaces
+from bifurc.geodesic import entrances
 from bifurc.problem import Problem
 from bifurc.singular import locate_singular_point
 from bifurc.surface import ChartAtlas
@@ -91,18 +92,6 @@ def singular_points_of(
     return found
 
 
-def lies_on(surfaces: tuple[Surface, ...], point: np.ndarray, periods: np.ndarray) -> tuple[int, ...]:
-    """Indices of the surfaces on which a singular point (n,) of dimension 2 or more lies.
-
-    Those that have a chart about it; where there is none, as at the tip of a cone, those with a chart next to it.
-    """
-    near = []
-    for k, surface in enumerate(surfaces):
-        if surface.charts is None:
-            continue
-        away = surface.charts.centers - point
-        periodic = np.isfinite(periods)
-        away[:, periodic] -= periods[periodic] * np.round(away[:, periodic] / periods[periodic])
-        if surface.charts.holds(point)[0] or np.any(np.linalg.norm(away, axis=1) < 2.0 * surface.charts.radii):
-            near.append(k)
-    return tuple(near)
+def lies_on(surfaces: tuple[Surface, ...], point: np.ndarray) -> tuple[int, ...]:
+    """Indices of the surfaces with charts on which a singular point (n,) of dimension 2 or more lies."""
+    return tuple(k for k, s in enumerate(surfaces) if s.charts is not None and len(entrances(s.charts, point)))

@@ -17,7 +17,7 @@ from bifurc.deadline import Deadline
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["LocalDimensions", "local_dimensions", "null_spaces"]
+__all__ = ["LocalDimensions", "local_dimensions", "null_spaces", "tangent_planes"]
 
 NULL = 1e-7  # singular value, over the problem's magnitude, below which a direction belongs to the null space
 RADIUS = 5e-3  # of the probes, over the scale: at much less, degenerate singular points would look like surfaces
@@ -45,6 +45,20 @@ def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.nd
     padded = np.zeros((len(points), problem.n))
     padded[:, : sigma.shape[1]] = sigma[:, : problem.n]
     return padded, right
+
+
+def tangent_planes(problem: Problem, points: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k, n), turned as little as possible
+    against the bases ``near`` (k, n, 2) or (n, 2).
+
+    Where the null space is larger, at singular points, the part of it that is nearest to ``near`` is taken.
+    """
+    sigma, right = null_spaces(problem, points)
+    nullity = np.maximum(np.count_nonzero(sigma < NULL, axis=1), 2)
+    most = int(nullity.max(initial=2))
+    null = right[:, -most:] * (np.arange(most, 0, -1) <= nullity[:, None])[:, :, None]
+    left, _, across = np.linalg.svd(null @ near, full_matrices=False)
+    return np.swapaxes(null, 1, 2) @ left @ across
 
 
 def local_dimensions(problem: Problem, points: np.ndarray, deadline: Deadline | None = None) -> LocalDimensions:

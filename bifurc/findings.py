@@ -120,7 +120,7 @@ def _meeting_point(
         note = f"{explained} half-branches were traced, the section shows {seen}"
         crossing = Kind.BIFURCATION if explained > 2 else Kind.UNDECIDED
         kind = Kind.DIMENSION_CHANGE if point.dimension > 1 else crossing
-    met = lies_on(surfaces, point.u, problem.periods) if point.dimension > 1 else ()
+    met = lies_on(surfaces, point.u) if point.dimension > 1 else ()
     return MeetingPoint("", kind, point, tuple(through + ends), tangents, note, met)
 
 

@@ -26,20 +26,19 @@ def clip(
 
     The same polygon where the line misses it, nothing where nothing is left.
     """
-    height = vertices @ normal - offset
-    inside = height <= 0.0
-    if np.all(inside):
+    height = (vertices @ normal - offset).tolist()
+    if max(height) <= 0.0:
         return vertices, labels
-    if not np.any(inside):
+    if min(height) > 0.0:
         return vertices[:0], labels[:0]
-    count = len(vertices)
-    leaves = int(np.flatnonzero(inside & ~np.roll(inside, -1))[0])  # the edge on which the polygon goes out
-    enters = int(np.flatnonzero(~inside & np.roll(inside, -1))[0])
+    count = len(height)
+    after = height[1:] + height[:1]
+    leaves = next(i for i in range(count) if height[i] <= 0.0 < after[i])  # the edge on which the polygon goes out
+    enters = next(i for i in range(count) if height[i] > 0.0 >= after[i])
 
     def crossing(i: int) -> np.ndarray:
-        j = (i + 1) % count
-        return vertices[i] + height[i] / (height[i] - height[j]) * (vertices[j] - vertices[i])
+        return vertices[i] + height[i] / (height[i] - after[i]) * (vertices[(i + 1) % count] - vertices[i])
 
-    kept = (enters + 1 + np.arange((leaves - enters) % count)) % count
-    new = np.concatenate([vertices[kept], crossing(leaves)[None], crossing(enters)[None]])
+    kept = [(enters + 1 + i) % count for i in range((leaves - enters) % count)]
+    new = np.concatenate([vertices[kept], [crossing(leaves), crossing(enters)]])
     return new, np.concatenate([labels[kept], [label, labels[enters]]])

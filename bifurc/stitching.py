@@ -46,7 +46,7 @@ def assemble_charts(
     kept = vertex != previous
     return ChartAtlas(
         centers, bases, radii, neighbours, lifted[first], vertex[kept], np.bincount(owner[kept], minlength=len(sizes)),
-        problem.periods, outcome, problem.project,
+        problem.periods, outcome, problem,
     )  # fmt: skip
 
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 
-import networkx as nx
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from bifurc.geodesic import shortest_path
+from bifurc.problem import Problem
+
 __all__ = ["ChartAtlas", "Covering"]
 
-Projection = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+BESIDE = 12.0  # distance of a chart from a singular point next to it, over its radius, at most
 
 
 class Covering(Enum):
@@ -33,8 +34,8 @@ class ChartAtlas:
     ``centers`` (c, n) are solutions, ``bases`` (c, n, 2) orthonormal bases of the tangent planes there, ``radii`` (c,)
     those of the disks. The polygon of a chart lists the ``vertices`` (v, n) around it, solutions that it shares with
     its neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one behind the other.
-    ``neighbours`` (p, 2) are the pairs of charts whose polygons have an edge in common. ``project`` refines paths; an
-    atlas read from a file has none.
+    ``neighbours`` (p, 2) are the pairs of charts whose polygons have an edge in common. Paths are corrected onto the
+    surface by the equations of ``problem``; an atlas read from a file has none.
     """
 
     centers: np.ndarray
@@ -46,7 +47,7 @@ class ChartAtlas:
     polygon_sizes: np.ndarray
     periods: np.ndarray
     outcome: Covering
-    project: Projection | None = field(default=None, compare=False, repr=False)
+    problem: Problem | None = field(default=None, compare=False, repr=False)
 
     def __len__(self) -> int:
         return len(self.centers)
@@ -64,7 +65,7 @@ class ChartAtlas:
         """
         owner, first, second = self._edges
         corners = self.centers[owner]
-        sides = [corners + self._apart(self.vertices[v], corners) for v in (first, second)]
+        sides = [corners + self.apart(self.vertices[v], corners) for v in (first, second)]
         return np.stack([corners, *sides], axis=1)
 
     @cached_property
@@ -102,7 +103,7 @@ class ChartAtlas:
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Which solutions (k, n) lie in a chart (k,)."""
-        return np.array([self._chart_of(point) is not None for point in np.atleast_2d(points)], dtype=bool)
+        return np.array([len(self.holding(point)) > 0 for point in np.atleast_2d(points)], dtype=bool)
 
     # --- paths ----------------------------------------------------------------------------------------
 
@@ -111,50 +112,33 @@ class ChartAtlas:
 
         Neighbouring points are about ``spacing`` apart (half the median radius unless given); the goal may come out
         shifted by whole periods. Raises `ValueError` where an end lies in no chart, or where no chain of charts leads
-        from one to the other. Without ``project`` points between the centres are those of the chords.
+        from one to the other. Without ``problem`` the path is that of the chords between the centres.
         """
-        ends = [self._chart_of(np.asarray(point, dtype=float)) for point in (start, goal)]
-        if ends[0] is None or ends[1] is None:
-            raise ValueError(f"the {'start' if ends[0] is None else 'goal'} lies in no chart of the surface")
-        chain = self._chain(ends[0], ends[1])
-        points = [np.asarray(start, dtype=float), *self.centers[chain[1:-1]], np.asarray(goal, dtype=float)]
-        for i in range(1, len(points)):
-            points[i] = points[i - 1] + self._apart(points[i], points[i - 1])
-        spacing = spacing or 0.5 * float(np.median(self.radii))
-        path = _evenly(np.array(points), spacing)
-        for _ in range(12 if self.project is not None and len(path) > 2 else 0):
-            smooth = path.copy()
-            smooth[1:-1] = 0.25 * path[:-2] + 0.5 * path[1:-1] + 0.25 * path[2:]
-            path[1:-1] = self._projected(smooth[1:-1])
-        return path
+        start, goal = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
+        return shortest_path(self, start, goal, spacing or 0.5 * float(np.median(self.radii)))
 
-    def _projected(self, points: np.ndarray) -> np.ndarray:
-        assert self.project is not None
-        found, gaps = self.project(points)
-        moved = self._apart(found, points)
-        good = (gaps < 1e-10) & (np.linalg.norm(moved, axis=1) < float(self.radii.max()))
-        return points + np.where(good[:, None], moved, 0.0)
-
-    def _chain(self, first: int, last: int) -> list[int]:
-        """Numbers of the charts on the shortest way from one to another, both included."""
-        i, j = self.neighbours.T
-        weights = np.linalg.norm(self._apart(self.centers[i], self.centers[j]), axis=1)
-        graph = nx.Graph()
-        graph.add_nodes_from(range(len(self)))
-        graph.add_weighted_edges_from(zip(i.tolist(), j.tolist(), weights.tolist(), strict=True))
-        try:
-            return nx.shortest_path(graph, first, last, weight="weight")
-        except nx.NetworkXNoPath:
-            raise ValueError("no chain of charts leads from the start to the goal") from None
-
-    def _chart_of(self, point: np.ndarray) -> int | None:
-        """Number of the chart nearest to a solution, None where it lies in no disk or well above all of them."""
-        away = self._apart(point, self.centers)
+    def holding(self, point: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of the charts in which a solution (n,) lies."""
+        away = self.apart(point, self.centers)
         y = np.einsum("ki,kij->kj", away, self.bases)
         size = np.linalg.norm(y, axis=1)
         height = np.linalg.norm(away - np.einsum("kij,kj->ki", self.bases, y), axis=1)
-        fits = (size < 1.1 * self.radii) & (height < 0.25 * size + 1e-9)
-        return int(np.argmin(np.where(fits, size / self.radii, np.inf))) if np.any(fits) else None
+        return np.flatnonzero((size < 1.1 * self.radii) & (height < 0.25 * size + 1e-9))
+
+    def beside(self, point: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of the charts that may be next to a singular point (n,) about which there is none.
+
+        As at the tip of a cone: charts are the smaller the nearer they are to it.
+        """
+        distance = np.linalg.norm(self.apart(point, self.centers), axis=1)
+        return np.flatnonzero((distance < BESIDE * self.radii) & (distance < 2.0 * distance.min(initial=np.inf)))
+
+    def apart(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """a - b with periodic unknowns taken to within half a period of zero."""
+        gap = a - b
+        periodic = np.isfinite(self.periods)
+        gap[..., periodic] -= self.periods[periodic] * np.round(gap[..., periodic] / self.periods[periodic])
+        return gap
 
     # --- the complex of polygons ----------------------------------------------------------------------
 
@@ -184,19 +168,5 @@ class ChartAtlas:
         used, renumbered = np.unique(polygons, return_inverse=True)
         return ChartAtlas(
             self.centers[charts], self.bases[charts], self.radii[charts], number[self.neighbours[inside]],
-            self.vertices[used], renumbered, self.polygon_sizes[charts], self.periods, self.outcome, self.project,
+            self.vertices[used], renumbered, self.polygon_sizes[charts], self.periods, self.outcome, self.problem,
         )  # fmt: skip
-
-    def _apart(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """a - b with periodic unknowns taken to within half a period of zero."""
-        gap = a - b
-        periodic = np.isfinite(self.periods)
-        gap[..., periodic] -= self.periods[periodic] * np.round(gap[..., periodic] / self.periods[periodic])
-        return gap
-
-
-def _evenly(points: np.ndarray, spacing: float) -> np.ndarray:
-    """Points about ``spacing`` apart along the chords between ``points`` (k, n), the ends included."""
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    at = np.linspace(0.0, s[-1], max(2, 1 + round(s[-1] / spacing)))
-    return np.stack([np.interp(at, s, column) for column in points.T], axis=1)

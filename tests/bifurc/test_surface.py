@@ -15,7 +15,6 @@ from bifurc.dimension import local_dimensions
 from bifurc.explore import explore
 from bifurc.form_graph import plot_form_graph
 from bifurc.problem import FunctionProblem, Problem, ProblemError
-from bifurc.route import RouteError
 from bifurc.seeding import Seeds
 from bifurc.singular import Kind
 from bifurc.surface import Covering
@@ -321,12 +320,3 @@ def test_the_picture_of_a_surface_has_all_its_triangles_and_the_graph_of_forms_s
     assert np.abs(axes.dataLim.get_points()).max() == pytest.approx(1.0, abs=0.03)
     problem = FunctionProblem(lambda u: np.array([u[2] * u[0], u[2] * u[1]]), [(-1, 1)] * 3)
     assert plot_form_graph(explore(problem, starts=20)).axes
-
-
-def test_a_route_that_would_have_to_cross_a_surface_says_so() -> None:
-    atlas = explore(sarrus())
-    with pytest.raises(RouteError, match="surface 1 can be entered"):
-        atlas.route("Form 1", "Form 2")
-    ends = [next(p.point.u for p in atlas.points if p.passes[0][0] == i) for i in (0, 1)]
-    path = atlas.surfaces[0].charts.path(*ends, spacing=0.1)
-    assert np.abs(np.diff(path, axis=0)).max() < 0.2  # the way from the one form to the other
