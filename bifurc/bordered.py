@@ -10,14 +10,35 @@ from scipy.linalg import lapack, qr, solve_triangular
 from scipy.sparse import csc_array, issparse, vstack
 from scipy.sparse.linalg import splu
 
-__all__ = ["Bordered", "as_dense"]
+__all__ = ["Bordered", "as_dense", "sparse_bordered"]
 
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
+BORDER = 1e-3  # largest entry of the border of a sparse matrix, over the median one of the matrix
 
 
 def as_dense(matrix: Any) -> np.ndarray:
     """A dense or sparse matrix as an array."""
     return np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=float)
+
+
+def sparse_bordered(jacobian: Any, tangent: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """The function that solves [F'; t] x = right, (n,) or (n, k), for a sparse F' (n - 1, n), by sparse LU.
+
+    The border must not become a pivot early, as it would fill the factors: t is scaled to a size far below that of
+    F', columns are ordered by minimum degree of A^T + A, and a diagonal entry will do as a pivot from a tenth of the
+    largest.
+    """
+    matrix = csc_array(jacobian)
+    weight = BORDER * (float(np.median(np.abs(matrix.data))) or 1.0) / np.abs(tangent).max()
+    stacked: Any = vstack([matrix, csc_array(weight * tangent[None])])
+    factors = splu(csc_array(stacked), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1)
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        right = right.copy()
+        right[-1] *= weight
+        return factors.solve(right)
+
+    return solve
 
 
 class Bordered:
@@ -35,8 +56,7 @@ class Bordered:
         self._rows = m
         self._solve: Callable[[np.ndarray], np.ndarray]
         if issparse(jacobian) and m == n - 1:
-            stacked: Any = vstack([csc_array(jacobian), csc_array(tangent[None])])
-            self._solve = splu(csc_array(stacked)).solve
+            self._solve = sparse_bordered(jacobian, tangent)
             return
         matrix = np.empty((m + 1, n))
         matrix[:-1], matrix[-1] = as_dense(jacobian), tangent

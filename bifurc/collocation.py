@@ -51,7 +51,7 @@ def march_by_collocation(
         point = piece.sum(axis=0)  # the value at x = 1
         slope = np.arange(order + 1) @ piece
         heading = slope / np.linalg.norm(slope)
-        width = min(width, longest)
+        width = min(width, 2 * longest)
     half = np.array(radii)
     steps = half + np.concatenate([[0.0], half[:-1]]) if len(half) else half
     return status, np.array(pieces).reshape(-1, order + 1, problem.n), steps, half, np.array(residuals)

@@ -1,4 +1,4 @@
-"""The curves of the work-precision study: linkages of four to seven joints, and three generic problems."""
+"""The curves of the work-precision study: linkages of four to seven joints, and generic problems."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 
 import mpmath
 import numpy as np
+from scipy.sparse import csc_array, diags_array, hstack, issparse
 
 from bifurc.branch import Branch
 from bifurc.continuation import TraceSettings, trace_branch
@@ -23,13 +24,15 @@ __all__ = ["Case", "all_cases", "bratu"]
 
 EXACT = TraceSettings(order=20, tolerance=1e-14)
 DIGITS = 40
+DENSE = 200  # unknowns up to which a Jacobian is a dense matrix
 
 
 @dataclass(frozen=True)
 class Case:
     """A curve to follow from ``start`` along ``tangent``, and the same system in mpmath numbers.
 
-    ``exact_residual`` maps a list of unknowns to the list of residuals, in the order of the problem's.
+    ``exact_residual`` maps a list of unknowns to the list of residuals, in the order of the problem's. ``settings``
+    are those of the reference curve; methods are not asked for less than ``tightest``.
     """
 
     name: str
@@ -38,11 +41,18 @@ class Case:
     start: np.ndarray
     tangent: np.ndarray
     exact_residual: Callable[[list[Any]], list[Any]]
+    settings: TraceSettings = EXACT
+    tightest: float = 0.0
+
+    @cached_property
+    def sparse(self) -> bool:
+        """Whether the Jacobian is sparse, so that dense matrices of its size are out of the question."""
+        return issparse(self.problem.jacobian(self.start))
 
     @cached_property
     def reference(self) -> Branch:
-        """The whole curve by this project at order 20 and tolerance 1e-14, its error measured by `.exact`."""
-        return trace_branch(self.problem, self.start, self.tangent, EXACT)
+        """The whole curve by this project, mostly at order 20 and tolerance 1e-14, its error measured by `.exact`."""
+        return trace_branch(self.problem, self.start, self.tangent, self.settings)
 
     @property
     def length(self) -> float:
@@ -63,7 +73,7 @@ class Case:
 
 def all_cases() -> list[Case]:
     """All curves, linkages first."""
-    return [*linkage_cases(), circle(), pitchfork(), bratu(50)]
+    return [*linkage_cases(), circle(), pitchfork(), bratu(50), bratu(1000)]
 
 
 # --- linkages -----------------------------------------------------------------------------------------
@@ -159,8 +169,12 @@ def pitchfork() -> Case:
 
 
 def bratu(n: int) -> Case:
-    """u'' + p exp(u) = 0 with n inner points: around the fold, from u = 0 up to p = 0.5 on the upper branch."""
-    h2, rows = 1.0 / (n + 1) ** 2, np.arange(n)
+    """u'' + p exp(u) = 0 with n inner points: around the fold, from u = 0 up to p = 0.5 on the upper branch.
+
+    Beyond `DENSE` unknowns with a sparse Jacobian. Its least singular value is about (pi / n)^2: with 1000 unknowns
+    rounding moves the curve by some 1e-9, and tolerances below 1e-7 are not asked for.
+    """
+    h2 = 1.0 / (n + 1) ** 2
 
     def residual(x: np.ndarray) -> np.ndarray:
         u = x[:-1]
@@ -168,6 +182,24 @@ def bratu(n: int) -> Case:
         out[1:] += u[:-1]
         out[:-1] += u[1:]
         return out
+
+    def exact(x: list[Any]) -> list[Any]:
+        u = [mpmath.mpf(0), *x[:-1], mpmath.mpf(0)]
+        step = mpmath.mpf(1) / (n + 1) ** 2
+        return [u[i - 1] - 2 * u[i] + u[i + 1] + step * x[-1] * mpmath.exp(u[i]) for i in range(1, n + 1)]
+
+    bounds = [(-1.0, 20.0)] * n + [(0.0, 5.0)]
+    problem = FunctionProblem(residual, bounds, jacobian=_bratu_dense(n) if n <= DENSE else _bratu_sparse(n))
+    start = np.zeros(n + 1)
+    tangent = null_vector(problem, start, np.eye(n + 1)[-1])
+    name, title = f"bratu-{n}", f"Bratu, {n} unknowns"
+    if n <= DENSE:
+        return Case(name, title, problem, start, tangent, exact)
+    return Case(name, title, problem, start, tangent, exact, TraceSettings(order=20, tolerance=1e-8), 1e-7)
+
+
+def _bratu_dense(n: int) -> Callable[[np.ndarray], np.ndarray]:
+    h2, rows = 1.0 / (n + 1) ** 2, np.arange(n)
 
     def jacobian(x: np.ndarray) -> np.ndarray:
         out = np.zeros((n, n + 1))
@@ -177,13 +209,19 @@ def bratu(n: int) -> Case:
         out[:, -1] = grown
         return out
 
-    def exact(x: list[Any]) -> list[Any]:
-        u = [mpmath.mpf(0), *x[:-1], mpmath.mpf(0)]
-        step = mpmath.mpf(1) / (n + 1) ** 2
-        return [u[i - 1] - 2 * u[i] + u[i + 1] + step * x[-1] * mpmath.exp(u[i]) for i in range(1, n + 1)]
+    return jacobian
 
-    bounds = [(-1.0, 20.0)] * n + [(0.0, 5.0)]
-    problem = FunctionProblem(residual, bounds, jacobian=jacobian)
-    start = np.zeros(n + 1)
-    tangent = null_vector(problem, start, np.eye(n + 1)[-1])
-    return Case(f"bratu-{n}", f"Bratu, {n} unknowns", problem, start, tangent, exact)
+
+def _bratu_sparse(n: int) -> Callable[[np.ndarray], csc_array]:
+    h2 = 1.0 / (n + 1) ** 2
+    ones = np.ones(n)
+    pattern = csc_array(hstack([diags_array([ones[1:], 5 * ones, ones[1:]], offsets=[-1, 0, 1]), 7 * ones[:, None]]))
+    diagonal, last = pattern.data == 5, pattern.data == 7
+
+    def jacobian(x: np.ndarray) -> csc_array:
+        out = pattern.copy()
+        grown = h2 * np.exp(x[:-1])
+        out.data[diagonal], out.data[last] = x[-1] * grown - 2.0, grown
+        return out
+
+    return jacobian

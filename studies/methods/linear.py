@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import lapack
-from scipy.sparse import csc_array, issparse, vstack
-from scipy.sparse.linalg import splu
+from scipy.sparse import issparse
 
+from bifurc.bordered import sparse_bordered
 from bifurc.problem import Problem
 
 __all__ = ["evaluate", "mixtures", "solve_bordered"]
@@ -23,8 +23,7 @@ def solve_bordered(jacobian: Any, tangent: np.ndarray, right: np.ndarray) -> np.
     """x (n, k) that solves [F'; t] x = right (m + 1, k): by LU where it is square, else in the least-squares sense."""
     m, n = jacobian.shape
     if issparse(jacobian):
-        rows: Any = [jacobian, csc_array(tangent[None])]
-        return splu(csc_array(vstack(rows))).solve(right)
+        return sparse_bordered(jacobian, tangent)(right)
     matrix = np.empty((m + 1, n))
     matrix[:m], matrix[m] = jacobian, tangent
     if m + 1 == n:

@@ -18,11 +18,13 @@ Follow = Callable[..., Curve]
 
 @dataclass(frozen=True)
 class Method:
-    """A way to follow a curve: ``follow(case, tolerance)``. ``order`` is that of this project's pieces, else 0."""
+    """A way to follow a curve: ``follow(case, tolerance)``. ``order`` is that of this project's pieces, else 0;
+    ``small`` if it is for small problems alone, for want of sparse matrices."""
 
     name: str
     follow: Callable[[Case, float], Curve]
     order: int = 0
+    small: bool = False
 
 
 def orders_of_this_project() -> list[Method]:
@@ -39,8 +41,8 @@ def comparison_methods() -> list[Method]:
     methods = [
         _by_arclength("pseudo-arclength, tangent", point_by_point.pseudo_arclength_tangent),
         _by_arclength("pseudo-arclength, secant", point_by_point.pseudo_arclength_secant),
-        _by_arclength("SVD predictor-corrector", point_by_point.svd_predictor_corrector),
-        Method("natural parameter", _natural),
+        _by_arclength("SVD predictor-corrector", point_by_point.svd_predictor_corrector, small=True),
+        Method("natural parameter", _natural, small=True),
     ]
     for solver in null_field.SOLVERS:
         for projected in (False, True) if solver != "LSODA" else (False,):
@@ -49,15 +51,15 @@ def comparison_methods() -> list[Method]:
     if peers.has_pycont():
         methods.append(_by_arclength("pycont-lite", peers.pycont_lite))
     if auto07p.has_auto():
-        methods.append(Method("AUTO-07p", auto07p.auto_07p))
+        methods.append(Method("AUTO-07p", auto07p.auto_07p, small=True))
     return methods
 
 
-def _by_arclength(name: str, follow: Follow) -> Method:
+def _by_arclength(name: str, follow: Follow, small: bool = False) -> Method:
     def run(case: Case, tolerance: float) -> Curve:
         return follow(case.problem, case.start, case.tangent, case.length, tolerance)
 
-    return Method(name, run)
+    return Method(name, run, small=small)
 
 
 def _natural(case: Case, tolerance: float) -> Curve:

@@ -8,7 +8,7 @@ from studies.methods.cases import bratu, circle, linkage_cases, pitchfork
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import distance_in_digits, largest_distance
 from studies.methods.roster import Method, comparison_methods, orders_of_this_project
-from studies.work_precision import Run, fastest, measure, ratios, recommend
+from studies.work_precision import Run, fastest, measure, measure_case, points_in_our_time, ratios, recommend
 
 METHODS = [*orders_of_this_project(), *comparison_methods()]
 
@@ -88,3 +88,29 @@ def test_ratios_compare_the_fastest_runs_within_an_error():
 def test_the_recommended_tolerance_is_the_loosest_that_is_tight_enough():
     runs = runs_of("order 8", 8, (1.0, 2.0, 4.0), (1e-8, 1e-12, 1e-13)) + runs_of("order 4", 4, (8.0,), (1e-13,))
     assert recommend(runs) == {4: (4.0, 1e-3), 8: (1.0, 1e-4)}
+
+
+def test_points_of_usual_steps_are_counted_in_our_time():
+    usual = [Run("c", "pseudo-arclength, tangent", 0, 1e-6, 1.0, 1e-6, 1000)]
+    runs = usual + runs_of("order 16", 16, (0.5,), (1e-9,))
+    assert points_in_our_time(runs, "c", 1e-6) == 2000.0
+    assert np.isnan(points_in_our_time(runs, "c", 1e-8))
+
+
+def test_a_sparse_problem_is_left_to_methods_with_sparse_matrices():
+    case = bratu(300)
+    assert case.sparse
+    assert np.allclose(case.problem.jacobians(case.start[None] + 0.1)[0], bratu_by_differences(case, case.start + 0.1))
+    few = [METHODS[4], *(m for m in METHODS if m.small)]
+    assert few[0].name == "order 16"
+    runs, floor = measure_case(case, few, 0.0)
+    ours, *others = runs
+    assert floor < 1e-8
+    assert ours.error < 1e-3
+    assert others
+    assert all("not tried" in run.note for run in others)
+
+
+def bratu_by_differences(case, x):
+    step = 1e-6 * np.eye(len(x))
+    return ((case.problem.residuals(x + step) - case.problem.residuals(x - step)) / 2e-6).T
