@@ -1,11 +1,15 @@
 """A sweep maps every member once, whatever kills it on the way."""
 
+import gc
 import json
 import os
 import signal
 import subprocess
 import sys
 import time
+import tracemalloc
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -104,6 +108,73 @@ def test_a_dask_cluster_of_processes_gives_the_same(tmp_path):
     ) as cluster:
         run_sweep(plan, tmp_path / "dask.zarr", scheduler=cluster.scheduler_address)
     assert same_but_for_seconds(open_sweep(tmp_path / "pool.zarr"), open_sweep(tmp_path / "dask.zarr"))
+
+
+class Stub(Executor):
+    """Maps nothing: gives the same record for every member at once."""
+
+    def submit(self, function, *arguments, **options):
+        future = Future()
+        future.set_result({"status": 0, "forms": 1, "inactive_joints": [0] * 4, "seconds": time.process_time()})
+        return future
+
+
+@contextmanager
+def traced():
+    """Bytes held, garbage collected, as a function to call."""
+
+    def held():
+        gc.collect()
+        return tracemalloc.get_traced_memory()[0]
+
+    tracemalloc.start()
+    try:
+        yield held
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_sweep_holds_no_more_of_many_members_than_of_few(tmp_path, monkeypatch):
+    @contextmanager
+    def executor(workers, scheduler):
+        yield Stub(), 8
+
+    monkeypatch.setattr("studies.sweep.run._executor", executor)
+    done, sizes = 0, {}
+
+    def look(count):
+        nonlocal done
+        done += count
+        if done in (500, 1500):
+            sizes[done] = held()
+
+    with traced() as held:
+        run_sweep(Plan("bennett", random=1550, block=50), tmp_path / "a.zarr", progress=look)
+    assert sizes[1500] - sizes[500] < 1000 * 100  # a record alone is more than 500 bytes
+
+
+@pytest.mark.parametrize("family", ["bennett", "goldberg-5r"])
+def test_a_worker_keeps_nothing_of_the_members_that_it_mapped(family):
+    plan = Plan(family, random=1000, ranges={"alpha": (0.5, 1.0)})
+    with traced() as held:
+        for index in range(20):
+            map_member(family, plan.parameters(index), 10, 0)
+            if index == 9:
+                before = held()
+        assert held() - before < 10 * 1000  # a single traced form is more than 20 kB
+
+
+def test_the_watch_sees_a_process_that_grows():
+    psutil = pytest.importorskip("psutil")
+    from studies.sweep.memory import Watch
+
+    watch, kept = Watch(), []
+    for done in range(20):
+        kept.append(np.ones(1 << 17))  # a mebibyte
+        watch.look(done)
+    assert watch.own[-1] == pytest.approx(psutil.Process().memory_info().rss, rel=0.1)
+    assert watch.growth("own") == pytest.approx(2**20, rel=0.2)
+    assert watch.growth("worker") < 1.0
 
 
 def test_refused_parameters_are_recorded_as_such():
