@@ -6,8 +6,9 @@ The error of a run is the largest distance of its curve to the exact one, at 200
 only at the points it was made of; a run that leaves out a part of the curve counts as failed. The exact curve is this
 project's at order 20 and tolerance 1e-14, whose own distance to the solution set is measured in 40 digits and is the
 least error shown. All methods call the same compiled residual and Jacobian; the usual ways are NumPy and SciPy around
-them. Times are processor times, so that other work on the machine does not count. LSODA has no variant with
-projection: its history of steps cannot be moved. Set OPENBLAS_NUM_THREADS=1, as threads only add up here.
+them. AUTO-07p alone has the equations in Fortran, as it is meant to be used. Times are processor times, so that other
+work on the machine does not count. LSODA has no variant with projection: its history of steps cannot be moved. Set
+OPENBLAS_NUM_THREADS=1, as threads only add up here.
 
 Writes runs.csv, a figure for each curve, ratios.csv, ratios.png and summary.txt.
 """
@@ -78,10 +79,14 @@ def _timed(case: Case, method: Method, tolerance: float) -> tuple[Curve, float]:
 
 
 def measure_case(case: Case, methods: Iterable[Method], longest: float) -> tuple[list[Run], float]:
-    """Runs of every method from loose to tight tolerances, until one takes ``longest`` seconds; and the error of the
-    exact curve. Methods for small problems are left out where the Jacobian is sparse."""
+    """Runs of every method from loose to tight tolerances, and the error of the exact curve.
+
+    A method is given up when a run takes ``longest`` seconds, times the patience of the case. Methods for small
+    problems are left out where the Jacobian is sparse.
+    """
     places = case.reference(case.length * (np.arange(12) + 0.5) / 12)
     floor = max(max(distance_in_digits(case, place) for place in places), 1e-16)
+    longest *= case.patience
     runs: list[Run] = []
     for method in methods:
         if method.small and case.sparse:

@@ -32,7 +32,8 @@ class Case:
     """A curve to follow from ``start`` along ``tangent``, and the same system in mpmath numbers.
 
     ``exact_residual`` maps a list of unknowns to the list of residuals, in the order of the problem's. ``settings``
-    are those of the reference curve; methods are not asked for less than ``tightest``.
+    are those of the reference curve; methods are not asked for less than ``tightest``,
+    and given ``patience`` times the usual time.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Case:
     exact_residual: Callable[[list[Any]], list[Any]]
     settings: TraceSettings = EXACT
     tightest: float = 0.0
+    patience: float = 1.0
 
     @cached_property
     def sparse(self) -> bool:
@@ -195,7 +197,7 @@ def bratu(n: int) -> Case:
     name, title = f"bratu-{n}", f"Bratu, {n} unknowns"
     if n <= DENSE:
         return Case(name, title, problem, start, tangent, exact)
-    return Case(name, title, problem, start, tangent, exact, TraceSettings(order=20, tolerance=1e-8), 1e-7)
+    return Case(name, title, problem, start, tangent, exact, TraceSettings(order=20, tolerance=1e-8), 1e-7, 10.0)
 
 
 def _bratu_dense(n: int) -> Callable[[np.ndarray], np.ndarray]:

@@ -9,6 +9,7 @@ from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import distance_in_digits, largest_distance
 from studies.methods.roster import Method, comparison_methods, orders_of_this_project
 from studies.work_precision import Run, fastest, measure, measure_case, points_in_our_time, ratios, recommend
+from studies.work_precision_figures import unbeaten
 
 METHODS = [*orders_of_this_project(), *comparison_methods()]
 
@@ -88,6 +89,11 @@ def test_ratios_compare_the_fastest_runs_within_an_error():
 def test_the_recommended_tolerance_is_the_loosest_that_is_tight_enough():
     runs = runs_of("order 8", 8, (1.0, 2.0, 4.0), (1e-8, 1e-12, 1e-13)) + runs_of("order 4", 4, (8.0,), (1e-13,))
     assert recommend(runs) == {4: (4.0, 1e-3), 8: (1.0, 1e-4)}
+
+
+def test_a_figure_shows_the_runs_that_no_other_beats():
+    runs = runs_of("slow", 0, (1.0, 0.5, 2.0, 3.0), (1e-4, 1e-5, 1e-6, np.inf))
+    assert [run.error for run in unbeaten(runs)] == [1e-5, 1e-6]
 
 
 def test_points_of_usual_steps_are_counted_in_our_time():
