@@ -107,14 +107,20 @@ class Branch:
         box = np.where(np.isfinite(self.periods), self.periods, 0.0)
         return cKDTree(_into_box(self(s), box), boxsize=box), s, box
 
-    def nearest(self, points: np.ndarray, neighbours: int = 3) -> tuple[np.ndarray, np.ndarray]:
-        """Distance (k,) of each point (k, n) to the curve modulo the periods, and the arclength (k,) there."""
+    def nearest(
+        self, points: np.ndarray, neighbours: int = 3, within: float = np.inf
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Distance (k,) of each point (k, n) to the curve modulo the periods, and the arclength (k,) there.
+
+        Of a point farther away than ``within`` it is only said that it is, which takes a twentieth of the time.
+        """
         points = np.atleast_2d(np.asarray(points, dtype=float))
         tree, grid, box = self._index
-        count = min(neighbours, len(grid))
-        distance, near = (np.reshape(a, (len(points), count)) for a in tree.query(_into_box(points, box), k=count))
-        s = grid[near]
-        spacing = np.diff(grid).max()
+        count, spacing = min(neighbours, len(grid)), np.diff(grid).max()
+        reach = max(within, spacing) + spacing  # of a sample next to a foot that is near enough
+        found = tree.query(_into_box(points, box), k=count, distance_upper_bound=reach)
+        distance, near = (np.reshape(a, (len(points), count)) for a in found)
+        s = grid[np.minimum(near, len(grid) - 1)]  # there is no sample of that number where none is in reach
         close = distance[:, 0] < 2 * spacing  # the others are surely off the curve: the nearest sample will do
         if np.any(close):
             targets = np.repeat(points[close], count, axis=0)

@@ -103,8 +103,8 @@ def _work_through(
         i = waiting.pop(0)
         found.owner[i] = _take_seed(problem, seeds.points[i], values[i], found, settings)
         for number in range(matched, len(found.branches)):
-            distance, _ = found.branches[number].nearest(seeds.points[waiting])
-            on = distance < SAME * problem.scale
+            within = SAME * problem.scale
+            on = found.branches[number].nearest(seeds.points[waiting], within=within)[0] < within
             found.owner.update((waiting[k], ("form", number)) for k in np.flatnonzero(on))
             waiting = [waiting[k] for k in np.flatnonzero(~on)]
         matched = len(found.branches)
@@ -183,7 +183,8 @@ def _trace_and_follow(
     traced = False
     while queue and not found.deadline.passed:
         point, along = queue.pop()
-        if any(branch.nearest(point)[0][0] < SAME * problem.scale for branch in found.branches):
+        within = SAME * problem.scale
+        if any(branch.nearest(point, within=within)[0][0] < within for branch in found.branches):
             continue
         branch = trace_branch(problem, point, along, settings)
         if branch.outcome is Outcome.OPEN:

@@ -108,6 +108,20 @@ def test_the_nearest_point_is_found_modulo_the_periods(traced):
     assert np.abs((found - s + 0.5 * branch.length) % branch.length - 0.5 * branch.length).max() < 1e-9
 
 
+@pytest.mark.parametrize("within", [1e-6, 0.05, 0.5, 2.0])
+def test_within_a_distance_the_nearest_point_is_the_same_and_beyond_it_said_to_be_beyond(traced, within):
+    _, branch = traced
+    rng = np.random.default_rng(1)
+    points = branch(rng.uniform(0.0, branch.length, 300)) + rng.normal(size=(300, branch.n)) * np.geomspace(1e-9, 1.0, 300)[:, None]
+    distance, s = branch.nearest(points)
+    limited, at = branch.nearest(points, within=within)
+    near = distance <= within
+    assert 20 < near.sum() < 300
+    assert np.array_equal(limited[near], distance[near])
+    assert np.array_equal(at[near], s[near])
+    assert limited[~near].min() > within
+
+
 def test_a_point_beside_a_crossing_is_found_on_its_own_pass():
     # figure of eight: all the nearest samples of a point may lie on the other pass
     problem = FunctionProblem(lambda u: np.array([(u[0] ** 2 + u[1] ** 2) ** 2 - u[0] ** 2 + u[1] ** 2]), [(-2, 2)] * 2)
