@@ -204,7 +204,7 @@ def main(out: Path, quick: bool, names: tuple[str, ...]) -> None:
         )
         runs += found
         draw_case(case.title, found, out / f"{case.name}.png")
-    _write_csv(out / "runs.csv", [f.name for f in fields(Run)], (asdict(run) for run in runs))
+        _write_csv(out / "runs.csv", [f.name for f in fields(Run)], (asdict(run) for run in runs))
     table = ratios(runs)
     _write_csv(out / "ratios.csv", list(table[0]), table)
     draw_ratios(table, {case.name: case.title for case in cases}, out / "ratios.png")

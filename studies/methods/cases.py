@@ -197,7 +197,7 @@ def bratu(n: int) -> Case:
     name, title = f"bratu-{n}", f"Bratu, {n} unknowns"
     if n <= DENSE:
         return Case(name, title, problem, start, tangent, exact)
-    return Case(name, title, problem, start, tangent, exact, TraceSettings(order=20, tolerance=1e-8), 1e-7, 10.0)
+    return Case(name, title, problem, start, tangent, exact, TraceSettings(order=20, tolerance=1e-8), 1e-7, 4.0)
 
 
 def _bratu_dense(n: int) -> Callable[[np.ndarray], np.ndarray]:

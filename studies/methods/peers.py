@@ -41,9 +41,12 @@ def pycont_lite(problem: Problem, start: np.ndarray, tangent: np.ndarray, length
         "tolerance": max(0.1 * tolerance, 1e-12), "analyze_stability": False, "bifurcation_detection": False,
         "initial_directions": direction, "hopf_detection": False,
     }  # fmt: skip
-    result = pycont.arclengthContinuation(
-        system, start[:-1].copy(), float(start[-1]), 1e-3 * h, h, h, int(1.1 * length / h) + 6, options, "OFF"
-    )
+    try:
+        result = pycont.arclengthContinuation(
+            system, start[:-1].copy(), float(start[-1]), 1e-3 * h, h, h, int(1.1 * length / h) + 6, options, "OFF"
+        )
+    except RecursionError as error:  # it tries a step again by calling itself
+        raise MethodFailure("it recurses without end") from error
     if not result.branches:
         raise MethodFailure("it returns no branch")
     branch = result.branches[0]
