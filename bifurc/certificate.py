@@ -8,14 +8,18 @@ uniqueness part of the theorem of Newton and Kantorovich, with the tangent as pa
 1970, 12.6; Deuflhard 2004, 4.4). With K r = sigma / 2 the slope is at most 1, so that the arc from x0 runs at
 least r / sqrt(2) far in the ball: two solutions closer than sigma / (2 sqrt(2) K) lie on one arc.
 
+The points are as far apart as sigma lets them be: their number is about 3 K times the integral of 1 / sigma along
+the curve, which grows with the logarithm of 1 / width beside a near miss.
+
 The check is made in doubles, without interval arithmetic. Existence is another matter: an overdetermined system
 may fail to have solutions by less than rounding. What is certified is that whatever solves it here is a single
-arc.
+arc. Where sigma^2 is not far above rounding times K, doubles cannot tell a single arc from two that cross, and the
+certificate says where.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -26,27 +30,31 @@ from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 from bifurc.monitor import Profile
 from bifurc.problem import Problem
+from bifurc.uniqueness import SHARE, Samples, sample_curve
 
 __all__ = ["Certificate", "certify_atlas", "certify_branch"]
 
-SHARE = 1.0 / (2.0 * np.sqrt(2.0))  # of sigma / K: how far neighbouring points may be apart
 HANDOVER = 1e-3  # distance, in scales, at which an arc is handed over to a located singular point
-MOST = 60_000  # points of one arc: a curve that needs more is left uncertified where it does
-ROUNDS = 6  # of halving where the first choice of points was too coarse
+MOST = 1_000_000  # points of one branch: a curve that needs more is left uncertified
+AT_ONCE = 20_000  # points that are looked at together
+ROUNDS = 12  # of adding points where those chosen before are too far apart
+RESOLVED = 1e-7  # singular value, over the magnitude, below which more points do not help
 
 
 @dataclass(frozen=True)
 class Certificate:
     """What was certified of a branch.
 
-    ``status``: "certified", "certified up to the singular points" or "not certified"; ``gaps`` (g, 2) are the
-    arclengths between which the points are too far apart for the theorem, ``points`` how many were used,
-    ``bound`` the constant K, ``reversals`` the arclengths at which det [G'; t] changed sign although no
-    singular point is known there.
+    ``status``: "certified", "certified up to the singular points", "certified up to places singular to rounding" or
+    "not certified"; ``gaps`` (g, 2) are the arclengths between which the points are too far apart for the theorem,
+    ``blurred`` (b, 2) those between which F' is singular to within rounding, so that doubles do not tell arcs apart;
+    ``points`` how many were used, ``bound`` the constant K, ``reversals`` the arclengths at which det [G'; t] changed
+    sign although no singular point is known there.
     """
 
     status: str
     gaps: np.ndarray
+    blurred: np.ndarray
     points: int
     bound: float
     reversals: np.ndarray
@@ -54,8 +62,8 @@ class Certificate:
     def as_labels(self) -> dict[str, Any]:
         """The certificate as plain values, for `Form.labels`."""
         return {
-            "status": self.status, "gaps": self.gaps.tolist(), "points": self.points, "bound": self.bound,
-            "reversals": self.reversals.tolist(),
+            "status": self.status, "gaps": self.gaps.tolist(), "blurred": self.blurred.tolist(),
+            "points": self.points, "bound": self.bound, "reversals": self.reversals.tolist(),
         }  # fmt: skip
 
 
@@ -69,34 +77,39 @@ def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
     return replace(atlas, forms=tuple(forms))
 
 
-def certify_branch(
-    problem: Problem, branch: Branch, profile: Profile, singular: Sequence[float] = ()
-) -> Certificate:
+def certify_branch(problem: Problem, branch: Branch, profile: Profile, singular: Sequence[float] = ()) -> Certificate:
     """Whether neighbouring points of the dense curve are everywhere close enough to lie on one arc.
 
     ``singular`` are the arclengths of located singular points, next to which nothing is claimed. Needs a
     `Problem.curvature_bound`; without one nothing is certified. Raises nothing: what is missing is in the result.
     """
-    bound = problem.curvature_bound()
-    if bound is None or profile.rank < problem.n - 1:
-        return Certificate("not certified", np.array([[0.0, branch.length]]), 0, np.inf, np.empty(0))
-    gaps, reversals, points = [], [], 0
-    for low, high in _stretches(branch, singular, HANDOVER * problem.scale):
-        s = _first_choice(branch, profile, singular, bound, low, high)
-        for _ in range(ROUNDS):
-            apart, reach, frame = _reach(problem, branch, s, bound)
-            wide = apart > reach
-            if not np.any(wide) or len(s) > MOST:
-                break
-            s = np.sort(np.concatenate([s, 0.5 * (s[:-1] + s[1:])[wide]]))
-        else:
-            apart, reach, frame = _reach(problem, branch, s, bound)
-            wide = apart > reach
-        points += len(s)
-        gaps += [(s[i], s[i + 1]) for i in np.flatnonzero(wide)]
-        reversals += list(s[1:][frame[1:] * frame[:-1] < 0])
-    status = "not certified" if gaps else "certified up to the singular points" if len(singular) else "certified"
-    return Certificate(status, np.array(gaps).reshape(-1, 2), points, float(bound), np.array(reversals))
+    bound, none = problem.curvature_bound(), np.empty((0, 2))
+    if bound is None or profile.rank < problem.n - 1 or not branch.length > 0:
+        return Certificate("not certified", np.array([[0.0, branch.length]]), none, 0, np.inf, np.empty(0))
+    gaps, blurred, reversals, points = [none], [none], [np.empty(0)], 0
+    handover = HANDOVER * problem.scale
+    for low, high in _stretches(branch, singular, handover):
+        chosen = _first_choice(profile, bound, branch, low, high)
+        if points + len(chosen) > MOST:
+            gaps.append(np.array([[low, high]]))
+            continue
+        for s in _parts(chosen):
+            samples = _refined(problem, branch, s, bound)
+            points += len(samples.s)
+            excused = samples.blurred[1:] | samples.blurred[:-1]
+            dark = _runs(samples.s, samples.far & excused)
+            narrow = dark[:, 1] - dark[:, 0] <= 2 * handover
+            gaps += [_runs(samples.s, samples.far & ~excused), dark[~narrow]]
+            blurred.append(dark[narrow])
+            reversals.append(samples.reversals)
+    uncertain, unresolved = np.concatenate(gaps), np.concatenate(blurred)
+    status = (
+        "not certified" if len(uncertain)
+        else "certified up to places singular to rounding" if len(unresolved)
+        else "certified up to the singular points" if len(singular)
+        else "certified"
+    )  # fmt: skip
+    return Certificate(status, uncertain, unresolved, points, float(bound), np.concatenate(reversals))
 
 
 def _stretches(branch: Branch, singular: Sequence[float], handover: float) -> list[tuple[float, float]]:
@@ -106,61 +119,52 @@ def _stretches(branch: Branch, singular: Sequence[float], handover: float) -> li
         return [(0.0, branch.length)]
     if branch.closed:
         ends = [*stops[1:], stops[0] + branch.length]
-        return [(a + handover, b - handover) for a, b in zip(stops, ends, strict=True)]
-    edges = [-handover, *stops, branch.length + handover]
-    inner = [(a + handover, b - handover) for a, b in pairwise(edges)]
+        inner = [(a + handover, b - handover) for a, b in zip(stops, ends, strict=True)]
+    else:
+        edges = [-handover, *stops, branch.length + handover]
+        inner = [(a + handover, b - handover) for a, b in pairwise(edges)]
     return [(a, b) for a, b in inner if b > a]
 
 
-def _first_choice(
-    branch: Branch, profile: Profile, singular: Sequence[float], bound: float, low: float, high: float
-) -> np.ndarray:
-    """Points from ``low`` to ``high``, about as far apart as the singular values of the profile allow."""
-    grid = np.concatenate([[low], np.linspace(low, high, 400)[1:-1], [high]])
-    for stop in singular:  # the singular value falls off towards a stop: a grid that follows it
-        for shift in (-branch.length, 0.0, branch.length) if branch.closed else (0.0,):
-            near = stop + shift + np.concatenate([-np.geomspace(1.0, HANDOVER, 60), np.geomspace(HANDOVER, 1.0, 60)])
-            grid = np.concatenate([grid, near[(near > low) & (near < high)]])
-    grid = np.unique(grid)
+def _first_choice(profile: Profile, bound: float, branch: Branch, low: float, high: float) -> np.ndarray:
+    """Points from ``low`` to ``high``, as far apart as the singular values at the nodes of the pieces allow.
+
+    Pieces shorten with the distance to a singular point or a near miss, and their nodes with them.
+    """
     s, sigma = profile.arclength.ravel(), profile.smallest.ravel()
     if branch.closed:
         s = np.concatenate([s - branch.length, s, s + branch.length])
         sigma = np.tile(sigma, 3)
-    local = np.interp(grid, s, sigma)
-    if len(singular):
-        distance = np.min([np.abs(grid - stop - k * branch.length) for stop in singular for k in (-1, 0, 1)], axis=0)
-        local = np.minimum(local, np.maximum(distance * _slope(s, sigma, singular), 1e-12))
-    spacing = 0.9 * SHARE * np.minimum(local[1:], local[:-1]) / bound
-    count = np.concatenate([[0.0], np.cumsum(np.diff(grid) / spacing)])
+    grid = np.unique(np.concatenate([[low], s[(s > low) & (s < high)], [high]]))
+    local = np.maximum(np.interp(grid, s, sigma), RESOLVED)
+    count = np.concatenate([[0.0], np.cumsum(np.diff(grid) * 0.5 * (1.0 / local[1:] + 1.0 / local[:-1]))])
+    count *= bound / (0.8 * SHARE)
     chosen = int(min(np.ceil(count[-1]), MOST)) + 2
     return np.interp(np.linspace(0.0, count[-1], chosen), count, grid)
 
 
-def _slope(s: np.ndarray, sigma: np.ndarray, singular: Sequence[float]) -> float:
-    """How fast the smallest singular value grows away from the singular points, at the slowest."""
-    slopes = []
-    for stop in singular:
-        near = np.argsort(np.abs(s - stop))[:6]
-        slopes.append(float(np.median(sigma[near] / (np.abs(s[near] - stop) + 1e-300))))
-    return min(slopes)
+def _parts(s: np.ndarray) -> Iterator[np.ndarray]:
+    """The arclengths in portions that share their ends."""
+    for first in range(0, len(s) - 1, AT_ONCE):
+        yield s[first : first + AT_ONCE + 1]
 
 
-def _reach(
-    problem: Problem, branch: Branch, s: np.ndarray, bound: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """How far neighbouring points are apart (k - 1,), how far their balls let them be, and the running sign of
-    det [G'; t] (k,)."""
-    points, tangents = branch(s), branch(s, 1)
-    left, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude, full_matrices=True)
-    rank = problem.n - 1
-    smallest = np.maximum(sigma[:, rank - 1], 1e-300)
-    # a sample is off the solution by at most twice its residual over sigma (Newton and Kantorovich again)
-    offset = 2.0 * np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude / smallest
-    holds = problem.curvature_residual / sigma[:, 0]  # beyond this the bound on the second derivative may fail
-    ball = SHARE * np.minimum(smallest / bound, holds) - 2.0 * offset
-    tangents = tangents / np.linalg.norm(tangents, axis=1)[:, None]
-    frames = np.concatenate([right[:, :rank], tangents[:, None, :]], axis=1)
-    turn = np.einsum("kmi,kmj->kij", left[:-1, :, :rank], left[1:, :, :rank])
-    sign = np.concatenate([[1.0], np.sign(np.linalg.det(turn))])
-    apart = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return apart, np.maximum(ball[:-1], ball[1:]), np.sign(np.linalg.det(frames)) * np.cumprod(sign)
+def _refined(problem: Problem, branch: Branch, s: np.ndarray, bound: float) -> Samples:
+    """Samples at ``s`` and, where neighbours are too far apart, between, as far as the singular values tell."""
+    samples = sample_curve(problem, branch, s, bound)
+    for _ in range(ROUNDS):
+        where = np.flatnonzero(samples.far & ~(samples.blurred[1:] & samples.blurred[:-1]))
+        if not len(where) or len(samples.s) > 3 * AT_ONCE:
+            break
+        apart = samples.apart[where] + 1e-300
+        count = np.clip(np.ceil(1.2 * apart / np.maximum(samples.reach[where], apart / 8)), 2, 8).astype(int)
+        ends = zip(samples.s[where], samples.s[where + 1], count, strict=True)
+        between = np.concatenate([np.linspace(a, b, parts + 1)[1:-1] for a, b, parts in ends])
+        samples = samples.joined(sample_curve(problem, branch, between, bound))
+    return samples
+
+
+def _runs(s: np.ndarray, where: np.ndarray) -> np.ndarray:
+    """Begin and end (r, 2) of every run of consecutive intervals ``where`` (k - 1,) between the arclengths s (k,)."""
+    edges = np.diff(np.concatenate([[False], where, [False]]).astype(int))
+    return np.column_stack([s[edges == 1], s[edges == -1]])

@@ -1,5 +1,7 @@
 """Certificates: what is certified is one arc, and what jumps is not certified."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -61,16 +63,19 @@ def test_forms_that_cross_are_certified_up_to_the_crossings():
         assert form.labels["certificate"]["status"] == "certified up to the singular points"
 
 
-def test_a_crossing_that_is_not_handed_over_is_not_certified_and_raises_the_alarm():
+def test_a_crossing_that_is_not_handed_over_is_named_as_singular_and_raises_the_alarm():
     problem = LoopClosure(Loop([2, 1, 2, 1], [0] * 4, [0] * 4))
-    branch = explore(problem).forms[0].branch
+    atlas = explore(problem)
+    branch = atlas.forms[0].branch
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
-    assert certificate.status == "not certified"
-    assert len(certificate.gaps) > 0
+    assert certificate.status == "certified up to places singular to rounding"
+    crossings = sorted(s for point in atlas.bifurcations for i, s in point.passes if i == 0)
+    assert certificate.blurred.mean(axis=1) == pytest.approx(crossings, abs=1e-6)
+    assert np.diff(certificate.blurred).max() < 1e-5
     assert len(certificate.reversals) == 2
 
 
-@pytest.mark.parametrize("gap", [1e-1, 1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("gap", [1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
 def test_a_near_miss_is_followed_and_certified_with_points_that_grow_like_the_logarithm_of_the_gap(gap):
     problem = Hyperbola(gap)
     branch = trace_branch(problem, np.array([0.9, gap / 0.9]))
@@ -80,7 +85,7 @@ def test_a_near_miss_is_followed_and_certified_with_points_that_grow_like_the_lo
     assert certificate.points < 40 + 12 * np.log(1 / gap)
 
 
-@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6])
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_a_curve_that_runs_straight_across_a_near_miss_is_not_certified(gap):
     problem = Hyperbola(gap)
     branch = straight_branch(problem)
@@ -88,6 +93,26 @@ def test_a_curve_that_runs_straight_across_a_near_miss_is_not_certified(gap):
     assert certificate.status == "not certified"
     middle = certificate.gaps.mean(axis=1)
     assert np.all(np.abs(middle - 0.9) < 4 * np.sqrt(gap))
+
+
+@pytest.mark.parametrize("gap", 10.0 ** -np.arange(1, 11))
+def test_a_curve_glued_from_two_arcs_where_they_are_closest_is_not_certified(gap):
+    problem = Hyperbola(gap)
+    arc = trace_branch(problem, np.array([0.9, gap / 0.9]))
+    vertex = 0.5 * arc.length
+    assert arc(vertex) == pytest.approx(2 * [np.sqrt(gap)], rel=1e-3)
+    half = int(np.searchsorted(arc.breaks, vertex)) - 1  # the piece with the vertex belongs to both halves
+    other = replace(arc, pieces=-arc.pieces)
+    glued = replace(
+        arc, pieces=np.concatenate([arc.pieces[: half + 1], other.pieces[half:]]),
+        centers=np.insert(arc.centers, half, arc.centers[half]), radii=np.insert(arc.radii, half, arc.radii[half]),
+        breaks=np.insert(arc.breaks, half + 1, vertex), residuals=np.insert(arc.residuals, half, 0.0),
+    )  # fmt: skip
+    certificate = certify_branch(problem, glued, profile_branch(problem, glued))
+    assert certificate.status == "not certified"
+    # nothing but the jump is refused
+    assert np.abs(certificate.gaps - vertex).max() < 1e-3 * np.sqrt(gap)
+    assert certify_branch(problem, arc, profile_branch(problem, arc)).status == "certified"
 
 
 def test_a_problem_without_a_bound_on_its_second_derivative_is_not_certified():
