@@ -44,9 +44,10 @@ class TraceSettings:
 
 DEFAULT_SETTINGS = TraceSettings()
 
-# Next to a crossing rounding bends the curve F = 1e-16 from one branch into the other: a radius below this is first
-# taken for a sign of one, and a smooth piece across is tried.
-CAUTIOUS = 1e-4
+# Next to a crossing rounding bends the curve F = 1e-16 from one branch into the other: a radius below the first of
+# these is taken for a sign of one, and a smooth piece across is tried where a singular point can be located; below
+# the second, where steps come to what rounding leaves of them, it is tried in any case.
+CAUTIOUS = (1e-4, 1e-6)
 RESOLVED = 1e-6  # two points farther apart, in scales, are never taken for one
 ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
 AT_ONCE = 14  # pieces made before the end of the curve is looked for
@@ -115,10 +116,11 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
     nothing = np.empty(0)
     track = _Track(np.empty((0, settings.order + 1, problem.n)), nothing, nothing, nothing)
     point, heading = start, tangent
-    shortest = cautious = max(CAUTIOUS, settings.shortest) * scale
+    shortest = [max(radius, settings.shortest) * scale for radius in (*CAUTIOUS, 0.0)]
+    level = 0
     while True:
         run = problem.march(
-            point, heading, settings.order, settings.tolerance, shortest, settings.longest * scale, AT_ONCE
+            point, heading, settings.order, settings.tolerance, shortest[level], settings.longest * scale, AT_ONCE
         )
         if run.status == MarchStatus.OPEN:
             return _assemble(problem, track, Outcome.OPEN, 0.0, gap=float(run.residuals[-1]))
@@ -126,16 +128,16 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
         track = track.extended(known, run.pieces, track.reached + np.cumsum(run.steps), run.radii, run.residuals)
         end = _end_of_curve(problem, track, max(known - 1, 0), settings.tolerance)
         if end is None and run.status == MarchStatus.STALLED:
-            bridged = _bridge(problem, track, settings) if shortest == cautious else None
+            bridged = _bridge(problem, track, settings, level == 0) if level < len(CAUTIOUS) else None
             if bridged is not None:
                 track = bridged
                 end = _end_of_curve(problem, track, len(track.pieces) - 1, settings.tolerance)
-            elif shortest > settings.shortest * scale:
-                shortest = settings.shortest * scale  # no singular point to jump over: a sharp bend, to be followed
+            elif level < len(CAUTIOUS):
+                level += 1  # no singular point to jump over: a sharp bend, to be followed
             else:
                 return _assemble(problem, track, Outcome.STALLED, track.reached)
-        elif len(run.radii) and run.radii[-1] > 10 * cautious:
-            shortest = cautious
+        elif len(run.radii) and run.radii[-1] > 10 * shortest[0]:
+            level = 0
         if end is not None:
             return _assemble(problem, track, *end)
         if track.reached > settings.max_length * scale:
@@ -144,14 +146,14 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
             point, heading = track.at(-1, track.reached)
 
 
-def _bridge(problem: Problem, track: _Track, settings: TraceSettings) -> _Track | None:
+def _bridge(problem: Problem, track: _Track, settings: TraceSettings, located: bool) -> _Track | None:
     """The track with a piece across the point before which it stalled, or None.
 
     Near a singular point where the rank drops faster than on a simple crossing no series reaches over. The
     curve is smooth there all the same: a piece by collocation, from as far before the point as beyond it, needs
-    no series.
+    no series. With ``located`` it is tried only where a singular point can be located.
     """
-    if not len(track.pieces) or not _is_near_singular(problem, track.at(-1, track.reached)[0]):
+    if not len(track.pieces) or (located and not _is_near_singular(problem, track.at(-1, track.reached)[0])):
         return None
     for reach in (0.1, 0.2, 0.05, 0.4, 0.02):
         begin = track.reached - reach * problem.scale

@@ -13,6 +13,7 @@ from bifurc.section import section
 
 __all__ = ["Kind", "SingularPoint", "classify_singular_point", "locate_singular_point", "second_order_tangents"]
 
+SOLVED = 1e-13  # relative residual of a singular point: above it is a near miss, which doubles still resolve
 RADII = (2e-2, 4e-2, 8e-2, 5e-3, 1.25e-3)  # of the sections, over the scale, in the order in which they are tried
 
 
@@ -109,7 +110,7 @@ def locate_singular_point(
     values = np.linalg.svd(problem.jacobians(u[None])[0] / problem.magnitude, compute_uv=False)
     residual = np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
     tail = values[n - k] if len(values) > n - k else 0.0
-    if residual > 1e-11 or tail > 1e-7 or not moves or moves[-1] > 1e-4 * problem.scale:
+    if residual > SOLVED or tail > 1e-7 or not moves or moves[-1] > 1e-4 * problem.scale:
         return None
     error = _location_error(moves, condition) * problem.scale
     for direction in weak:

@@ -54,19 +54,55 @@ def test_a_near_parallelogram_is_followed_on_its_true_circuit(error, longest):
     assert len(branch.pieces) < allowed + 8 * np.log10(1 / error)
 
 
-@pytest.mark.parametrize("error", [1e-1, 1e-2, 1e-4])
-def test_a_near_parallelogram_is_certified(error):
+@pytest.mark.parametrize("longest", [0.1, 2.0])
+@pytest.mark.parametrize("error", [1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
+def test_a_near_parallelogram_is_certified(error, longest):
     problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
-    branch = trace_branch(problem, problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0])
+    start = problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0]
+    branch = trace_branch(problem, start, settings=TraceSettings(longest=longest))
     assert certify_branch(problem, branch, profile_branch(problem, branch)).status == "certified"
 
 
-@pytest.mark.parametrize("error", [1e-11, 1e-12, 1e-13])
+@pytest.mark.parametrize("error", [1e-11, 1e-12, 1e-13, 1e-14, 1e-15])
 def test_below_the_resolution_of_doubles_a_wrong_circuit_is_never_called_certified(error):
     problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
     branch = trace_branch(problem, problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0])
     right = branch.closed and sorted(np.abs(branch.winding)) == [0, 0, 1, 1]
-    assert right or certify_branch(problem, branch, profile_branch(problem, branch)).status == "not certified"
+    assert right or certify_branch(problem, branch, profile_branch(problem, branch)).status != "certified"
+
+
+@pytest.mark.parametrize("longest", [0.02, 0.1, 0.5, 2.0])
+@pytest.mark.parametrize("error", [1e-15, 1e-16])
+def test_what_misses_a_crossing_by_rounding_is_a_singular_point(error, longest):
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1] - u[1] ** 3 + error]), BOX)
+    (point,) = explore(problem, starts=40, settings=TraceSettings(longest=longest)).points
+    assert point.kind is Kind.BIFURCATION
+    assert np.linalg.norm(point.point.u) < np.sqrt(error)
+
+
+@pytest.mark.parametrize("longest", [0.1, 2.0])
+@pytest.mark.parametrize("error", [1e-6, 1e-9, 1e-12])
+def test_what_doubles_resolve_is_a_near_miss_and_no_singular_point(error, longest):
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1] - u[1] ** 3 + error]), BOX)
+    atlas = explore(problem, starts=40, settings=TraceSettings(longest=longest))
+    assert (len(atlas.forms), len(atlas.points), len(atlas.near_misses)) == (2, 0, 2)
+
+
+@pytest.mark.parametrize("longest", [0.02, 0.05, 0.1, 0.5])
+def test_a_form_that_another_nearly_crosses_to_rounding_is_followed_whole(longest):
+    """A line-symmetric Bricard linkage with the offsets of another kink: no singular point solves the equations, and
+    the smallest singular value, 1e-10 over 1e-8 rad, leaves Taylor steps no direction."""
+    lengths, twists = (0.7941613126706226, 2.6403832273715606, 2.5864115048816054), (
+        0.22856792577804788, 0.5102232137337113, 2.618285062280901,
+    )  # fmt: skip
+    offsets = (-0.1860767779601384, -0.52734918464006, 0.3064219516890632)
+    problem = LoopClosure(Loop(lengths * 2, twists * 2, offsets * 2))
+    start = problem.project(np.array([[1.38539007, 4.4886844, 3.27712703, 1.38539007, -1.7945009, -3.00605828]]))[0][0]
+    branch = trace_branch(problem, start, settings=TraceSettings(longest=longest))
+    assert branch.outcome is Outcome.CLOSED
+    assert branch.length == pytest.approx(12.8139091108992, abs=1e-12)
+    points = branch.sample(3000)
+    assert np.abs(np.sin((points[:, 3:] - points[:, :3]) / 2)).max() < 1e-7
 
 
 def test_neighbouring_pieces_overlap_also_where_a_bridge_was_laid():
