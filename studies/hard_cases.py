@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
+from scipy.optimize import brentq
 
 from bifurc.problem import FunctionProblem, Problem
 from linkages.catalogue import entry
@@ -20,12 +21,17 @@ Test = Callable[[np.ndarray], bool]
 
 @dataclass(frozen=True)
 class Ladder:
-    """A near miss of width ``gap``: from ``start`` along ``tangent`` for ``length``; ``stays`` tells whether points
-    (k, n) all lie on the true arc, ``arrives`` whether the last of them is at its end. ``parameter`` is the unknown
-    that natural-parameter stepping sets, over ``travel``."""
+    """A near miss that an ``imperfection`` makes, and the ``width`` that this leaves between the arcs: from ``start``
+    along ``tangent`` for ``length``; ``stays`` tells whether points (k, n) all lie on the true arc, ``arrives`` whether
+    the last of them is at its end. ``parameter`` is the unknown that natural-parameter stepping sets, over ``travel``.
+
+    Both are 1 in order of magnitude in their equations, so that rounding in doubles is an imperfection of 1e-16 to
+    1e-15: what is smaller is no near miss but a crossing there.
+    """
 
     name: str
-    gap: float
+    imperfection: float
+    width: float
     problem: Problem
     start: np.ndarray
     tangent: np.ndarray
@@ -65,30 +71,26 @@ class _Pitchfork(FunctionProblem):
         return (4.5 + sqrt(4.5**2 + 1.0)) / self.magnitude
 
 
-def pitchfork(gap: float) -> Ladder:
-    """The imperfect pitchfork lambda x - x^3 + e = 0, e = gap^2 / 8, along the arc with x > 0.
+def pitchfork(e: float) -> Ladder:
+    """The imperfect pitchfork lambda x - x^3 + e = 0, along the arc with x > 0.
 
-    At the corner it is the hyperbola lambda x = -e, whose two arcs are 2 sqrt(2 e) = ``gap`` apart.
+    At the corner it is the hyperbola lambda x = -e, whose two arcs are 2 sqrt(2 e) apart.
     """
-    e = gap**2 / 8
-    problem = _Pitchfork(e)
-    x = e / 0.9
-    for _ in range(6):
-        x -= (-0.9 * x - x**3 + e) / (-0.9 - 3 * x * x)
+    x = brentq(lambda x: -0.9 * x - x**3 + e, 0.0, 1.0, xtol=1e-300, rtol=1e-15)
     tangent = np.array([0.9 + 3 * x * x, x])
     return Ladder(
-        "imperfect pitchfork", gap, problem, np.array([-0.9, x]), tangent / np.linalg.norm(tangent), 2.2,
+        "imperfect pitchfork", e, 2 * sqrt(2 * e), _Pitchfork(e), np.array([-0.9, x]),
+        tangent / np.linalg.norm(tangent), 2.2,
         stays=lambda u: bool(np.all(u[:, 1] > 0)), arrives=lambda u: bool(abs(u[-1, 1]) > 0.7),
         parameter=0, travel=1.7,
     )  # fmt: skip
 
 
-def near_parallelogram(gap: float) -> Ladder:
-    """The four-bar 1, 2, 1 + e, 2 with e = gap^2 / 3, whose two circuits come within ``gap`` (rad at joint 3).
+def near_parallelogram(e: float) -> Ladder:
+    """The four-bar 1, 2, 1 + e, 2, whose two circuits come within sqrt(3 e) (rad at joint 3).
 
     On each circuit sin(theta3) keeps its sign, since links 23 and 34 cannot be flat for any e > 0.
     """
-    e = gap**2 / 3
     zero = (0.0,) * 4
     problem = LoopClosure(Loop((1.0, 2.0, 1.0 + e, 2.0), zero, zero))
     angle = 0.7  # the parallelogram itself, then corrected
@@ -97,15 +99,15 @@ def near_parallelogram(gap: float) -> Ladder:
     tangent *= np.sign(tangent[0])
     sign = np.sign(np.sin(start[2]))
     return Ladder(
-        "near-parallelogram", gap, problem, start, tangent, 12.0,
+        "near-parallelogram", e, sqrt(3 * e), problem, start, tangent, 12.0,
         stays=lambda u: bool(np.all(sign * np.sin(u[:, 2]) > 0)),
         arrives=lambda u: bool(abs(u[-1, 0] - u[0, 0]) > 5.0), parameter=0, travel=2 * np.pi,
     )  # fmt: skip
 
 
-def ladders(gaps: np.ndarray) -> list[Ladder]:
-    """Both ladders; the near-parallelogram down to the smallest error that a double near 1 can hold."""
-    return [pitchfork(g) for g in gaps] + [near_parallelogram(g) for g in gaps if g**2 / 3 > 2e-15]
+def ladders(imperfections: np.ndarray) -> list[Ladder]:
+    """Both ladders."""
+    return [make(float(e)) for make in (pitchfork, near_parallelogram) for e in imperfections]
 
 
 # --- points that are there, or only seem to be --------------------------------------------------------

@@ -2,10 +2,10 @@
 
     python -m studies.stability [--out DIR] [--quick]
 
-Part one: an arc that passes another at a distance from 1e-1 to 1e-12. A method is right when it follows the true arc
-to its end, has failed when it says so, and has jumped when it goes over to the other arc without a word. Fine, medium
-and coarse are steps of at most 0.02, 0.1 and 0.5. This project says that it failed where it stalls, and where its
-certificate refuses a wrong arc; the cost of that is not counted.
+Part one: an arc that passes another because of an imperfection from 1e-1 to 1e-12. A method is right when it follows
+the true arc to its end, has failed when it says so, and has jumped when it goes over to the other arc without a word.
+Fine, medium and coarse are steps of at most 0.02, 0.1 and 0.5. This project says that it failed where it stalls, and
+where its certificate refuses a wrong arc. Every curve of this project is certified; the cost of that is listed apart.
 
 Part two: how many bifurcations every method reports on a curve where their number is known. Test functions see sign
 changes of a determinant or small singular values; this project locates and classifies.
@@ -42,20 +42,20 @@ from studies.methods.curve import MethodFailure
 from studies.methods.detection import by_determinant, by_singular_value
 from studies.summary import table
 
-__all__ = ["STEPS", "Run", "follow_ladder", "followers", "report_points", "reporters"]
+__all__ = ["STEPS", "Followed", "Run", "follow_ladder", "followers", "report_points", "reporters"]
 
 STEPS = {"fine": 0.02, "medium": 0.1, "coarse": 0.5}
-GAPS = 10.0 ** -np.arange(1.0, 13.0)
+IMPERFECTIONS = 10.0 ** -np.arange(1.0, 13.0)
 DENSE = 4000  # places at which a curve is judged
 Points = np.ndarray
-Follower = Callable[[Ladder, Problem, float], Points]
 Reporter = Callable[[Crossing, Problem], int]
 
 
 @dataclass(frozen=True)
 class Run:
-    """What one method did: ``verdict`` is right, failed, jumped, missed or invented; ``difficulty`` the gap or the true
-    number of bifurcations, ``found`` the number reported."""
+    """What one method did: ``verdict`` is right, failed, jumped, missed or invented; ``difficulty`` the imperfection or
+    the true number of bifurcations, ``width`` that of the near miss, ``found`` the number reported. ``pieces`` and the
+    ``certificate`` with its points and its time (s), beside ``seconds``, are this project's."""
 
     case: str
     difficulty: float
@@ -66,13 +66,32 @@ class Run:
     evaluations: int
     seconds: float
     note: str = ""
+    width: float = 0.0
+    pieces: int = 0
+    certificate: str = ""
+    certificate_points: int = 0
+    certificate_seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A curve as points (k, n), and for one of this project its pieces and its certificate."""
+
+    points: Points
+    pieces: int = 0
+    certificate: str = ""
+    certificate_points: int = 0
+    certificate_seconds: float = 0.0
+
+
+Follower = Callable[[Ladder, Problem, float], Followed]
 
 
 # --- part one: following ------------------------------------------------------------------------------
 
 
 def followers() -> dict[str, Follower]:
-    """Every method as a function of a ladder, a problem that counts and a step; points (k, n) come back."""
+    """Every method as a function of a ladder, a problem that counts and a step."""
     methods: dict[str, Follower] = {
         "this project": _this_project,
         "natural parameter": _natural,
@@ -95,54 +114,58 @@ def _tolerance(step: float) -> float:
     return (step / 2.5) ** 4
 
 
-def _this_project(case: Ladder, problem: Problem, step: float) -> Points:
+def _this_project(case: Ladder, problem: Problem, step: float) -> Followed:
     branch = trace_branch(problem, case.start, case.tangent, TraceSettings(longest=step / problem.scale))
     if not len(branch.pieces) or branch.outcome.name in ("STALLED", "OPEN"):
         raise MethodFailure(branch.outcome.value)
     s = np.concatenate([np.linspace(a, b, 40, endpoint=False) for a, b in pairwise(branch.breaks)])
     points = branch(s)
     points = points if (points[-1] - points[0]) @ case.tangent > 0 else points[::-1]
-    if not (case.stays(points) and case.arrives(points)):
-        certificate = certify_branch(case.problem, branch, profile_branch(case.problem, branch))
-        if certificate.status != "certified":
-            raise MethodFailure(f"{certificate.status}: the points are too far apart for the bound on F''")
-    return points
+    began = time.process_time()
+    certificate = certify_branch(case.problem, branch, profile_branch(case.problem, branch))
+    seconds = time.process_time() - began
+    return Followed(points, len(branch.pieces), certificate.status, certificate.points, seconds)
 
 
-def _natural(case: Ladder, problem: Problem, step: float) -> Points:
+def _natural(case: Ladder, problem: Problem, step: float) -> Followed:
     tolerance = (step / 1.25) ** 4
     curve = natural.natural_parameter(problem, case.start, case.travel, case.parameter, tolerance)
-    return curve.sample(DENSE)
+    return Followed(curve.sample(DENSE))
 
 
-def _null_field(case: Ladder, problem: Problem, step: float, projected: bool) -> Points:
+def _null_field(case: Ladder, problem: Problem, step: float, projected: bool) -> Followed:
     curve = null_field.integrate_null_field(
         problem, case.start, case.tangent, case.length, _tolerance(step), "RK45", projected, step
     )
-    return curve.sample(DENSE)
+    return Followed(curve.sample(DENSE))
 
 
-def _along(follow: Callable[..., Any], case: Ladder, problem: Problem, step: float) -> Points:
+def _along(follow: Callable[..., Any], case: Ladder, problem: Problem, step: float) -> Followed:
     curve = follow(problem, case.start, case.tangent, case.length, _tolerance(step))
-    return curve.sample(DENSE)
+    return Followed(curve.sample(DENSE))
 
 
 def follow_ladder(case: Ladder, name: str, follower: Follower, step: str) -> Run:
     """One method on one near miss."""
     problem, began = Counted(case.problem), time.process_time()
-    verdict, note = "right", ""
+    verdict, note, found = "right", "", Followed(np.empty((0, case.problem.n)))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # overflow on the way to a failure that is reported
-            points = follower(case, problem, STEPS[step])
+            found = follower(case, problem, STEPS[step])
     except (MethodFailure, ArithmeticError, ValueError, np.linalg.LinAlgError) as failure:
         verdict, note = "failed", str(failure).partition("\n")[0]
     else:
-        if not case.stays(points):
-            verdict = "jumped"
-        elif not case.arrives(points):
+        if not case.stays(found.points):
+            refused = found.certificate not in ("", "certified")
+            verdict, note = ("failed", found.certificate) if refused else ("jumped", "")
+        elif not case.arrives(found.points):
             verdict, note = "failed", "it stops before the end"
-    return Run(case.name, case.gap, name, step, verdict, 0, problem.evaluations, time.process_time() - began, note)
+    seconds = time.process_time() - began - found.certificate_seconds
+    return Run(
+        case.name, case.imperfection, name, step, verdict, 0, problem.evaluations, seconds, note, case.width,
+        found.pieces, found.certificate, found.certificate_points, found.certificate_seconds,
+    )  # fmt: skip
 
 
 # --- part two: counting bifurcations ------------------------------------------------------------------
@@ -207,52 +230,59 @@ def report_points(case: Crossing, name: str, reporter: Reporter) -> Run:
 
 
 def describe(runs: Sequence[Run]) -> str:
-    """Two tables: how often each method was right on the near misses, and what it reported on the curves."""
+    """Three tables: how often each method was right on the near misses, what this project's answers cost, and what each
+    method reported on the curves with bifurcations."""
     ladder, points = [r for r in runs if r.step], [r for r in runs if not r.step]
     rows = []
-    for case in dict.fromkeys(r.case for r in ladder):
-        for method in dict.fromkeys(r.method for r in ladder):
-            for step in STEPS:
-                some = [r for r in ladder if (r.case, r.method, r.step) == (case, method, step)]
-                if not some:
-                    continue
-                count = [sum(r.verdict == v for r in some) for v in ("right", "failed", "jumped")]
-                effort, seconds = (np.median([getattr(r, what) for r in some]) for what in ("evaluations", "seconds"))
-                rows.append((
-                    case, method, step, f"{count[0]} of {len(some)}", str(count[1]), str(count[2]),
-                    f"{effort:.0f}", f"{1e3 * seconds:.1f}",
-                ))  # fmt: skip
+    for case, method, step in dict.fromkeys((r.case, r.method, r.step) for r in ladder):
+        some = [r for r in ladder if (r.case, r.method, r.step) == (case, method, step)]
+        count = [sum(r.verdict == v for r in some) for v in ("right", "failed", "jumped")]
+        effort, seconds = (np.median([getattr(r, what) for r in some]) for what in ("evaluations", "seconds"))
+        rows.append((
+            case, method, step, f"{count[0]} of {len(some)}", str(count[1]), str(count[2]),
+            f"{effort:.0f}", f"{1e3 * seconds:.1f}",
+        ))  # fmt: skip
     heads = ("near miss", "method", "step", "right", "says it failed", "jumps", "evaluations", "ms")
+    costs = [
+        (r.case, f"{r.difficulty:.0e}", f"{r.width:.1e}", r.step, r.verdict, str(r.pieces), str(r.evaluations),
+         f"{1e3 * r.seconds:.1f}", r.certificate, str(r.certificate_points), f"{1e3 * r.certificate_seconds:.1f}")
+        for r in ladder if r.certificate
+    ]  # fmt: skip
+    cost_heads = ("near miss", "imperfection", "width", "step", "verdict", "pieces", "evaluations", "ms", "certificate",
+                  "points", "ms")  # fmt: skip
     listed = [
         (r.case, f"{r.difficulty:.0f}", r.method, "-" if r.verdict == "failed" else str(r.found), r.verdict,
          str(r.evaluations), f"{1e3 * r.seconds:.1f}", r.note[:60])
         for r in points
     ]  # fmt: skip
     second = ("curve", "bifurcations", "method", "reported", "verdict", "evaluations", "ms", "note")
-    return f"Following an arc past another\n{table(heads, rows)}\n\nBifurcations on a curve\n{table(second, listed)}"
+    return "\n\n".join([
+        f"Following an arc past another\n{table(heads, rows)}",
+        f"What this project's answers cost\n{table(cost_heads, costs)}",
+        f"Bifurcations on a curve\n{table(second, listed)}",
+    ])  # fmt: skip
 
 
-def run_all(gaps: np.ndarray) -> list[Run]:
+def run_all(imperfections: np.ndarray) -> list[Run]:
     """Every method on every case."""
     runs = [
         follow_ladder(case, name, follower, step)
-        for case in ladders(gaps) for name, follower in followers().items() for step in STEPS
+        for case in ladders(imperfections) for name, follower in followers().items() for step in STEPS
     ]  # fmt: skip
     return runs + [report_points(case, name, each) for case in crossings() for name, each in reporters().items()]
 
 
 @click.command(help=__doc__)
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("out/stability"))
-@click.option("--quick", is_flag=True, help="Every third gap.")
+@click.option("--quick", is_flag=True, help="Every third imperfection.")
 def main(out: Path, quick: bool) -> None:
     """Run the study; write runs.csv, summary.txt and stability.png."""
     from studies.stability_figure import draw_stability
 
     out.mkdir(parents=True, exist_ok=True)
-    warm = ladders(GAPS[:1])
-    for case in warm:
+    for case in ladders(IMPERFECTIONS[:1]):
         follow_ladder(case, "this project", followers()["this project"], "coarse")  # compiles what is not yet compiled
-    runs = run_all(GAPS[::3] if quick else GAPS)
+    runs = run_all(IMPERFECTIONS[::3] if quick else IMPERFECTIONS)
     text = describe(runs)
     click.echo(text)
     (out / "summary.txt").write_text(text + "\n", encoding="utf-8")

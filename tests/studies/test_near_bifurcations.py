@@ -8,7 +8,7 @@ from linkages.catalogue import entry
 from linkages.closure import LoopClosure
 from linkages.mapping import map_by_name
 from studies.half_turn import SHIFT, HalfTurn
-from studies.near_bifurcations import STEPS, describe, follow
+from studies.near_bifurcations import STEPS, describe, describe_certificates, follow
 from studies.near_misses import FAMILIES, near_misses
 
 
@@ -22,6 +22,17 @@ def test_every_traced_curve_stays_on_its_arc(cases):
     assert [t for t in traces if t.verdict != "right"] == []
     assert {t.family for t in traces} == {case.family for case in cases} and len({t.family for t in traces}) == 4
     assert "40      40     0        0" in describe(traces)
+
+
+def test_every_trace_is_certified_but_at_places_that_are_singular_to_rounding(cases):
+    traces = [follow(case, 0.5, certify=True) for case in cases]
+    assert {t.certificate for t in traces} == {
+        "certified", "certified up to the singular points", "certified up to places singular to rounding"
+    }  # fmt: skip
+    # a four-bar has no other form to cross; both special double-Goldberg forms that are traced do
+    assert {t.certificate for t in traces if t.family == "parallelogram four-bar"} == {"certified"}
+    assert {t.certificate for t in traces if t.family == "double-Goldberg 6R"} == {"certified up to the singular points"}
+    assert "parallelogram four-bar  0.5   5 " in describe_certificates(traces)
 
 
 def test_the_linkages_are_as_far_from_bifurcating_as_stated(cases):

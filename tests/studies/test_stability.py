@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from bifurc.certificate import certify_branch
 from bifurc.continuation import trace_branch
+from bifurc.monitor import profile_branch
 from studies.hard_cases import crossings, ladders, near_parallelogram, pitchfork
 from studies.methods.counted import Counted
 from studies.methods.detection import by_determinant, by_singular_value
@@ -13,7 +15,7 @@ from studies.stability_figure import draw_stability
 CROSSINGS = {case.name: case for case in crossings()[:4]}
 
 
-@pytest.mark.parametrize("case", ladders(np.array([1e-1, 1e-4])), ids=lambda case: f"{case.name} {case.gap:g}")
+@pytest.mark.parametrize("case", ladders(np.array([1e-1, 1e-8])), ids=lambda case: f"{case.name} {case.imperfection:g}")
 def test_the_start_of_a_ladder_lies_on_its_curve(case):
     assert np.linalg.norm(case.problem.residuals(case.start[None])) < 1e-14
     assert np.linalg.norm(case.problem.jacobians(case.start[None])[0] @ case.tangent) < 1e-7
@@ -21,11 +23,11 @@ def test_the_start_of_a_ladder_lies_on_its_curve(case):
 
 
 def test_the_arcs_of_the_pitchfork_are_as_far_apart_as_stated():
-    e = 1e-3**2 / 8
+    e = 1e-7
     x = np.geomspace(1e-6, 1e-1, 20001)  # beside the corner the upper arc is (x^2 - e / x, x), the lower its mirror image
     upper = np.column_stack([x**2 - e / x, x])
     corner = upper[np.argmin(np.linalg.norm(upper, axis=1))]
-    assert 2 * np.linalg.norm(corner) == pytest.approx(1e-3, rel=0.02)
+    assert 2 * np.linalg.norm(corner) == pytest.approx(pitchfork(e).width, rel=0.02)
 
 
 def test_a_curve_on_the_other_arc_is_seen():
@@ -33,25 +35,46 @@ def test_a_curve_on_the_other_arc_is_seen():
     assert not case.stays(case.start * [1.0, -1.0] + np.zeros((2, 2)))
 
 
+@pytest.mark.parametrize("imperfection", [1e-2, 1e-6, 1e-8])
+def test_the_circuits_of_the_four_bar_are_as_far_apart_as_stated(imperfection):
+    case = near_parallelogram(imperfection)
+    branch = trace_branch(case.problem, case.start, case.tangent)
+    points = branch(np.linspace(0, branch.length, 200001))
+    closest = 2 * np.abs(np.sin(points[:, 2])).min()  # the other circuit is the mirror image
+    assert closest == pytest.approx(case.width, rel=0.25)
+
+
 @pytest.mark.parametrize("make", [pitchfork, near_parallelogram])
 @pytest.mark.parametrize("step", ["fine", "medium", "coarse"])
-@pytest.mark.parametrize("gap", [1e-1, 1e-3, 1e-5])
-def test_this_project_follows_the_true_arc(make, step, gap):
-    assert follow_ladder(make(gap), "this project", followers()["this project"], step).verdict == "right"
+@pytest.mark.parametrize("imperfection", [1e-1, 1e-4, 1e-7, 1e-10])
+def test_this_project_follows_the_true_arc_and_certifies_it(make, step, imperfection):
+    run = follow_ladder(make(imperfection), "this project", followers()["this project"], step)
+    assert (run.verdict, run.certificate) == ("right", "certified")
 
 
 @pytest.mark.parametrize("make", [pitchfork, near_parallelogram])
-def test_every_tenth_of_the_gap_adds_no_more_pieces_than_the_one_before(make):
-    cases = [make(gap) for gap in 10.0 ** -np.arange(1.0, 6.0)]
-    pieces = [len(trace_branch(case.problem, case.start, case.tangent).pieces) for case in cases]
-    added = np.diff(pieces)
-    assert added.max() < 25 and added[-1] <= added[0] + 5  # as the logarithm of 1 / gap, or slower
+def test_every_tenth_of_the_imperfection_adds_no_more_than_the_one_before(make):
+    cases = [make(e) for e in 10.0 ** -np.arange(1.0, 11.0)]
+    runs = [follow_ladder(case, "", followers()["this project"], "coarse") for case in cases]
+    pieces, points = np.diff([r.pieces for r in runs]), np.diff([r.certificate_points for r in runs])
+    # as the logarithm of 1 / imperfection, or slower
+    assert pieces.max() < 15 and pieces[-1] <= pieces[0] + 5
+    assert points == pytest.approx(np.median(points), rel=0.05)
+
+
+@pytest.mark.parametrize("make", [pitchfork, near_parallelogram])
+@pytest.mark.parametrize("imperfection", 10.0 ** -np.arange(1, 13))
+def test_a_curve_that_goes_over_to_the_other_arc_is_refused(make, imperfection):
+    case, crossing = make(imperfection), make(1e-18)
+    wrong = trace_branch(crossing.problem, case.start, case.tangent)  # without an imperfection it goes straight across
+    assert not case.stays(wrong.sample(2000))
+    assert certify_branch(case.problem, wrong, profile_branch(case.problem, wrong)).status == "not certified"
 
 
 def test_large_steps_of_the_null_vector_jump_and_small_ones_do_not():
     follow = followers()["solve_ivp RK45"]
-    assert follow_ladder(near_parallelogram(1e-3), "", follow, "coarse").verdict == "jumped"
-    assert follow_ladder(near_parallelogram(1e-1), "", follow, "fine").verdict == "right"
+    assert follow_ladder(near_parallelogram(1e-6), "", follow, "coarse").verdict == "jumped"
+    assert follow_ladder(near_parallelogram(1e-2), "", follow, "fine").verdict == "right"
 
 
 def test_evaluations_are_counted_by_the_point():
@@ -82,4 +105,5 @@ def test_tables_and_figure_show_every_method():
     runs.append(report_points(CROSSINGS["transcritical"], "this project", reporters()["this project"]))
     text = describe(runs)
     assert all(name in text for name in followers())
-    assert len(draw_stability(runs).axes) == 2
+    assert "certified" in text
+    assert len(draw_stability(runs).axes) == 2 + 3
