@@ -7,6 +7,7 @@ from studies.methods.auto07p import auto_07p, has_auto
 from studies.methods.cases import bratu, circle, linkage_cases, pitchfork
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import distance_in_digits, largest_distance
+from studies.methods.peers import has_pycont, pycont_lite
 from studies.methods.roster import Method, comparison_methods, orders_of_this_project
 from studies.work_precision import Run, fastest, measure, measure_case, points_in_our_time, ratios, recommend
 from studies.work_precision_figures import unbeaten
@@ -42,6 +43,17 @@ def test_a_method_that_runs_elsewhere_states_its_own_time():
     case = circle()
     elsewhere = Method("elsewhere", lambda case, tolerance: Curve(case.reference, case.length, 1, seconds=42.0))
     assert measure(case, elsewhere, 1e-4, 1e-16, 0.0).seconds == 42.0
+
+
+@pytest.mark.skipif(not has_pycont(), reason="pycont-lite is not installed")
+def test_a_peer_that_recurses_without_end_has_failed(monkeypatch):
+    def recurse(*_):
+        raise RecursionError
+
+    monkeypatch.setattr("pycont.arclengthContinuation", recurse)
+    case = circle()
+    with pytest.raises(MethodFailure, match="without end"):
+        pycont_lite(case.problem, case.start, case.tangent, case.length, 1e-3)
 
 
 def test_natural_parameters_cannot_go_around_a_circle():
