@@ -71,13 +71,16 @@ class Event:
 class Surface:
     """A component of ``dimension`` 2 or more: solutions (k, n) seen on it, and ``charts`` that cover it.
 
-    Without charts it may be several components of that dimension: whether they are connected is not known.
+    Without charts it may be several components of that dimension: whether they are connected is not known. Where the
+    charts of a surface are unfinished, it holds the solutions from which a walk over it arrives at the charts; others
+    may belong to it as well. ``note`` says what is known of its singular points besides those in the atlas.
     """
 
     dimension: int
     samples: np.ndarray
     name: str = ""
     charts: ChartAtlas | None = None
+    note: str = ""
 
     @property
     def complete(self) -> bool:

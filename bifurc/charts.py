@@ -26,6 +26,7 @@ from bifurc.surface import ChartAtlas, Covering
 __all__ = ["cover_surface"]
 
 BEND = 0.12  # largest height of the surface above a chart's disk, over its radius
+SMOOTH = 0.9  # smallest cosine between tangent planes of a chart and the next one; less is another sheet
 AGREE = 0.8  # smallest cosine between tangent planes of charts that may be neighbours
 SMALLEST = 1.0 / 64  # radius over the largest one below which no chart is made
 BORDER = -2  # label of the edges along the bounds
@@ -119,7 +120,7 @@ class _Cover:
         if gap[0] > 1e-10 or np.linalg.norm(center[0] - start) > 0.5 * self.largest:
             self.stopped = True
             return False
-        if np.linalg.svd(basis.T @ turned, compute_uv=False)[-1] < AGREE / 2:
+        if np.linalg.svd(basis.T @ turned, compute_uv=False)[-1] < SMOOTH:
             self.stopped = True
             return False
         near, x, _ = self._neighbours(center[0], turned, self.largest)
@@ -188,7 +189,7 @@ class _Cover:
         height = np.linalg.norm(away[near] - x @ basis.T, axis=1)
         cosines = np.linalg.svd(np.swapaxes(self.bases[near], 1, 2) @ basis, compute_uv=False)[:, -1]
         # in two disks of radius R that touch, bent by BEND, one centre lies up to 4 BEND R above the other's plane
-        same = (height < 3 * BEND * np.maximum(radius, distance[near])) & (cosines > AGREE / 1.3)
+        same = (height < 3 * BEND * np.maximum(radius, distance[near])) & (cosines > AGREE)
         return near[same], x[same], height[same]
 
     def holds(self, point: np.ndarray) -> bool:

@@ -30,7 +30,7 @@ from bifurc.surface_layout import read_surfaces
 
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
-FORMAT, FORMAT_VERSION = "bifurc atlas", 1
+FORMAT, FORMAT_VERSION = "bifurc atlas", 2
 LINKAGE_UNITS = {"twists": "rad"}
 
 

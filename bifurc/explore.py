@@ -166,7 +166,7 @@ def _work_on_surfaces(
     found.components.cover(problem, seeds.points, charts, found.deadline)
     if found.components.charts is None:
         return
-    for located in singular_points_of(problem, found.components.charts, found.deadline):
+    for located in singular_points_of(problem, found.components, found.deadline):
         if found.deadline.passed:
             break
         point = _point_of(problem, *located, found)

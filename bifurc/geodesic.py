@@ -69,6 +69,8 @@ def entrances(charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
     if len(found) or charts.problem is None:
         return found
     found = charts.beside(point)
+    if not len(found):
+        return found
     share = np.geomspace(1e-3, 1.0, 12)
     steps = share[:, None] * charts.apart(charts.centers[found], point)[:, None]  # (k, 12, n)
     lines = (point + steps).reshape(-1, len(point))
@@ -99,7 +101,7 @@ def _lifted(charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
     """The points (k, n) with the inner ones corrected onto the surface straight above the planes of the charts."""
     out = points.copy()
     if charts.problem is not None and len(points) > 2:
-        out[1:-1], solved = _corrected(charts, points[1:-1], _bases(charts, points[1:-1]))
+        out[1:-1], solved = _corrected(charts, points[1:-1], charts.bases[charts.nearest(points[1:-1])])
         if not np.all(solved):
             raise ValueError("the path between the charts cannot be corrected onto the surface")
     return out
@@ -112,7 +114,7 @@ def _tightened(charts: ChartAtlas, path: np.ndarray, rounds: int) -> np.ndarray:
         return path
     path = path.copy()
     inner, (low, high) = path[1:-1], charts.problem.bounds.T
-    planes, share, energy = _bases(charts, inner), 1.0, _energy(path)
+    planes, share, energy = charts.bases[charts.nearest(inner)], 1.0, _energy(path)
     for _ in range(rounds):
         planes = tangent_planes(charts.problem, inner, planes)
         force, pull = _pull(path, planes)
@@ -157,12 +159,6 @@ def _corrected(charts: ChartAtlas, points: np.ndarray, planes: np.ndarray) -> tu
     assert charts.problem is not None
     found, gaps = correct_normal(charts.problem, points, planes)
     return found, (gaps < SOLVED) & (np.linalg.norm(found - points, axis=1) < 0.5 * charts.radii.max())
-
-
-def _bases(charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
-    """Bases (k, n, 2) of the charts whose centres are nearest to the points (k, n)."""
-    away = np.linalg.norm(charts.apart(points[:, None], charts.centers), axis=2)
-    return charts.bases[np.argmin(away, axis=1)]
 
 
 def _intervals(points: np.ndarray, spacing: float) -> int:

@@ -25,8 +25,15 @@ def assemble_charts(
     """The atlas of charts with ``polygons`` in their tangent planes, ``labels`` naming the neighbour at each edge.
 
     Vertices are lifted onto the surface; those of neighbouring charts that nearly coincide become one, so that the
-    polygons are the faces of a closed complex although each was cut in a plane of its own.
+    polygons are the faces of a closed complex although each was cut in a plane of its own. Charts of whose polygons
+    the others leave nothing are left out.
     """
+    kept = np.array([len(p) > 0 for p in polygons], dtype=bool)
+    if not np.all(kept):
+        number = np.where(kept, np.cumsum(kept) - 1, -1)
+        centers, bases, radii = centers[kept], bases[kept], radii[kept]
+        polygons = [p for p in polygons if len(p)]
+        labels = [np.where(own >= 0, number[own], own) for own in labels if len(own)]
     sizes = np.array([len(p) for p in polygons], dtype=int)
     owner = np.repeat(np.arange(len(sizes)), sizes)
     y = np.concatenate([np.empty((0, 2)), *polygons])
@@ -43,10 +50,10 @@ def assemble_charts(
     previous = np.roll(vertex, 1)
     starts = np.cumsum(sizes)[sizes > 0] - sizes[sizes > 0]
     previous[starts] = vertex[np.cumsum(sizes)[sizes > 0] - 1]
-    kept = vertex != previous
+    distinct = vertex != previous
     return ChartAtlas(
-        centers, bases, radii, neighbours, lifted[first], vertex[kept], np.bincount(owner[kept], minlength=len(sizes)),
-        problem.periods, outcome, problem,
+        centers, bases, radii, neighbours, lifted[first], vertex[distinct],
+        np.bincount(owner[distinct], minlength=len(sizes)), problem.periods, outcome, problem,
     )  # fmt: skip
 
 

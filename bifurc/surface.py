@@ -9,12 +9,14 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from bifurc.geodesic import shortest_path
 from bifurc.problem import Problem
 
 __all__ = ["ChartAtlas", "Covering"]
 
+NEAREST = 16  # charts near a point, one of which holds it if any does
 BESIDE = 12.0  # distance of a chart from a singular point next to it, over its radius, at most
 
 
@@ -93,17 +95,32 @@ class ChartAtlas:
             return None
         return len(np.unique(self._edges[1])) - len(counts) + len(self.centers)
 
-    def parts(self) -> tuple[ChartAtlas, ...]:
-        """The connected surfaces, the one with most charts first."""
+    @cached_property
+    def part(self) -> np.ndarray:
+        """Number (c,) of the connected surface that each chart belongs to; number 0 has most charts."""
         count, label = connected_components(
             csr_array((np.ones(len(self.neighbours)), tuple(self.neighbours.T)), shape=(len(self),) * 2), directed=False
         )
-        order = sorted(range(count), key=lambda k: -int(np.count_nonzero(label == k)))
-        return tuple(self._only(np.flatnonzero(label == k)) for k in order)
+        return np.argsort(np.argsort(-np.bincount(label, minlength=count), kind="stable"))[label]
+
+    def parts(self) -> tuple[ChartAtlas, ...]:
+        """The connected surfaces, the one with most charts first."""
+        return tuple(self._only(np.flatnonzero(self.part == k)) for k in range(int(self.part.max(initial=-1)) + 1))
+
+    def chart_at(self, points: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of charts in which solutions (k, n) lie, one for each; -1 where there is none."""
+        count = min(NEAREST, len(self))
+        near = self._tree.query(self._in_box(points), k=np.arange(1, count + 1))[1]  # (k, count)
+        inside = self._inside(points, near)
+        return np.where(inside.any(axis=1), near[np.arange(len(near)), np.argmax(inside, axis=1)], -1)
+
+    def nearest(self, points: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of the charts whose centres are nearest to points (k, n)."""
+        return self._tree.query(self._in_box(points))[1]
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Which solutions (k, n) lie in a chart (k,)."""
-        return np.array([len(self.holding(point)) > 0 for point in np.atleast_2d(points)], dtype=bool)
+        return self.chart_at(points) >= 0
 
     # --- paths ----------------------------------------------------------------------------------------
 
@@ -118,12 +135,8 @@ class ChartAtlas:
         return shortest_path(self, start, goal, spacing or 0.5 * float(np.median(self.radii)))
 
     def holding(self, point: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of the charts in which a solution (n,) lies."""
-        away = self.apart(point, self.centers)
-        y = np.einsum("ki,kij->kj", away, self.bases)
-        size = np.linalg.norm(y, axis=1)
-        height = np.linalg.norm(away - np.einsum("kij,kj->ki", self.bases, y), axis=1)
-        return np.flatnonzero((size < 1.1 * self.radii) & (height < 0.25 * size + 1e-9))
+        """Numbers (k,) of all charts in which a solution (n,) lies."""
+        return np.flatnonzero(self._inside(point[None], np.arange(len(self))[None])[0])
 
     def beside(self, point: np.ndarray) -> np.ndarray:
         """Numbers (k,) of the charts that may be next to a singular point (n,) about which there is none.
@@ -139,6 +152,26 @@ class ChartAtlas:
         periodic = np.isfinite(self.periods)
         gap[..., periodic] -= self.periods[periodic] * np.round(gap[..., periodic] / self.periods[periodic])
         return gap
+
+    def _inside(self, points: np.ndarray, charts: np.ndarray) -> np.ndarray:
+        """Whether solutions (k, n) lie in the disks of ``charts`` (k, c), and not well above them: (k, c)."""
+        away = self.apart(points[:, None], self.centers[charts])
+        y = np.einsum("kci,kcij->kcj", away, self.bases[charts])
+        size = np.linalg.norm(y, axis=2)
+        height = np.linalg.norm(away - np.einsum("kcij,kcj->kci", self.bases[charts], y), axis=2)
+        return (size < 1.1 * self.radii[charts]) & (height < 0.25 * size + 1e-9)
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(self._in_box(self.centers), boxsize=np.where(np.isfinite(self.periods), self.periods, 0.0))
+
+    def _in_box(self, points: np.ndarray) -> np.ndarray:
+        """Points with periodic unknowns taken into [0, period)."""
+        periodic = np.isfinite(self.periods)
+        out = points.copy()
+        out[:, periodic] %= self.periods[periodic]
+        out[:, periodic] = np.where(out[:, periodic] >= self.periods[periodic], 0.0, out[:, periodic])
+        return out
 
     # --- the complex of polygons ----------------------------------------------------------------------
 

@@ -28,6 +28,7 @@ def surface_variables(
     outcomes = np.array([c.outcome.name if c is not None else "" for c in charts], dtype=str)
     out = {
         "surface_name": variable("surface", np.array([s.name for s in surfaces], dtype=str), "name of the surface"),
+        "surface_note": variable("surface", np.array([s.note for s in surfaces], dtype=str), "remark"),
         "covering": variable("surface", outcomes, "why no more charts were made; empty where there are none"),
         "chart_center": variable(("chart", joint), rows("centers", (n,)), "centre of a chart", unit),
         "chart_basis": variable(("chart", joint, "axis"), rows("bases", (n, 2)), "basis of its tangent plane", "1"),
@@ -60,7 +61,7 @@ def read_surfaces(get: dict[str, np.ndarray], samples: Sequence[np.ndarray]) -> 
     for i, (dimension, seen) in enumerate(zip(get["surface_dimension"], samples, strict=True)):
         outcome = str(get["covering"][i])
         charts = _charts([c[i] for c in columns], get["period"], outcome) if outcome else None
-        out.append(Surface(int(dimension), seen, str(get["surface_name"][i]), charts))
+        out.append(Surface(int(dimension), seen, str(get["surface_name"][i]), charts, str(get["surface_note"][i])))
     return tuple(out)
 
 

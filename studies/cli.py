@@ -17,6 +17,7 @@ from studies.verify_command import verify_command
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
+    from bifurc.problem import Problem
 
 EXIT_CODES = """\b
 Exit codes:
@@ -58,7 +59,7 @@ class BadInput(click.ClickException):
 
 
 class NoRoute(click.ClickException):
-    """Two forms that no route joins."""
+    """Two forms or surfaces that no route joins."""
 
     exit_code = int(ExitCode.NO_ROUTE)
 
@@ -217,9 +218,9 @@ def map_command(
 def route(
     source: str, start: str, goal: str, parameters: tuple[str, ...], verbose: bool, **search: Any
 ) -> None:
-    """Show how to take a linkage from one form to another.
+    """Show how to take a linkage from one form to another, over surfaces where that is the way.
 
-    FROM and TO are names of forms as `bifurc map` shows them, or the part of a name that tells them apart.
+    FROM and TO are names of forms or surfaces as `bifurc map` shows them, or the part of a name that tells them apart.
 
     \b
     Examples:
@@ -231,9 +232,9 @@ def route(
     from bifurc.atlas import RouteError
     from studies.summary import describe_route
 
-    names = [atlas.forms[atlas.form(name)].name for name in (start, goal)]
+    names = [atlas.full_name(name) for name in (start, goal)]
     try:
-        found = atlas.route(names[0], names[1])
+        found = atlas.route(names[0], names[1], problem=_problem(atlas))
     except RouteError as error:
         raise NoRoute(str(error)) from None
     click.echo(describe_route(atlas, found, *names))
@@ -280,6 +281,15 @@ def _explore(
             )
     finally:
         status.wipe()
+
+
+def _problem(atlas: Atlas) -> Problem:
+    """The closure equations of the linkage that an atlas is of."""
+    from linkages.closure import LoopClosure
+    from linkages.loop import Loop
+
+    linkage = atlas.info["linkage"]
+    return LoopClosure(Loop(linkage["lengths"], linkage["twists"], linkage["offsets"]))
 
 
 def _as_json(atlas: Atlas) -> str:

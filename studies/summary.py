@@ -24,8 +24,10 @@ def make_summary(atlas: Atlas) -> str:
         f"{linkage['name']}\n{judge(atlas).sentence}",
         describe_geometry(linkage["lengths"], linkage["twists"], linkage["offsets"]),
         _forms(atlas),
+        _surfaces(atlas),
         _points("Bifurcations", atlas, atlas.bifurcations),
         _points("Rank drops (a single branch passes)", atlas, atlas.rank_drops),
+        _points("Changes of dimension (a surface is met)", atlas, [p for p in atlas.points if p.name.startswith("D")]),
         _points("Other singular points", atlas, [p for p in atlas.points if p.name.startswith("S")]),
         _near_misses(atlas),
         _rigid(atlas),
@@ -94,6 +96,7 @@ def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
         f"Route from {start} to {goal}: {len(route.legs)} legs, {np.degrees(route.length):.6g} deg in joint space\n"
         f"from {_configuration(atlas, route.path[0])}\n\n" + table(heads, rows)
         + "\n\nAll in degrees; a turn is the sum of a joint's movements both ways."
+        + (" Over a surface the way is a geodesic." if any(leg.dimension > 1 for leg in route.legs) else "")
     )  # fmt: skip
 
 
@@ -123,6 +126,18 @@ def _forms(atlas: Atlas) -> str:
     return "Forms\n" + table(heads, rows)
 
 
+def _surfaces(atlas: Atlas) -> str:
+    if not atlas.surfaces:
+        return ""
+    rows = []
+    for surface in atlas.surfaces:
+        charts = surface.charts
+        covering = charts.outcome.value if charts is not None else "none: only sampled"
+        size = (str(len(charts)), f"{charts.area:.6g}") if charts is not None else ("-", "-")
+        rows.append((surface.name, str(surface.dimension), *size, covering, surface.note))
+    return "Surfaces\n" + table(("name", "dimension", "charts", "area (rad^2)", "covering", "remark"), rows)
+
+
 def _inactive(labels: Any) -> str:
     pairs = zip(labels["inactive_joints"], labels["inactive_angles"], strict=True)
     return ", ".join(f"{joint} at {_degrees(angle)}" for joint, angle in pairs) or "-"
@@ -133,7 +148,8 @@ def _points(title: str, atlas: Atlas, points: Sequence[MeetingPoint]) -> str:
         return ""
     rows = [
         (p.name, _configuration(atlas, p.point.u), str(p.point.rank), f"{p.point.error:.0e}",
-         ", ".join(atlas.forms[i].name for i, _ in p.passes) or "-", p.kind.value + (f": {p.note}" if p.note else ""))
+         ", ".join([*(atlas.forms[i].name for i, _ in p.passes), *(atlas.surfaces[k].name for k in p.surfaces)]) or "-",
+         p.kind.value + (f": {p.note}" if p.note else ""))
         for p in points
     ]  # fmt: skip
     heads = ("name", "joint angles (deg)", "rank", "error", "forms", "kind")

@@ -56,7 +56,7 @@ def atlas() -> Atlas:
         named, rigid=np.array([[0.1, 1 / 3]]), closure_gap=1e-300, info={**named.info, "linkage": linkage},
         near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5),),
         dead_points=(Event(0, 2 / 3, np.array([0.3, -0.0]), index=1), Event(1, 0.0, np.zeros(2), index=0)),
-        surfaces=(Surface(2, np.eye(2)), Surface(3, np.ones((3, 2)) / 7)),
+        surfaces=(Surface(2, np.eye(2), note="not all of it"), Surface(3, np.ones((3, 2)) / 7)),
     )  # fmt: skip
 
 
@@ -124,6 +124,14 @@ def test_a_netcdf_file_of_something_else_is_refused(tmp_path) -> None:
     xr.Dataset({"rain": ("time", [1.0])}).to_netcdf(tmp_path / "rain.nc")
     with pytest.raises(AtlasFileError, match=r"rain\.nc: its attribute 'format' is None"):
         load_atlas(tmp_path / "rain.nc")
+
+
+def test_a_file_of_an_older_layout_is_refused_with_both_versions(atlas: Atlas, tmp_path) -> None:
+    dataset = to_dataset(atlas)
+    dataset.attrs["format_version"] = 1
+    dataset.to_netcdf(tmp_path / "old.nc")
+    with pytest.raises(AtlasFileError, match=r"old\.nc: its format version is 1; this release reads 2"):
+        load_atlas(tmp_path / "old.nc")
 
 
 def test_a_file_that_is_not_netcdf_is_refused_by_name(tmp_path) -> None:
