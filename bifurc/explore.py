@@ -245,9 +245,13 @@ def _examine(
     """Locate and classify the singular point near a configuration; one already known is returned as it is."""
     for k in sorted({max(nullity, 2), 2, 3}, key=lambda k: abs(k - nullity)):
         result = locate_singular_point(problem, near, k, reach * problem.scale) if k <= problem.n else None
-        if result is None or is_on_surface(problem, result[0]):
+        if result is None:
             continue
-        return _point_of(problem, *result, found)
+        known = _known_point(problem, result[0], result[2], found)
+        if known is not None and known.dimension == 1:
+            return known
+        if not is_on_surface(problem, result[0]):
+            return _point_of(problem, *result, found)
     return None
 
 
@@ -255,12 +259,18 @@ def _point_of(
     problem: Problem, u: np.ndarray, null_space: np.ndarray, error: float, found: Findings
 ) -> SingularPoint:
     """The known singular point that a located one is, or a new one, classified."""
-    known = _nearest(problem, u, [p.u for p in found.points], SAME + 2 * error / problem.scale)
+    known = _known_point(problem, u, error, found)
     if known is not None:
-        return found.points[known]
+        return known
     point = classify_singular_point(problem, u, null_space, error)
     found.points.append(point)
     return point
+
+
+def _known_point(problem: Problem, u: np.ndarray, error: float, found: Findings) -> SingularPoint | None:
+    """The known singular point at ``u``, located to within ``error``, or None."""
+    number = _nearest(problem, u, [p.u for p in found.points], SAME + 2 * error / problem.scale)
+    return None if number is None else found.points[number]
 
 
 def _nearest(problem: Problem, point: np.ndarray, others: list[np.ndarray], within: float) -> int | None:
