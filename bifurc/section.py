@@ -27,6 +27,7 @@ __all__ = ["ReducedEquations", "Section", "is_on_surface", "section"]
 
 ANGLES = 96  # samples on the circle of a null space of dimension 2
 MARGIN = 8.0  # times the rounding of the reduced equations: what is smaller counts as zero
+ROOT, TOUCH = 1e-10, 1e-6  # of the largest value on the circle: what counts as zero at a root, and where h touches zero
 MOST_TESTED = 40  # solutions of higher nullity on a sphere whose local dimension is looked at
 
 
@@ -115,7 +116,9 @@ def _circle_section(equations: ReducedEquations) -> Section:
     if not len(candidates):
         return Section(np.empty((0, len(equations.points(_unit(angles[:1]))[0]))), 0)
     left_over = np.linalg.norm(equations(_unit(candidates)), axis=1)
-    found = equations.points(_unit(candidates[left_over < 1e-6 * size + MARGIN * equations.noise]))
+    # a root is exact to rounding, so that all equations hold there or not; a touching point has half the digits
+    good = np.repeat([ROOT, TOUCH], [len(roots), len(touching)]) * size + MARGIN * equations.noise
+    found = equations.points(_unit(candidates[left_over < good]))
     return Section(found, 1 if len(found) else 0)
 
 

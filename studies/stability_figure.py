@@ -38,7 +38,7 @@ def draw_stability(runs: Sequence[Run]) -> Figure:
     ladder, points = [r for r in runs if r.step], [r for r in runs if not r.step]
     cases = list(dict.fromkeys(r.case for r in ladder))
     figure = Figure(figsize=(5.2 * len(cases) + 5.4, 9.6), layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=[1.9, 1.0])
+    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.9, 1.0])[:, 0]
     panels = above.subplots(1, len(cases) + 1, width_ratios=[1.0] * len(cases) + [1.05], squeeze=False)[0]
     for axes, case in zip(panels, cases, strict=False):
         _draw_ladder(axes, [r for r in ladder if r.case == case], case, axes is panels[0])

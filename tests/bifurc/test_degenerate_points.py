@@ -117,3 +117,15 @@ def test_neighbouring_pieces_overlap_also_where_a_bridge_was_laid():
             branch = trace_branch(problem, start)
             assert np.all(np.diff(branch.centers) <= (branch.radii[:-1] + branch.radii[1:]) * (1 + 1e-9))
             assert np.abs(problem.residuals(branch.sample(4000))).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    "name", ["mixed-double-goldberg-type-ii", "mixed-double-goldberg-type-vi", "double-goldberg-type-ii"]
+)
+def test_a_second_tangent_that_misses_one_equation_by_a_part_in_1e8_is_none(name):
+    """At 50 digits the coefficients of the two equations of second order have the singular values 0.419 and 2.29e-8
+    (Type II): they are independent, and one tangent solves both."""
+    values = {"a": 2.144874646208794, "alpha": 1.5668555382374716, "beta": 0.5795111767234356,
+              "gamma": 1.5921695469201371, "delta": 0.5790264703154796}  # fmt: skip
+    atlas = explore(LoopClosure(entry(name).build(**values)), starts=20)
+    assert [(p.kind, len(p.point.half_branches), p.note) for p in atlas.points] == 2 * [(Kind.RANK_DROP, 2, "")]
