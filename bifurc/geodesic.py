@@ -9,6 +9,7 @@ taken comes from how the sum went down in the round before. The number of rounds
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import TYPE_CHECKING
 
 import networkx as nx
@@ -25,22 +26,32 @@ __all__ = ["entrances", "path_length", "resample", "shortest_path"]
 
 ROUNDS, FINAL_ROUNDS = 40, 4
 TIGHT = 1e-11  # share of the sum of squares still to be gained at which a path is tight
+DETOUR = 1.4  # how much longer a second chain of charts may be: chains are longer than geodesics by up to a sixth
 SOLVED = 1e-10  # relative residual above which a point could not be corrected
 
 
 def shortest_path(charts: ChartAtlas, start: np.ndarray, goal: np.ndarray, spacing: float) -> np.ndarray:
     """Solutions (k, n) about ``spacing`` apart from ``start`` to ``goal`` (n,), as short as pulling makes them.
 
-    A geodesic near the shortest chain of charts: where two ways round a hole are nearly as long it may be the longer.
-    The goal comes out shifted by whole periods, k is odd. Raises `ValueError` where an end lies beside the charts, no
-    chain of them leads from one end to the other, or points cannot be corrected onto the surface.
+    The shorter one of the geodesics near the shortest chain of charts and near another chain beside it: where there are
+    more ways round holes, nearly as long, it may not be the shortest of all. The goal comes out shifted by whole
+    periods, k is odd. Raises `ValueError` where an end lies beside the charts, no chain of them leads from one end to
+    the other, or points cannot be corrected onto the surface.
     """
-    chain = _chain(charts, start, goal)
+    paths = [_pulled(charts, start, goal, chain, spacing) for chain in _chains(charts, start, goal)]
+    path = min(paths, key=path_length)
+    intervals = _intervals(path, spacing)
+    return resample(charts, path, intervals) if 2 * len(path) < 3 * intervals else path
+
+
+def _pulled(
+    charts: ChartAtlas, start: np.ndarray, goal: np.ndarray, chain: list[int], spacing: float
+) -> np.ndarray:
+    """The path along a chain of charts, pulled tight; its points lie ``spacing`` apart, or as far as charts allow."""
     points = np.array([start, *charts.centers[chain[1:-1]], goal], dtype=float)
     points[1:] = points[0] + np.cumsum(charts.apart(points[1:], points[:-1]), axis=0)
-    coarse = max(spacing, 0.3 * float(np.median(charts.radii[chain])))
-    path = _tightened(charts, _lifted(charts, _evenly(points, _intervals(points, coarse))), ROUNDS)
-    return resample(charts, path, _intervals(path, spacing)) if spacing < coarse else path
+    spacing = max(spacing, 0.3 * float(np.median(charts.radii[chain])))
+    return _tightened(charts, _lifted(charts, _evenly(points, _intervals(points, spacing))), ROUNDS)
 
 
 def resample(charts: ChartAtlas, path: np.ndarray, intervals: int) -> np.ndarray:
@@ -79,12 +90,15 @@ def entrances(charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
     return found[np.all(((gaps < SOLVED) & (off < 0.3)).reshape(steps.shape[:2]), axis=1)]
 
 
-def _chain(charts: ChartAtlas, start: np.ndarray, goal: np.ndarray) -> list[int]:
-    """Numbers of the charts on the shortest way, the first one about the start, the last one about the goal."""
+def _chains(charts: ChartAtlas, start: np.ndarray, goal: np.ndarray) -> list[list[int]]:
+    """Numbers of the charts on the shortest way, from one about the start to one about the goal.
+
+    Then those on the shortest way that keeps off them, where it is not much longer.
+    """
     graph = nx.Graph()
     i, j = charts.neighbours.T
-    weights = np.linalg.norm(charts.apart(charts.centers[i], charts.centers[j]), axis=1)
-    graph.add_weighted_edges_from(zip(i.tolist(), j.tolist(), weights.tolist(), strict=True))
+    lengths = np.linalg.norm(charts.apart(charts.centers[i], charts.centers[j]), axis=1)
+    graph.add_weighted_edges_from(zip(i.tolist(), j.tolist(), lengths.tolist(), strict=True))
     for name, point in (("start", start), ("goal", goal)):
         about = entrances(charts, point)
         if not len(about):
@@ -92,9 +106,18 @@ def _chain(charts: ChartAtlas, start: np.ndarray, goal: np.ndarray) -> list[int]
         away = np.linalg.norm(charts.apart(charts.centers[about], point), axis=1)
         graph.add_weighted_edges_from((name, k, d) for k, d in zip(about.tolist(), away.tolist(), strict=True))
     try:
-        return nx.shortest_path(graph, "start", "goal", weight="weight")[1:-1]
+        first = nx.shortest_path(graph, "start", "goal", weight="weight")
     except nx.NetworkXNoPath:
         raise ValueError("no chain of charts leads from the start to the goal") from None
+    used = set(first[1:-1])
+
+    def keeping_off(a: Hashable, b: Hashable, edge: dict[str, float]) -> float:
+        return edge["weight"] * (DETOUR if a in used or b in used else 1.0)
+
+    other = nx.shortest_path(graph, "start", "goal", weight=keeping_off)
+    lengths_of = [nx.path_weight(graph, chain, "weight") for chain in (first, other)]
+    worth = used.isdisjoint(other[2:-2]) and lengths_of[1] < DETOUR * lengths_of[0]
+    return [first[1:-1], other[1:-1]] if worth else [first[1:-1]]
 
 
 def _lifted(charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
