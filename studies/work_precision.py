@@ -21,6 +21,7 @@ import statistics
 import time
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
@@ -39,6 +40,7 @@ log = logging.getLogger(__name__)
 TOLERANCES = tuple(10.0**-k for k in range(3, 15))
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 DEFAULT_ORDER = 16
+FAILURES = (MethodFailure, ArithmeticError, ValueError, np.linalg.LinAlgError)
 POINT_BY_POINT = "pseudo-arclength, tangent"
 
 
@@ -66,7 +68,7 @@ def measure(case: Case, method: Method, tolerance: float, floor: float, budget: 
             repeats = min(9, max(2 if seconds < 2 * budget else 0, int(budget / max(seconds, 1e-6))))
             times = [_timed(case, method, tolerance)[1] for _ in range(repeats)] or [seconds]
             error = max(largest_distance(case, curve.sample(COVER)), floor)
-    except (MethodFailure, ArithmeticError, ValueError, np.linalg.LinAlgError) as failure:
+    except FAILURES as failure:
         return Run(case.name, method.name, method.order, tolerance, np.nan, np.inf, 0, str(failure).partition("\n")[0])
     note = "" if np.isfinite(error) else "a part of the curve is left out"
     return Run(case.name, method.name, method.order, tolerance, statistics.median(times), error, curve.points, note)
@@ -76,6 +78,13 @@ def _timed(case: Case, method: Method, tolerance: float) -> tuple[Curve, float]:
     began = time.process_time()
     curve = method.follow(case, tolerance)
     return curve, time.process_time() - began if curve.seconds is None else curve.seconds
+
+
+def _warm_up(case: Case, method: Method) -> None:
+    """Has everything compiled and imported that a method needs."""
+    with warnings.catch_warnings(), suppress(*FAILURES):
+        warnings.simplefilter("ignore")
+        method.follow(case, TOLERANCES[0])
 
 
 def measure_case(case: Case, methods: Iterable[Method], longest: float) -> tuple[list[Run], float]:
@@ -93,6 +102,7 @@ def measure_case(case: Case, methods: Iterable[Method], longest: float) -> tuple
             note = "not tried: it has no sparse matrices"
             runs.append(Run(case.name, method.name, method.order, TOLERANCES[0], np.nan, np.inf, 0, note))
             continue
+        _warm_up(case, method)
         for tolerance in (t for t in TOLERANCES if t >= case.tightest):
             run = measure(case, method, tolerance, floor, longest / 4)
             runs.append(run)
