@@ -20,7 +20,7 @@ from bifurc.interrupts import HeldInterrupt
 from bifurc.monitor import profile_branch, singular_value_minima, singular_values
 from bifurc.problem import Problem, ProblemError
 from bifurc.section import is_on_surface
-from bifurc.seeding import Seeds
+from bifurc.seeding import CLOSED, Seeds
 from bifurc.singular import SingularPoint, classify_singular_point, locate_singular_point
 
 __all__ = ["explore"]
@@ -41,6 +41,7 @@ def explore(
     progress: Callable[[str, int], None] | None = None,
     budget: float = np.inf,
     charts: int = 1500,
+    prove: bool = False,
 ) -> Atlas:
     """All solution curves of a problem, all singular points on them, nothing twice.
 
@@ -50,6 +51,7 @@ def explore(
     was found and how many. Ctrl-C ends the search early: the atlas holds what was found, and
     ``info["interrupted"]`` is true. The search also ends when the ``budget`` (s) is used up, but for the step
     it is in: the completeness says so, and ``info["out_of_time"]``. Surfaces are covered with up to ``charts`` charts.
+    With ``prove`` the problem's audit, if it has one, takes the time to find out whether a branch can be missing.
     """
     if not budget > 0:
         raise ProblemError("budget", budget, "a positive number of seconds")
@@ -67,6 +69,7 @@ def explore(
             held.check()
             _work_through(problem, gathered, found, settings, progress, held)
             _work_on_surfaces(problem, gathered, found, settings, charts)
+            gathered = _audited(problem, gathered, found, settings, progress, held, prove)
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
@@ -100,8 +103,6 @@ def _work_through(
     waiting = [k for k in order.tolist() if k not in found.owner]
     matched = 0
     while waiting and not found.deadline.passed:
-        i = waiting.pop(0)
-        found.owner[i] = _take_seed(problem, seeds.points[i], values[i], found, settings)
         for number in range(matched, len(found.branches)):
             within = SAME * problem.scale
             on = found.branches[number].nearest(seeds.points[waiting], within=within)[0] < within
@@ -110,7 +111,28 @@ def _work_through(
         matched = len(found.branches)
         if progress is not None:
             progress("forms", matched)
+        if waiting:
+            i = waiting.pop(0)
+            found.owner[i] = _take_seed(problem, seeds.points[i], values[i], found, settings)
         held.check()
+
+
+def _audited(
+    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings,
+    progress: Callable[[str, int], None] | None, held: HeldInterrupt, prove: bool,
+) -> Seeds:  # fmt: skip
+    """Hold the branches against the problem's audit, and trace what it leads to; the seeds with those of the audit."""
+    while seeds.audit is not None and not found.deadline.passed:
+        found.audit = seeds.audit(found.branches, found.deadline.left if prove else 0.0)
+        held.check()
+        known, (starts, gaps) = len(found.branches), problem.project(found.audit.starts)
+        if not np.any(gaps < CLOSED):
+            break
+        seeds = seeds.with_constructed(starts[gaps < CLOSED])
+        _work_through(problem, seeds, found, settings, progress, held)
+        if len(found.branches) == known:
+            break
+    return seeds
 
 
 def _take_seed(

@@ -16,7 +16,7 @@ from bifurc.components import Components, lies_on
 from bifurc.deadline import Deadline
 from bifurc.monitor import Profile, dead_points
 from bifurc.problem import Problem
-from bifurc.seeding import Completeness, Seeds, missed_probability
+from bifurc.seeding import Audit, Completeness, Seeds, missed_probability
 from bifurc.singular import Kind, SingularPoint
 
 __all__ = ["SAME", "Findings", "assemble_atlas"]
@@ -38,6 +38,7 @@ class Findings:
     components: Components = field(default_factory=Components)
     gaps: list[float] = field(default_factory=list)  # residuals of starts that only nearly solve the system
     owner: dict[int, tuple[str, int]] = field(default_factory=dict)
+    audit: Audit | None = None  # the last word on what the branches leave out
     deadline: Deadline = field(default_factory=Deadline)
 
 
@@ -167,11 +168,12 @@ def _completeness(found: Findings, seeds: Seeds, interrupted: bool) -> Completen
         f"{reached}: one more start would reach something new with a probability of at most {missed:.2g} "
         "(95 % confidence)"
     )
-    if found.deadline.passed:
+    if found.deadline.passed and found.audit is None:
         left = len(seeds.points) - len(found.owner)
         reason = f"the budget of {found.deadline.seconds:.4g} s was used up with {left} starts not looked at; "
         return Completeness("out of time", reason + estimate, missed if not left else 1.0)
     if interrupted:
         return Completeness("interrupted", "the search was interrupted; " + estimate, missed)
-    level = "complete slices" if seeds.complete else "estimated"
-    return Completeness(level, f"{seeds.statement}; {estimate}" if seeds.statement else estimate, missed)
+    if found.audit is None:
+        return Completeness("estimated", estimate, missed)
+    return Completeness(found.audit.level, f"{found.audit.statement}; {estimate}", missed)

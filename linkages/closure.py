@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.problem import March, Problem
-from bifurc.seeding import Seeds, random_seeds
+from bifurc.seeding import CLOSED, Seeds, random_seeds
 from linkages import kernels
+from linkages.completeness import SliceAudit
 from linkages.loop import Loop
 from linkages.slices import slice_configurations
 
@@ -14,6 +15,7 @@ __all__ = ["LoopClosure"]
 
 SLICES = 24  # of every joint: any motion in which a joint turns by more than 15 degrees meets one
 LARGEST_SLICED = 6  # joints of the longest loop with complete slices
+NEARLY_REAL = 0.2  # rad: imaginary parts of configurations whose real part is a start
 ROUNDING = 4e-16  # below this residual norm a projection has nothing left to gain
 
 
@@ -86,17 +88,12 @@ class LoopClosure(Problem):
         first = rng.uniform(-np.pi, np.pi, self.n)
         steps = 2 * np.pi / SLICES * np.arange(SLICES)
         slices = [slice_configurations(self.loop, j + 1, first[j] + steps) for j in range(self.n)]
-        degenerate = sum(int(np.count_nonzero(s.degenerate)) for s in slices)
-        points = np.concatenate([*(s.configurations for s in slices), drawn.points])
+        hidden = np.concatenate([s.nonreal for s in slices])
+        nearly = hidden[np.abs(hidden.imag).max(axis=1, initial=0.0) < NEARLY_REAL].real  # a small motion may be near
+        reached, gaps = self.project(nearly)
+        points = np.concatenate([*(s.configurations for s in slices), reached[gaps < CLOSED], drawn.points])
         random = np.repeat([False, True], [len(points) - len(drawn.points), len(drawn.points)])
-        statement = (
-            f"complete slices of all {self.n} joints every {360 // SLICES} degrees: every motion in which some joint "
-            f"turns by more than {360 // SLICES} degrees is here"
-        )
-        if degenerate:
-            reason = next(s.reason for s in slices if s.reason)
-            statement = f"{degenerate} of {SLICES * self.n} slices could not be made complete ({reason})"
-        return Seeds(points, random, drawn.gaps, drawn.missed, degenerate == 0, statement)
+        return Seeds(points, random, drawn.gaps, drawn.missed, SliceAudit(self.loop, tuple(slices)))
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at each."""

@@ -23,7 +23,7 @@ NAMING, CLOSING = 400, 4000  # samples of a form for its name, and for its large
 
 
 def map_linkage(
-    loop: Loop, patterns: Sequence[FormPattern] = (), *, certify: bool = False, **options: Any
+    loop: Loop, patterns: Sequence[FormPattern] = (), *, certify: bool = False, prove: bool = True, **options: Any
 ) -> Atlas:
     """The transition map of a loop: every form with its name, every bifurcation, every near miss.
 
@@ -31,10 +31,11 @@ def map_linkage(
     ``seed``, ``settings``, ``budget``, ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from
     1) and their ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest closure error
     seen along it relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists
-    in rad. With ``certify`` they also hold the ``certificate`` of `bifurc.certificate`.
+    in rad. With ``certify`` they also hold the ``certificate`` of `bifurc.certificate`. With ``prove`` it is looked
+    into whether a form can be missing (`linkages.completeness`).
     """
     problem = LoopClosure(loop)
-    atlas = explore(problem, **options)
+    atlas = explore(problem, prove=prove, **options)
     identities = name_forms([form.branch.sample(NAMING) for form in atlas.forms], loop, patterns)
     labels = [
         {

@@ -51,7 +51,8 @@ class Slice:
     ``configurations`` (p, n) rad in (-pi, pi]; ``index`` (p,): the entry of ``angles`` each belongs to;
     ``closure`` (p,): largest entry of T_1 ... T_n - I, lengths in characteristic lengths; ``n_complex``
     (m,): number of finite configurations, real or complex, or -1 where ``degenerate`` (m,): there the
-    list is not complete, and ``reason`` says why (empty if there is none).
+    list is not complete, and ``reason`` says why (empty if there is none). ``nonreal`` (q, n), complex, are the
+    finite configurations that are not real, conjugates included, ``nonreal_index`` (q,) their entries of ``angles``.
     """
 
     joint: int
@@ -62,6 +63,8 @@ class Slice:
     n_complex: np.ndarray
     degenerate: np.ndarray
     reason: str
+    nonreal: np.ndarray
+    nonreal_index: np.ndarray
 
     @property
     def is_complete(self) -> bool:
@@ -89,15 +92,17 @@ def slice_configurations(loop: Loop, joint: int, angles: np.ndarray) -> Slice:
     lengths, twists, offsets = loop.arrays
     scale = loop.characteristic_length
     links = _link_quaternions(lengths / scale, twists, offsets / scale)
-    found, count, n_complex, status = _solve_slices(links, joint - 1, angles)
-    index = np.repeat(np.arange(len(angles)), count)
-    configurations = np.concatenate([found[i, :c] for i, c in enumerate(count)] or [np.zeros((0, loop.n))])
+    found, count, others, n_others, status = _solve_slices(links, joint - 1, angles)
+    each = np.arange(len(angles))
+    kept, hidden = (np.arange(ROOM) < number[:, None] for number in (count, n_others))
+    index, configurations = np.repeat(each, count), found[kept]
     gap = loop.frames(configurations)[:, -1] - np.eye(4)
     gap[:, :3, 3] /= scale
     reasons = [f"{np.sum(status == s)} of {len(angles)} slices: {text}" for s, text in REASONS.items() if s in status]
     return Slice(
-        joint, angles, configurations, index, np.abs(gap).max(axis=(1, 2)), n_complex, status != COMPLETE,
-        "; ".join(reasons),
+        joint, angles, configurations, index, np.abs(gap).max(axis=(1, 2)),
+        np.where(status == COMPLETE, count + n_others, -1), status != COMPLETE, "; ".join(reasons),
+        others[hidden], np.repeat(each, n_others),
     )  # fmt: skip
 
 
@@ -803,26 +808,30 @@ def _candidates_6r(links, joint, angles, turns, defects, outcome):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _configurations(links, joint, angles, turns, defects, outcome):
-    """Configurations (m, ROOM, n), their numbers (m,), numbers with complex ones (m,) and status (m,)."""
-    n = len(links)
-    found, count = np.zeros((len(angles), ROOM, n)), np.zeros(len(angles), np.int64)
-    n_complex, status = np.zeros(len(angles), np.int64), np.zeros(len(angles), np.int64)
-    chain, others = np.empty((ROOM, n - 1), np.complex128), np.empty((ROOM, n - 1), np.complex128)
-    for k in range(len(angles)):
+    """Configurations (m, ROOM, n) and their numbers (m,), those that are not real, too, and status (m,)."""
+    m, n = len(angles), len(links)
+    found, count = np.zeros((m, ROOM, n)), np.zeros(m, np.int64)
+    others, n_others = np.zeros((m, ROOM, n), np.complex128), np.zeros(m, np.int64)
+    status = np.zeros(m, np.int64)
+    chain, hidden = np.empty((ROOM, n - 1), np.complex128), np.empty((ROOM, n - 1), np.complex128)
+    for k in range(m):
         fixed = _chain(links, joint, angles[k]).astype(np.complex128)
         candidates, sampled, crowded = outcome[k, 0], outcome[k, 1], outcome[k, 2]
-        count[k], n_others, held = _collect(fixed, turns[k], defects[k], candidates, chain, others)
-        n_complex[k] = count[k] + n_others
+        count[k], n_others[k], held = _collect(fixed, turns[k], defects[k], candidates, chain, hidden)
         if crowded:
-            status[k], n_complex[k] = UNDECIDED, -1
+            status[k] = UNDECIDED
             count[k] = _sample(fixed, chain, count[k])
         elif sampled > 0 and held > 4:
-            status[k], n_complex[k] = CONTINUUM, -1
+            status[k] = CONTINUUM
         for i in range(count[k]):
             found[k, i, joint] = _wrapped(angles[k])
             for j in range(n - 1):
                 found[k, i, (joint + 1 + j) % n] = chain[i, j].real
-    return found, count, n_complex, status
+        for i in range(n_others[k]):
+            others[k, i, joint] = _wrapped(angles[k])
+            for j in range(n - 1):
+                others[k, i, (joint + 1 + j) % n] = hidden[i, j]
+    return found, count, others, n_others, status
 
 
 def _solve_slices(links, joint, angles):

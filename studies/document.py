@@ -45,7 +45,8 @@ def make_document(atlas: Atlas) -> dict[str, Any]:
         ],
         "rigid_assemblies": [_angles(atlas, theta) for theta in atlas.rigid],
         "completeness": {
-            "level": "complete slices" if sure.level == "complete slices" else "estimated",
+            "level": "complete slices" if sure.level in ("proved", "certified") else "estimated",
+            "certainty": sure.level,
             "statement": sure.statement,
             "missed_probability": sure.missed_probability,
         },

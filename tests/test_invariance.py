@@ -93,7 +93,7 @@ def test_the_atlas_is_the_same_with_starts_in_reverse(atlases, name):
     problem = LoopClosure(entry(name).build())
     drawn = problem.seeds(np.random.default_rng(0), 200)
     turns = 2 * np.pi * np.random.default_rng(2).integers(-1, 2, drawn.points.shape)
-    seeds = Seeds((drawn.points + turns)[::-1], drawn.random[::-1], drawn.gaps, drawn.missed, drawn.complete, drawn.statement)
+    seeds = Seeds((drawn.points + turns)[::-1], drawn.random[::-1], drawn.gaps, drawn.missed, drawn.audit)
     assert_same_atlas(atlases[name], explore(problem, seeds=seeds))
 
 

@@ -31,7 +31,7 @@ KEYS = {
     "near_misses": {"theta", "singular_value", "form"},
     "dead_points": {"theta", "joint", "form"},
     "rigid_assemblies": None,
-    "completeness": {"level", "statement", "missed_probability"},
+    "completeness": {"level", "certainty", "statement", "missed_probability"},
     "seconds": None, "version": None, "seed": None, "tolerance": None,
 }  # fmt: skip
 
@@ -98,7 +98,8 @@ def test_json_is_one_document_with_the_documented_keys_and_nothing_else():
             assert inner is None or set(item) == inner, key
     assert document["seed"] == 7
     assert document["tolerance"] == 1e-13
-    assert document["completeness"]["level"] in ("complete slices", "estimated")
+    assert document["completeness"]["level"] == "complete slices"
+    assert document["completeness"]["certainty"] == "proved"
 
 
 def test_json_loads_nothing_that_it_does_not_need():
