@@ -11,17 +11,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
-from bifurc.drawing import SETTINGS, form_style, note_emptiness
+from bifurc.drawing import SETTINGS, Style, form_style, note_emptiness
 
 __all__ = ["plot_form_graph"]
 
+SURFACE = Style("0.6", "-")
 REACH = 1.9  # distance between neighbouring forms, in inches
 LABEL_PLACES = (20, 16, 24, 13, 27)  # along the 41 points of an edge
 BOW = 0.34  # how far neighbouring edges between the same two forms bow apart, in the same unit
 
 
 def plot_form_graph(atlas: Atlas, figure: Figure | None = None) -> Figure:
-    """Forms as boxes, joined by a line for every bifurcation at which two of them meet; components stand apart."""
+    """Forms as boxes, joined by a line for every bifurcation at which two of them meet; components stand apart.
+
+    Surfaces that meet a form or another surface are grey boxes.
+    """
     places = _places(atlas)
     spots = np.array(list(places.values())).reshape(-1, 2)
     low, high = (spots.min(axis=0) - 0.9, spots.max(axis=0) + 0.9) if len(spots) else (np.zeros(2), np.full(2, 2.0))
@@ -31,30 +35,36 @@ def plot_form_graph(atlas: Atlas, figure: Figure | None = None) -> Figure:
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         axes.set_axis_off()
         _draw_edges(axes, atlas, places)
-        for i, form in enumerate(atlas.forms):
-            style = form_style(i)
+        for i, (name, place) in enumerate(sorted(places.items(), key=lambda item: _order(atlas).index(item[0]))):
+            style = form_style(i) if i < len(atlas.forms) else SURFACE
             axes.text(
-                places[form.name][0], places[form.name][1], textwrap.fill(form.name, 16),
-                ha="center", va="center", fontsize=9, zorder=3,
+                place[0], place[1], textwrap.fill(name, 16), ha="center", va="center", fontsize=9, zorder=3,
                 bbox={"boxstyle": "round,pad=0.5", "facecolor": "white", "edgecolor": style.color,
                       "linewidth": 2.0, "linestyle": style.dashes},
             )  # fmt: skip
-        note_emptiness(axes, atlas)
+        if not places:
+            note_emptiness(axes, atlas)
     return figure
 
 
-def _of_forms(atlas: Atlas) -> nx.MultiGraph:
-    """The graph of an atlas without the surfaces."""
-    return atlas.graph.subgraph([form.name for form in atlas.forms])
+def _order(atlas: Atlas) -> list[str]:
+    """Names of what is drawn: all forms, then the surfaces that meet something."""
+    forms = [form.name for form in atlas.forms]
+    return forms + [surface.name for surface in atlas.surfaces if atlas.graph.degree(surface.name)]
+
+
+def _drawn(atlas: Atlas) -> nx.MultiGraph:
+    """The graph of what is drawn."""
+    return atlas.graph.subgraph(_order(atlas))
 
 
 def _places(atlas: Atlas) -> dict[str, np.ndarray]:
-    """Where each form stands: every component laid out by itself, side by side."""
+    """Where each form and surface stands: every component laid out by itself, side by side."""
     places: dict[str, np.ndarray] = {}
-    left = 0.0
-    for members in sorted(nx.connected_components(_of_forms(atlas)), key=lambda m: min(map(atlas.form, m))):
-        names = sorted(members, key=atlas.form)
-        spots = _layout(nx.Graph(_of_forms(atlas).subgraph(names)), names)
+    order, left = _order(atlas), 0.0
+    for members in sorted(nx.connected_components(_drawn(atlas)), key=lambda m: min(map(order.index, m))):
+        names = sorted(members, key=order.index)
+        spots = _layout(nx.Graph(_drawn(atlas).subgraph(names)), names)
         spots[:, 0] += left - spots[:, 0].min()
         left = spots[:, 0].max() + REACH
         places |= dict(zip(names, spots, strict=True))
@@ -84,8 +94,9 @@ def _layout(graph: nx.Graph, names: list[str]) -> np.ndarray:
 def _draw_edges(axes: Axes, atlas: Atlas, places: dict[str, np.ndarray]) -> None:
     """Edges between the same two forms bow apart; each carries its name where no other name is near."""
     between: dict[tuple[str, str], list[str]] = {}
-    for a, b, key in _of_forms(atlas).edges(keys=True):
-        first, last = sorted((a, b), key=atlas.form)
+    order = _order(atlas)
+    for a, b, key in _drawn(atlas).edges(keys=True):
+        first, last = sorted((a, b), key=order.index)
         between.setdefault((first, last), []).append(key)
     named = np.array(list(places.values())).reshape(-1, 2)
     for (first, last), keys in between.items():

@@ -354,7 +354,8 @@ def test_the_picture_of_a_surface_has_all_its_triangles_and_the_graph_of_forms_s
     assert len(axes.collections[0].get_paths()) == len(sphere.triangles)
     assert np.abs(axes.dataLim.get_points()).max() == pytest.approx(1.0, abs=0.03)
     problem = FunctionProblem(lambda u: np.array([u[2] * u[0], u[2] * u[1]]), [(-1, 1)] * 3)
-    assert plot_form_graph(explore(problem, starts=20)).axes
+    texts = [text.get_text() for text in plot_form_graph(explore(problem, starts=20)).axes[0].texts]
+    assert sorted(texts) == ["D1", "Form 1", "surface 1"]
 
 
 # --- what is not finished is said ---------------------------------------------------------------------
