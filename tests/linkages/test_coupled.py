@@ -4,7 +4,9 @@ import mpmath
 import numpy as np
 import pytest
 
+from bifurc.certificate import certify_atlas
 from bifurc.continuation import trace_branch
+from bifurc.explore import explore
 from linkages.catalogue import entry
 from linkages.closure import LoopClosure
 from linkages.closure_mp import precise_residual
@@ -104,6 +106,15 @@ def test_the_symmetric_motion_of_a_line_symmetric_bricard_needs_three_unknowns()
     whole = trace_branch(LoopClosure(loop), theta[0])
     assert whole.length == pytest.approx(np.sqrt(2) * branch.length, rel=1e-12)  # every unknown turns two joints
     assert whole.nearest(theta)[0].max() < 1e-10
+
+
+def test_the_map_of_a_coupled_loop_has_the_symmetric_forms_and_certifies_them():
+    loop = entry("bricard-line-symmetric").build()
+    problem = CoupledClosure(loop, np.vstack([np.eye(3), np.eye(3)]))
+    atlas = certify_atlas(problem, explore(problem, starts=40))
+    whole = explore(LoopClosure(loop), starts=40)
+    assert [np.sqrt(2) * f.branch.length for f in atlas.forms] == pytest.approx([f.branch.length for f in whole.forms], rel=1e-10)
+    assert [f.labels["certificate"]["status"] for f in atlas.forms] == ["certified"] * 2
 
 
 def test_an_unknown_comes_round_when_all_joints_that_it_turns_do():
