@@ -104,10 +104,12 @@ def measure_case(case: Case, methods: Iterable[Method], longest: float) -> tuple
             continue
         _warm_up(case, method)
         for tolerance in (t for t in TOLERANCES if t >= case.tightest):
+            began = time.process_time()
             run = measure(case, method, tolerance, floor, longest / 4)
             runs.append(run)
             log.info("%s", run)
-            if run.seconds > longest:
+            failed_after = 0.0 if np.isfinite(run.error) else time.process_time() - began
+            if run.seconds > longest or failed_after > longest:
                 break
     return runs, floor
 

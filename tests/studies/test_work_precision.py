@@ -51,6 +51,15 @@ def test_the_first_run_of_a_method_is_not_measured():
     assert {run.seconds for run in runs} == {1.0}
 
 
+def test_a_method_that_takes_long_to_fail_is_given_up():
+    def fail(case, tolerance):
+        sum(range(100_000))
+        raise MethodFailure("no")
+
+    runs, _ = measure_case(circle(), [Method("fails", fail)], 1e-6)
+    assert len(runs) == 1
+
+
 def test_a_method_that_runs_elsewhere_states_its_own_time():
     case = circle()
     elsewhere = Method("elsewhere", lambda case, tolerance: Curve(case.reference, case.length, 1, seconds=42.0))
