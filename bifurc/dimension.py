@@ -92,10 +92,12 @@ def _dimensions_of_nullity(problem: Problem, points: np.ndarray, basis: np.ndarr
     count, k = basis.shape[:2]
     if k == 0:
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
-    regular = _probe(problem, points, basis, RADIUS)[2].max(axis=1) < KEPT
+    ends, reached, loss = _probe(problem, points, basis, RADIUS)
+    regular = loss.max(axis=1) < KEPT
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
-        dimension[i] = _dimension_beside(problem, points[i], basis[i])
+        kept = np.isfinite(loss[i])
+        dimension[i] = _dimension_beside(problem, ends[i, kept], reached[i, kept])
     return dimension, regular
 
 
@@ -118,23 +120,21 @@ def _probe(
     return ends, reached, loss
 
 
-def _dimension_beside(problem: Problem, point: np.ndarray, basis: np.ndarray) -> int:
-    """Dimension about a point some of whose probes were lost."""
-    ends, reached, loss = (a[0] for a in _probe(problem, point[None], basis[None], RADIUS))
-    ends, reached = ends[np.isfinite(loss)], reached[np.isfinite(loss)]
+def _dimension_beside(problem: Problem, ends: np.ndarray, reached: np.ndarray) -> int:
+    """Dimension about a point that lost probes, from the ``ends`` (p, n) of the others and where they ``reached``."""
     away = np.linalg.norm(reached, axis=1) > 0.1
     if not np.any(away):
         return 0
     sigma, right = null_spaces(problem, ends[away])
     nullity = np.count_nonzero(sigma < 10 * NULL, axis=1)
     found = 0
-    for i in np.flatnonzero(nullity < len(basis)):  # the rank is higher there: the point itself is singular
+    for i in np.flatnonzero(nullity < reached.shape[1]):  # the rank is higher there: the point itself is singular
         own = right[i, problem.n - nullity[i] :][None]
         if nullity[i] <= found or not nullity[i]:
             continue
         if _probe(problem, ends[away][i][None], own, 0.01 * RADIUS)[2].max() < KEPT:
             found = int(nullity[i])
-    if found or np.any(nullity < len(basis)):
+    if found or np.any(nullity < reached.shape[1]):
         return found if found else -1
     spread = np.linalg.svd(reached[away], compute_uv=False) / np.sqrt(np.count_nonzero(away))
     return int(np.count_nonzero(spread > KEPT))

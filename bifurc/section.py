@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ReducedEquations", "Section", "is_on_surface", "section"]
 
-ANGLES = 96  # samples on the circle of a null space of dimension 2
+ANGLES, FIRST = 96, 0.01  # samples on the circle of a null space of dimension 2, and the angle of the first
 MARGIN = 8.0  # times the rounding of the reduced equations: what is smaller counts as zero
 ROOT, TOUCH = 1e-10, 1e-6  # of the largest value on the circle: what counts as zero at a root, and where h touches zero
 MOST_TESTED = 40  # solutions of higher nullity on a sphere whose local dimension is looked at
@@ -99,17 +99,20 @@ def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
 def _circle_section(equations: ReducedEquations) -> Section:
     """All zeros on the circle: sign changes of the leading combination of the equations, also those that its
     minima between two samples reveal; what does not solve the other equations is dropped."""
-    angles = 0.01 + 2 * np.pi * np.arange(ANGLES) / ANGLES
+    angles = FIRST + 2 * np.pi * np.arange(ANGLES) / ANGLES
     values = equations(_unit(angles))
     size = float(np.linalg.norm(values, axis=1).max())
     if size < MARGIN * equations.noise:
         return Section(equations.points(_unit(angles))[:0], 2)
-    leading = np.linalg.svd(values, full_matrices=False)[2][0]
+    h = values @ np.linalg.svd(values, full_matrices=False)[2][0]
+    # on a small circle term k of the Fourier series is of the order of radius^(k - 2): the samples hold all of it
+    series = np.fft.rfft(h) / ANGLES
+    series[1:-1] *= 2
+    rates = np.arange(len(series))
 
     def combined(angle: np.ndarray, sign: np.ndarray) -> np.ndarray:
-        return sign * (equations(_unit(np.ravel(angle))) @ leading).reshape(np.shape(angle))
+        return np.asarray(sign * (np.exp(1j * (np.asarray(angle)[..., None] - FIRST) * rates) @ series).real)
 
-    h = values @ leading
     low, high, touching = _brackets(angles, h, combined, MARGIN * equations.noise + 1e-9 * size)
     roots = bracketed_roots(lambda x: combined(x, np.ones_like(x)), low, high, 1e-12) if len(low) else np.empty(0)
     candidates = np.concatenate([roots, touching])

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.branch import Branch
 from bifurc.certificate import certify_atlas
 from bifurc.explore import explore
 from linkages.catalogue import entry
@@ -19,7 +20,8 @@ from linkages.loop import Loop
 
 __all__ = ["map_by_name", "map_linkage"]
 
-NAMING, CLOSING = 400, 4000  # samples of a form for its name, and for its largest closure error
+NAMING = 400  # samples of a form for its name
+CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)  # where on every piece of a form its closure is checked
 
 
 def map_linkage(
@@ -42,7 +44,7 @@ def map_linkage(
             "inactive_joints": list(identity.inactive_joints),
             "inactive_angles": list(identity.inactive_angles),
             "symmetry": identity.symmetry,
-            "max_residual": largest_residual(problem, form.branch.sample(CLOSING)),
+            "max_residual": largest_residual(problem, form.branch),
         }
         for identity, form in zip(identities, atlas.forms, strict=True)
     ]
@@ -65,6 +67,7 @@ def map_by_name(name: str, *, starts: int = 200, seed: int = 0, **parameters: An
     return map_linkage(found.build(**values), patterns, starts=starts, seed=seed)
 
 
-def largest_residual(problem: LoopClosure, points: np.ndarray) -> float:
-    """The largest closure error at points (k, n): the norm over rotation and translation."""
-    return float(np.linalg.norm(problem.residuals(points), axis=1).max(initial=0.0))
+def largest_residual(problem: LoopClosure, branch: Branch) -> float:
+    """The largest closure error at places all along a branch: the norm over rotation and translation."""
+    places = branch.breaks[:-1, None] + np.diff(branch.breaks)[:, None] * CLOSING
+    return float(np.linalg.norm(problem.residuals(branch(places.ravel())), axis=1).max(initial=0.0))

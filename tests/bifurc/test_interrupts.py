@@ -92,8 +92,12 @@ from linkages.catalogue import entry
 from linkages.closure import LoopClosure
 
 class Pressed(LoopClosure):
+    pressed = False  # the second Ctrl-C would act at once
+
     def project(self, starts):
-        threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT)).start()
+        if not self.pressed:
+            threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT)).start()
+        self.pressed = True
         return super().project(starts)
 
 for delay in (0.001, 0.01, 0.03, 0.1):
