@@ -109,18 +109,19 @@ def svd_predictor_corrector(
     """The method of Gan and Pellegrino 2006 as in Song 2013, appendix A, with cubic Hermite pieces between its points.
 
     Predictor: a fixed step along the null vector of F', the last right singular vector. Corrector: steps of the
-    pseudo-inverse of rank n - 1, from a singular value decomposition each, until the closure error is below the
-    tolerance. (In (A2) and (A6) the factors stand in the wrong order, and the sum of (A17) is -E.)
+    pseudo-inverse of rank n - 1, from a singular value decomposition each, until the closure error, over the largest
+    singular value, is below the tolerance. (In (A2) and (A6) the factors stand in the wrong order, and the sum of
+    (A17) is -E.)
     """
     h, u, t = 0.5 * turn_per_step(tolerance), start, tangent
     points, tangents, travelled = [u], [t], 0.0
-    limit = max(0.1 * tolerance, 1e-14) * problem.magnitude
+    limit = max(0.1 * tolerance, 1e-14)
     while travelled < length:
         new = u + h * t
         for _ in range(NEWTON):
             residual, jacobian = evaluate(problem, new)
             left, sigma, right = np.linalg.svd(jacobian)
-            if float(np.linalg.norm(residual)) <= limit:
+            if float(np.linalg.norm(residual)) <= limit * sigma[0]:
                 break
             rank = problem.n - 1
             new = new - right[:rank].T @ ((left[:, :rank].T @ residual) / sigma[:rank])
