@@ -33,13 +33,14 @@ from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import COVER, distance_in_digits, largest_distance
 from studies.methods.roster import Method, comparison_methods, orders_of_this_project
 
-__all__ = ["Run", "fastest", "measure", "points_in_our_time", "ratios", "recommend"]
+__all__ = ["Run", "fastest", "measure", "points_in_our_time", "ratios", "recommend", "summarise"]
 
 log = logging.getLogger(__name__)
 
 TOLERANCES = tuple(10.0**-k for k in range(3, 15))
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 DEFAULT_ORDER = 16
+NOISE = 0.05  # by how much mean ratios differ from run to run
 FAILURES = (MethodFailure, ArithmeticError, ValueError, np.linalg.LinAlgError)
 POINT_BY_POINT = "pseudo-arclength, tangent"
 
@@ -164,14 +165,21 @@ def points_in_our_time(runs: Sequence[Run], case: str, error: float) -> float:
     return points / fastest((run for run in here if run.order == DEFAULT_ORDER), error)
 
 
-def summarise(runs: Sequence[Run], floors: dict[str, float]) -> str:
+def _best_order(advice: Mapping[int, tuple[float, float]]) -> int:
+    """The fastest order; the default one unless it is slower by more than runs differ."""
+    best = min((o for o in advice if np.isfinite(advice[o][0])), key=lambda o: advice[o][0], default=DEFAULT_ORDER)
+    ours = advice.get(DEFAULT_ORDER, (np.inf, np.nan))[0]
+    return DEFAULT_ORDER if ours <= (1 + NOISE) * advice[best][0] else best
+
+
+def summarise(runs: Sequence[Run], floors: Mapping[str, float]) -> str:
     """The findings in words."""
     lines = ["Distance of the exact curve to the solution set, in 40 digits:"]
     lines += [f"  {case}: {floor:.1e}" for case, floor in floors.items()]
     lines += ["", "Time to reach 1e-12, over the fastest order (geometric mean; nan: not reached on every curve):"]
     advice = recommend(runs)
     lines += [f"  order {order}: {ratio:.2f}, with tolerance {tol:.0e}" for order, (ratio, tol) in advice.items()]
-    best = min((o for o in advice if np.isfinite(advice[o][0])), key=lambda o: advice[o][0], default=DEFAULT_ORDER)
+    best = _best_order(advice)
     lines += [f"The default should be order {best} and tolerance {advice[best][1]:.0e}.", ""]
     lines += ["Time over that of this project (order 16), median over the curves, and on how many it gets there:"]
     table = ratios(runs)

@@ -9,7 +9,16 @@ from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import distance_in_digits, largest_distance
 from studies.methods.peers import has_pycont, pycont_lite
 from studies.methods.roster import Method, comparison_methods, orders_of_this_project
-from studies.work_precision import Run, fastest, measure, measure_case, points_in_our_time, ratios, recommend
+from studies.work_precision import (
+    Run,
+    fastest,
+    measure,
+    measure_case,
+    points_in_our_time,
+    ratios,
+    recommend,
+    summarise,
+)
 from studies.work_precision_figures import unbeaten
 
 METHODS = [*orders_of_this_project(), *comparison_methods()]
@@ -153,3 +162,11 @@ def test_a_sparse_problem_is_left_to_methods_with_sparse_matrices():
 def bratu_by_differences(case, x):
     step = 1e-6 * np.eye(len(x))
     return ((case.problem.residuals(x + step) - case.problem.residuals(x - step)) / 2e-6).T
+
+
+def test_the_default_order_is_kept_where_others_are_faster_by_less_than_noise():
+    def runs(seconds):
+        return runs_of("order 16", 16, (seconds,), (1e-13,)) + runs_of("order 24", 24, (1.0,), (1e-13,))
+
+    assert "should be order 16" in summarise(runs(1.02), {})
+    assert "should be order 24" in summarise(runs(1.50), {})
