@@ -39,20 +39,24 @@ class Components:
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
     notes: dict[int, str] = field(default_factory=dict)  # by the number of the part
 
-    def cover(self, problem: Problem, points: np.ndarray, charts: int, deadline: Deadline) -> None:
+    def cover(self, problem: Problem, points: np.ndarray, charts: int, deadline: Deadline) -> list[int]:
         """Make up to ``charts`` charts over the surfaces on which those of the seeds ``points`` (k, n) lie.
 
         Where the covering is unfinished, the seeds beside the charts walk over the surface to find out which they
-        belong to.
+        belong to. Where no chart fits about any seed there is no surface: the numbers of these seeds come back.
         """
         on = points[self.seeds.get(2, [])]
         if not len(on) or charts <= 0 or deadline.passed:
-            return
-        self.charts = cover_surface(problem, on, radius=RADIUS, charts=charts, seconds=deadline.left)
+            return []
+        made = cover_surface(problem, on, radius=RADIUS, charts=charts, seconds=deadline.left)
+        if not len(made):
+            return [] if deadline.passed else self.seeds.pop(2)
+        self.charts = made
         at = self.charts.chart_at(on)
         if not self.charts.complete:
             at[at < 0] = reached_charts(self.charts, on[at < 0], deadline)
         self.part_of = np.where(at >= 0, self.charts.part[at], -1)
+        return []
 
     def take_note(self, left_out: np.ndarray, on_curves: np.ndarray) -> None:
         """Remember charts at which singular points were not looked for, and charts next to curves of them."""

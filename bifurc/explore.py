@@ -68,7 +68,7 @@ def explore(
                 gathered = problem.seeds(np.random.default_rng(seed), starts)
             held.check()
             _work_through(problem, gathered, found, settings, progress, held)
-            _work_on_surfaces(problem, gathered, found, settings, charts)
+            _work_on_surfaces(problem, gathered, found, settings, charts, progress, held)
             gathered = _audited(problem, gathered, found, settings, progress, held, prove)
     except KeyboardInterrupt:
         interrupted = True
@@ -91,16 +91,26 @@ def _work_through(
     problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings,
     progress: Callable[[str, int], None] | None, held: HeldInterrupt,
 ) -> None:  # fmt: skip
-    """Trace from every seed that lies on nothing known, and from every half-branch that shows up on the way."""
+    """Trace from every seed that lies on no surface, and from every half-branch that shows up on the way."""
     if not len(seeds.points):
         return
     values = singular_values(problem, seeds.points)
-    # the clearest first: those whose curve is far from singular
-    order = np.argsort(-values[:, max(problem.n - 2, 0)], kind="stable")
     found.components = sort_out(problem, seeds.points, values, found.deadline)
     for dimension, numbers in found.components.seeds.items():
         found.owner.update((k, ("component of dimension", dimension)) for k in numbers)
-    waiting = [k for k in order.tolist() if k not in found.owner]
+    waiting = [k for k in range(len(seeds.points)) if k not in found.owner]
+    _trace_from(problem, seeds, waiting, values[waiting], found, settings, progress, held)
+
+
+def _trace_from(
+    problem: Problem, seeds: Seeds, waiting: list[int], values: np.ndarray, found: Findings, settings: TraceSettings,
+    progress: Callable[[str, int], None] | None, held: HeldInterrupt,
+) -> None:  # fmt: skip
+    """Trace from the seeds numbered ``waiting``, with singular ``values`` (k, n), that lie on nothing known."""
+    # the clearest first: those whose curve is far from singular
+    order = np.argsort(-values[:, max(problem.n - 2, 0)], kind="stable")
+    own = dict(zip(waiting, values, strict=True))
+    waiting = [waiting[k] for k in order]
     matched = 0
     while waiting and not found.deadline.passed:
         for number in range(matched, len(found.branches)):
@@ -113,7 +123,7 @@ def _work_through(
             progress("forms", matched)
         if waiting:
             i = waiting.pop(0)
-            found.owner[i] = _take_seed(problem, seeds.points[i], values[i], found, settings)
+            found.owner[i] = _take_seed(problem, seeds.points[i], own[i], found, settings)
         held.check()
 
 
@@ -125,11 +135,14 @@ def _audited(
     while seeds.audit is not None and not found.deadline.passed:
         found.audit = seeds.audit(found.branches, found.deadline.left if prove else 0.0)
         held.check()
-        known, (starts, gaps) = len(found.branches), problem.project(found.audit.starts)
-        if not np.any(gaps < CLOSED):
+        known, before = len(found.branches), len(seeds.points)
+        starts, gaps = problem.project(found.audit.starts)
+        starts = starts[gaps < CLOSED]
+        if not len(starts):
             break
-        seeds = seeds.with_constructed(starts[gaps < CLOSED])
-        _work_through(problem, seeds, found, settings, progress, held)
+        seeds = seeds.with_constructed(starts)
+        numbers = list(range(before, len(seeds.points)))
+        _trace_from(problem, seeds, numbers, singular_values(problem, starts), found, settings, progress, held)
         if len(found.branches) == known:
             break
     return seeds
@@ -182,10 +195,14 @@ def _trace_lower_rank(
 
 
 def _work_on_surfaces(
-    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings, charts: int
-) -> None:
+    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings, charts: int,
+    progress: Callable[[str, int], None] | None, held: HeldInterrupt,
+) -> None:  # fmt: skip
     """Cover the surfaces with charts, locate singular points on them, and trace the curves that leave there."""
-    found.components.cover(problem, seeds.points, charts, found.deadline)
+    refused = found.components.cover(problem, seeds.points, charts, found.deadline)
+    if refused:
+        values = singular_values(problem, seeds.points[refused])
+        _trace_from(problem, seeds, refused, values, found, settings, progress, held)
     if found.components.charts is None:
         return
     for located in singular_points_of(problem, found.components, found.deadline):

@@ -112,9 +112,10 @@ def _advance_along(geometry: np.ndarray, joint: int, z: np.ndarray, end: float) 
     least = np.abs(z.imag)[:, None] - np.abs(curve.tangent)[:, None] * t - curve.weight[:, None] * strayed
     margin = np.where(np.any(least > 0, axis=0), margin, -np.inf)
     best, left = int(np.argmax(margin)), end - z[joint].real
-    step = np.sign(left) * min(0.9 * float(margin[best]), abs(left))
-    if not abs(step) >= min(SHORTEST, abs(left)):
+    size = min(0.9 * float(margin[best]), abs(left))
+    if not size >= min(SHORTEST, abs(left)):
         return False
+    step = np.copysign(size, left)
     after, row = z + step / curve.slope * curve.tangent, np.eye(len(z), dtype=complex)[joint]
     after[joint] = z[joint].real + step
     if not _correct(geometry, after, row) or abs(np.conj(curve.tangent) @ (after - z)) >= t[best]:
@@ -168,7 +169,7 @@ def _curve_through(geometry: np.ndarray, joint: int, at: np.ndarray) -> _Curve |
     converged = [_correct(geometry, point, tangent.conj()) for point in around]
     if not all(converged):
         return None
-    if np.linalg.norm((around - at) / weight, axis=1).max() > radius:
+    if not np.linalg.norm((around - at) / weight, axis=1).max() <= radius:
         return None
     terms = np.fft.fft(around[:, joint] - at[joint]) / COEFFICIENTS / (0.5 * reach) ** powers
     largest = reach * abs(tangent[joint]) + weight[joint] * 0.5 * bound * radius**2
@@ -332,6 +333,8 @@ def _correct(geometry, z, along):
             step = 0j
             for k in range(6):
                 step += inverse[i, k] * error[k]
+            if not abs(step) < np.inf:
+                return False
             z[i] -= step
             largest = max(largest, abs(step))
         if largest < 1e-9:  # the error after it is of the order of its square
@@ -373,7 +376,7 @@ def _follow(geometry, joint, z, end, folds, limits):
         step = min(0.75 * radius / speed, abs(left)) * np.sign(left)
         while not _stays_away(z, slope, weight, step, 0.5 * bound * (4.0 / 3.0 * speed * step) ** 2):
             step *= 0.5
-            if abs(step) < SLOW:
+            if not abs(step) >= SLOW:  # nor not a number
                 return False
         if not abs(step) >= min(SLOW, abs(left)):
             return False

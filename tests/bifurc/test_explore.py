@@ -221,3 +221,17 @@ def test_the_same_seed_gives_the_same_atlas_to_the_last_bit():
 def test_no_starts_are_refused():
     with pytest.raises(ProblemError, match="starts: 0 is not allowed"):
         explore(FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2), starts=0)
+
+
+def test_a_seed_that_only_looks_as_on_a_surface_is_taken_for_what_it_is():
+    # two bodies of the linkage are almost alike: next to its rank drops F is so flat that one start seems on a surface
+    parameters = {
+        "a": 2.144874646208794, "alpha": 1.5668555382374716, "beta": 0.5795111767234356, "gamma": 1.5921695469201371,
+        "delta": 0.5790264703154796,
+    }  # fmt: skip
+    linkage = entry("double-subtractive-goldberg-type-iii")
+    loop = linkage.build(**{key: value for key, value in parameters.items() if key in linkage.defaults})
+    atlas = explore(LoopClosure(loop))
+    assert not atlas.surfaces
+    assert len(atlas.forms) == 1
+    assert atlas.completeness.level == "proved"
