@@ -664,9 +664,9 @@ def _polish(links, theta):
         error = _closure(links, theta, jacobian)
         size = _largest(error)
         if size < 5e-16 or (size < 1e-13 and size > 0.5 * previous):
-            break
+            return size
         if i > 10 and (size > 1e-3 or size > 0.9 * previous):
-            break
+            return size
         previous = size
         step = _least_squares(jacobian, error)
         factor = min(1.0, 0.5 / (_largest(step) + 1e-300))
