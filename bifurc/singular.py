@@ -107,6 +107,10 @@ def locate_singular_point(
         stagnant = len(moves) > 4 and moves[-1] > 0.9 * moves[-2]
         if moves[-1] < 1e-15 * min(condition, 1e6) * problem.scale or (stagnant and moves[-1] < 1e-7 * problem.scale):
             break
+    for _ in range(2):  # at a point of higher order the last steps are poor also in the equations that are not
+        left, sigma, right = np.linalg.svd(problem.jacobians(u[None])[0] / problem.magnitude, full_matrices=False)
+        residuals = problem.residuals(u[None])[0] / problem.magnitude
+        u = u - right[: n - k].T @ (left[:, : n - k].T @ residuals / sigma[: n - k])
     values = np.linalg.svd(problem.jacobians(u[None])[0] / problem.magnitude, compute_uv=False)
     residual = np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
     tail = values[n - k] if len(values) > n - k else 0.0
