@@ -34,10 +34,12 @@ MOST_TESTED = 40  # solutions of higher nullity on a sphere whose local dimensio
 @dataclass(frozen=True)
 class Section:
     """Solutions on a small sphere about a point: ``points`` (h, n), one for each half-branch of a curve, and the local
-    ``dimension`` of the solution set: where it is 2 or more, the sphere meets more than the curves."""
+    ``dimension`` of the solution set: where it is 2 or more, the sphere meets more than the curves. Where one of the
+    points is a zero that is none but for rounding, which may stand for two or for none, ``doubtful`` says so."""
 
     points: np.ndarray
     dimension: int
+    doubtful: bool = False
 
 
 class ReducedEquations:
@@ -121,8 +123,9 @@ def _circle_section(equations: ReducedEquations) -> Section:
     left_over = np.linalg.norm(equations(_unit(candidates)), axis=1)
     # a root is exact to rounding, so that all equations hold there or not; a touching point has half the digits
     good = np.repeat([ROOT, TOUCH], [len(roots), len(touching)]) * size + MARGIN * equations.noise
-    found = equations.points(_unit(candidates[left_over < good]))
-    return Section(found, 1 if len(found) else 0)
+    kept = left_over < good
+    found = equations.points(_unit(candidates[kept]))
+    return Section(found, 1 if len(found) else 0, bool(np.any(kept[len(roots) :])))
 
 
 def _brackets(

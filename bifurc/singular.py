@@ -231,17 +231,22 @@ def classify_singular_point(
 
     The section is made at the first of ``radii`` and at half of it (in units of the problem's scale); where the two
     disagree, at the next: at a larger one branches that touch separate, at a smaller one other
-    singular points stay outside. Tangents of second order are kept where their number agrees with the section.
+    singular points stay outside. One in doubt counts only where all are. Tangents of second order are kept where their
+    number agrees with the section.
     """
     k = null_space.shape[1]
     tangents = second_order_tangents(problem, point, null_space)
-    agreed = False
+    agreed, radius, outer = False, 0.0, None
     for share in radii:
-        radius = share * problem.scale
-        outer, inner = (section(problem, point, null_space, r) for r in (radius, radius / 2))
-        agreed = inner.dimension == outer.dimension and len(inner.points) == len(outer.points)
-        if agreed:
+        size = share * problem.scale
+        pair = [section(problem, point, null_space, r) for r in (size, size / 2)]
+        agree = pair[0].dimension == pair[1].dimension and len(pair[0].points) == len(pair[1].points)
+        clear = not any(s.doubtful for s in pair)
+        if outer is None or (agree and (clear or not agreed)):
+            agreed, radius, outer = agree, size, pair[0]
+        if agree and clear:
             break
+    assert outer is not None
     half = (outer.points - point) / radius
     decided = tangents is not None and 2 * len(tangents) == len(half) and agreed
     return SingularPoint(

@@ -5,7 +5,7 @@ import pytest
 
 from bifurc.explore import explore
 from bifurc.problem import FunctionProblem
-from bifurc.singular import Kind
+from bifurc.singular import Kind, classify_singular_point
 from linkages.closure import LoopClosure
 from linkages.loop import Loop
 
@@ -34,29 +34,42 @@ def test_a_flat_folding_vertex_has_four_half_branches_flat_and_folded():
     np.testing.assert_allclose(np.abs(folded), np.pi, atol=1e-12)
 
 
-ARM, COUPLER, APART = 1.0, 0.2, 3.0  # of a Watt linkage the arms and half of the coupler; of the two linkages
-MIDDLE = np.array([0.0, COUPLER, 0.0, -COUPLER, APART, COUPLER, APART, -COUPLER])
+APART = 3.0  # of the two Watt linkages
 
 
-def double_watt(u):
-    """Two Watt linkages, mirror images, whose middles are joined by a bar (Connelly and Servatius 1994)."""
-    p, q, r, s = u.reshape(4, 2)
-    pivots = np.array([[-ARM, COUPLER], [ARM, -COUPLER], [APART + ARM, COUPLER], [APART - ARM, -COUPLER]])
-    bars = [
-        (p, pivots[0], ARM), (p, q, 2 * COUPLER), (q, pivots[1], ARM), (r, pivots[2], ARM), (r, s, 2 * COUPLER),
-        (s, pivots[3], ARM), ((p + q) / 2, (r + s) / 2, APART),
-    ]  # fmt: skip
-    return np.array([(a - b) @ (a - b) - length**2 for a, b, length in bars])
+def double_watt(arm, half, room):
+    """Two Watt linkages with couplers 2 half, mirror images, whose middles are joined by a bar (Connelly and Servatius
+    1994), within ``room`` of the configuration in the middle; and that."""
+    pivots = np.array([[-arm, half], [arm, -half], [APART + arm, half], [APART - arm, -half]])
+    middle = np.array([0.0, half, 0.0, -half, APART, half, APART, -half])
+
+    def lengths(u):
+        p, q, r, s = u.reshape(4, 2)
+        bars = [
+            (p, pivots[0], arm), (p, q, 2 * half), (q, pivots[1], arm), (r, pivots[2], arm), (r, s, 2 * half),
+            (s, pivots[3], arm), ((p + q) / 2, (r + s) / 2, APART),
+        ]  # fmt: skip
+        return np.array([(a - b) @ (a - b) - length**2 for a, b, length in bars])
+
+    return FunctionProblem(lengths, [(x - room, x + room) for x in middle]), middle
 
 
 @pytest.mark.parametrize("seed", range(2))
 def test_the_double_watt_mechanism_has_a_cusp_in_the_middle(seed):
-    # the middles leave the vertical as t^5 / (8 COUPLER ARM^3), so that their heights differ by the root of t^5
-    problem = FunctionProblem(double_watt, [(x - 2, x + 2) for x in MIDDLE])
+    # the middles leave the vertical as t^5 / (8 half arm^3), so that their heights differ by the root of t^5
+    problem, middle = double_watt(1.0, 0.2, 2.0)
     atlas = explore(problem, starts=60, seed=seed)
     assert len(atlas.points) == 1
     point = atlas.points[0]
     assert point.kind is Kind.CUSP
-    assert np.linalg.norm(point.point.u - MIDDLE) < max(1e-4, point.point.error)
+    assert np.linalg.norm(point.point.u - middle) < max(1e-4, point.point.error)
     assert len(point.point.half_branches) == 2
     assert point.point.half_branches[0] @ point.point.half_branches[1] > 0.99
+
+
+def test_a_cusp_too_sharp_for_a_small_sphere_is_looked_at_on_a_larger_one():
+    problem, middle = double_watt(2.0, 0.5, 0.8)
+    null_space = np.linalg.svd(problem.jacobians(middle[None])[0])[2][6:].T
+    point = classify_singular_point(problem, middle, null_space, 1e-14)
+    assert point.kind is Kind.CUSP
+    assert point.radius > 0.02 * problem.scale
