@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
+from bifurc.explore import explore
+from bifurc.monitor import dead_points
 from linkages import sheets
 from linkages.catalogue import entry
+from linkages.closure import LoopClosure
 from linkages.sheets import find_fold, follow_sheets
 from linkages.slices import slice_configurations
 
@@ -72,9 +75,9 @@ def test_nowhere_in_the_ball_does_the_map_stray_from_its_tangent_by_more_than_th
         along = np.eye(loop.n)[1]
         weight, radius, bound = sheets._ball_around(sheets._geometry(loop), at, along)
         assert bound * radius <= 0.5
-        screws, inverse = np.zeros((6, loop.n), dtype=complex), np.linalg.pinv
+        screws = np.zeros((6, loop.n), dtype=complex)
         sheets._screws_and_error(at, sheets._geometry(loop), screws, np.zeros(6, dtype=complex))
-        p = inverse(np.concatenate([screws, along[None]]))[:, :6]
+        p = np.linalg.pinv(np.concatenate([screws, along[None]]))[:, :6]
         for _ in range(40):
             d = rng.normal(size=loop.n) + 1j * rng.normal(size=loop.n)
             d *= radius * weight / np.linalg.norm(d)
@@ -101,10 +104,6 @@ def test_followed_sheets_arrive_where_elimination_finds_them(name, joint, angle)
 def test_a_sheet_that_becomes_real_halts_there_and_only_a_known_fold_lets_it_pass():
     # crank 1, coupler 2, rocker 2.5, frame 3: the rocker of the motion that is found swings between dead points
     loop = entry("four-bar").build(a=1.0, b=2.0, c=2.5, d=3.0)
-    from bifurc.explore import explore
-    from bifurc.monitor import dead_points
-    from linkages.closure import LoopClosure
-
     branch = explore(LoopClosure(loop)).forms[0].branch
     joint = next(j for j, dead in enumerate(dead_points(branch)) if len(dead))
     turned = branch(dead_points(branch)[joint])
@@ -123,10 +122,6 @@ def test_a_sheet_that_becomes_real_halts_there_and_only_a_known_fold_lets_it_pas
 
 
 def test_within_the_neighbourhood_of_a_fold_every_angle_has_one_pair():
-    from bifurc.explore import explore
-    from bifurc.monitor import dead_points
-    from linkages.closure import LoopClosure
-
     loop = entry("special-double-subtractive-goldberg").build()
     checked = 0
     for form in explore(LoopClosure(loop)).forms:
