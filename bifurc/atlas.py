@@ -12,12 +12,12 @@ import networkx as nx
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.monitor import Profile
+from bifurc.curves.monitor import Profile
 from bifurc.problem import Problem, ProblemError
-from bifurc.route import Leg, Route, RouteError, find_route, wrap
+from bifurc.routes.route import Leg, Route, RouteError, find_route, wrap
 from bifurc.seeding import Completeness
-from bifurc.singular import Kind, SingularPoint
-from bifurc.surface import ChartAtlas
+from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.surfaces.chart_atlas import ChartAtlas
 
 __all__ = ["Atlas", "Event", "Form", "Leg", "MeetingPoint", "Route", "RouteError", "Surface", "wrap"]
 
@@ -90,7 +90,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Atlas:
-    """All that `bifurc.explore.explore` found of a problem.
+    """All that `bifurc.search.explore.explore` found of a problem.
 
     ``closure_gap``: where there is no form, the median relative residual along the valley in which the system is
     nearly solved (0 where there are forms).
@@ -240,15 +240,15 @@ class Atlas:
     # --- files ----------------------------------------------------------------------------------------
 
     def to_dataset(self) -> Any:
-        """This atlas as an `xarray.Dataset`; see `bifurc.dataset`."""
-        from bifurc.dataset import to_dataset
+        """This atlas as an `xarray.Dataset`; see `bifurc.files.dataset`."""
+        from bifurc.files.dataset import to_dataset
 
         return to_dataset(self)
 
     @staticmethod
     def from_dataset(dataset: Any) -> Atlas:
         """The atlas that `to_dataset` stored."""
-        from bifurc.dataset import from_dataset
+        from bifurc.files.dataset import from_dataset
 
         return from_dataset(dataset)
 

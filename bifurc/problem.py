@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csc_array, issparse
 
-from bifurc.bordered import as_dense
-from bifurc.collocation import march_by_collocation
-from bifurc.corrector import project_by_least_squares, project_to_sphere_by_newton
+from bifurc.numerics.bordered import as_dense
+from bifurc.numerics.collocation import march_by_collocation
+from bifurc.numerics.corrector import project_by_least_squares, project_to_sphere_by_newton
 from bifurc.seeding import Seeds, random_seeds
 
 __all__ = ["FunctionProblem", "March", "MarchStatus", "Problem", "ProblemError"]

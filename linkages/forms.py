@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linkages.entry import FormPattern
-from linkages.four_bar import form_patterns
+from linkages.families.four_bar import form_patterns
 from linkages.loop import GeometryError, Loop, loop_from_axes
 
 __all__ = ["FormIdentity", "identify_form", "name_forms"]

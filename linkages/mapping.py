@@ -10,10 +10,10 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
-from bifurc.certificate import certify_atlas
-from bifurc.explore import explore
+from bifurc.curves.certificate import certify_atlas
+from bifurc.search.explore import explore
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.entry import FormPattern
 from linkages.forms import name_forms
 from linkages.loop import Loop
@@ -29,12 +29,12 @@ def map_linkage(
 ) -> Atlas:
     """The transition map of a loop: every form with its name, every bifurcation, every near miss.
 
-    ``patterns`` are the forms that a source names, ``options`` those of `bifurc.explore.explore` (``starts``,
+    ``patterns`` are the forms that a source names, ``options`` those of `bifurc.search.explore.explore` (``starts``,
     ``seed``, ``settings``, ``budget``, ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from
     1) and their ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest closure error
     seen along it relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists
-    in rad. With ``certify`` they also hold the ``certificate`` of `bifurc.certificate`. With ``prove`` it is looked
-    into whether a form can be missing (`linkages.completeness`).
+    in rad. With ``certify`` they also hold the ``certificate`` of `bifurc.curves.certificate`. With ``prove`` it is looked
+    into whether a form can be missing (`linkages.slices.completeness`).
     """
     problem = LoopClosure(loop)
     atlas = explore(problem, prove=prove, **options)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.explore import explore
-from linkages.closure import LoopClosure
+from bifurc.search.explore import explore
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 __all__ = ["Survey", "held_gap", "survey"]

@@ -1,6 +1,6 @@
 """How the linkages of the catalogue are related, as a graph.
 
-"special case of" and "same linkage as" hold up to `linkages.equivalence` and are checked by `linkages.identify` on
+"special case of" and "same linkage as" hold up to `linkages.identification.equivalence` and are checked by `linkages.identification.identify` on
 random members; where no source states them, that is where they come from. Of the special cases only the nearest are
 listed: the others follow along the graph.
 """

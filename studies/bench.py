@@ -22,19 +22,19 @@ from typing import Any
 import click
 import numpy as np
 
-from bifurc.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
-from bifurc.explore import explore
-from linkages import kernels
+from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
+from bifurc.search.explore import explore
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure import kernels
+from linkages.closure.loop_closure import LoopClosure
 from linkages.mapping import map_linkage
-from linkages.slices import slice_configurations
+from linkages.slices.elimination import slice_configurations
 from studies.methods.cases import bratu
 
 __all__ = ["benchmarks", "machine"]
 
 LINKAGE = "special-double-subtractive-goldberg"
-COMMAND = "from studies.cli import main; main()"
+COMMAND = "from linkages.app.cli import main; main()"
 PACKAGES = ("bifurc", "numpy", "scipy", "numba", "networkx", "xarray")
 
 
@@ -76,7 +76,7 @@ def benchmarks() -> dict[str, float]:
             lambda: trace_branch(chain.problem, chain.start, chain.tangent, loose)
         ),
         "import numpy, wall": command_time("-c", "import numpy"),
-        "import all that a map needs, wall": command_time("-c", "import linkages.mapping, studies.cli"),
+        "import all that a map needs, wall": command_time("-c", "import linkages.mapping, linkages.app.cli"),
         f"bifurc map {LINKAGE} --json, wall": command_time("-c", COMMAND, "map", LINKAGE, "--json"),
     }
 

@@ -19,11 +19,11 @@ from pathlib import Path
 import click
 import numpy as np
 
-from bifurc.continuation import DEFAULT_SETTINGS, trace_branch
-from bifurc.monitor import profile_branch
+from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
+from bifurc.curves.monitor import profile_branch
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
-from linkages.coupled import CoupledClosure
+from linkages.closure.coupled import CoupledClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import MAX_JOINTS, Loop
 from studies.bench import median_time
 

@@ -97,7 +97,7 @@ def _relations(name: str) -> list[str]:
 
 def _closed_forms(name: str) -> list[str]:
     """Name, source and LaTeX of every closed form of a linkage, u_x being tan(x/2) and t_i tan(theta_i/2)."""
-    from linkages.closed_forms import closed_forms
+    from linkages.closed_forms.all_forms import closed_forms
 
     lines = []
     for form in closed_forms(name):
@@ -138,7 +138,7 @@ def main(out: Path | None, keep_counts: bool) -> None:
         click.echo(f"{found.name}: {counts[found.name]}")
         theta = clearest_configuration(atlas, found)
         if out is not None and theta is not None:
-            from studies.scene_figure import draw_configuration
+            from linkages.app.scene_figure import draw_configuration
 
             out.mkdir(parents=True, exist_ok=True)
             figure = draw_configuration(found.build(), theta, found.title)

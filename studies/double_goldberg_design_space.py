@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
+from linkages.app.sweep.member import Status
+from linkages.app.sweep.plan import Plan, read_plan
+from linkages.app.sweep.run import run_sweep
+from linkages.app.sweep.store import open_sweep
 from linkages.catalogue import entry
-from studies.sweep.member import Status
-from studies.sweep.plan import Plan, read_plan
-from studies.sweep.run import run_sweep
-from studies.sweep.store import open_sweep
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from linkages.errata import ERRATA
+from linkages.errata.misprints import ERRATA
 
 __all__ = ["HEAD", "errata_page"]
 

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from bifurc.problem import FunctionProblem, Problem
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 __all__ = ["Crossing", "Ladder", "crossings", "ladders", "near_parallelogram", "pitchfork"]
@@ -172,7 +172,7 @@ LOOPS: tuple[tuple[str, str, int, dict[str, float]], ...] = (
 
 def _loop(title: str, name: str, count: int, values: dict[str, float]) -> Crossing:
     """A linkage of the catalogue, once around the first form that random starts reach far from singular points."""
-    from bifurc.continuation import trace_branch
+    from bifurc.curves.continuation import trace_branch
 
     problem = LoopClosure(entry(name).build(**values))
     starts, gaps = problem.project(np.random.default_rng(0).uniform(-3, 3, (60, problem.n)))

@@ -2,7 +2,7 @@
 
     python -m studies.missing_motions [--count 500] [--seed 0]
 
-The first search has a single random start and the proof (`linkages.completeness`). The second has other slices and
+The first search has a single random start and the proof (`linkages.slices.completeness`). The second has other slices and
 1500 random starts. A proof is refuted where the second finds other motions. So that small motions are among them, every
 second linkage is a plane-symmetric Bricard linkage close to the birth of a second motion.
 """
@@ -16,11 +16,11 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.explore import explore
+from bifurc.search.explore import explore
+from linkages.app.summary import table
 from linkages.catalogue import catalogue, entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
-from studies.summary import table
 
 __all__ = ["linkages", "same_motions"]
 

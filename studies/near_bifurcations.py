@@ -20,12 +20,12 @@ import click
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.certificate import certify_branch
-from bifurc.continuation import TraceSettings, trace_branch
-from bifurc.monitor import profile_branch
-from bifurc.singular import locate_singular_point
+from bifurc.curves.certificate import certify_branch
+from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.monitor import profile_branch
+from bifurc.singular.locate import locate_singular_point
+from linkages.app.summary import table
 from studies.near_misses import NearMiss, near_misses
-from studies.summary import table
 
 __all__ = ["STEPS", "Trace", "certify_trace", "describe", "describe_certificates", "follow"]
 

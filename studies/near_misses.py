@@ -24,7 +24,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import GeometryError, Loop
 from studies.half_turn import HalfTurn, never_at, samples
 

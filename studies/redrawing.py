@@ -10,9 +10,9 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
-from studies.files import staging, write_data, write_figures
-from studies.status import compilation_announced
-from studies.summary import make_summary
+from linkages.app.files import staging, write_data, write_figures
+from linkages.app.status import compilation_announced
+from linkages.app.summary import make_summary
 
 __all__ = ["Claim", "Redrawing", "angles_along", "largest"]
 
@@ -49,7 +49,7 @@ class Redrawing:
 
     def run(self, out: Path) -> None:
         """Print the tables and the claims; write the figure and the results of the map to a folder."""
-        from bifurc.plotting import plot_transition_map
+        from bifurc.figures.plotting import plot_transition_map
 
         out.mkdir(parents=True, exist_ok=True)
         with compilation_announced():

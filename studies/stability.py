@@ -29,18 +29,18 @@ from typing import Any
 import click
 import numpy as np
 
-from bifurc.certificate import certify_branch
-from bifurc.continuation import TraceSettings, trace_branch
-from bifurc.explore import explore
-from bifurc.monitor import profile_branch
+from bifurc.curves.certificate import certify_branch
+from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.monitor import profile_branch
 from bifurc.problem import Problem
+from bifurc.search.explore import explore
 from bifurc.seeding import Seeds
+from linkages.app.summary import table
 from studies.hard_cases import Crossing, Ladder, crossings, ladders
 from studies.methods import natural, null_field, peers, point_by_point
 from studies.methods.counted import Counted
 from studies.methods.curve import MethodFailure
 from studies.methods.detection import by_determinant, by_singular_value
-from studies.summary import table
 
 __all__ = ["STEPS", "Followed", "Run", "follow_ladder", "followers", "report_points", "reporters"]
 

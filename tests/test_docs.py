@@ -13,7 +13,7 @@ import matplotlib
 import pytest
 from click.testing import CliRunner
 
-from studies.cli import main
+from linkages.app.cli import main
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

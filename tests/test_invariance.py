@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
-from bifurc.explore import explore
+from bifurc.search.explore import explore
 from bifurc.seeding import Seeds
 from linkages.catalogue import catalogue, entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import GeometryError
 
 NAMES = [

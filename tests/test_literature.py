@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bifurc.explore import explore
 from bifurc.problem import FunctionProblem
-from bifurc.singular import Kind, classify_singular_point
-from linkages.closure import LoopClosure
+from bifurc.search.explore import explore
+from bifurc.singular.locate import Kind, classify_singular_point
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 

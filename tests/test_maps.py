@@ -7,9 +7,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from bifurc.explore import explore
+from bifurc.search.explore import explore
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 MAPS = json.loads((Path(__file__).parents[1] / "data" / "reference_maps.json").read_text())

@@ -12,12 +12,12 @@ import numpy as np
 from scipy.sparse import csc_array, diags_array, hstack, issparse
 
 from bifurc.branch import Branch
-from bifurc.continuation import TraceSettings, trace_branch
-from bifurc.corrector import null_vector
-from bifurc.monitor import dead_points
+from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.monitor import dead_points
+from bifurc.numerics.corrector import null_vector
 from bifurc.problem import FunctionProblem, Problem
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 __all__ = ["Case", "all_cases", "bratu"]

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import issparse
 
-from bifurc.bordered import sparse_bordered
+from bifurc.numerics.bordered import sparse_bordered
 from bifurc.problem import Problem
 
 __all__ = ["evaluate", "mixtures", "solve_bordered"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure
 
@@ -17,7 +17,7 @@ SHORTEST = 3e-4
 def trace(
     problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, order: int, tolerance: float
 ) -> Curve:
-    """`bifurc.continuation.trace_branch` at one order and tolerance.
+    """`bifurc.curves.continuation.trace_branch` at one order and tolerance.
 
     An open curve is followed both ways, from bound to bound: more than the other methods are asked for. The trusted
     radius of a low order is about ``tolerance ** (1 / (order - 1))``: below `SHORTEST` it is not worth a try.

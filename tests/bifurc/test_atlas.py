@@ -10,11 +10,11 @@ import pytest
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, RouteError, wrap
 from bifurc.branch import Branch, Outcome
-from bifurc.explore import explore
-from bifurc.monitor import Profile
+from bifurc.curves.monitor import Profile
 from bifurc.problem import FunctionProblem, ProblemError
+from bifurc.search.explore import explore
 from bifurc.seeding import Completeness
-from bifurc.singular import Kind, SingularPoint
+from bifurc.singular.locate import Kind, SingularPoint
 
 PERIOD = 6.0
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
-from bifurc.continuation import trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.problem import FunctionProblem
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 
 
 def line_symmetric():

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import GeometryError, Loop, loop_from_axes
 
 NAMES = ["bennett", "goldberg-5r", "bricard-line-symmetric", "reconfigurable-bricard-1", "parallelogram"]

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from linkages.catalogue import catalogue, entry
-from linkages.constructions import isomerize
-from linkages.identify import identify
+from linkages.construction.constructions import isomerize
+from linkages.identification.identify import identify
 from linkages.loop import GeometryError, Loop
 from linkages.relations import RELATIONS, RelationKind, relation_graph, relations_of
 

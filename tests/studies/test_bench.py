@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from studies.bench import machine, median_time
 from studies.branch_cost import Cost, cost_of, exponent, line, random_loop
 

@@ -4,13 +4,13 @@ import re
 
 import numpy as np
 
+from linkages.app.scene_figure import draw_configuration
 from linkages.catalogue import catalogue, entry
-from linkages.closed_forms import all_closed_forms
+from linkages.closed_forms.all_forms import all_closed_forms
 from linkages.mapping import map_by_name
 from studies import catalogue_page
 from studies.catalogue_page import PAGE, clearest_configuration, count_map, make_page, read_counts
 from studies.relations_figure import draw_relations
-from studies.scene_figure import draw_configuration
 
 CLOSED_FORMS = re.compile(r"^Closed forms:\n\n(?:- .*\n|  - .*\n)+\n", re.MULTILINE)
 

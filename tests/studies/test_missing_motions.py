@@ -3,9 +3,9 @@
 import numpy as np
 from click.testing import CliRunner
 
-from bifurc.explore import explore
+from bifurc.search.explore import explore
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from studies.missing_motions import linkages, main, same_motions
 
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bifurc.continuation import trace_branch
+from bifurc.curves.continuation import trace_branch
 from linkages.catalogue import entry
-from linkages.closure import LoopClosure
+from linkages.closure.loop_closure import LoopClosure
 from linkages.mapping import map_by_name
 from studies.half_turn import SHIFT, HalfTurn
 from studies.near_bifurcations import STEPS, describe, describe_certificates, follow

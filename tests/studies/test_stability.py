@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bifurc.certificate import certify_branch
-from bifurc.continuation import trace_branch
-from bifurc.monitor import profile_branch
+from bifurc.curves.certificate import certify_branch
+from bifurc.curves.continuation import trace_branch
+from bifurc.curves.monitor import profile_branch
 from studies.hard_cases import crossings, ladders, near_parallelogram, pitchfork
 from studies.methods.counted import Counted
 from studies.methods.detection import by_determinant, by_singular_value

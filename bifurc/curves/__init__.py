@@ -1,0 +1,1 @@
+"""One branch: traced, monitored, certified."""

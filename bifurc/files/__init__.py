@@ -1,0 +1,1 @@
+"""An atlas as a dataset, as a file, as a graph file."""

@@ -1,0 +1,1 @@
+"""Solve and decompose: bordered systems, correctors, roots, pieces by collocation."""

@@ -1,0 +1,1 @@
+"""Routes from one configuration to another, along forms and over surfaces."""

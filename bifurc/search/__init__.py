@@ -1,0 +1,1 @@
+"""All of it: every branch and every singular point of a problem."""

@@ -1,0 +1,1 @@
+"""One singular point: located, looked at on a small sphere, classified, confirmed."""

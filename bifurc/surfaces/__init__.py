@@ -1,0 +1,1 @@
+"""One surface of solutions: covered by charts, measured, walked over."""

@@ -1,0 +1,1 @@
+"""The command `bifurc`: its commands, tables and texts."""

@@ -1,0 +1,1 @@
+"""The command `bifurc sweep`: many members of a family, resumable."""

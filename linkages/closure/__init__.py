@@ -1,0 +1,1 @@
+"""The closure equations of a loop."""

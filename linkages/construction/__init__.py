@@ -1,0 +1,1 @@
+"""What families are made of: numbers of any kind, links, triangles, constructions."""

@@ -1,0 +1,1 @@
+"""Misprints of the sources, each with a measured amount."""

@@ -1,0 +1,1 @@
+"""Which linkages of the catalogue a table is a case of."""

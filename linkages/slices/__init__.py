@@ -1,0 +1,1 @@
+"""Complete slices: every configuration at one joint angle, and what that proves."""

@@ -1,0 +1,149 @@
+"""Tracing: closing, leaving, stalling, and what it says of each."""
+
+import numpy as np
+import pytest
+
+from bifurc.branch import Outcome
+from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.problem import FunctionProblem, ProblemError
+from linkages.catalogue import entry
+from linkages.closure.loop_closure import LoopClosure
+
+
+def plane(function, low=-2.0, high=2.0, **more):
+    return FunctionProblem(lambda u: np.array([function(*u)]), [(low, high)] * 2, **more)
+
+
+def torus_line(p, q):
+    """Winds p times about one angle and q times about the other before it closes."""
+    return plane(lambda x, y: np.sin(0.5 * (q * x - p * y)), -np.pi, np.pi, periods=[2 * np.pi] * 2)
+
+
+def test_a_circle_closes_after_its_length():
+    branch = trace_branch(plane(lambda x, y: x * x + y * y - 1), [0.0, 1.0])
+    assert branch.outcome is Outcome.CLOSED
+    assert branch.length == pytest.approx(2 * np.pi, abs=1e-12)
+
+
+@pytest.mark.parametrize(("p", "q"), [(1, 0), (1, 1), (2, 1), (5, 3)])
+def test_closing_is_recognised_on_the_torus_after_as_many_turns_as_it_takes(p, q):
+    problem = torus_line(p, q)
+    problem.bounds[:] = [-np.inf, np.inf]
+    branch = trace_branch(problem, np.array([0.0, 0.0]), np.array([1.0, 0.5]))
+    assert branch.outcome is Outcome.CLOSED
+    assert sorted(np.abs(branch.winding)) == sorted([p, q])
+    assert branch.length == pytest.approx(2 * np.pi * np.hypot(p, q), abs=1e-11)
+
+
+def test_a_figure_of_eight_closes_after_both_loops_and_not_at_its_crossing():
+    # the lemniscate of Bernoulli with half-width 1 has the length 2 times the lemniscate constant
+    for start in ([1.0, 0.0], [-1.0, 0.0], [np.sqrt(3 / 8), np.sqrt(1 / 8)]):
+        branch = trace_branch(plane(lambda x, y: (x * x + y * y) ** 2 - x * x + y * y), start)
+        assert branch.outcome is Outcome.CLOSED
+        assert branch.length == pytest.approx(5.244115108584239, abs=1e-11)
+
+
+def test_the_direction_decides_which_way_a_curve_is_followed_first():
+    problem = plane(lambda x, y: x * x + y * y - 1)
+    for sign in (1.0, -1.0):
+        branch = trace_branch(problem, [1.0, 0.0], [0.0, sign])
+        assert branch(0.0, 1) == pytest.approx([0.0, sign], abs=1e-12)
+
+
+def test_a_curve_that_leaves_the_region_is_followed_both_ways_to_the_bounds():
+    branch = trace_branch(plane(lambda x, y: y - x**3, -1.0, 1.0), [0.2, 0.008])
+    assert branch.outcome is Outcome.LEFT_REGION
+    ends = branch(np.array([0.0, branch.length]))
+    assert np.abs(ends) == pytest.approx(np.ones((2, 2)), abs=1e-11)
+
+
+def test_a_start_that_is_no_solution_gives_no_curve_and_its_gap():
+    problem = plane(lambda x, y: x * x + y * y + 0.5)
+    branch = trace_branch(problem, [0.5, 0.5])
+    assert branch.outcome is Outcome.OPEN
+    assert branch.length == 0.0
+    # Gauss-Newton across the tangent does not go below the smallest residual on its line
+    assert branch.gap * problem.magnitude >= 0.5
+    assert branch.max_residual == branch.gap
+
+
+def test_a_curve_longer_than_allowed_says_so():
+    problem = torus_line(1, 40)
+    problem.bounds[:] = [-np.inf, np.inf]
+    branch = trace_branch(problem, [0.0, 0.0], None, TraceSettings(max_length=3.0))
+    assert branch.outcome is Outcome.STEP_LIMIT
+    assert branch.length > 3.0 * problem.scale
+    assert np.linalg.norm(problem.residuals(branch.sample(300)), axis=1).max() < 1e-12
+
+
+@pytest.mark.parametrize("coefficient", [1.0, 4.0])
+def test_a_cusp_ends_a_curve_at_the_cusp_and_nowhere_else(coefficient):
+    branch = trace_branch(plane(lambda x, y: y * y - coefficient * x**3), [1.0, np.sqrt(coefficient)])
+    assert branch.outcome is not Outcome.CLOSED
+    # every point that is returned is a solution, and the cusp is approached
+    points = branch.sample(2000)
+    # within 1e-4 of the cusp F is below 1e-10 whatever the direction: there it says no more
+    assert np.abs(points[:, 1] ** 2 - coefficient * points[:, 0] ** 3).max() < 1e-10
+    assert np.linalg.norm(points, axis=1).min() < 1e-2
+
+
+def test_a_crossing_is_passed_on_the_branch_that_was_followed():
+    branch = trace_branch(plane(lambda x, y: x * y), [1.0, 0.0])
+    assert branch.length == pytest.approx(4.0, abs=1e-12)
+    assert np.abs(branch.sample(400)[:, 1]).max() < 1e-13
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_an_arc_close_to_another_is_not_left(gap):
+    # a hyperbola: the arcs come within sqrt(2 gap) of each other
+    branch = trace_branch(plane(lambda x, y: x * y - gap, -1.0, 1.0), [0.5, 2 * gap])
+    assert branch.outcome is Outcome.LEFT_REGION
+    points = branch.sample(4000)
+    assert points.min() > 0.0
+    ends = sorted(branch(np.array([0.0, branch.length]))[:, 0])
+    assert ends == pytest.approx([gap, 1.0], abs=1e-10)
+
+
+@pytest.mark.parametrize("name", ["serial-goldberg-6r", "double-goldberg-type-iv", "syncopated-l-shape-goldberg-6r"])
+def test_a_configuration_of_lower_rank_on_a_smooth_branch_is_passed(name):
+    problem = LoopClosure(entry(name).build())
+    seeds = problem.seeds(np.random.default_rng(1), 1).points
+    values = np.linalg.svd(problem.jacobians(seeds), compute_uv=False)[:, 4]
+    lengths = []
+    for start in seeds[np.argsort(-values)[:5]]:
+        branch = trace_branch(problem, start)
+        assert branch.outcome is Outcome.CLOSED
+        lengths.append(branch.length)
+    assert lengths == pytest.approx([lengths[0]] * 5, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("order", 1), ("order", 31), ("tolerance", 1e-15), ("tolerance", 0.1), ("tolerance", np.nan), ("shortest", 0.0),
+     ("longest", 1e-10), ("max_length", 1.0)],
+)  # fmt: skip
+def test_settings_out_of_range_are_refused_by_name_and_value(field, value):
+    with pytest.raises(ProblemError) as caught:
+        TraceSettings(**{field: value})
+    assert field in caught.value.name
+    assert str(value) in str(caught.value)
+
+
+@pytest.mark.parametrize("start", [np.zeros(3), [np.inf, 0.0]])
+def test_a_start_that_cannot_be_one_is_refused(start):
+    with pytest.raises(ProblemError, match="start"):
+        trace_branch(plane(lambda x, y: x * y), start)
+
+
+def test_a_direction_of_the_wrong_shape_is_refused():
+    with pytest.raises(ProblemError, match="direction"):
+        trace_branch(plane(lambda x, y: x * y), [1.0, 0.0], [1.0])
+
+
+@pytest.mark.parametrize("order", [4, 8, 16, 24])
+def test_every_order_meets_the_tolerance(order):
+    problem = LoopClosure(entry("bricard-line-symmetric").build())
+    start = problem.seeds(np.random.default_rng(0), 1).points[0]
+    branch = trace_branch(problem, start, None, TraceSettings(order=order, tolerance=1e-10))
+    assert branch.outcome is Outcome.CLOSED
+    assert np.linalg.norm(problem.residuals(branch.sample(3000)), axis=1).max() < 1e-9

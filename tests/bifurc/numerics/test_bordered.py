@@ -1,0 +1,43 @@
+"""A factorised bordered matrix solves its system, whichever way it is factorised."""
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_array, diags_array, hstack
+
+from bifurc.numerics.bordered import Bordered, sparse_bordered
+
+
+def chain(n):
+    """Second differences with a border column, (n, n + 1), sparse."""
+    ones = np.ones(n)
+    band = diags_array([ones[1:], -1.9 * ones, ones[1:]], offsets=[-1, 0, 1])
+    return csc_array(hstack([band, 1e-3 * ones[:, None]]))
+
+
+@pytest.mark.parametrize("magnitude", [1.0, 1e-6, 1e6])
+def test_sparse_and_dense_factorisations_agree_whatever_the_size_of_the_equations(magnitude):
+    rng = np.random.default_rng(0)
+    matrix, tangent, residual = chain(60) * magnitude, rng.normal(size=61), magnitude * rng.normal(size=60)
+    dense = Bordered(matrix.toarray(), tangent)
+    for factored in (Bordered(matrix, tangent), Bordered(np.vstack([matrix.toarray()] * 2), tangent)):
+        right = residual if factored._rows == 60 else np.tile(residual, 2)
+        assert np.allclose(factored.solve(right, 0.3), dense.solve(residual, 0.3), rtol=1e-9)
+        assert np.allclose(factored.null_vector(), dense.null_vector(), atol=1e-12)
+
+
+def test_the_border_does_not_fill_a_sparse_factorisation(monkeypatch):
+    made = []
+
+    def factorise(*arguments, **options):
+        made.append(splu(*arguments, **options))
+        return made[-1]
+
+    from bifurc.numerics import bordered
+
+    splu = bordered.splu
+    monkeypatch.setattr(bordered, "splu", factorise)
+    matrix = chain(500)
+    right = np.ones((501, 2))
+    solved = sparse_bordered(matrix, np.linspace(0.1, 1.0, 501))(right)
+    assert np.allclose(matrix @ solved, 1.0, atol=1e-9)
+    assert made[0].L.nnz + made[0].U.nnz < 4 * matrix.nnz

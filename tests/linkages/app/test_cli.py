@@ -1,0 +1,274 @@
+"""The command line, in one process; what is written to disk, and signals, are in their own files."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from linkages.app.cli import main
+from linkages.catalogue import catalogue
+from linkages.closure.loop_closure import LoopClosure
+from linkages.loop import Loop
+
+MINE = """
+name = "my linkage"
+angles = "deg"
+lengths = [1.0, 2.0, 1.0, 2.0]
+twists = [0, 0, 0, 0]
+offsets = [0, 0, 0, 0]
+"""
+KEYS = {
+    "linkage": {"name", "lengths", "twists", "offsets"},
+    "forms": {
+        "name", "dimension", "closed", "length", "winding", "inactive_joints", "symmetry", "sample", "max_residual",
+        "min_singular_value", "component",
+    },
+    "bifurcations": {"theta", "rank", "forms", "tangents", "error"},
+    "rank_drops": {"theta", "rank", "form"},
+    "near_misses": {"theta", "singular_value", "form"},
+    "dead_points": {"theta", "joint", "form"},
+    "rigid_assemblies": None,
+    "completeness": {"level", "certainty", "statement", "missed_probability"},
+    "seconds": None, "version": None, "seed": None, "tolerance": None,
+}  # fmt: skip
+
+
+def bifurc(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def write(tmp_path):
+    def to_file(text, name="mine.toml"):
+        (tmp_path / name).write_text(text)
+        return tmp_path / name
+
+    return to_file
+
+
+# --- list and show ------------------------------------------------------------------------------------
+
+
+def test_list_names_every_linkage_of_the_catalogue():
+    result = bifurc("list")
+    assert result.exit_code == 0
+    listed = [line.split()[:2] for line in result.stdout.splitlines()[1:]]
+    assert [name for name, _ in listed] == list(catalogue())
+    assert ["special-double-subtractive-goldberg", "6"] in listed
+
+
+def test_show_gives_source_parameters_and_geometry_in_degrees():
+    result = bifurc("show", "bennett")
+    assert result.exit_code == 0
+    for expected in ("Bennett 1903", "100 deg", "sin(alpha)/a = sin(beta)/b", "Misprints"):
+        assert expected in result.stdout
+
+
+@pytest.mark.parametrize("command", [(), ("list",), ("show",), ("map",), ("route",)])
+def test_help_has_an_example(command):
+    result = bifurc(*command, "--help")
+    assert result.exit_code == 0
+    assert f"bifurc {' '.join(command)}".strip() in result.stdout.split("Example")[1]
+
+
+# --- map ----------------------------------------------------------------------------------------------
+
+
+def test_map_shows_forms_and_bifurcations_in_degrees():
+    result = bifurc("map", "special-double-subtractive-goldberg")
+    assert result.exit_code == 0
+    assert "4 forms in 1 component, 4 bifurcations" in result.stdout
+    assert "3 at 180.0000, 6 at 180.0000" in result.stdout
+    assert "Completeness" in result.stdout
+    assert "rigid" not in result.stdout.lower()
+
+
+def test_json_is_one_document_with_the_documented_keys_and_nothing_else():
+    result = bifurc("map", "reconfigurable-bricard-1", "--json", "--seed", 7)
+    assert result.exit_code == 0
+    assert result.stderr == ""
+    document = json.loads(result.stdout)
+    assert set(document) == set(KEYS)
+    for key, inner in KEYS.items():
+        value = document[key]
+        for item in value if isinstance(value, list) else [value]:
+            assert inner is None or set(item) == inner, key
+    assert document["seed"] == 7
+    assert document["tolerance"] == 1e-13
+    assert document["completeness"]["level"] == "complete slices"
+    assert document["completeness"]["certainty"] == "proved"
+
+
+def test_json_loads_nothing_that_it_does_not_need():
+    script = (
+        "import sys, linkages.app.cli as c; c.main(['map', 'bennett', '--json'], standalone_mode=False)\n"
+        "print([m for m in ('matplotlib', 'xarray', 'sympy', 'mpmath') if m in sys.modules], file=sys.stderr)"
+    )
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert result.stderr.splitlines()[-1] == "[]"
+
+
+def test_json_speaks_of_radians_joints_from_1_and_relative_residuals():
+    document = json.loads(bifurc("map", "special-double-subtractive-goldberg", "--json").stdout)
+    loop_angles = np.array([b["theta"] for b in document["bifurcations"]])
+    assert np.abs(np.sin(loop_angles)).max() < 1e-11  # all joints at 0 or pi
+    inactive = {form["name"]: form["inactive_joints"] for form in document["forms"]}
+    assert inactive["Form II (Bennett 4R)"] == [3, 6]
+    for bifurcation in document["bifurcations"]:
+        assert set(bifurcation["forms"]) <= set(inactive)
+        assert len(bifurcation["tangents"]) == len(bifurcation["forms"]) == 2
+        assert bifurcation["rank"] == 4
+    assert {d["joint"] for d in document["dead_points"]} <= set(range(1, 7))
+    problem = closure_of(document)
+    for form in document["forms"]:
+        assert 0 < form["max_residual"] < 1e-12
+        assert form["min_singular_value"] == 0
+        assert np.abs(problem.residuals(np.array([form["sample"]]))).max() < 1e-12
+        assert np.abs(form["sample"]).max() <= np.pi + 1e-9
+
+
+def closure_of(document):
+    geometry = document["linkage"]
+    return LoopClosure(Loop(geometry["lengths"], geometry["twists"], geometry["offsets"]))
+
+
+def test_parameters_of_kind_angle_are_given_in_degrees():
+    document = json.loads(bifurc("map", "bennett", "--param", "alpha=70", "--param", "a=2", "--json").stdout)
+    assert document["linkage"]["twists"][0] == pytest.approx(np.radians(70), abs=1e-15)
+    assert document["linkage"]["lengths"][0] == 2.0
+
+
+def test_a_linkage_file_is_mapped(write):
+    result = bifurc("map", write(MINE))
+    assert result.exit_code == 0
+    assert result.stdout.startswith("my linkage\n")
+    assert "antiparallelogram form" in result.stdout
+
+
+def test_degrees_taken_for_radians_are_warned_of_on_standard_error(write):
+    path = write(MINE.replace("deg", "rad").replace("twists = [0", "twists = [100"))
+    result = bifurc("map", path, "--json")
+    assert "warning: twists[1] is 100" in result.stderr
+    json.loads(result.stdout)
+
+
+def test_a_surface_is_a_form_of_dimension_2(write):
+    text = 'angles = "deg"\nlengths = [1, 1, 1, 1, 1.2]\ntwists = [0, 0, 0, 0, 0]\noffsets = [0, 0, 0, 0, 0]'
+    result = bifurc("map", write(text), "--json", "--starts", 30)
+    assert result.exit_code == 0
+    document = json.loads(result.stdout)
+    assert [form["dimension"] for form in document["forms"]] == [2]
+    assert set(document["forms"][0]) == KEYS["forms"]
+
+
+DOES_NOT_MOVE = {
+    "no real configuration": (MINE.replace("1.0, 2.0, 1.0, 2.0", "10, 1, 1, 1"), "has no real configuration"),
+    "a rigid linkage": (
+        'angles = "deg"\nlengths = [1.5, 0.7, 1.2, 0.9, 1.1, 0.6]\ntwists = [50, 80, 30, 100, 60, 110]\n'
+        "offsets = [0.2, -0.3, 0.5, 0.1, -0.4, 0.6]",
+        "is rigid",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", DOES_NOT_MOVE)
+def test_a_linkage_that_does_not_move_is_said_to_be_what_it_is_with_exit_code_3(write, what):
+    text, expected = DOES_NOT_MOVE[what]
+    path = write(text)
+    result = bifurc("map", path)
+    assert result.exit_code == 3
+    assert expected in result.stdout
+    as_json = bifurc("map", path, "--json")
+    assert as_json.exit_code == 3
+    assert json.loads(as_json.stdout)["forms"] == []
+    assert expected in as_json.stderr
+
+
+@pytest.mark.parametrize("relative", [1e-3, 1e-6, 1e-9])
+def test_a_linkage_that_misses_its_condition_is_said_to_and_by_how_much(write, relative):
+    b = np.sin(np.radians(40)) / np.sin(np.radians(100))
+    lengths = [1.0, float(b * (1 + relative)), 1.0, float(b)]
+    text = f'angles = "deg"\nlengths = {lengths}\ntwists = [100, 40, 100, 40]\noffsets = [0, 0, 0, 0]'
+    result = bifurc("map", write(text))
+    assert result.exit_code == 3
+    assert "misses closure by" in result.stdout
+    gap = float(result.stdout.split("misses closure by ")[1].split()[0])
+    assert 0.1 * relative < gap < 2 * relative
+
+
+# --- route --------------------------------------------------------------------------------------------
+
+
+def test_route_lists_the_legs_and_how_far_each_joint_turns():
+    result = bifurc("route", "special-double-subtractive-goldberg", "Form I", "Bennett 4R")
+    assert result.exit_code == 0
+    assert "Route from Form I (constructive 6R) to Form II (Bennett 4R): 3 legs" in result.stdout
+    assert "turn 6" in result.stdout
+
+
+def test_route_takes_a_saved_atlas(tmp_path):
+    assert bifurc("map", "kite", "--out", tmp_path).exit_code == 0
+    result = bifurc("route", tmp_path / "atlas.nc", "kite", "folded")
+    assert result.exit_code == 0
+    assert "Route from kite form to folded form (joints 1,3 inactive)" in result.stdout
+
+
+def test_an_unknown_form_and_forms_that_are_not_connected_have_their_own_exit_codes():
+    unknown = bifurc("route", "kite", "kite", "nothing")
+    assert unknown.exit_code == 2
+    assert "form 'nothing': it must be one of" in unknown.stderr
+    apart = bifurc("route", "bricard-line-symmetric", "Form I (original)", "Form II (original)")
+    assert apart.exit_code == 4
+    assert "no route" in apart.stderr
+
+
+# --- bad input ----------------------------------------------------------------------------------------
+
+BAD = {
+    "an unknown name": (("map", "benett"), "the nearest names are bennett"),
+    "an unknown name to show": (("show", "wolhart"), "no linkage is called 'wolhart'"),
+    "a missing file": (("map", "nowhere.toml"), "nowhere.toml: there is no such file"),
+    "a missing atlas": (("route", "nowhere.nc", "a", "b"), "nowhere.nc: there is no such file"),
+    "an unknown parameter": (("map", "bennett", "--param", "gamma=3"), "one of a, alpha, beta"),
+    "a parameter without a value": (("map", "bennett", "--param", "alpha"), "of the form key=value"),
+    "a parameter that is no number": (("map", "bennett", "--param", "alpha=x"), "--param alpha: 'x'"),
+    "a parameter that is not finite": (("map", "bennett", "--param", "alpha=nan"), "--param alpha: nan"),
+    "parameters that make no linkage": (("map", "bennett", "--param", "alpha=200"), "alpha"),
+    "no random starts": (("map", "bennett", "--starts", "0"), "0 is not in the range"),
+    "a tolerance out of range": (("map", "bennett", "--tolerance", "1"), "tolerance: 1.0"),
+    "an unknown option": (("map", "bennett", "--output", "x"), "No such option"),
+    "a word for a number": (("map", "bennett", "--seed", "x"), "'x' is not a valid integer"),
+    "a negative seed": (("map", "bennett", "--seed", "-1"), "-1 is not in the range"),
+}
+
+
+@pytest.mark.parametrize("what", BAD)
+def test_bad_input_ends_with_a_message_and_exit_code_2(what):
+    arguments, message = BAD[what]
+    result = bifurc(*arguments)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert result.stdout == ""
+    assert isinstance(result.exception, SystemExit)
+
+
+def test_a_file_that_is_wrong_ends_with_its_name_and_what_is_wrong(write):
+    result = bifurc("map", write(MINE.replace("twists", "twist")))
+    assert result.exit_code == 2
+    assert "mine.toml: key: 'twist' (the nearest is 'twists')" in result.stderr
+
+
+def test_a_name_without_the_ending_of_a_file_leads_to_the_file(write, monkeypatch):
+    monkeypatch.chdir(write(MINE).parent)
+    result = bifurc("map", "mine")
+    assert result.exit_code == 2
+    assert "the nearest names are mine.toml" in result.stderr
+
+
+def test_a_file_takes_no_parameters(write):
+    result = bifurc("map", write(MINE), "--param", "a=1")
+    assert result.exit_code == 2
+    assert "--param" in result.stderr

@@ -1,0 +1,42 @@
+"""`bifurc map --digits`."""
+
+import mpmath
+from click.testing import CliRunner
+
+from linkages.app.choice import choose_precisely
+from linkages.app.cli import main
+from linkages.app.confirmation import confirm_points
+from linkages.catalogue import entry
+from linkages.mapping import map_by_name
+
+TABLE = 'angles = "deg"\nlengths = [1.0, 0.7, 1.0, 0.7]\ntwists = [0, 90, 0, 0.1]\noffsets = [0, 0, 0, 0]\n'
+
+
+def test_every_error_that_a_map_states_holds():
+    for name in ("kite", "serial-goldberg-6r"):
+        found = list(confirm_points(map_by_name(name), name))
+        assert found
+        for point, confirmation in found:
+            assert confirmation.distance <= point.point.error < 1e-12
+            assert confirmation.nullity == entry(name).build().n - point.point.rank
+
+
+def test_the_digits_are_shown_for_every_singular_point():
+    result = CliRunner().invoke(main, ["map", "kite", "--digits", "50", "--starts", "20"])
+    shown = result.output.split("Confirmation at 50 digits")[1]
+    assert result.exit_code == 0
+    assert "B1" in shown and "B2" in shown and "quadratic" in shown
+
+
+def test_digits_do_not_go_with_json():
+    result = CliRunner().invoke(main, ["map", "kite", "--digits", "50", "--json"])
+    assert result.exit_code == 2 and "--digits" in result.output
+
+
+def test_decimals_of_a_file_are_taken_as_written(tmp_path):
+    path = tmp_path / "table.toml"
+    path.write_text(TABLE)
+    with mpmath.workdps(50):
+        loop = choose_precisely(str(path))
+        assert abs(loop.lengths[1] - mpmath.mpf(7) / 10) < mpmath.mpf(10) ** -49
+        assert abs(loop.twists[1] - mpmath.pi / 2) < mpmath.mpf(10) ** -48

@@ -1,0 +1,54 @@
+"""The command `bifurc identify`."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from linkages.app.cli import main
+from linkages.app.identify import NOT_KNOWN
+from linkages.catalogue import entry
+
+BENNETT = """
+name = "mine"
+angles = "deg"
+lengths = [0.65270364, 1.0, {a34}, 1.0]
+twists = [40, -100, 40, -100]
+offsets = [0, 0, 0, 0]
+"""
+
+
+def identify(tmp_path, a34, *options):
+    path = tmp_path / "mine.toml"
+    path.write_text(BENNETT.format(a34=a34))
+    return CliRunner().invoke(main, ["identify", str(path), *options])
+
+
+def test_a_file_is_named_with_its_parameters_in_degrees(tmp_path):
+    result = identify(tmp_path, 0.65270364, "--tolerance", "1e-7")
+    assert result.exit_code == 0
+    assert "bennett: Bennett linkage, asymmetric set-up, 3 free parameters" in result.stdout
+    assert "40 deg" in result.stdout
+
+
+def test_a_file_that_is_nothing_known_ends_with_its_own_code_and_shows_the_nearest(tmp_path):
+    result = identify(tmp_path, 0.66)
+    assert result.exit_code == NOT_KNOWN
+    assert "No linkage of the catalogue" in result.stdout
+    assert "Near: bennett" in result.stdout
+    assert "a34 would be" in result.stdout
+
+
+def test_the_document_holds_parameters_that_build_the_table(tmp_path):
+    document = json.loads(identify(tmp_path, 0.65270364, "--tolerance", "1e-7", "--json").stdout)
+    (bennett,) = [match for match in document["matches"] if match["name"] == "bennett"]
+    assert sorted(entry("bennett").build(**bennett["parameters"]).lengths) == pytest.approx(
+        [0.65270364, 0.65270364, 1, 1], abs=1e-7
+    )
+    assert document["nearest"] != []
+
+
+def test_a_locked_joint_is_told():
+    result = CliRunner().invoke(main, ["identify", "mixed-double-goldberg-type-iii"])
+    assert result.exit_code == 0
+    assert "With joint 3 locked at 0 deg: goldberg-5r" in result.stdout

@@ -1,0 +1,63 @@
+"""Verification: every linkage passes, failures are said, and the command tells them by its exit code."""
+
+import dataclasses
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from linkages.app.cli import main
+from linkages.app.verify import ErratumCheck, describe, verify
+from linkages.app.verify_command import FAILED
+from linkages.catalogue import catalogue
+from linkages.closed_forms.all_forms import all_closed_forms
+
+WITH_CLOSED_FORM = list(dict.fromkeys(form.linkage for form in all_closed_forms()))
+WITHOUT = [name for name in catalogue() if name not in WITH_CLOSED_FORM]
+
+
+@pytest.mark.parametrize("name", WITH_CLOSED_FORM)
+def test_closed_form_is_the_traced_curve_of_random_members(name):
+    checked = verify(name, members=4, points=1, seed=1)
+    real = [member for member in checked.members if member.real]
+    assert checked.failures == ()
+    assert real and all(set(member.outcomes) == {"CLOSED"} for member in real)
+    assert max(member.certain for member in real) < 1e-10
+    assert max(member.closure for member in real) < 1e-12
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_linkage_without_closed_form_moves_as_stated(name):
+    assert verify(name, members=1).failures == ()
+
+
+def test_description_says_what_was_checked():
+    text = describe(verify("mixed-double-goldberg-type-i"))
+    for word in ("condition", "proved exactly at 6 points", "1 by rank, 1 by tracing", "distance", "erratum"):
+        assert word in text
+    assert "FAILED" not in text
+
+
+def test_misprint_that_does_not_fail_is_a_failure():
+    checked = verify("bennett")
+    wrong = dataclasses.replace(checked, errata=(ErratumCheck("(1)", 0.0, 0.0),))
+    assert wrong.failures == ("erratum (1): not reproduced",)
+    assert "FAILED" in describe(wrong)
+
+
+def test_mobility_other_than_stated_is_a_failure():
+    checked = verify("bennett")
+    assert dataclasses.replace(checked, expected=2).failures == ("member 1: mobility 1, not 2",)
+
+
+def test_command_prints_json_and_nothing_else():
+    result = CliRunner().invoke(main, ["verify", "goldberg-5r", "--members", "2", "--json"])
+    assert result.exit_code == 0
+    document = json.loads(result.stdout)
+    assert document["closed_forms"][0]["proved"] and len(document["members"]) == 2
+
+
+def test_command_ends_with_its_own_code_when_something_fails(monkeypatch):
+    checked = dataclasses.replace(verify("bennett"), expected=2)
+    monkeypatch.setattr("linkages.app.verify.verify", lambda *_: checked)
+    assert CliRunner().invoke(main, ["verify", "bennett"]).exit_code == FAILED

@@ -1,0 +1,83 @@
+"""Proofs in exact arithmetic: every closed form closes without floating point, and a wrong one does not."""
+
+import dataclasses
+from fractions import Fraction
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from linkages.catalogue import entry
+from linkages.closed_forms.all_forms import all_closed_forms, closed_forms
+from linkages.closed_forms.proof import closing_defects, exact_parameters, prove, prove_symbolically
+from linkages.construction import exact
+from linkages.construction.exact import Angle, Quadratic
+
+FORMS = all_closed_forms()
+IDS = [f"{form.linkage}: {form.form}" for form in FORMS]
+
+
+@pytest.mark.parametrize("form", FORMS, ids=IDS)
+def test_closed_form_closes_exactly(form):
+    proof = prove(form, points=4, seed=2)
+    assert proof.proved and proof.points == 4
+    assert proof.doubt < 1e-12
+
+
+@pytest.mark.parametrize("name", ["bennett", "bennett-ab-2", "bennett-line-symmetric", "bennett-lb-2"])
+def test_bennett_closes_identically_in_all_symbols(name):
+    assert prove_symbolically(closed_forms(name)[0])
+
+
+@pytest.mark.parametrize("form", FORMS[::4], ids=IDS[::4])
+def test_closed_form_with_one_joint_turned_round_is_refuted(form):
+    top, bottom = form.half_tangents[2][0]
+    wrong = dataclasses.replace(form, half_tangents=(*form.half_tangents[:2], ((bottom, top),), *form.half_tangents[3:]))
+    assert prove(wrong, points=2).closed == 0
+
+
+def test_symbolic_proof_refutes_a_wrong_sign():
+    form = closed_forms("bennett")[0]
+    wrong = dataclasses.replace(form, constants={"m": -sp.sympify(form.constants["m"])})
+    assert not prove_symbolically(wrong)
+
+
+def test_a_float_is_no_proof():
+    loop = entry("bennett").build()
+    with pytest.raises(TypeError):
+        Angle(0.5)
+    with pytest.raises(TypeError):
+        closing_defects(loop, [Angle(Fraction(1, 2))] * 4)
+
+
+def test_exact_parameters_lie_in_their_ranges():
+    found = entry("goldberg-5r")
+    drawn = exact_parameters(found, np.random.default_rng(0))
+    assert all(p.low < float(drawn[p.name]) < p.high for p in found.parameters)
+    assert isinstance(exact.sin(drawn["alpha"]), Fraction)
+
+
+def test_numbers_with_a_square_root_follow_the_rules_of_a_field():
+    x, y = Quadratic(Fraction(1), Fraction(2), Fraction(3)), Quadratic(Fraction(-2), Fraction(1, 5), Fraction(3))
+    assert x * y / y == x and x - x == 0 and (x + y) - y == x
+    assert x * x.inverse() == 1
+    assert float(x * y) == pytest.approx(float(x) * float(y))
+
+
+def test_roots_of_one_field_agree_and_those_of_two_are_refused():
+    assert exact.sqrt(Fraction(12)) - 2 * exact.sqrt(Fraction(3)) == 0
+    with pytest.raises(ArithmeticError):
+        exact.sqrt(Fraction(2)) + exact.sqrt(Fraction(3))
+
+
+def test_exact_angles_add_up_like_angles():
+    x, y = Angle(Fraction(3, 4)), Angle(Fraction(-5, 2))
+    assert float(x + y) == pytest.approx(float(x) + float(y))
+    assert x + exact.pi - exact.pi == x and 2 * (x / 2) == x and -1 * x == -x
+    assert exact.sin(x) ** 2 + exact.cos(x) ** 2 == 1
+
+
+def test_exact_inverse_functions_undo_the_functions():
+    x = Angle(Fraction(2, 7))
+    assert exact.acos(exact.cos(x)) == x and exact.asin(exact.sin(x)) == x
+    assert exact.atan2(exact.sin(x), exact.cos(x)) == x and 2 * exact.atan(Fraction(2, 7)) == x

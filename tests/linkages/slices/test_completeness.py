@@ -1,0 +1,121 @@
+"""What the slices prove of a list of motions, and that no planted motion refutes it."""
+
+import numpy as np
+import pytest
+
+from bifurc.search.explore import explore
+from linkages.catalogue import entry
+from linkages.closure.loop_closure import LoopClosure
+from linkages.loop import Loop
+
+# near this twist of a plane-symmetric Bricard linkage a second, small motion appears beside the large one
+SMALL = {"a12": 0.483, "a23": 1.966, "a34": 0.890, "alpha23": 1.213, "alpha34": 1.023, "R2": 0.043, "R3": -0.267}
+
+
+def small_and_large(twist):
+    return LoopClosure(entry("bricard-plane-symmetric").build(alpha12=twist, **SMALL))
+
+
+def extents(atlas):
+    return sorted(np.ptp(form.branch.sample(200), axis=0).max() for form in atlas.forms)
+
+
+@pytest.mark.parametrize(
+    "name", ["bennett", "parallelogram", "goldberg-5r", "serial-goldberg-6r", "waldron-hybrid", "bricard-line-symmetric"]
+)
+def test_numbers_alone_prove_many_linkages_complete(name):
+    atlas = explore(LoopClosure(entry(name).build()))
+    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.statement.startswith("no motion is missing")
+
+
+@pytest.mark.parametrize("name", ["special-double-subtractive-goldberg", "wohlhart-hybrid", "bricard-plane-symmetric"])
+def test_following_proves_what_numbers_leave_open(name):
+    problem = LoopClosure(entry(name).build())
+    counted, followed = explore(problem), explore(problem, prove=True)
+    assert counted.completeness.level == "certified"
+    assert "more than 15 degrees" in counted.completeness.statement
+    assert followed.completeness.level == "proved"
+    assert len(counted.forms) == len(followed.forms)
+
+
+def test_sheets_that_run_to_infinity_leave_the_statement_at_certified():
+    assert explore(LoopClosure(entry("wohlhart-symmetric").build()), prove=True).completeness.level == "certified"
+
+
+@pytest.mark.parametrize("name", ["parallelogram", "special-double-subtractive-goldberg", "bricard-line-symmetric"])
+def test_no_list_with_a_motion_left_out_is_called_complete(name):
+    problem = LoopClosure(entry(name).build())
+    branches = [form.branch for form in explore(problem).forms]
+    audit = problem.seeds(np.random.default_rng(0), 10).audit
+    assert audit(branches, np.inf).level == "proved"
+    for i in range(len(branches)):
+        assert audit(branches[:i] + branches[i + 1 :], np.inf).level == "estimated"
+
+
+@pytest.mark.parametrize("twist", [2.264, 2.2643, 2.264327])  # the small motion turns by 0.14, 0.039 and 0.0023 rad
+@pytest.mark.parametrize("seed", range(3))
+def test_a_motion_smaller_than_the_gap_between_slices_is_found(twist, seed):
+    atlas = explore(small_and_large(twist), starts=1, seed=seed, prove=True)
+    small, large = extents(atlas)
+    assert small < 0.15 < 5 < large
+    assert atlas.completeness.level == "proved"
+
+
+@pytest.mark.parametrize("twist", [2.2643, 2.264327])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_small_motion_that_no_slice_passes_is_not_denied_and_is_reached_from_the_audit(twist, seed):
+    problem = small_and_large(twist)
+    forms = explore(problem).forms
+    small, large = (pick(forms, key=lambda form: form.branch.length).branch for pick in (min, max))
+    audit = problem.seeds(np.random.default_rng(seed), 1).audit
+    blind = audit([large], np.inf)
+    assert blind.level != "proved"
+    if blind.level == "certified":  # else a slice happens to pass the small motion
+        points, gaps = problem.project(blind.starts)
+        distance, _ = small.nearest(points[gaps < 1e-12])
+        assert np.count_nonzero(distance < 1e-6) >= 2
+
+
+@pytest.mark.parametrize("missing", [1e-2, 1e-4, 1e-5])
+def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
+    # the longest bar is as long as the others together, but for a little: the motion is an oval of its square root
+    atlas = explore(LoopClosure(entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)), starts=1, prove=True)
+    assert len(atlas.forms) == 1
+    assert 3 * np.sqrt(missing) < extents(atlas)[0] < 5 * np.sqrt(missing)
+    assert atlas.completeness.level == "proved"
+
+
+def test_a_loop_that_cannot_move_is_proved_not_to():
+    rng = np.random.default_rng(3)
+    loop = Loop(rng.uniform(0.5, 1, 6), rng.uniform(0.5, 2.5, 6), rng.uniform(-0.3, 0.3, 6), "general 6R")
+    atlas = explore(LoopClosure(loop))
+    assert not atlas.forms
+    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.statement.startswith("there is no motion")
+
+
+def test_surfaces_and_long_loops_are_estimated():
+    planar = Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5, "planar 5R")
+    atlas = explore(LoopClosure(planar), starts=20, charts=50, prove=True)
+    assert atlas.completeness.level == "estimated"
+    assert "could not be made complete" in atlas.completeness.statement
+
+
+def test_little_time_ends_at_numbers_alone():
+    problem = LoopClosure(entry("bricard-plane-symmetric").build())
+    branches = [form.branch for form in explore(problem).forms]
+    assert problem.seeds(np.random.default_rng(0), 10).audit(branches, 1e-6).level == "certified"
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize(
+    "name", ["kite", "goldberg-5r", "wohlhart-double-goldberg", "bricard-plane-symmetric", "altmann"]
+)
+def test_random_members_are_proved_and_other_seeds_find_the_same(name, seed):
+    found = entry(name)
+    problem = LoopClosure(found.build(**found.draw(np.random.default_rng(seed))))
+    atlases = [explore(problem, seed=k, starts=20, prove=True) for k in range(2)]
+    assert [a.completeness.level for a in atlases] == ["proved"] * 2
+    lengths = [sorted(form.branch.length for form in a.forms) for a in atlases]
+    np.testing.assert_allclose(lengths[0], lengths[1], rtol=1e-9)
