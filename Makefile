@@ -16,6 +16,7 @@ test: .venv/ready  ## all tests, the examples of README and docs among them
 
 lint: .venv/ready  ## ruff and mypy
 	$(BIN)/python -m ruff check .
+	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
 
 studies: .venv/ready  ## every study, each into out/NAME

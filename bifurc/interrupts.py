@@ -1,7 +1,8 @@
 """Ctrl-C at points where it does no harm.
 
-Python turns the signal into `KeyboardInterrupt` between any two instructions. On the way out of a compiled kernel
-that is a crash of the whole process, and between two steps of bookkeeping it leaves half a record.
+Python turns the signal into `KeyboardInterrupt` between any two instructions. On the
+way out of a compiled kernel that is a crash of the whole process, and between two steps
+of bookkeeping it leaves half a record.
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ __all__ = ["HeldInterrupt"]
 
 
 class HeldInterrupt:
-    """Notes the first Ctrl-C in a ``with`` block, for `check` or the end of the block to raise.
+    """Notes the first Ctrl-C in a ``with`` block, for `check` or the end of the block
+    to raise.
 
-    A second one acts at once. Blocks may be nested. Where Ctrl-C is not Python's business (in a thread, or with a
-    handler of the user's), nothing is changed.
+    A second one acts at once. Blocks may be nested. Where Ctrl-C is not Python's
+    business (in a thread, or with a handler of the user's), nothing is changed.
     """
 
     def __init__(self) -> None:
@@ -28,13 +30,18 @@ class HeldInterrupt:
     def __enter__(self) -> HeldInterrupt:
         if threading.current_thread() is threading.main_thread():
             former = signal.getsignal(signal.SIGINT)
-            if former is signal.default_int_handler or isinstance(getattr(former, "__self__", None), HeldInterrupt):
+            if former is signal.default_int_handler or isinstance(
+                getattr(former, "__self__", None), HeldInterrupt
+            ):
                 self._former = former
                 signal.signal(signal.SIGINT, self._note)
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         if self._former is not None:
             signal.signal(signal.SIGINT, self._former)

@@ -10,7 +10,8 @@ __all__ = ["Deadline"]
 
 @dataclass(frozen=True)
 class Deadline:
-    """The moment at which work has to stop: ``seconds`` after it was made, never where these are infinite."""
+    """The moment at which work has to stop: ``seconds`` after it was made, never where
+    these are infinite."""
 
     seconds: float = float("inf")
     began: float = field(default_factory=time.perf_counter)

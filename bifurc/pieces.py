@@ -1,8 +1,9 @@
 """Compiled evaluation of a piecewise polynomial curve, and the feet of points on it.
 
-A ``curve`` is (breaks (k + 1,), centers (k,), radii (k,), pieces (k, order + 1, n), travel (n,)) as in
-`bifurc.branch.Branch`; travel is what a closed curve gains in one turn, and empty for an open one. All arrays are
-contiguous: another memory layout would be compiled anew.
+A ``curve`` is (breaks (k + 1,), centers (k,), radii (k,), pieces (k, order + 1, n),
+travel (n,)) as in `bifurc.branch.Branch`; travel is what a closed curve gains in one
+turn, and empty for an open one. All arrays are contiguous: another memory layout would
+be compiled anew.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ __all__ = ["evaluate", "feet"]
 
 @register_jitable
 def _piece_at(curve, s):
-    """Number of turns before arclength ``s``, the piece that holds it, and the coordinate on that piece."""
+    """Number of turns before arclength ``s``, the piece that holds it, and the
+    coordinate on that piece."""
     breaks, centers, radii, _, travel = curve
     turns = np.floor(s / breaks[-1]) if len(travel) else 0.0
     local = s - turns * breaks[-1]
@@ -71,9 +73,11 @@ def evaluate(curve, s, derivative):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def feet(curve, points, s, reach, periods, iterations):
-    """Arclengths (k,) near ``s`` (k,) where the curve is nearest to points (k, n), and the distances (k,) there.
+    """Arclengths (k,) near ``s`` (k,) where the curve is nearest to points (k, n), and
+    the distances (k,) there.
 
-    Newton's method with steps of at most ``reach``, distances taken modulo the ``periods`` (n,).
+    Newton's method with steps of at most ``reach``, distances taken modulo the
+    ``periods`` (n,).
     """
     breaks, travel = curve[0], curve[4]
     k, n = points.shape

@@ -1,4 +1,5 @@
-"""What is solved: a system F(u) = 0 of any number of equations whose solutions are curves."""
+"""What is solved: a system F(u) = 0 of any number of equations whose solutions are
+curves."""
 
 from __future__ import annotations
 
@@ -11,14 +12,18 @@ from scipy.sparse import csc_array, issparse
 
 from bifurc.numerics.bordered import as_dense
 from bifurc.numerics.collocation import march_by_collocation
-from bifurc.numerics.corrector import project_by_least_squares, project_to_sphere_by_newton
+from bifurc.numerics.corrector import (
+    project_by_least_squares,
+    project_to_sphere_by_newton,
+)
 from bifurc.seeding import Seeds, random_seeds
 
 __all__ = ["FunctionProblem", "March", "MarchStatus", "Problem", "ProblemError"]
 
 
 class ProblemError(ValueError):
-    """A problem or a start that cannot be used: names the thing, its value and what is allowed."""
+    """A problem or a start that cannot be used: names the thing, its value and what is
+    allowed."""
 
     def __init__(self, name: str, value: object, allowed: str):
         self.name, self.value, self.allowed = name, value, allowed
@@ -26,7 +31,8 @@ class ProblemError(ValueError):
 
 
 class MarchStatus:
-    """Why a march of pieces ended: all pieces made, no trusted step left, or no solution at the start."""
+    """Why a march of pieces ended: all pieces made, no trusted step left, or no
+    solution at the start."""
 
     RAN, STALLED, OPEN = 0, 1, 2
 
@@ -35,10 +41,11 @@ class MarchStatus:
 class March:
     """Consecutive polynomial pieces of a curve.
 
-    ``pieces`` (k, order + 1, n) are coefficients in (s - centre) / radius, trusted from -1 to 1, s the
-    arclength; ``steps`` (k,) the arclength to each centre from the one before it (from the start, for the
-    first), ``radii`` (k,), ``residuals`` (k,) the largest residual seen on each piece relative to the problem's
-    magnitude, or the gap at the start alone when the status is OPEN.
+    ``pieces`` (k, order + 1, n) are coefficients in (s - centre) / radius, trusted from
+    -1 to 1, s the arclength; ``steps`` (k,) the arclength to each centre from the one
+    before it (from the start, for the first), ``radii`` (k,), ``residuals`` (k,) the
+    largest residual seen on each piece relative to the problem's magnitude, or the gap
+    at the start alone when the status is OPEN.
     """
 
     status: int
@@ -51,13 +58,15 @@ class March:
 class Problem:
     """F: R^n -> R^m with any m; the curves are where rank F' = n - 1 and F = 0.
 
-    Redundant equations are normal: a spatial loop has six for five or fewer that are independent. A subclass
-    gives `residuals` and `jacobians` for many points at once, and may replace `hessian`, `march` and `project` by
-    something faster; the methods here need nothing but those two.
+    Redundant equations are normal: a spatial loop has six for five or fewer that are
+    independent. A subclass gives `residuals` and `jacobians` for many points at once,
+    and may replace `hessian`, `march` and `project` by something faster; the methods
+    here need nothing but those two.
 
-    ``names`` and ``units`` (n,) label the unknowns, ``periods`` (n,) are their periods (inf where there is none),
-    ``bounds`` (n, 2) the region of interest (infinite where there is none), ``magnitude`` the typical size of
-    F', by which residuals and singular values are divided, ``scale`` the typical size of the unknowns, and
+    ``names`` and ``units`` (n,) label the unknowns, ``periods`` (n,) are their periods
+    (inf where there is none), ``bounds`` (n, 2) the region of interest (infinite where
+    there is none), ``magnitude`` the typical size of F', by which residuals and
+    singular values are divided, ``scale`` the typical size of the unknowns, and
     ``derivatives`` says how F' was made.
     """
 
@@ -84,7 +93,8 @@ class Problem:
         raise NotImplementedError
 
     def jacobian(self, point: np.ndarray) -> Any:
-        """F' (m, n) at one point (n,): an array, or a sparse matrix where that is how it is made."""
+        """F' (m, n) at one point (n,): an array, or a sparse matrix where that is how
+        it is made."""
         return self.jacobians(point[None])[0]
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
@@ -96,27 +106,41 @@ class Problem:
         return 0.5 * (out + np.swapaxes(out, 1, 2))
 
     def curvature_bound(self) -> float | None:
-        """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None where none is known.
+        """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None
+        where none is known.
 
         It need hold only where the relative residual is at most ``curvature_residual``.
         """
         return None
 
     def march(
-        self, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,
-        longest: float, count: int,
-    ) -> March:  # fmt: skip
-        """Up to ``count`` pieces of the curve from ``start`` along ``tangent``, here by collocation."""
-        return March(*march_by_collocation(self, start, tangent, order, tolerance, shortest, longest, count))
+        self,
+        start: np.ndarray,
+        tangent: np.ndarray,
+        order: int,
+        tolerance: float,
+        shortest: float,
+        longest: float,
+        count: int,
+    ) -> March:
+        """Up to ``count`` pieces of the curve from ``start`` along ``tangent``, here by
+        collocation."""
+        return March(
+            *march_by_collocation(
+                self, start, tangent, order, tolerance, shortest, longest, count
+            )
+        )
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is left at each."""
+        """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
+        left at each."""
         return project_by_least_squares(self, starts)
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals and last steps (k,)."""
+        """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals
+        and last steps (k,)."""
         return project_to_sphere_by_newton(self, starts, center, radius)
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
@@ -127,7 +151,9 @@ class Problem:
         """a - b with every periodic unknown taken to within half a period of zero."""
         gap = np.asarray(a, dtype=float) - b
         periodic = np.isfinite(self.periods)
-        if np.all(periodic):  # as in every loop: picking columns would take most of the time
+        if np.all(
+            periodic
+        ):  # as in every loop: picking columns would take most of the time
             gap -= self.periods * np.round(gap / self.periods)
         elif np.any(periodic):
             period = self.periods[periodic]
@@ -135,7 +161,8 @@ class Problem:
         return gap
 
     def check_point(self, point: np.ndarray, name: str) -> np.ndarray:
-        """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or values not finite."""
+        """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or
+        values not finite."""
         out = np.array(point, dtype=float)
         if out.shape != (self.n,):
             raise ProblemError(f"shape of {name}", out.shape, f"({self.n},)")
@@ -147,10 +174,12 @@ class Problem:
 class FunctionProblem(Problem):
     """A problem from a plain Python callable ``function``: (n,) -> (m,).
 
-    Derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where given, else by complex step where
-    the function lets complex numbers through, else by central differences; ``derivatives`` says which.
-    ``bounds`` (n, 2) is the region from which `explore` draws starts and in which curves are followed. Raises
-    `ProblemError` for bounds out of order and for a function that gives no finite vector.
+    Derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where given,
+    else by complex step where the function lets complex numbers through, else by
+    central differences; ``derivatives`` says which. ``bounds`` (n, 2) is the region
+    from which `explore` draws starts and in which curves are followed. Raises
+    `ProblemError` for bounds out of order and for a function that gives no finite
+    vector.
     """
 
     def __init__(
@@ -164,26 +193,48 @@ class FunctionProblem(Problem):
         periods: Sequence[float] | None = None,
     ):
         self.bounds = np.array(bounds, dtype=float)
-        if self.bounds.ndim != 2 or self.bounds.shape[1] != 2 or not np.all(self.bounds[:, 0] < self.bounds[:, 1]):
-            raise ProblemError("bounds", self.bounds.tolist(), "rows of (low, high) with low < high")
+        if (
+            self.bounds.ndim != 2
+            or self.bounds.shape[1] != 2
+            or not np.all(self.bounds[:, 0] < self.bounds[:, 1])
+        ):
+            raise ProblemError(
+                "bounds", self.bounds.tolist(), "rows of (low, high) with low < high"
+            )
         n = len(self.bounds)
         self.names = tuple(names) if names else tuple(f"u{i + 1}" for i in range(n))
         self.units = tuple(units) if units else ("",) * n
-        self.periods = np.full(n, np.inf) if periods is None else np.array(periods, dtype=float)
-        for what, given in (("names", self.names), ("units", self.units), ("periods", self.periods)):
+        self.periods = (
+            np.full(n, np.inf) if periods is None else np.array(periods, dtype=float)
+        )
+        for what, given in (
+            ("names", self.names),
+            ("units", self.units),
+            ("periods", self.periods),
+        ):
             if len(given) != n:
-                raise ProblemError(f"number of {what}", len(given), f"{n}, the number of bounds")
+                raise ProblemError(
+                    f"number of {what}", len(given), f"{n}, the number of bounds"
+                )
         if not np.all(self.periods > 0):
-            raise ProblemError("periods", self.periods.tolist(), "positive, inf where an unknown has none")
+            raise ProblemError(
+                "periods",
+                self.periods.tolist(),
+                "positive, inf where an unknown has none",
+            )
         self._function, self._jacobian = function, jacobian
         low = np.where(np.isfinite(self.bounds[:, 0]), self.bounds[:, 0], -1.0)
         high = np.where(np.isfinite(self.bounds[:, 1]), self.bounds[:, 1], 1.0)
         probes = np.random.default_rng(0).uniform(low, high, (7, n))
         value = np.asarray(function(probes[0]), dtype=float)
         if value.ndim != 1 or not np.all(np.isfinite(value)):
-            raise ProblemError("value of the function", value, "a vector of finite numbers")
+            raise ProblemError(
+                "value of the function", value, "a vector of finite numbers"
+            )
         self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
-        self.magnitude = float(np.median([_spectral_norm(self.jacobian(u)) for u in probes])) or 1.0
+        self.magnitude = (
+            float(np.median([_spectral_norm(self.jacobian(u)) for u in probes])) or 1.0
+        )
         self.scale = float(np.median(high - low)) / 4.0
 
     def _choose_derivatives(self, probe: np.ndarray) -> str:
@@ -193,30 +244,45 @@ class FunctionProblem(Problem):
             return "central differences"
         by_difference = self._central_difference(probe)
         size = 1.0 + np.abs(by_difference).max()
-        agree = by_complex.shape == by_difference.shape and np.abs(by_complex - by_difference).max() < 1e-5 * size
+        agree = (
+            by_complex.shape == by_difference.shape
+            and np.abs(by_complex - by_difference).max() < 1e-5 * size
+        )
         return "complex step" if agree else "central differences"
 
     def _complex_step(self, point: np.ndarray) -> np.ndarray:
         shifts = point + 1e-100j * np.eye(self.n)
-        return np.column_stack([np.imag(np.asarray(self._function(row))) / 1e-100 for row in shifts])
+        return np.column_stack(
+            [np.imag(np.asarray(self._function(row))) / 1e-100 for row in shifts]
+        )
 
     def _central_difference(self, point: np.ndarray) -> np.ndarray:
         columns = []
         for i in range(self.n):
             step = np.zeros(self.n)
             step[i] = 6e-6 * (1.0 + abs(point[i]))
-            upper, lower = (np.asarray(self._function(point + sign * step), dtype=float) for sign in (1, -1))
+            upper, lower = (
+                np.asarray(self._function(point + sign * step), dtype=float)
+                for sign in (1, -1)
+            )
             columns.append((upper - lower) / (2 * step[i]))
         return np.column_stack(columns)
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
-        return np.array([np.asarray(self._function(u), dtype=float) for u in np.atleast_2d(points)])
+        return np.array(
+            [np.asarray(self._function(u), dtype=float) for u in np.atleast_2d(points)]
+        )
 
     def jacobian(self, point: np.ndarray) -> Any:
-        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it so."""
+        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it
+        so."""
         if self._jacobian is None:
-            return self._complex_step(point) if self.derivatives == "complex step" else self._central_difference(point)
+            return (
+                self._complex_step(point)
+                if self.derivatives == "complex step"
+                else self._central_difference(point)
+            )
         made = self._jacobian(point)
         return made if issparse(made) else np.asarray(made, dtype=float)
 
@@ -227,7 +293,8 @@ class FunctionProblem(Problem):
 
 
 def _spectral_norm(matrix: Any) -> float:
-    """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1 |A|_inf)."""
+    """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1
+    |A|_inf)."""
     if issparse(matrix):
         size: Any = abs(csc_array(matrix))
         return float(np.sqrt(size.sum(axis=0).max() * size.sum(axis=1).max()))

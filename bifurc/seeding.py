@@ -13,7 +13,14 @@ if TYPE_CHECKING:
     from bifurc.branch import Branch
     from bifurc.problem import Problem
 
-__all__ = ["CLOSED", "Audit", "Completeness", "Seeds", "missed_probability", "random_seeds"]
+__all__ = [
+    "CLOSED",
+    "Audit",
+    "Completeness",
+    "Seeds",
+    "missed_probability",
+    "random_seeds",
+]
 
 
 CLOSED = 1e-12  # residual below which a start has reached a solution
@@ -21,8 +28,9 @@ CLOSED = 1e-12  # residual below which a start has reached a solution
 
 @dataclass(frozen=True)
 class Audit:
-    """What a problem can say of a list of branches: ``level`` is "proved" (none is missing), "certified" (none
-    that is larger than the ``statement`` says) or "estimated". From ``starts`` (k, n) a missing one may be reached."""
+    """What a problem can say of a list of branches: ``level`` is "proved" (none is
+    missing), "certified" (none that is larger than the ``statement`` says) or
+    "estimated". From ``starts`` (k, n) a missing one may be reached."""
 
     level: str
     statement: str
@@ -33,10 +41,11 @@ class Audit:
 class Seeds:
     """Solutions to start from.
 
-    ``points`` (k, n) solve the system; ``random`` (k,) says which of them come from random starts, the rest
-    were constructed; ``missed`` (g, n) is where the random starts ended that found no solution, ``gaps``
-    (g,) the residuals there. ``audit``, where the problem has one, judges the branches that were found, in about as
-    many seconds as its second argument says.
+    ``points`` (k, n) solve the system; ``random`` (k,) says which of them come from
+    random starts, the rest were constructed; ``missed`` (g, n) is where the random
+    starts ended that found no solution, ``gaps`` (g,) the residuals there. ``audit``,
+    where the problem has one, judges the branches that were found, in about as many
+    seconds as its second argument says.
     """
 
     points: np.ndarray
@@ -46,15 +55,19 @@ class Seeds:
     audit: Callable[[Sequence[Branch], float], Audit] | None = None
 
     def with_constructed(self, points: np.ndarray) -> Seeds:
-        """These seeds and after them further ``points`` (k, n) that solve the system."""
+        """These seeds and after them further ``points`` (k, n) that solve the
+        system."""
         random = np.append(self.random, np.zeros(len(points), dtype=bool))
-        return replace(self, points=np.concatenate([self.points, points]), random=random)
+        return replace(
+            self, points=np.concatenate([self.points, points]), random=random
+        )
 
 
 @dataclass(frozen=True)
 class Completeness:
-    """How sure it is that nothing is missing: ``level`` is "proved", "certified" or "estimated" as in `Audit`, or
-    "out of time" or "interrupted"; ``missed_probability`` bounds the chance that one more random start would find more.
+    """How sure it is that nothing is missing: ``level`` is "proved", "certified" or
+    "estimated" as in `Audit`, or "out of time" or "interrupted"; ``missed_probability``
+    bounds the chance that one more random start would find more.
     """
 
     level: str
@@ -62,29 +75,44 @@ class Completeness:
     missed_probability: float
 
 
-def random_seeds(problem: Problem, rng: np.random.Generator, count: int, closed_below: float = CLOSED) -> Seeds:
+def random_seeds(
+    problem: Problem, rng: np.random.Generator, count: int, closed_below: float = CLOSED
+) -> Seeds:
     """Solutions reached from ``count`` random starts.
 
-    Periodic unknowns are drawn from their period, the others from the bounds (from -scale to scale
-    where these are infinite).
+    Periodic unknowns are drawn from their period, the others from the bounds (from
+    -scale to scale where these are infinite).
     """
-    low = np.where(np.isfinite(problem.bounds[:, 0]), problem.bounds[:, 0], -problem.scale)
-    high = np.where(np.isfinite(problem.bounds[:, 1]), problem.bounds[:, 1], problem.scale)
+    low = np.where(
+        np.isfinite(problem.bounds[:, 0]), problem.bounds[:, 0], -problem.scale
+    )
+    high = np.where(
+        np.isfinite(problem.bounds[:, 1]), problem.bounds[:, 1], problem.scale
+    )
     periodic = np.isfinite(problem.periods)
     low = np.where(periodic, -0.5 * problem.periods, low)
     high = np.where(periodic, 0.5 * problem.periods, high)
     points, gaps = problem.project(rng.uniform(low, high, (count, problem.n)))
     solved = gaps < closed_below
-    solved &= np.all((points >= problem.bounds[:, 0]) & (points <= problem.bounds[:, 1]), axis=1)
-    return Seeds(points[solved], np.ones(int(solved.sum()), dtype=bool), gaps[~solved], points[~solved])
+    solved &= np.all(
+        (points >= problem.bounds[:, 0]) & (points <= problem.bounds[:, 1]), axis=1
+    )
+    return Seeds(
+        points[solved],
+        np.ones(int(solved.sum()), dtype=bool),
+        gaps[~solved],
+        points[~solved],
+    )
 
 
 def missed_probability(hits: Sequence[int]) -> float:
-    """Upper 95 % limit of the chance that one more random start would reach something not yet seen.
+    """Upper 95 % limit of the chance that one more random start would reach something
+    not yet seen.
 
-    ``hits``: how many starts reached each thing found. Good and Turing (Good 1953) estimate the unseen share by
-    n1 / N, with n1 the number of things hit just once among N starts; n1 is close to Poisson, and its upper
-    limit (Garwood 1936) is used in its place: 3 / N where nothing was hit just once.
+    ``hits``: how many starts reached each thing found. Good and Turing (Good 1953)
+    estimate the unseen share by n1 / N, with n1 the number of things hit just once
+    among N starts; n1 is close to Poisson, and its upper limit (Garwood 1936) is used
+    in its place: 3 / N where nothing was hit just once.
     """
     total = int(sum(hits))
     if total == 0:

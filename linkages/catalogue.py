@@ -1,7 +1,7 @@
 """Every named linkage.
 
-A family module lists its linkages in ``ENTRIES`` and is named in `FAMILIES`; importing the catalogue imports
-numpy and these modules, nothing else.
+A family module lists its linkages in ``ENTRIES`` and is named in `FAMILIES`; importing
+the catalogue imports numpy and these modules, nothing else.
 """
 
 from __future__ import annotations
@@ -40,20 +40,27 @@ FAMILIES = (
 
 
 class UnknownLinkageError(KeyError):
-    """No linkage of that name: ``name`` is what was asked for, ``nearest`` the names most like it."""
+    """No linkage of that name: ``name`` is what was asked for, ``nearest`` the names
+    most like it."""
 
     def __init__(self, name: str, nearest: tuple[str, ...]):
         self.name, self.nearest = name, nearest
         super().__init__(name)
 
     def __str__(self) -> str:
-        hint = "the nearest names are " + ", ".join(self.nearest) if self.nearest else "no name is like it"
+        hint = (
+            "the nearest names are " + ", ".join(self.nearest)
+            if self.nearest
+            else "no name is like it"
+        )
         return f"no linkage is called {self.name!r}; {hint}"
 
 
 @cache
 def _entries() -> tuple[Entry, ...]:
-    return tuple(found for family in FAMILIES for found in import_module(family).ENTRIES)
+    return tuple(
+        found for family in FAMILIES for found in import_module(family).ENTRIES
+    )
 
 
 def catalogue() -> dict[str, Entry]:
@@ -67,11 +74,16 @@ def catalogue() -> dict[str, Entry]:
 
 
 def entry(name: str) -> Entry:
-    """The entry called ``name``; raises `UnknownLinkageError`, which lists the nearest names."""
+    """The entry called ``name``; raises `UnknownLinkageError`, which lists the nearest
+    names."""
     known = catalogue()
     if name in known:
         return known[name]
     plain = name.strip().lower().replace("_", "-").replace(" ", "-")
     nearest = difflib.get_close_matches(plain, known, n=3, cutoff=0.5)
-    nearest += [key for key in known if plain and (plain in key or key in plain) and key not in nearest]
+    nearest += [
+        key
+        for key in known
+        if plain and (plain in key or key in plain) and key not in nearest
+    ]
     raise UnknownLinkageError(name, tuple(nearest[:5]))

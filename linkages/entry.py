@@ -1,4 +1,5 @@
-"""What the catalogue keeps of a linkage: constructor, parameters, source, conditions and named forms."""
+"""What the catalogue keeps of a linkage: constructor, parameters, source, conditions
+and named forms."""
 
 from __future__ import annotations
 
@@ -15,7 +16,8 @@ __all__ = ["Entry", "FormPattern", "Parameter"]
 
 @dataclass(frozen=True)
 class Parameter:
-    """A free parameter of a family: ``kind`` is "angle" (rad; degrees on the screen), "length" or "number".
+    """A free parameter of a family: ``kind`` is "angle" (rad; degrees on the screen),
+    "length" or "number".
 
     ``low`` and ``high`` bound the open range from which random members are drawn.
     """
@@ -30,9 +32,11 @@ class Parameter:
 
 @dataclass(frozen=True)
 class FormPattern:
-    """A form that the source names, by an equation that holds on it and on no other form.
+    """A form that the source names, by an equation that holds on it and on no other
+    form.
 
-    ``residual`` maps configurations (..., n), rad, to (..., k): zero everywhere along the form.
+    ``residual`` maps configurations (..., n), rad, to (..., k): zero everywhere along
+    the form.
     """
 
     name: str
@@ -43,10 +47,11 @@ class FormPattern:
 class Entry:
     """One linkage of the catalogue.
 
-    ``construct`` takes the parameters by keyword (any number type) and returns the `Loop`, or raises
-    `GeometryError` that says by how much a condition is violated. ``patterns`` takes the same parameters
-    (floats) and returns the named forms. ``conditions`` states the geometry in words and symbols;
-    ``facts`` the published invariants that the tests assert, such as ``mobility`` or ``forms``.
+    ``construct`` takes the parameters by keyword (any number type) and returns the
+    `Loop`, or raises `GeometryError` that says by how much a condition is violated.
+    ``patterns`` takes the same parameters (floats) and returns the named forms.
+    ``conditions`` states the geometry in words and symbols; ``facts`` the published
+    invariants that the tests assert, such as ``mobility`` or ``forms``.
     """
 
     name: str
@@ -65,18 +70,23 @@ class Entry:
         return {p.name: p.default for p in self.parameters}
 
     def complete(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """``values`` completed by the defaults; raises `GeometryError` for an unknown parameter."""
+        """``values`` completed by the defaults; raises `GeometryError` for an unknown
+        parameter."""
         known = self.defaults
         for key in values:
             if key not in known:
-                raise GeometryError(f"parameter of {self.name}", repr(key), "one of " + ", ".join(known))
+                raise GeometryError(
+                    f"parameter of {self.name}", repr(key), "one of " + ", ".join(known)
+                )
         return {**known, **values}
 
     def build(self, **values: Any) -> Loop:
-        """The member with the given parameters, the others at their defaults, named after the entry."""
+        """The member with the given parameters, the others at their defaults, named
+        after the entry."""
         loop = self.construct(**self.complete(values))
         return Loop(loop.lengths, loop.twists, loop.offsets, self.name)
 
     def draw(self, rng: np.random.Generator) -> dict[str, float]:
-        """Random parameters within their ranges (the constructor may still refuse them)."""
+        """Random parameters within their ranges (the constructor may still refuse
+        them)."""
         return {p.name: float(rng.uniform(p.low, p.high)) for p in self.parameters}

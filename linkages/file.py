@@ -1,6 +1,7 @@
 """Reading a linkage from a TOML file.
 
-Two formats, told apart by their keys. A Denavit-Hartenberg table in the convention of `linkages.loop`:
+Two formats, told apart by their keys. A Denavit-Hartenberg table in the convention of
+`linkages.loop`:
 
     name = "my linkage"            # optional
     angles = "deg"                 # or "rad"
@@ -46,11 +47,12 @@ class LinkageFileError(ValueError):
 
 
 def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
-    """The loop that a TOML file describes, and its joint angles (n,), rad, where the file gives axes (else None).
+    """The loop that a TOML file describes, and its joint angles (n,), rad, where the
+    file gives axes (else None).
 
-    A loop without a name is called after the file. Raises `LinkageFileError` for a file that cannot be read
-    and for anything wrong in it. Twists that look like degrees in a file that says radians are used as they
-    stand, with a warning in the log.
+    A loop without a name is called after the file. Raises `LinkageFileError` for a file
+    that cannot be read and for anything wrong in it. Twists that look like degrees in a
+    file that says radians are used as they stand, with a warning in the log.
     """
     path = Path(path)
     content = _parse(path)
@@ -67,18 +69,24 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
 
 
 def read_precisely(path: Path | str) -> Loop:
-    """The loop that a TOML file describes, in mpmath numbers at the precision that is set.
+    """The loop that a TOML file describes, in mpmath numbers at the precision that is
+    set.
 
-    The decimals of a table are taken as they are written, degrees turned into radians exactly; joint axes give the
-    same loop as `read_linkage`, its doubles taken as exact. Raises `LinkageFileError`.
+    The decimals of a table are taken as they are written, degrees turned into radians
+    exactly; joint axes give the same loop as `read_linkage`, its doubles taken as
+    exact. Raises `LinkageFileError`.
     """
     import mpmath
 
     loop, configuration = read_linkage(path)
     if configuration is not None:
         return loop
-    content = tomllib.loads(Path(path).read_text(encoding="utf-8"), parse_float=mpmath.mpf)
-    lengths, twists, offsets = (tuple(mpmath.mpf(x) for x in content[key]) for key in TABLE)
+    content = tomllib.loads(
+        Path(path).read_text(encoding="utf-8"), parse_float=mpmath.mpf
+    )
+    lengths, twists, offsets = (
+        tuple(mpmath.mpf(x) for x in content[key]) for key in TABLE
+    )
     if content["angles"] == "deg":
         twists = tuple(twist * mpmath.pi / 180 for twist in twists)
     return Loop(lengths, twists, offsets, loop.name)
@@ -92,8 +100,12 @@ def _parse(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
-        raise LinkageFileError(path, f"is not UTF-8 text: byte {error.start} is wrong") from None
-    except tomllib.TOMLDecodeError as error:  # its message ends with the line and the column
+        raise LinkageFileError(
+            path, f"is not UTF-8 text: byte {error.start} is wrong"
+        ) from None
+    except (
+        tomllib.TOMLDecodeError
+    ) as error:  # its message ends with the line and the column
         raise LinkageFileError(path, f"is not valid TOML: {error}") from None
 
 
@@ -106,11 +118,17 @@ def _check_keys(content: Mapping[str, Any]) -> None:
             raise GeometryError("key", f"{key!r} (the nearest is {near!r})", allowed)
     both = [[key for key in group if key in content] for group in (TABLE, AXES)]
     if all(both):
-        raise GeometryError("keys", f"{both[0][0]} with {both[1][0]}", "those of a table or those of axes, not both")
+        raise GeometryError(
+            "keys",
+            f"{both[0][0]} with {both[1][0]}",
+            "those of a table or those of axes, not both",
+        )
     wanted = AXES if both[1] else TABLE
     for key in wanted:
         if key not in content:
-            raise GeometryError(key, "a missing list", f"given together with {_others(wanted, key)}")
+            raise GeometryError(
+                key, "a missing list", f"given together with {_others(wanted, key)}"
+            )
 
 
 def _others(group: tuple[str, ...], key: str) -> str:
@@ -121,7 +139,11 @@ def _table(content: Mapping[str, Any], name: str) -> Loop:
     lengths, twists, offsets = (_numbers(content, key) for key in TABLE)
     for key, values in (("twists", twists), ("offsets", offsets)):
         if len(values) != len(lengths):
-            raise GeometryError(f"number of {key}", len(values), f"{len(lengths)}, the number of lengths")
+            raise GeometryError(
+                f"number of {key}",
+                len(values),
+                f"{len(lengths)}, the number of lengths",
+            )
     if _in_degrees(content):
         twists = [math.radians(twist) for twist in twists]
     else:
@@ -129,14 +151,18 @@ def _table(content: Mapping[str, Any], name: str) -> Loop:
             if abs(twist) > FULL_TURN:
                 log.warning(
                     'twists[%d] is %g with angles = "rad", more than a full turn; if it is in degrees, write '
-                    'angles = "deg"', i, twist,
-                )  # fmt: skip
+                    'angles = "deg"',
+                    i,
+                    twist,
+                )
     return Loop(tuple(lengths), tuple(twists), tuple(offsets), name)
 
 
 def _in_degrees(content: Mapping[str, Any]) -> bool:
     if "angles" not in content:
-        raise GeometryError("angles", "a missing key", '"deg" or "rad", the unit of the twists')
+        raise GeometryError(
+            "angles", "a missing key", '"deg" or "rad", the unit of the twists'
+        )
     unit = content["angles"]
     if unit not in ("deg", "rad"):
         raise GeometryError("angles", _shown(unit), '"deg" or "rad"')
@@ -154,7 +180,10 @@ def _list(content: Mapping[str, Any], key: str, of: str) -> list[Any]:
 
 
 def _numbers(content: Mapping[str, Any], key: str) -> list[float]:
-    return [_number(value, f"{key}[{i}]") for i, value in enumerate(_list(content, key, "numbers"), start=1)]
+    return [
+        _number(value, f"{key}[{i}]")
+        for i, value in enumerate(_list(content, key, "numbers"), start=1)
+    ]
 
 
 def _number(value: Any, what: str) -> float:
@@ -168,7 +197,11 @@ def _number(value: Any, what: str) -> float:
 def _axes(content: Mapping[str, Any]) -> tuple[list[list[float]], list[list[float]]]:
     points, directions = (_vectors(content, key) for key in AXES)
     if len(points) != len(directions):
-        raise GeometryError("number of directions", len(directions), f"{len(points)}, the number of points")
+        raise GeometryError(
+            "number of directions",
+            len(directions),
+            f"{len(points)}, the number of points",
+        )
     return points, directions
 
 

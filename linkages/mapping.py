@@ -21,24 +21,36 @@ from linkages.loop import Loop
 __all__ = ["map_by_name", "map_linkage"]
 
 NAMING = 400  # samples of a form for its name
-CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)  # where on every piece of a form its closure is checked
+CLOSING = np.linspace(
+    0.0, 1.0, 24, endpoint=False
+)  # where on every piece of a form its closure is checked
 
 
 def map_linkage(
-    loop: Loop, patterns: Sequence[FormPattern] = (), *, certify: bool = False, prove: bool = True, **options: Any
+    loop: Loop,
+    patterns: Sequence[FormPattern] = (),
+    *,
+    certify: bool = False,
+    prove: bool = True,
+    **options: Any,
 ) -> Atlas:
-    """The transition map of a loop: every form with its name, every bifurcation, every near miss.
+    """The transition map of a loop: every form with its name, every bifurcation, every
+    near miss.
 
-    ``patterns`` are the forms that a source names, ``options`` those of `bifurc.search.explore.explore` (``starts``,
-    ``seed``, ``settings``, ``budget``, ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from
-    1) and their ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest closure error
-    seen along it relative to the characteristic length; ``info["linkage"]`` of the atlas the geometry, twists
-    in rad. With ``certify`` they also hold the ``certificate`` of `bifurc.curves.certificate`. With ``prove`` it is looked
-    into whether a form can be missing (`linkages.slices.completeness`).
+    ``patterns`` are the forms that a source names, ``options`` those of
+    `bifurc.search.explore.explore` (``starts``, ``seed``, ``settings``, ``budget``,
+    ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
+    ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest
+    closure error seen along it relative to the characteristic length;
+    ``info["linkage"]`` of the atlas the geometry, twists in rad. With ``certify`` they
+    also hold the ``certificate`` of `bifurc.curves.certificate`. With ``prove`` it is
+    looked into whether a form can be missing (`linkages.slices.completeness`).
     """
     problem = LoopClosure(loop)
     atlas = explore(problem, prove=prove, **options)
-    identities = name_forms([form.branch.sample(NAMING) for form in atlas.forms], loop, patterns)
+    identities = name_forms(
+        [form.branch.sample(NAMING) for form in atlas.forms], loop, patterns
+    )
     labels = [
         {
             "inactive_joints": list(identity.inactive_joints),
@@ -49,17 +61,25 @@ def map_linkage(
         for identity, form in zip(identities, atlas.forms, strict=True)
     ]
     lengths, twists, offsets = (values.tolist() for values in loop.arrays)
-    linkage = {"name": loop.name, "lengths": lengths, "twists": twists, "offsets": offsets}
+    linkage = {
+        "name": loop.name,
+        "lengths": lengths,
+        "twists": twists,
+        "offsets": offsets,
+    }
     named = atlas.renamed([identity.name for identity in identities], labels)
     named = replace(named, info={**atlas.info, "linkage": linkage})
     return certify_atlas(problem, named) if certify else named
 
 
-def map_by_name(name: str, *, starts: int = 200, seed: int = 0, **parameters: Any) -> Atlas:
-    """The transition map of a linkage of the catalogue, its parameters (rad) at their defaults unless given.
+def map_by_name(
+    name: str, *, starts: int = 200, seed: int = 0, **parameters: Any
+) -> Atlas:
+    """The transition map of a linkage of the catalogue, its parameters (rad) at their
+    defaults unless given.
 
-    Raises `linkages.catalogue.UnknownLinkageError`, and `linkages.loop.GeometryError` for parameters that make no
-    linkage.
+    Raises `linkages.catalogue.UnknownLinkageError`, and `linkages.loop.GeometryError`
+    for parameters that make no linkage.
     """
     found = entry(name)
     values = found.complete(parameters)
@@ -68,6 +88,11 @@ def map_by_name(name: str, *, starts: int = 200, seed: int = 0, **parameters: An
 
 
 def largest_residual(problem: LoopClosure, branch: Branch) -> float:
-    """The largest closure error at places all along a branch: the norm over rotation and translation."""
+    """The largest closure error at places all along a branch: the norm over rotation
+    and translation."""
     places = branch.breaks[:-1, None] + np.diff(branch.breaks)[:, None] * CLOSING
-    return float(np.linalg.norm(problem.residuals(branch(places.ravel())), axis=1).max(initial=0.0))
+    return float(
+        np.linalg.norm(problem.residuals(branch(places.ravel())), axis=1).max(
+            initial=0.0
+        )
+    )

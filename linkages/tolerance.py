@@ -10,10 +10,12 @@ __all__ = ["make_with_errors"]
 
 
 def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop:
-    """The loop with normally distributed errors in all its entries, independent of each other.
+    """The loop with normally distributed errors in all its entries, independent of each
+    other.
 
-    ``error`` is their standard deviation: in rad for twists, in characteristic lengths for lengths and offsets, also
-    for those that are zero. The same generator with another ``error`` gives the same errors to another scale.
+    ``error`` is their standard deviation: in rad for twists, in characteristic lengths
+    for lengths and offsets, also for those that are zero. The same generator with
+    another ``error`` gives the same errors to another scale.
     """
     if not (np.isfinite(error) and error >= 0.0):
         raise GeometryError("error", error, "a finite number, not negative")

@@ -3,7 +3,8 @@
     python -m studies.catalogue_page                            # docs/catalogue.md
     python -m studies.catalogue_page --out out/catalogue        # and the drawings
 
-The counts of the maps take some minutes; with ``--keep-counts`` those of the page as it stands are kept.
+The counts of the maps take some minutes; with ``--keep-counts`` those of the page as it
+stands are kept.
 """
 
 from __future__ import annotations
@@ -39,26 +40,44 @@ the choice of the first joint, direction, sense of axes and links, mirror image 
 
 
 def make_page(counts: Mapping[str, str]) -> str:
-    """The page in Markdown; ``counts`` are the sentences of `count_map` by the name of the linkage."""
-    rows = [f"| [{e.name}](#{e.name}) | {e.build().n} | {e.title} |" for e in catalogue().values()]
+    """The page in Markdown; ``counts`` are the sentences of `count_map` by the name of
+    the linkage."""
+    rows = [
+        f"| [{e.name}](#{e.name}) | {e.build().n} | {e.title} |"
+        for e in catalogue().values()
+    ]
     table = "\n".join(["| name | joints | title |", "|---|---|---|", *rows])
     parts = [HEAD, f"{len(FAMILIES)} families, {len(rows)} linkages.\n\n{table}\n"]
-    parts += [_section(found, counts.get(found.name, NOT_COUNTED)) for found in catalogue().values()]
+    parts += [
+        _section(found, counts.get(found.name, NOT_COUNTED))
+        for found in catalogue().values()
+    ]
     return "\n".join(parts)
 
 
 def read_counts(page: str) -> dict[str, str]:
     """The sentences on the maps that a page holds, by the name of the linkage."""
-    return dict(re.findall(r"^## (\S+)$.*?^Map: (.*?)\.$", page, re.MULTILINE | re.DOTALL))
+    return dict(
+        re.findall(r"^## (\S+)$.*?^Map: (.*?)\.$", page, re.MULTILINE | re.DOTALL)
+    )
 
 
 def count_map(atlas: Atlas) -> str:
-    """How many forms, bifurcations and components an atlas has, and surfaces and rigid assemblies if any."""
+    """How many forms, bifurcations and components an atlas has, and surfaces and rigid
+    assemblies if any."""
     counted = [
-        (len(atlas.forms), "form"), (len(atlas.bifurcations), "bifurcation"), (atlas.components, "component"),
-        (len(atlas.rank_drops), "rank drop"), (len(atlas.surfaces), "surface"), (len(atlas.rigid), "rigid assembly"),
-    ]  # fmt: skip
-    words = [_plural(number, what) for i, (number, what) in enumerate(counted) if number or i < 3]
+        (len(atlas.forms), "form"),
+        (len(atlas.bifurcations), "bifurcation"),
+        (atlas.components, "component"),
+        (len(atlas.rank_drops), "rank drop"),
+        (len(atlas.surfaces), "surface"),
+        (len(atlas.rigid), "rigid assembly"),
+    ]
+    words = [
+        _plural(number, what)
+        for i, (number, what) in enumerate(counted)
+        if number or i < 3
+    ]
     return ", ".join(words)
 
 
@@ -82,7 +101,11 @@ def _section(found: Entry, count: str) -> str:
 
 
 def _parameter(p: Parameter) -> str:
-    default = f"{math.degrees(p.default):.6g} deg" if p.kind == "angle" else f"{p.default:.6g}"
+    default = (
+        f"{math.degrees(p.default):.6g} deg"
+        if p.kind == "angle"
+        else f"{p.default:.6g}"
+    )
     return f"`{p.name}` = {default} ({p.meaning})"
 
 
@@ -90,13 +113,18 @@ def _relations(name: str) -> list[str]:
     lines = []
     for r in relations_of(name):
         other = r.second if r.first == name else r.first
-        words = r.kind.value if r.kind is not RelationKind.SAME else "the same linkage as"
-        lines.append(f"{words} [{other}](#{other}){f', {r.detail}' if r.detail else ''} ({r.source})")
+        words = (
+            r.kind.value if r.kind is not RelationKind.SAME else "the same linkage as"
+        )
+        lines.append(
+            f"{words} [{other}](#{other}){f', {r.detail}' if r.detail else ''} ({r.source})"
+        )
     return lines
 
 
 def _closed_forms(name: str) -> list[str]:
-    """Name, source and LaTeX of every closed form of a linkage, u_x being tan(x/2) and t_i tan(theta_i/2)."""
+    """Name, source and LaTeX of every closed form of a linkage, u_x being tan(x/2) and
+    t_i tan(theta_i/2)."""
     from linkages.closed_forms.all_forms import closed_forms
 
     lines = []
@@ -111,10 +139,15 @@ def _listed(title: str, lines: tuple[str, ...] | list[str]) -> str:
 
 
 def clearest_configuration(atlas: Atlas, found: Entry) -> np.ndarray | None:
-    """Of a hundred configurations of each form, that whose joints lie furthest from joints and links; None without."""
+    """Of a hundred configurations of each form, that whose joints lie furthest from
+    joints and links; None without."""
     loop = found.build()
     samples = [theta for form in atlas.forms for theta in form.branch.sample(100)]
-    return max(samples, key=lambda theta: _room(make_scene(loop, theta))) if samples else None
+    return (
+        max(samples, key=lambda theta: _room(make_scene(loop, theta)))
+        if samples
+        else None
+    )
 
 
 def _room(scene: Scene) -> float:
@@ -123,11 +156,21 @@ def _room(scene: Scene) -> float:
 
 
 @click.command()
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the drawings.")
-@click.option("--keep-counts", is_flag=True, help="Keep the counts of the page as it stands.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Folder for the drawings.",
+)
+@click.option(
+    "--keep-counts", is_flag=True, help="Keep the counts of the page as it stands."
+)
 def main(out: Path | None, keep_counts: bool) -> None:
     """Write docs/catalogue.md, and a drawing of each linkage with --out."""
-    counts = read_counts(PAGE.read_text(encoding="utf-8")) if keep_counts and PAGE.exists() else {}
+    counts = (
+        read_counts(PAGE.read_text(encoding="utf-8"))
+        if keep_counts and PAGE.exists()
+        else {}
+    )
     for found in catalogue().values():
         if found.name in counts and out is None:
             continue

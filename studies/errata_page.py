@@ -1,4 +1,5 @@
-"""Write docs/errata.md: every misprint with source, equation, print, correction and measured amounts.
+"""Write docs/errata.md: every misprint with source, equation, print, correction and
+measured amounts.
 
 Run as ``python -m studies.errata_page [FILE]``.
 """
@@ -34,10 +35,24 @@ def errata_page() -> str:
         printed, corrected = erratum.measure()
         left = "0" if corrected < 1e-11 and corrected != 0 else f"{corrected:.0e}"
         left = "below 1e-11" if left == "0" else "0"
-        cells = (erratum.source, erratum.equation, erratum.linkage, erratum.printed, erratum.corrected)
-        rows.append("| " + " | ".join([*(cell.replace("|", r"\|") for cell in cells), f"{printed:.1g}", left]) + " |")
+        cells = (
+            erratum.source,
+            erratum.equation,
+            erratum.linkage,
+            erratum.printed,
+            erratum.corrected,
+        )
+        rows.append(
+            "| "
+            + " | ".join(
+                [*(cell.replace("|", r"\|") for cell in cells), f"{printed:.1g}", left]
+            )
+            + " |"
+        )
     return HEAD + "\n".join(rows) + "\n"
 
 
 if __name__ == "__main__":
-    Path(sys.argv[1] if len(sys.argv) > 1 else "docs/errata.md").write_text(errata_page(), encoding="utf-8")
+    Path(sys.argv[1] if len(sys.argv) > 1 else "docs/errata.md").write_text(
+        errata_page(), encoding="utf-8"
+    )

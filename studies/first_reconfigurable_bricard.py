@@ -1,10 +1,12 @@
-"""The first reconfigurable line-symmetric Bricard 6R linkage: figure 5.3.16 of Song 2013.
+"""The first reconfigurable line-symmetric Bricard 6R linkage: figure 5.3.16 of Song
+2013.
 
-Two identical spatial triangles are bridged by a Bennett linkage in asymmetric set-up. The result has the geometry of a
-general line-symmetric Bricard linkage, with its two 6R forms I and II, which have nothing in common. The Bennett
-form, in which joints 2 and 5 stand still at the angle of the triangle, -70 degrees, is the bridge between them: it
-meets Form I at one bifurcation and Form II at another. The text does not name the axes of the figure; those are taken
-that tell the forms apart best.
+Two identical spatial triangles are bridged by a Bennett linkage in asymmetric set-up.
+The result has the geometry of a general line-symmetric Bricard linkage, with its two 6R
+forms I and II, which have nothing in common. The Bennett form, in which joints 2 and 5
+stand still at the angle of the triangle, -70 degrees, is the bridge between them: it
+meets Form I at one bifurcation and Form II at another. The text does not name the axes
+of the figure; those are taken that tell the forms apart best.
 """
 
 from __future__ import annotations
@@ -32,9 +34,14 @@ def claims(atlas: Atlas) -> list[Claim]:
     pairs = {frozenset(i for i, _ in point.passes) for point in atlas.bifurcations}
     others = {frozenset((bridge, i)) for i in range(len(atlas.forms)) if i != bridge}
     return [
-        Claim("Bennett form: theta2 = theta5 = -70 degrees", largest(np.sin(inactive / 2))),
+        Claim(
+            "Bennett form: theta2 = theta5 = -70 degrees", largest(np.sin(inactive / 2))
+        ),
         Claim("three forms", abs(len(atlas.forms) - 3)),
-        Claim("two bifurcations, each with the Bennett form", len(pairs ^ others) + abs(len(atlas.bifurcations) - 2)),
+        Claim(
+            "two bifurcations, each with the Bennett form",
+            len(pairs ^ others) + abs(len(atlas.bifurcations) - 2),
+        ),
         Claim("through these Forms I and II are connected", atlas.components - 1),
     ]
 

@@ -1,4 +1,5 @@
-"""Curves on which methods fail, each with the answer that is right and a test that does not depend on any method."""
+"""Curves on which methods fail, each with the answer that is right and a test that does
+not depend on any method."""
 
 from __future__ import annotations
 
@@ -14,19 +15,29 @@ from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
-__all__ = ["Crossing", "Ladder", "crossings", "ladders", "near_parallelogram", "pitchfork"]
+__all__ = [
+    "Crossing",
+    "Ladder",
+    "crossings",
+    "ladders",
+    "near_parallelogram",
+    "pitchfork",
+]
 
 Test = Callable[[np.ndarray], bool]
 
 
 @dataclass(frozen=True)
 class Ladder:
-    """A near miss that an ``imperfection`` makes, and the ``width`` that this leaves between the arcs: from ``start``
-    along ``tangent`` for ``length``; ``stays`` tells whether points (k, n) all lie on the true arc, ``arrives`` whether
-    the last of them is at its end. ``parameter`` is the unknown that natural-parameter stepping sets, over ``travel``.
+    """A near miss that an ``imperfection`` makes, and the ``width`` that this leaves
+    between the arcs: from ``start`` along ``tangent`` for ``length``; ``stays`` tells
+    whether points (k, n) all lie on the true arc, ``arrives`` whether the last of them
+    is at its end. ``parameter`` is the unknown that natural-parameter stepping sets,
+    over ``travel``.
 
-    Both are 1 in order of magnitude in their equations, so that rounding in doubles is an imperfection of 1e-16 to
-    1e-15: what is smaller is no near miss but a crossing there.
+    Both are 1 in order of magnitude in their equations, so that rounding in doubles is
+    an imperfection of 1e-16 to 1e-15: what is smaller is no near miss but a crossing
+    there.
     """
 
     name: str
@@ -44,8 +55,9 @@ class Ladder:
 
 @dataclass(frozen=True)
 class Crossing:
-    """A curve from ``start`` with ``count`` bifurcations on it; ``whole`` is the number of all branches that hang
-    together with it. ``length`` is how far to follow the curve, ``start`` lies in the middle of it where it is open."""
+    """A curve from ``start`` with ``count`` bifurcations on it; ``whole`` is the number
+    of all branches that hang together with it. ``length`` is how far to follow the
+    curve, ``start`` lies in the middle of it where it is open."""
 
     name: str
     problem: Problem
@@ -58,13 +70,15 @@ class Crossing:
 
 
 class _Pitchfork(FunctionProblem):
-    """lambda x - x^3 + e, with the bound on its second derivative that a certificate needs."""
+    """lambda x - x^3 + e, with the bound on its second derivative that a certificate
+    needs."""
 
     def __init__(self, e: float):
         super().__init__(
-            lambda u: np.array([u[0] * u[1] - u[1] ** 3 + e]), [[-1.0, 1.0], [-1.5, 1.5]],
+            lambda u: np.array([u[0] * u[1] - u[1] ** 3 + e]),
+            [[-1.0, 1.0], [-1.5, 1.5]],
             jacobian=lambda u: np.array([[u[1], u[0] - 3 * u[1] ** 2]]),
-        )  # fmt: skip
+        )
 
     def curvature_bound(self) -> float:
         """The norm of [[0, 1], [1, -6 x]] where |x| <= 1.5, over the magnitude."""
@@ -74,49 +88,76 @@ class _Pitchfork(FunctionProblem):
 def pitchfork(e: float) -> Ladder:
     """The imperfect pitchfork lambda x - x^3 + e = 0, along the arc with x > 0.
 
-    At the corner it is the hyperbola lambda x = -e, whose two arcs are 2 sqrt(2 e) apart.
+    At the corner it is the hyperbola lambda x = -e, whose two arcs are 2 sqrt(2 e)
+    apart.
     """
     x = brentq(lambda x: -0.9 * x - x**3 + e, 0.0, 1.0, xtol=1e-300, rtol=1e-15)
     tangent = np.array([0.9 + 3 * x * x, x])
     return Ladder(
-        "imperfect pitchfork", e, 2 * sqrt(2 * e), _Pitchfork(e), np.array([-0.9, x]),
-        tangent / np.linalg.norm(tangent), 2.2,
-        stays=lambda u: bool(np.all(u[:, 1] > 0)), arrives=lambda u: bool(abs(u[-1, 1]) > 0.7),
-        parameter=0, travel=1.7,
-    )  # fmt: skip
+        "imperfect pitchfork",
+        e,
+        2 * sqrt(2 * e),
+        _Pitchfork(e),
+        np.array([-0.9, x]),
+        tangent / np.linalg.norm(tangent),
+        2.2,
+        stays=lambda u: bool(np.all(u[:, 1] > 0)),
+        arrives=lambda u: bool(abs(u[-1, 1]) > 0.7),
+        parameter=0,
+        travel=1.7,
+    )
 
 
 def near_parallelogram(e: float) -> Ladder:
-    """The four-bar 1, 2, 1 + e, 2, whose two circuits come within sqrt(3 e) (rad at joint 3).
+    """The four-bar 1, 2, 1 + e, 2, whose two circuits come within sqrt(3 e) (rad at
+    joint 3).
 
-    On each circuit sin(theta3) keeps its sign, since links 23 and 34 cannot be flat for any e > 0.
+    On each circuit sin(theta3) keeps its sign, since links 23 and 34 cannot be flat for
+    any e > 0.
     """
     zero = (0.0,) * 4
     problem = LoopClosure(Loop((1.0, 2.0, 1.0 + e, 2.0), zero, zero))
     angle = 0.7  # the parallelogram itself, then corrected
-    start = problem.project(np.array([[angle, np.pi - angle, angle, np.pi - angle]]))[0][0]
+    start = problem.project(np.array([[angle, np.pi - angle, angle, np.pi - angle]]))[
+        0
+    ][0]
     tangent = np.linalg.svd(problem.jacobians(start[None])[0])[2][-1]
     tangent *= np.sign(tangent[0])
     sign = np.sign(np.sin(start[2]))
     return Ladder(
-        "near-parallelogram", e, sqrt(3 * e), problem, start, tangent, 12.0,
+        "near-parallelogram",
+        e,
+        sqrt(3 * e),
+        problem,
+        start,
+        tangent,
+        12.0,
         stays=lambda u: bool(np.all(sign * np.sin(u[:, 2]) > 0)),
-        arrives=lambda u: bool(abs(u[-1, 0] - u[0, 0]) > 5.0), parameter=0, travel=2 * np.pi,
-    )  # fmt: skip
+        arrives=lambda u: bool(abs(u[-1, 0] - u[0, 0]) > 5.0),
+        parameter=0,
+        travel=2 * np.pi,
+    )
 
 
 def ladders(imperfections: np.ndarray) -> list[Ladder]:
     """Both ladders."""
-    return [make(float(e)) for make in (pitchfork, near_parallelogram) for e in imperfections]
+    return [
+        make(float(e))
+        for make in (pitchfork, near_parallelogram)
+        for e in imperfections
+    ]
 
 
 # --- points that are there, or only seem to be --------------------------------------------------------
 
 
 def _plane(function: Callable[[np.ndarray], list[float]]) -> Problem:
-    """A plane curve with its singular point moved away from the origin, where rounding would vanish."""
+    """A plane curve with its singular point moved away from the origin, where rounding
+    would vanish."""
     away = np.array([0.1234, -0.0567])
-    return FunctionProblem(lambda u: np.array(function(u - away)), [[-1.1, 1.0], [-1.05, 1.2]])
+    return FunctionProblem(
+        lambda u: np.array(function(u - away)), [[-1.1, 1.0], [-1.05, 1.2]]
+    )
 
 
 def _line_and_parabola(u: np.ndarray) -> list[float]:
@@ -139,27 +180,69 @@ def _at(x: float, y: float) -> np.ndarray:
 def crossings() -> list[Crossing]:
     """Plane curves with a known singular point, and linkages with known maps."""
     plane = [
-        Crossing("transcritical", _plane(lambda u: [u[0] * u[1] - u[1] ** 2]), _at(0.5, 0.5), 1.6, 1),
-        Crossing("pitchfork from the side", _plane(lambda u: [u[0] * u[1] - u[1] ** 3]), _at(0.49, 0.7), 2.0, 1),
-        Crossing("triple crossing", _plane(lambda u: [u[1] * (u[1] ** 2 - u[0] ** 2)]), _at(0.5, 0.5), 1.6, 1),
-        Crossing("tacnode", _plane(lambda u: [u[1] ** 2 - u[0] ** 4]), _at(0.6, 0.36), 1.5, 1),
+        Crossing(
+            "transcritical",
+            _plane(lambda u: [u[0] * u[1] - u[1] ** 2]),
+            _at(0.5, 0.5),
+            1.6,
+            1,
+        ),
+        Crossing(
+            "pitchfork from the side",
+            _plane(lambda u: [u[0] * u[1] - u[1] ** 3]),
+            _at(0.49, 0.7),
+            2.0,
+            1,
+        ),
+        Crossing(
+            "triple crossing",
+            _plane(lambda u: [u[1] * (u[1] ** 2 - u[0] ** 2)]),
+            _at(0.5, 0.5),
+            1.6,
+            1,
+        ),
+        Crossing(
+            "tacnode", _plane(lambda u: [u[1] ** 2 - u[0] ** 4]), _at(0.6, 0.36), 1.5, 1
+        ),
         Crossing("double crossing", _plane(_line_and_parabola), _at(0.6, 0.3), 1.2, 2),
-        Crossing("cusp", _plane(lambda u: [u[1] ** 2 - u[0] ** 3]), _at(0.64, 0.512), 1.6, 0),
-        Crossing("isolated point beside a line", _plane(_point_and_line), _at(0.05, 0.5), 1.0, 0),
-        Crossing("small oval beside a line", _plane(_oval_and_line), _at(0.05, 0.5), 1.0, 0),
+        Crossing(
+            "cusp", _plane(lambda u: [u[1] ** 2 - u[0] ** 3]), _at(0.64, 0.512), 1.6, 0
+        ),
+        Crossing(
+            "isolated point beside a line",
+            _plane(_point_and_line),
+            _at(0.05, 0.5),
+            1.0,
+            0,
+        ),
+        Crossing(
+            "small oval beside a line", _plane(_oval_and_line), _at(0.05, 0.5), 1.0, 0
+        ),
     ]
     miss = 2.5e-7  # the square of half its width
     start = _at(0.5, sqrt(0.25 - miss))
-    plane.append(Crossing("near miss 1e-3", _plane(lambda u: [u[0] ** 2 - u[1] ** 2 - miss]), start, 1.4, 0))
+    plane.append(
+        Crossing(
+            "near miss 1e-3",
+            _plane(lambda u: [u[0] ** 2 - u[1] ** 2 - miss]),
+            start,
+            1.4,
+            0,
+        )
+    )
     return plane + [_loop(*case) for case in LOOPS]
 
 
-# Beta and delta are almost equal: at a rank drop two equations of second order differ by 2e-8 of their size (singular
-# values 0.419 and 2.29e-8 of their coefficients at 50 digits), so that one of two tangents solves both, but nearly two.
+# Beta and delta are almost equal: at a rank drop two equations of second order differ
+# by 2e-8 of their size (singular values 0.419 and 2.29e-8 of their coefficients at 50
+# digits), so that one of two tangents solves both, but nearly two.
 ALMOST_TWO = {
-    "a": 2.144874646208794, "alpha": 1.5668555382374716, "beta": 0.5795111767234356, "gamma": 1.5921695469201371,
+    "a": 2.144874646208794,
+    "alpha": 1.5668555382374716,
+    "beta": 0.5795111767234356,
+    "gamma": 1.5921695469201371,
     "delta": 0.5790264703154796,
-}  # fmt: skip
+}
 LOOPS: tuple[tuple[str, str, int, dict[str, float]], ...] = (
     ("Bennett, raw", "bennett", 0, {}),
     ("serial Goldberg 6R", "serial-goldberg-6r", 0, {}),
@@ -171,13 +254,20 @@ LOOPS: tuple[tuple[str, str, int, dict[str, float]], ...] = (
 
 
 def _loop(title: str, name: str, count: int, values: dict[str, float]) -> Crossing:
-    """A linkage of the catalogue, once around the first form that random starts reach far from singular points."""
+    """A linkage of the catalogue, once around the first form that random starts reach
+    far from singular points."""
     from bifurc.curves.continuation import trace_branch
 
     problem = LoopClosure(entry(name).build(**values))
-    starts, gaps = problem.project(np.random.default_rng(0).uniform(-3, 3, (60, problem.n)))
+    starts, gaps = problem.project(
+        np.random.default_rng(0).uniform(-3, 3, (60, problem.n))
+    )
     good = starts[gaps < 1e-13]
     sigma = np.linalg.svd(problem.jacobians(good), compute_uv=False)
-    curve = sigma[:, problem.n - 1] < 1e-9 if sigma.shape[1] >= problem.n else np.ones(len(good), dtype=bool)
+    curve = (
+        sigma[:, problem.n - 1] < 1e-9
+        if sigma.shape[1] >= problem.n
+        else np.ones(len(good), dtype=bool)
+    )
     start = good[curve][np.argmax(sigma[curve, problem.n - 2])]
     return Crossing(title, problem, start, trace_branch(problem, start).length, count)

@@ -2,12 +2,14 @@
 
     python -m studies.near_bifurcations [--count 1000] [--seed 0] [--certify]
 
-Every linkage is off one that bifurcates by 1e-8 to 1e-2, and is traced twice, with steps of at most 0.1 and 0.5. Exact
-relations of its motion (`studies.near_misses`) decide whether the curve stayed on its arc. A trace is right when it did
-and came back to its start; flagged when it is wrong or unfinished, and its outcome or its certificate says so; all
-else is a jump without a word. With --certify every trace gets a certificate; where that stops at places that are
-singular to within rounding, singular points are located there. (Some are none: a form that crossed before the linkage
-was changed is left as one that nearly solves the equations.)
+Every linkage is off one that bifurcates by 1e-8 to 1e-2, and is traced twice, with
+steps of at most 0.1 and 0.5. Exact relations of its motion (`studies.near_misses`)
+decide whether the curve stayed on its arc. A trace is right when it did and came back
+to its start; flagged when it is wrong or unfinished, and its outcome or its certificate
+says so; all else is a jump without a word. With --certify every trace gets a
+certificate; where that stops at places that are singular to within rounding, singular
+points are located there. (Some are none: a form that crossed before the linkage was
+changed is left as one that nearly solves the equations.)
 """
 
 from __future__ import annotations
@@ -27,18 +29,29 @@ from bifurc.singular.locate import locate_singular_point
 from linkages.app.summary import table
 from studies.near_misses import NearMiss, near_misses
 
-__all__ = ["STEPS", "Trace", "certify_trace", "describe", "describe_certificates", "follow"]
+__all__ = [
+    "STEPS",
+    "Trace",
+    "certify_trace",
+    "describe",
+    "describe_certificates",
+    "follow",
+]
 
 STEPS = (0.1, 0.5)
 STATUSES = (
-    "certified", "certified up to the singular points", "certified up to places singular to rounding", "not certified",
-)  # fmt: skip
+    "certified",
+    "certified up to the singular points",
+    "certified up to places singular to rounding",
+    "not certified",
+)
 
 
 @dataclass(frozen=True)
 class Trace:
-    """One trace of one linkage: ``verdict`` is right, flagged or jump; ``certificate`` its status, empty where none was
-    made, of ``points``. ``seconds`` are those of the trace, ``certifying`` those of the certificate."""
+    """One trace of one linkage: ``verdict`` is right, flagged or jump; ``certificate``
+    its status, empty where none was made, of ``points``. ``seconds`` are those of the
+    trace, ``certifying`` those of the certificate."""
 
     family: str
     size: float
@@ -53,9 +66,12 @@ class Trace:
 
 
 def follow(case: NearMiss, step: float, certify: bool = False) -> Trace:
-    """Trace one linkage and judge it; without ``certify`` only wrong curves are held against their certificates."""
+    """Trace one linkage and judge it; without ``certify`` only wrong curves are held
+    against their certificates."""
     began = time.process_time()
-    branch = trace_branch(case.problem, case.start, None, TraceSettings(longest=step / case.problem.scale))
+    branch = trace_branch(
+        case.problem, case.start, None, TraceSettings(longest=step / case.problem.scale)
+    )
     seconds = time.process_time() - began
     right, status, points, certifying = is_right(case, branch), "", 0, 0.0
     if branch.closed and (certify or not right):
@@ -64,9 +80,17 @@ def follow(case: NearMiss, step: float, certify: bool = False) -> Trace:
         certifying = time.process_time() - began
     verdict = "right" if right else "jump" if status == "certified" else "flagged"
     return Trace(
-        case.family, case.size, step, verdict, branch.outcome.name, len(branch.pieces), seconds,
-        status, points, certifying,
-    )  # fmt: skip
+        case.family,
+        case.size,
+        step,
+        verdict,
+        branch.outcome.name,
+        len(branch.pieces),
+        seconds,
+        status,
+        points,
+        certifying,
+    )
 
 
 def is_right(case: NearMiss, branch: Branch) -> bool:
@@ -75,11 +99,18 @@ def is_right(case: NearMiss, branch: Branch) -> bool:
 
 
 def certify_trace(case: NearMiss, branch: Branch) -> tuple[str, int]:
-    """Status and number of points of a certificate; a singular point is looked for wherever rounding stops it."""
-    certificate = certify_branch(case.problem, branch, profile_branch(case.problem, branch))
+    """Status and number of points of a certificate; a singular point is looked for
+    wherever rounding stops it."""
+    certificate = certify_branch(
+        case.problem, branch, profile_branch(case.problem, branch)
+    )
     middles, reach = branch(certificate.blurred.mean(axis=1)), 1e-3 * case.problem.scale
-    located = [locate_singular_point(case.problem, u, 2, reach) is not None for u in middles]
-    return STATUSES[1] if certificate.status == STATUSES[2] and all(located) else certificate.status, certificate.points
+    located = [
+        locate_singular_point(case.problem, u, 2, reach) is not None for u in middles
+    ]
+    return STATUSES[1] if certificate.status == STATUSES[2] and all(
+        located
+    ) else certificate.status, certificate.points
 
 
 def _joins(branch: Branch) -> bool:
@@ -88,7 +119,9 @@ def _joins(branch: Branch) -> bool:
     tiny = 1e-9 * np.minimum(np.diff(branch.breaks)[:-1], np.diff(branch.breaks)[1:])
     before, after = branch(inner - tiny), branch(inner + tiny)
     turn = np.sum(branch(inner - tiny, 1) * branch(inner + tiny, 1), axis=1)
-    return bool(np.all(np.linalg.norm(after - before, axis=1) < 1e-8) and np.all(turn > 0.9))
+    return bool(
+        np.all(np.linalg.norm(after - before, axis=1) < 1e-8) and np.all(turn > 0.9)
+    )
 
 
 def describe(traces: Sequence[Trace]) -> str:
@@ -96,14 +129,37 @@ def describe(traces: Sequence[Trace]) -> str:
     rows = []
     groups = [(f, s) for f in dict.fromkeys(t.family for t in traces) for s in STEPS]
     for family, step in [*groups, ("all", 0.0)]:
-        some = [t for t in traces if family == "all" or (t.family, t.step) == (family, step)]
-        counts = [sum(t.verdict == v for t in some) for v in ("right", "flagged", "jump")]
+        some = [
+            t for t in traces if family == "all" or (t.family, t.step) == (family, step)
+        ]
+        counts = [
+            sum(t.verdict == v for t in some) for v in ("right", "flagged", "jump")
+        ]
         pieces, seconds = [t.pieces for t in some], [t.seconds for t in some]
-        rows.append((
-            family, f"{step:g}" if step else "", str(len(some)), str(counts[0]), str(counts[1]),
-            str(counts[2]), f"{np.median(pieces):.0f}", str(max(pieces)), f"{1e3 * np.median(seconds):.1f}",
-        ))  # fmt: skip
-    heads = ("family", "step", "traces", "right", "flagged", "jumps", "pieces", "most", "ms")
+        rows.append(
+            (
+                family,
+                f"{step:g}" if step else "",
+                str(len(some)),
+                str(counts[0]),
+                str(counts[1]),
+                str(counts[2]),
+                f"{np.median(pieces):.0f}",
+                str(max(pieces)),
+                f"{1e3 * np.median(seconds):.1f}",
+            )
+        )
+    heads = (
+        "family",
+        "step",
+        "traces",
+        "right",
+        "flagged",
+        "jumps",
+        "pieces",
+        "most",
+        "ms",
+    )
     return table(heads, rows)
 
 
@@ -113,21 +169,37 @@ def describe_certificates(traces: Sequence[Trace]) -> str:
     for family, step in dict.fromkeys((t.family, t.step) for t in traces):
         some = [t for t in traces if (t.family, t.step) == (family, step)]
         seconds, points = [t.certifying for t in some], [t.points for t in some]
-        rows.append((
-            family, f"{step:g}", *(str(sum(t.certificate == status for t in some)) for status in STATUSES),
-            f"{np.median(points):.0f}", str(max(points)), f"{1e3 * np.median(seconds):.0f}",
-            f"{1e3 * max(seconds):.0f}",
-        ))  # fmt: skip
+        rows.append(
+            (
+                family,
+                f"{step:g}",
+                *(
+                    str(sum(t.certificate == status for t in some))
+                    for status in STATUSES
+                ),
+                f"{np.median(points):.0f}",
+                str(max(points)),
+                f"{1e3 * np.median(seconds):.0f}",
+                f"{1e3 * max(seconds):.0f}",
+            )
+        )
     kinds = ("certified", "up to singular points", "up to rounding", "not")
     return table(("family", "step", *kinds, "points", "most", "ms", "most"), rows)
 
 
 @click.command(help=__doc__)
-@click.option("--count", type=click.IntRange(1), default=1000, show_default=True, help="How many linkages.")
+@click.option(
+    "--count",
+    type=click.IntRange(1),
+    default=1000,
+    show_default=True,
+    help="How many linkages.",
+)
 @click.option("--seed", type=int, default=0, show_default=True)
 @click.option("--certify", is_flag=True, help="Certify the right curves, too.")
 def main(count: int, seed: int, certify: bool) -> None:
-    """Run the study and print its table, with a line for every trace that is not right."""
+    """Run the study and print its table, with a line for every trace that is not
+    right."""
     traces = []
     for number, case in enumerate(near_misses(count, np.random.default_rng(seed))):
         for step in STEPS:

@@ -1,16 +1,20 @@
-"""Random linkages that nearly bifurcate, each with an exact test of whether a curve stays on its own arc.
+"""Random linkages that nearly bifurcate, each with an exact test of whether a curve
+stays on its own arc.
 
 All three tests rest on closed forms of the motion, not on following it.
 
-Four-bars: the diagonal that joints 1 and 3 span gives A cos(theta1) - B cos(theta3) = C. Two arcs that pass each other
-do so at flat joints, and one of these two joints cannot be flat on either arc.
+Four-bars: the diagonal that joints 1 and 3 span gives A cos(theta1) - B cos(theta3) =
+C. Two arcs that pass each other do so at flat joints, and one of these two joints
+cannot be flat on either arc.
 
-Double-subtractive-Goldberg linkages: tan(theta1/2) tan(theta2/2) and tan(theta4/2) tan(theta5/2) are constant, theta6
-is theta3 up to sign, and f(theta1) = h(theta4) with one maximum and one minimum each. Arcs pass each other where both
-have an extremum; the one that is larger cannot be reached.
+Double-subtractive-Goldberg linkages: tan(theta1/2) tan(theta2/2) and tan(theta4/2)
+tan(theta5/2) are constant, theta6 is theta3 up to sign, and f(theta1) = h(theta4) with
+one maximum and one minimum each. Arcs pass each other where both have an extremum; the
+one that is larger cannot be reached.
 
-Line-symmetric Bricards: `studies.half_turn`. The forms that crossed the traced one before the linkage was changed,
-revised ones or Bennett's, are not line-symmetric and close no more: to turn into one is a jump.
+Line-symmetric Bricards: `studies.half_turn`. The forms that crossed the traced one
+before the linkage was changed, revised ones or Bennett's, are not line-symmetric and
+close no more: to turn into one is a jump.
 """
 
 from __future__ import annotations
@@ -35,7 +39,8 @@ CLEAR = 3e-2  # smallest regular singular value at a start
 
 @dataclass(frozen=True)
 class NearMiss:
-    """A linkage whose parameters are off those of a bifurcating one by ``size``; ``stays`` is exact."""
+    """A linkage whose parameters are off those of a bifurcating one by ``size``;
+    ``stays`` is exact."""
 
     family: str
     size: float
@@ -49,7 +54,11 @@ def _starts(problem: LoopClosure, rng: np.random.Generator) -> np.ndarray:
     points, gaps = problem.project(rng.uniform(-np.pi, np.pi, (40, problem.n)))
     points = points[gaps < 1e-13]
     sigma = np.linalg.svd(problem.jacobians(points), compute_uv=False)
-    curve = sigma[:, problem.n - 1] < 1e-9 if problem.n > 4 else np.ones(len(points), dtype=bool)
+    curve = (
+        sigma[:, problem.n - 1] < 1e-9
+        if problem.n > 4
+        else np.ones(len(points), dtype=bool)
+    )
     weakest = sigma[:, 4] if problem.n > 4 else sigma[:, 2]
     return points[curve & (weakest > CLEAR)]
 
@@ -88,8 +97,14 @@ def _four_bar(rng: np.random.Generator, size: float) -> NearMiss | None:
 def _double_goldberg(rng: np.random.Generator, size: float) -> NearMiss | None:
     values = entry("special-double-subtractive-goldberg").draw(rng)
     t = {name: math.tan(values[name] / 2) for name in ("alpha", "beta", "delta")}
-    gamma = 2 * math.atan(t["beta"] * t["delta"] / t["alpha"]) * (1 + size * rng.choice([-1.0, 1.0]))
-    problem = LoopClosure(entry("double-subtractive-goldberg").build(**values, gamma=gamma))
+    gamma = (
+        2
+        * math.atan(t["beta"] * t["delta"] / t["alpha"])
+        * (1 + size * rng.choice([-1.0, 1.0]))
+    )
+    problem = LoopClosure(
+        entry("double-subtractive-goldberg").build(**values, gamma=gamma)
+    )
     for start in _starts(problem, rng):
         found = _goldberg_test(start, size)
         if found is not None:
@@ -98,11 +113,17 @@ def _double_goldberg(rng: np.random.Generator, size: float) -> NearMiss | None:
 
 
 def _goldberg_test(start: np.ndarray, size: float) -> Callable[[Branch], bool] | None:
-    """The test for the form through ``start``, or None where that form comes near no other arc."""
-    turn = next((s for s in (1.0, -1.0) if abs(math.sin((start[5] - s * start[2]) / 2)) < 1e-9), None)
+    """The test for the form through ``start``, or None where that form comes near no
+    other arc."""
+    turn = next(
+        (s for s in (1.0, -1.0) if abs(math.sin((start[5] - s * start[2]) / 2)) < 1e-9),
+        None,
+    )
     if turn is None:
         return None
-    first, second = (-turn * math.tan(start[i] / 2) * math.tan(start[i + 1] / 2) for i in (0, 3))
+    first, second = (
+        -turn * math.tan(start[i] / 2) * math.tan(start[i + 1] / 2) for i in (0, 3)
+    )
     if min(first, second) < 1e-3 or max(first, second) > 1e3:
         return None
     above, below = (abs(p - 1) / (2 * math.sqrt(p)) for p in (first, second))
@@ -113,11 +134,17 @@ def _goldberg_test(start: np.ndarray, size: float) -> Callable[[Branch], bool] |
 
     def relation(points: np.ndarray) -> np.ndarray:
         s, c = np.sin(points / 2), np.cos(points / 2)
-        ties = [s[:, i] * s[:, i + 1] * turn + p * c[:, i] * c[:, i + 1] for i, p in ((0, first), (3, second))]
+        ties = [
+            s[:, i] * s[:, i + 1] * turn + p * c[:, i] * c[:, i + 1]
+            for i, p in ((0, first), (3, second))
+        ]
         f, h = (
-            (p - 1) * np.sin(points[:, i]) / (s[:, i] ** 2 + p * c[:, i] ** 2) for i, p in ((0, first), (3, second))
+            (p - 1) * np.sin(points[:, i]) / (s[:, i] ** 2 + p * c[:, i] ** 2)
+            for i, p in ((0, first), (3, second))
         )
-        return np.array([*ties, np.sin((points[:, 5] - turn * points[:, 2]) / 2), f - turn * h])
+        return np.array(
+            [*ties, np.sin((points[:, 5] - turn * points[:, 2]) / 2), f - turn * h]
+        )
 
     sign = relation(start[None])
     if abs(sign[3, 0]) > 1e-8 * max(1.0, first, second, above):
@@ -126,8 +153,12 @@ def _goldberg_test(start: np.ndarray, size: float) -> Callable[[Branch], bool] |
     def stays(branch: Branch) -> bool:
         points = branch(samples(branch))
         off = np.abs(relation(points)).max(axis=1)
-        barred = never_at(points[:, joint], angle) and never_at(points[:, joint], -angle)
-        return barred and bool(np.all(off < 1e-6 * max(1.0, first, second, 1 / first, 1 / second)))
+        barred = never_at(points[:, joint], angle) and never_at(
+            points[:, joint], -angle
+        )
+        return barred and bool(
+            np.all(off < 1e-6 * max(1.0, first, second, 1 / first, 1 / second))
+        )
 
     return stays
 
@@ -135,16 +166,27 @@ def _goldberg_test(start: np.ndarray, size: float) -> Callable[[Branch], bool] |
 # --- line-symmetric Bricards --------------------------------------------------------------------------
 
 
-def _line_symmetric(family: str, loop: Loop, rng: np.random.Generator, size: float) -> NearMiss | None:
+def _line_symmetric(
+    family: str, loop: Loop, rng: np.random.Generator, size: float
+) -> NearMiss | None:
     problem = LoopClosure(loop)
     points = _starts(problem, rng)
-    points = points[np.abs(np.sin((points[:, 3:] - points[:, :3]) / 2)).max(axis=1, initial=0.0) < 1e-9]
-    return NearMiss(family, size, problem, points[0], HalfTurn(loop).stays) if len(points) else None
+    points = points[
+        np.abs(np.sin((points[:, 3:] - points[:, :3]) / 2)).max(axis=1, initial=0.0)
+        < 1e-9
+    ]
+    return (
+        NearMiss(family, size, problem, points[0], HalfTurn(loop).stays)
+        if len(points)
+        else None
+    )
 
 
 def _tiny_offsets(rng: np.random.Generator, size: float) -> NearMiss | None:
     values = entry("bricard-line-symmetric-zero-offset").draw(rng)
-    offsets = dict(zip(("R1", "R2", "R3"), size * rng.uniform(-1.0, 1.0, 3), strict=True))
+    offsets = dict(
+        zip(("R1", "R2", "R3"), size * rng.uniform(-1.0, 1.0, 3), strict=True)
+    )
     loop = entry("bricard-line-symmetric").build(**values, **offsets)
     return _line_symmetric("line-symmetric Bricard", loop, rng, size)
 
@@ -155,14 +197,20 @@ def _other_kink(rng: np.random.Generator, size: float) -> NearMiss | None:
     loop = entry("reconfigurable-bricard-1").build(**values)
     values["kink"] *= 1 + size * rng.choice([-1.0, 1.0])
     other = entry("reconfigurable-bricard-1").build(**values)
-    return _line_symmetric("reconfigurable Bricard", Loop(loop.lengths, loop.twists, other.offsets), rng, size)
+    return _line_symmetric(
+        "reconfigurable Bricard",
+        Loop(loop.lengths, loop.twists, other.offsets),
+        rng,
+        size,
+    )
 
 
 FAMILIES = (_four_bar, _double_goldberg, _tiny_offsets, _other_kink)
 
 
 def near_misses(count: int, rng: np.random.Generator) -> Iterator[NearMiss]:
-    """``count`` random linkages, the families in turn, sizes from 1e-8 to 1e-2 with equal chance for every power."""
+    """``count`` random linkages, the families in turn, sizes from 1e-8 to 1e-2 with
+    equal chance for every power."""
     for k in range(count):
         made = None
         while made is None:

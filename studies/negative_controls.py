@@ -1,8 +1,10 @@
-"""Negative controls: change a linkage by a thousandth, entry by entry, and see whether it still moves.
+"""Negative controls: change a linkage by a thousandth, entry by entry, and see whether
+it still moves.
 
-Run as ``python -m studies.negative_controls [FILE]``; writes docs/negative_controls.md. Every length, twist and offset
-of the table is changed alone, which breaks whatever condition holds it; then entries that are alike are changed
-together, which keeps their equality and breaks what else ties them: ratios, sums, or nothing, if they are free.
+Run as ``python -m studies.negative_controls [FILE]``; writes docs/negative_controls.md.
+Every length, twist and offset of the table is changed alone, which breaks whatever
+condition holds it; then entries that are alike are changed together, which keeps their
+equality and breaks what else ties them: ratios, sums, or nothing, if they are free.
 """
 
 from __future__ import annotations
@@ -26,10 +28,11 @@ TYPES = (("lengths", "a"), ("twists", "alpha"), ("offsets", "R"))
 
 @dataclass(frozen=True)
 class Control:
-    """What became of a loop when ``changed`` was changed: ``mobility`` 0 if it no longer moves.
+    """What became of a loop when ``changed`` was changed: ``mobility`` 0 if it no
+    longer moves.
 
-    ``stiffness`` is the smallest singular value at the rigid assemblies, nan where there is none: no real
-    configuration, or flat ones alone that are isolated.
+    ``stiffness`` is the smallest singular value at the rigid assemblies, nan where
+    there is none: no real configuration, or flat ones alone that are isolated.
     """
 
     changed: str
@@ -46,22 +49,32 @@ def _changed(loop: Loop, which: str, signs: dict[int, float]) -> Loop:
     values = {key: list(getattr(loop, key)) for key, _ in TYPES}
     for i, sign in signs.items():
         values[which][i] += sign * step
-    return Loop(tuple(values["lengths"]), tuple(values["twists"]), tuple(values["offsets"]))
+    return Loop(
+        tuple(values["lengths"]), tuple(values["twists"]), tuple(values["offsets"])
+    )
 
 
 def break_conditions(loop: Loop) -> Iterator[tuple[str, Loop]]:
-    """Every entry of the table changed alone, then every group of entries of equal size, not 0, changed together."""
+    """Every entry of the table changed alone, then every group of entries of equal
+    size, not 0, changed together."""
     for (which, letter), row in zip(TYPES, loop.arrays, strict=True):
         for i in range(loop.n):
             yield _name(letter, i, loop.n), _changed(loop, which, {i: 1.0})
         sizes = np.abs(row)
         seen: set[int] = set()
         for i in range(loop.n):
-            group = [j for j in range(loop.n) if abs(sizes[j] - sizes[i]) < 1e-9 and sizes[i] > 1e-9]
+            group = [
+                j
+                for j in range(loop.n)
+                if abs(sizes[j] - sizes[i]) < 1e-9 and sizes[i] > 1e-9
+            ]
             if len(group) > 1 and i not in seen:
                 seen.update(group)
                 text = ", ".join(_name(letter, j, loop.n) for j in group)
-                yield f"{text} together", _changed(loop, which, {j: float(np.sign(row[j])) for j in group})
+                yield (
+                    f"{text} together",
+                    _changed(loop, which, {j: float(np.sign(row[j])) for j in group}),
+                )
 
 
 def controls(loop: Loop, starts: int = 20) -> list[Control]:
@@ -101,9 +114,14 @@ def controls_page() -> str:
     for name, found in catalogue().items():
         checked = controls(found.build())
         stopped = [control for control in checked if not control.mobility]
-        moving = "; ".join(control.changed for control in checked if control.mobility) or "nothing"
+        moving = (
+            "; ".join(control.changed for control in checked if control.mobility)
+            or "nothing"
+        )
         stiffness = _smallest([control.stiffness for control in stopped])
-        rows.append(f"| {name} | {len(checked)} | {len(stopped)} | {stiffness} | {moving} |")
+        rows.append(
+            f"| {name} | {len(checked)} | {len(stopped)} | {stiffness} | {moving} |"
+        )
     return HEAD + "\n".join(rows) + "\n"
 
 

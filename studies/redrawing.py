@@ -1,4 +1,5 @@
-"""What the studies share: draw a published transition map anew and check what the source says of it."""
+"""What the studies share: draw a published transition map anew and check what the
+source says of it."""
 
 from __future__ import annotations
 
@@ -21,7 +22,8 @@ HOLDS = 1e-9  # rad
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence of the source, and by how much the computed map deviates from it (rad, or a count)."""
+    """A sentence of the source, and by how much the computed map deviates from it (rad,
+    or a count)."""
 
     sentence: str
     deviation: float
@@ -29,8 +31,9 @@ class Claim:
 
 @dataclass(frozen=True)
 class Redrawing:
-    """A published figure: its name for the files, its axes (joints from 1; None where the source does not name
-    them), how to compute the map, and what the source says of it."""
+    """A published figure: its name for the files, its axes (joints from 1; None where
+    the source does not name them), how to compute the map, and what the source says of
+    it."""
 
     figure: str
     joints: tuple[int, int] | None
@@ -40,15 +43,22 @@ class Redrawing:
     def command(self) -> click.Command:
         """The study as a command with the option ``--out``."""
 
-        @click.command(help=f"Draw {self.figure} anew, with all tables and files of `bifurc map`.")
-        @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("out") / self.figure)
+        @click.command(
+            help=f"Draw {self.figure} anew, with all tables and files of `bifurc map`."
+        )
+        @click.option(
+            "--out",
+            type=click.Path(path_type=Path, file_okay=False),
+            default=Path("out") / self.figure,
+        )
         def study(out: Path) -> None:
             self.run(out)
 
         return study
 
     def run(self, out: Path) -> None:
-        """Print the tables and the claims; write the figure and the results of the map to a folder."""
+        """Print the tables and the claims; write the figure and the results of the map
+        to a folder."""
         from bifurc.figures.plotting import plot_transition_map
 
         out.mkdir(parents=True, exist_ok=True)
@@ -62,7 +72,10 @@ class Redrawing:
             figure = plot_transition_map(atlas, joints=self.joints)
             for ending in ("png", "svg"):
                 figure.savefig(stage / f"{self.figure}.{ending}", dpi=150)
-        click.echo(f"wrote {self.figure}.png and {len(written) - 1} more files to {out}", err=True)
+        click.echo(
+            f"wrote {self.figure}.png and {len(written) - 1} more files to {out}",
+            err=True,
+        )
 
 
 def angles_along(atlas: Atlas, form: str, *joints: int) -> tuple[np.ndarray, ...]:

@@ -22,7 +22,9 @@ __all__ = ["draw_case", "draw_ratios", "unbeaten"]
 
 SHOWN = (4, 8, 16, 24)  # orders drawn; all are in runs.csv
 SOLID, DASHED = "-", (0, (4, 2))
-STYLES: dict[str, tuple[str, str, Any]] = {  # colour, marker, line; two variants of one method share a colour
+STYLES: dict[
+    str, tuple[str, str, Any]
+] = {  # colour, marker, line; two variants of one method share a colour
     "pseudo-arclength, tangent": ("#cc3311", "o", SOLID),
     "pseudo-arclength, secant": ("#cc3311", "v", DASHED),
     "SVD predictor-corrector": ("#000000", "s", SOLID),
@@ -36,7 +38,12 @@ STYLES: dict[str, tuple[str, str, Any]] = {  # colour, marker, line; two variant
     "AUTO-07p": ("#ee7733", "^", SOLID),
 }
 TARGETS = ("1e-04", "1e-08")
-GENERIC = {"circle": "^", "pitchfork": "v", "bratu-50": "s", "bratu-1000": "D"}  # markers; linkages are dots
+GENERIC = {
+    "circle": "^",
+    "pitchfork": "v",
+    "bratu-50": "s",
+    "bratu-1000": "D",
+}  # markers; linkages are dots
 
 
 def draw_case(title: str, runs: Sequence[Run], path: Path) -> None:
@@ -48,24 +55,59 @@ def draw_case(title: str, runs: Sequence[Run], path: Path) -> None:
     shades = colormaps["Blues"](np.linspace(0.45, 1.0, len(SHOWN)))
     for order, shade in zip(SHOWN, shades, strict=True):
         width = 2.4 if order == 16 else 1.0
-        _line(axes, [r for r in runs if r.order == order], f"this project, order {order}", shade, ".", width, SOLID)
+        _line(
+            axes,
+            [r for r in runs if r.order == order],
+            f"this project, order {order}",
+            shade,
+            ".",
+            width,
+            SOLID,
+        )
     for method in dict.fromkeys(run.method for run in runs if not run.order):
         colour, marker, line = STYLES.get(method, ("#555555", ".", SOLID))
-        _line(axes, [r for r in runs if r.method == method], method, colour, marker, 1.0, line)
+        _line(
+            axes,
+            [r for r in runs if r.method == method],
+            method,
+            colour,
+            marker,
+            1.0,
+            line,
+        )
     axes.set(xscale="log", yscale="log", title=title)
     axes.set(xlabel="largest distance to the exact curve", ylabel="processor time (ms)")
     axes.invert_xaxis()
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, handlelength=3)
+    axes.legend(
+        fontsize=8,
+        loc="center left",
+        bbox_to_anchor=(1.01, 0.5),
+        frameon=False,
+        handlelength=3,
+    )
     figure.savefig(path, dpi=150)
     plt.close(figure)
 
 
-def _line(axes: Axes, runs: Sequence[Run], label: str, colour: Any, marker: str, width: float, line: Any) -> None:
+def _line(
+    axes: Axes,
+    runs: Sequence[Run],
+    label: str,
+    colour: Any,
+    marker: str,
+    width: float,
+    line: Any,
+) -> None:
     good = unbeaten(runs)
     style = {"color": colour, "marker": marker, "lw": width, "ls": line, "ms": 5}
     if good:
-        axes.plot([run.error for run in good], [1e3 * run.seconds for run in good], label=label, **style)
+        axes.plot(
+            [run.error for run in good],
+            [1e3 * run.seconds for run in good],
+            label=label,
+            **style,
+        )
         return
     tried = any(np.isfinite(run.seconds) or "not tried" not in run.note for run in runs)
     axes.plot([], [], label=f"{label} ({'fails' if tried else 'not tried'})", **style)
@@ -73,7 +115,10 @@ def _line(axes: Axes, runs: Sequence[Run], label: str, colour: Any, marker: str,
 
 def unbeaten(runs: Sequence[Run]) -> list[Run]:
     """The runs that no other comes as near in less time, from large to small errors."""
-    good = sorted((run for run in runs if np.isfinite(run.error)), key=lambda run: (run.seconds, run.error))
+    good = sorted(
+        (run for run in runs if np.isfinite(run.error)),
+        key=lambda run: (run.seconds, run.error),
+    )
     out: list[Run] = []
     for run in good:
         if not out or run.error < out[-1].error:
@@ -81,33 +126,71 @@ def unbeaten(runs: Sequence[Run]) -> list[Run]:
     return out
 
 
-def draw_ratios(table: Sequence[Mapping[str, Any]], titles: Mapping[str, str], path: Path) -> None:
-    """How many times longer each method takes than this project to come within 1e-4 and 1e-8 of each curve.
+def draw_ratios(
+    table: Sequence[Mapping[str, Any]], titles: Mapping[str, str], path: Path
+) -> None:
+    """How many times longer each method takes than this project to come within 1e-4 and
+    1e-8 of each curve.
 
     Linkages as dots, each in its place within the row, and their median as a bar.
     """
     methods = list(dict.fromkeys(row["method"] for row in table))
     linkages = [case for case in titles if case not in GENERIC]
     figure, panels = plt.subplots(
-        1, len(TARGETS), figsize=(11.0, 0.36 * len(methods) + 1.4), layout="constrained", sharey=True, sharex=True
+        1,
+        len(TARGETS),
+        figsize=(11.0, 0.36 * len(methods) + 1.4),
+        layout="constrained",
+        sharey=True,
+        sharex=True,
     )
     for axes, target in zip(panels, TARGETS, strict=True):
         for row, method in enumerate(methods):
-            found = {r["case"]: float(r[target]) for r in table if r["method"] == method}
+            found = {
+                r["case"]: float(r[target]) for r in table if r["method"] == method
+            }
             ours = [found.get(case, np.nan) for case in linkages]
             height = row + np.linspace(-0.25, 0.25, len(ours))
-            axes.plot(ours, height, "o", ms=4, color="#4477aa", label="linkages" if not row else None)
+            axes.plot(
+                ours,
+                height,
+                "o",
+                ms=4,
+                color="#4477aa",
+                label="linkages" if not row else None,
+            )
             if np.isfinite(ours).any():
-                axes.plot([np.nanmedian(ours)] * 2, [row - 0.36, row + 0.36], color="#4477aa", lw=2)
+                axes.plot(
+                    [np.nanmedian(ours)] * 2,
+                    [row - 0.36, row + 0.36],
+                    color="#4477aa",
+                    lw=2,
+                )
             for case, marker in GENERIC.items():
                 label = titles.get(case) if not row else None
-                axes.plot(found.get(case, np.nan), row, marker, ms=6, color="#ee7733", mec="w", mew=0.5, label=label)
+                axes.plot(
+                    found.get(case, np.nan),
+                    row,
+                    marker,
+                    ms=6,
+                    color="#ee7733",
+                    mec="w",
+                    mew=0.5,
+                    label=label,
+                )
         axes.axvline(1.0, color="0.3", lw=1)
-        axes.set(xscale="log", title=f"to come within $10^{{{round(np.log10(float(target)))}}}$ of the whole curve")
+        axes.set(
+            xscale="log",
+            title=f"to come within $10^{{{round(np.log10(float(target)))}}}$ of the whole curve",
+        )
         axes.grid(alpha=0.3, axis="x")
     panels[0].set_yticks(range(len(methods)), methods)
     panels[0].set_ylim(len(methods) - 0.5, -0.5)
-    figure.supxlabel("processor time over that of this project (order 16)", fontsize="medium")
-    panels[-1].legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False)
+    figure.supxlabel(
+        "processor time over that of this project (order 16)", fontsize="medium"
+    )
+    panels[-1].legend(
+        fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False
+    )
     figure.savefig(path, dpi=150)
     plt.close(figure)

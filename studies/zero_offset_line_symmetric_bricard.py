@@ -1,9 +1,10 @@
 """The line-symmetric Bricard 6R linkage with zero offsets: figure 4.4.7 of Song 2013.
 
-Opposite links are alike and all offsets vanish, so that the geometry is at once that of the original line-symmetric
-Bricard linkage (theta_i = theta_{i+3}, Forms I and II) and of the revised one (theta_i = -theta_{i+3}, Forms I' and
-II'). Lengths and twists are those of (4.2.25). The four forms meet where theta1 is 0 or pi, original with revised ones,
-never two of a kind. The source draws theta5 against theta1.
+Opposite links are alike and all offsets vanish, so that the geometry is at once that of
+the original line-symmetric Bricard linkage (theta_i = theta_{i+3}, Forms I and II) and
+of the revised one (theta_i = -theta_{i+3}, Forms I' and II'). Lengths and twists are
+those of (4.2.25). The four forms meet where theta1 is 0 or pi, original with revised
+ones, never two of a kind. The source draws theta5 against theta1.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ ORIGINAL, REVISED = "theta_i = theta_{i+3}", "theta_i = -theta_{i+3}"
 
 
 def compute() -> Atlas:
-    """The transition map for the geometry of (4.2.25) without offsets, the default of the catalogue."""
+    """The transition map for the geometry of (4.2.25) without offsets, the default of
+    the catalogue."""
     return map_by_name("bricard-line-symmetric-zero-offset")
 
 
@@ -26,7 +28,10 @@ def claims(atlas: Atlas) -> list[Claim]:
     """What the text says of the forms and of their meeting points."""
     symmetries = [form.labels["symmetry"] for form in atlas.forms]
     meeting = np.array([point.point.u[0] for point in atlas.bifurcations])
-    mixed = [{symmetries[i] for i, _ in point.passes} == {ORIGINAL, REVISED} for point in atlas.bifurcations]
+    mixed = [
+        {symmetries[i] for i, _ in point.passes} == {ORIGINAL, REVISED}
+        for point in atlas.bifurcations
+    ]
     return [
         Claim("two original forms", abs(symmetries.count(ORIGINAL) - 2)),
         Claim("two revised forms", abs(symmetries.count(REVISED) - 2)),

@@ -1,8 +1,10 @@
-"""The examples of README and docs: Python blocks run, `bifurc` lines do what is shown, the picture is true.
+"""The examples of README and docs: Python blocks run, `bifurc` lines do what is shown,
+the picture is true.
 
-A console block holds `$ bifurc ...` lines, each with the output that must follow: line by line, "..." for any lines,
-the beginning of a line for the whole of it. A comment "exit code N" behind a command is what it ends with. TOML
-blocks that begin with a comment "NAME.toml" are written to that file first.
+A console block holds `$ bifurc ...` lines, each with the output that must follow: line
+by line, "..." for any lines, the beginning of a line for the whole of it. A comment
+"exit code N" behind a command is what it ends with. TOML blocks that begin with a
+comment "NAME.toml" are written to that file first.
 """
 
 import re
@@ -21,7 +23,11 @@ BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
 def blocks(page, language):
-    return [text for kind, text in BLOCK.findall(page.read_text(encoding="utf-8")) if kind == language]
+    return [
+        text
+        for kind, text in BLOCK.findall(page.read_text(encoding="utf-8"))
+        if kind == language
+    ]
 
 
 def console_examples(text):
@@ -74,7 +80,10 @@ def test_the_picture_in_the_readme_is_the_graph_of_forms():
     names = dict(re.findall(r'(\w+)\["(.*?)"\]', text))
     drawn = re.findall(r"(\w+)(?:\[.*?\])? ---\|(\w+)\| (\w+)", text)
     graph = map_by_name("special-double-subtractive-goldberg").graph
-    real = {(frozenset((a, b)), data["bifurcation"]) for a, b, data in graph.edges(data=True)}
+    real = {
+        (frozenset((a, b)), data["bifurcation"])
+        for a, b, data in graph.edges(data=True)
+    }
     assert {(frozenset((names[a], names[b])), point) for a, point, b in drawn} == real
 
 

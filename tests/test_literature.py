@@ -1,4 +1,5 @@
-"""Mechanisms that the literature holds up as hard: their forms and the half-branches at their singular points."""
+"""Mechanisms that the literature holds up as hard: their forms and the half-branches at
+their singular points."""
 
 import numpy as np
 import pytest
@@ -11,9 +12,14 @@ from linkages.loop import Loop
 
 
 def test_cyclohexane_has_one_flexible_form_and_two_rigid_chairs():
-    # six equal bonds at the tetrahedral angle, each the axis of a joint: a line-symmetric octahedral linkage of Bricard
+    # six equal bonds at the tetrahedral angle, each the axis of a joint: a
+    # line-symmetric octahedral linkage of Bricard
     twist = np.arccos(1 / 3)
-    atlas = explore(LoopClosure(Loop((0,) * 6, (twist,) * 6, (1,) * 6, "cyclohexane")), starts=300, prove=True)
+    atlas = explore(
+        LoopClosure(Loop((0,) * 6, (twist,) * 6, (1,) * 6, "cyclohexane")),
+        starts=300,
+        prove=True,
+    )
     assert len(atlas.forms) == 1
     assert atlas.forms[0].branch.closed
     assert not atlas.points
@@ -23,13 +29,19 @@ def test_cyclohexane_has_one_flexible_form_and_two_rigid_chairs():
 
 
 def test_a_flat_folding_vertex_has_four_half_branches_flat_and_folded():
-    # sectors of 60, 90, 120 and 90 degrees: opposite ones make 180 degrees, so that it folds flat (Kawasaki)
+    # sectors of 60, 90, 120 and 90 degrees: opposite ones make 180 degrees, so that it
+    # folds flat (Kawasaki)
     sectors = tuple(np.radians([60.0, 90.0, 120.0, 90.0]))
-    atlas = explore(LoopClosure(Loop((0,) * 4, sectors, (0,) * 4, "vertex of four creases")), prove=True)
+    atlas = explore(
+        LoopClosure(Loop((0,) * 4, sectors, (0,) * 4, "vertex of four creases")),
+        prove=True,
+    )
     assert len(atlas.forms) == 2
     assert [p.kind for p in atlas.points] == [Kind.BIFURCATION] * 2
     assert [len(p.point.half_branches) for p in atlas.points] == [4, 4]
-    flat, folded = sorted((p.point.u for p in atlas.points), key=lambda u: float(np.abs(u).max()))
+    flat, folded = sorted(
+        (p.point.u for p in atlas.points), key=lambda u: float(np.abs(u).max())
+    )
     np.testing.assert_allclose(flat, 0.0, atol=1e-12)
     np.testing.assert_allclose(np.abs(folded), np.pi, atol=1e-12)
 
@@ -38,17 +50,25 @@ APART = 3.0  # of the two Watt linkages
 
 
 def double_watt(arm, half, room):
-    """Two Watt linkages with couplers 2 half, mirror images, whose middles are joined by a bar (Connelly and Servatius
-    1994), within ``room`` of the configuration in the middle; and that."""
-    pivots = np.array([[-arm, half], [arm, -half], [APART + arm, half], [APART - arm, -half]])
+    """Two Watt linkages with couplers 2 half, mirror images, whose middles are joined
+    by a bar (Connelly and Servatius 1994), within ``room`` of the configuration in the
+    middle; and that."""
+    pivots = np.array(
+        [[-arm, half], [arm, -half], [APART + arm, half], [APART - arm, -half]]
+    )
     middle = np.array([0.0, half, 0.0, -half, APART, half, APART, -half])
 
     def lengths(u):
         p, q, r, s = u.reshape(4, 2)
         bars = [
-            (p, pivots[0], arm), (p, q, 2 * half), (q, pivots[1], arm), (r, pivots[2], arm), (r, s, 2 * half),
-            (s, pivots[3], arm), ((p + q) / 2, (r + s) / 2, APART),
-        ]  # fmt: skip
+            (p, pivots[0], arm),
+            (p, q, 2 * half),
+            (q, pivots[1], arm),
+            (r, pivots[2], arm),
+            (r, s, 2 * half),
+            (s, pivots[3], arm),
+            ((p + q) / 2, (r + s) / 2, APART),
+        ]
         return np.array([(a - b) @ (a - b) - length**2 for a, b, length in bars])
 
     return FunctionProblem(lengths, [(x - room, x + room) for x in middle]), middle
@@ -56,7 +76,8 @@ def double_watt(arm, half, room):
 
 @pytest.mark.parametrize("seed", range(2))
 def test_the_double_watt_mechanism_has_a_cusp_in_the_middle(seed):
-    # the middles leave the vertical as t^5 / (8 half arm^3), so that their heights differ by the root of t^5
+    # the middles leave the vertical as t^5 / (8 half arm^3), so that their heights
+    # differ by the root of t^5
     problem, middle = double_watt(1.0, 0.2, 2.0)
     atlas = explore(problem, starts=60, seed=seed)
     assert len(atlas.points) == 1

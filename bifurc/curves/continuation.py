@@ -19,9 +19,9 @@ __all__ = ["TraceSettings", "trace_branch"]
 class TraceSettings:
     """How a curve is followed. Lengths are in units of the problem's ``scale``.
 
-    ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the ``shortest`` and ``longest``
-    trusted radius, and the ``max_length`` after which tracing gives up. Raises `ProblemError` outside the
-    ranges.
+    ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the
+    ``shortest`` and ``longest`` trusted radius, and the ``max_length`` after which
+    tracing gives up. Raises `ProblemError` outside the ranges.
     """
 
     order: int = 16
@@ -37,16 +37,18 @@ class TraceSettings:
             raise ProblemError("tolerance", self.tolerance, "from 1e-14 to 1e-2")
         if not 0 < self.shortest < self.longest < self.max_length:
             raise ProblemError(
-                "shortest, longest, max_length", (self.shortest, self.longest, self.max_length),
+                "shortest, longest, max_length",
+                (self.shortest, self.longest, self.max_length),
                 "positive and increasing",
-            )  # fmt: skip
+            )
 
 
 DEFAULT_SETTINGS = TraceSettings()
 
-# Next to a crossing rounding bends the curve F = 1e-16 from one branch into the other: a radius below the first of
-# these is taken for a sign of one, and a smooth piece across is tried where a singular point can be located; below
-# the second, where steps come to what rounding leaves of them, it is tried in any case.
+# Next to a crossing rounding bends the curve F = 1e-16 from one branch into the other:
+# a radius below the first of these is taken for a sign of one, and a smooth piece
+# across is tried where a singular point can be located; below the second, where steps
+# come to what rounding leaves of them, it is tried in any case.
 CAUTIOUS = (1e-4, 1e-6)
 RESOLVED = 1e-6  # two points farther apart, in scales, are never taken for one
 ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
@@ -59,11 +61,13 @@ def trace_branch(
     direction: np.ndarray | None = None,
     settings: TraceSettings = DEFAULT_SETTINGS,
 ) -> Branch:
-    """The whole smooth curve through ``start`` (n,), first followed to the side of ``direction`` (n,).
+    """The whole smooth curve through ``start`` (n,), first followed to the side of
+    ``direction`` (n,).
 
-    A curve that does not close is followed both ways to its ends. Trouble is an `Outcome` on the branch, not an
-    exception: a start that cannot be corrected gives a branch of no pieces whose ``gap`` is the residual left.
-    Raises `ProblemError` for a start or direction of the wrong shape.
+    A curve that does not close is followed both ways to its ends. Trouble is an
+    `Outcome` on the branch, not an exception: a start that cannot be corrected gives a
+    branch of no pieces whose ``gap`` is the residual left. Raises `ProblemError` for a
+    start or direction of the wrong shape.
     """
     start = problem.check_point(start, "start")
     along = None if direction is None else problem.check_point(direction, "direction")
@@ -74,7 +78,9 @@ def trace_branch(
     backward = _follow(problem, start, -tangent, settings)
     if not len(backward.pieces):
         return forward
-    if backward.outcome is Outcome.CLOSED:  # it came through where the other way stalled
+    if (
+        backward.outcome is Outcome.CLOSED
+    ):  # it came through where the other way stalled
         return backward.reversed()
     return _join(backward.reversed(), forward)
 
@@ -94,13 +100,20 @@ class _Track:
         return float(self.centers[-1] + self.radii[-1]) if len(self.centers) else 0.0
 
     def extended(
-        self, keep: int, pieces: np.ndarray, centers: np.ndarray, radii: np.ndarray, residuals: np.ndarray
+        self,
+        keep: int,
+        pieces: np.ndarray,
+        centers: np.ndarray,
+        radii: np.ndarray,
+        residuals: np.ndarray,
     ) -> _Track:
         """The first ``keep`` pieces and the given ones."""
         return _Track(
-            np.concatenate([self.pieces[:keep], pieces]), np.concatenate([self.centers[:keep], centers]),
-            np.concatenate([self.radii[:keep], radii]), np.concatenate([self.residuals[:keep], residuals]),
-        )  # fmt: skip
+            np.concatenate([self.pieces[:keep], pieces]),
+            np.concatenate([self.centers[:keep], centers]),
+            np.concatenate([self.radii[:keep], radii]),
+            np.concatenate([self.residuals[:keep], residuals]),
+        )
 
     def at(self, piece: int, s: float) -> tuple[np.ndarray, np.ndarray]:
         """Point and unit tangent of a piece at arclength ``s``."""
@@ -110,30 +123,57 @@ class _Track:
         return powers @ self.pieces[piece], slope / np.linalg.norm(slope)
 
 
-def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: TraceSettings) -> Branch:
-    """The curve from ``start`` along ``tangent`` until it closes, leaves the region, stalls or grows too long."""
+def _follow(
+    problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: TraceSettings
+) -> Branch:
+    """The curve from ``start`` along ``tangent`` until it closes, leaves the region,
+    stalls or grows too long."""
     scale = problem.scale
     nothing = np.empty(0)
-    track = _Track(np.empty((0, settings.order + 1, problem.n)), nothing, nothing, nothing)
+    track = _Track(
+        np.empty((0, settings.order + 1, problem.n)), nothing, nothing, nothing
+    )
     point, heading = start, tangent
     shortest = [max(radius, settings.shortest) * scale for radius in (*CAUTIOUS, 0.0)]
     level = 0
     while True:
         run = problem.march(
-            point, heading, settings.order, settings.tolerance, shortest[level], settings.longest * scale, AT_ONCE
+            point,
+            heading,
+            settings.order,
+            settings.tolerance,
+            shortest[level],
+            settings.longest * scale,
+            AT_ONCE,
         )
         if run.status == MarchStatus.OPEN:
-            return _assemble(problem, track, Outcome.OPEN, 0.0, gap=float(run.residuals[-1]))
+            return _assemble(
+                problem, track, Outcome.OPEN, 0.0, gap=float(run.residuals[-1])
+            )
         known = len(track.pieces)
-        track = track.extended(known, run.pieces, track.reached + np.cumsum(run.steps), run.radii, run.residuals)
+        track = track.extended(
+            known,
+            run.pieces,
+            track.reached + np.cumsum(run.steps),
+            run.radii,
+            run.residuals,
+        )
         end = _end_of_curve(problem, track, max(known - 1, 0), settings.tolerance)
         if end is None and run.status == MarchStatus.STALLED:
-            bridged = _bridge(problem, track, settings, level == 0) if level < len(CAUTIOUS) else None
+            bridged = (
+                _bridge(problem, track, settings, level == 0)
+                if level < len(CAUTIOUS)
+                else None
+            )
             if bridged is not None:
                 track = bridged
-                end = _end_of_curve(problem, track, len(track.pieces) - 1, settings.tolerance)
+                end = _end_of_curve(
+                    problem, track, len(track.pieces) - 1, settings.tolerance
+                )
             elif level < len(CAUTIOUS):
-                level += 1  # no singular point to jump over: a sharp bend, to be followed
+                level += (
+                    1  # no singular point to jump over: a sharp bend, to be followed
+                )
             else:
                 return _assemble(problem, track, Outcome.STALLED, track.reached)
         elif len(run.radii) and run.radii[-1] > 10 * shortest[0]:
@@ -146,50 +186,78 @@ def _follow(problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: 
             point, heading = track.at(-1, track.reached)
 
 
-def _bridge(problem: Problem, track: _Track, settings: TraceSettings, located: bool) -> _Track | None:
+def _bridge(
+    problem: Problem, track: _Track, settings: TraceSettings, located: bool
+) -> _Track | None:
     """The track with a piece across the point before which it stalled, or None.
 
-    Near a singular point where the rank drops faster than on a simple crossing no series reaches over. The
-    curve is smooth there all the same: a piece by collocation, from as far before the point as beyond it, needs
-    no series. With ``located`` it is tried only where a singular point can be located.
+    Near a singular point where the rank drops faster than on a simple crossing no
+    series reaches over. The curve is smooth there all the same: a piece by collocation,
+    from as far before the point as beyond it, needs no series. With ``located`` it is
+    tried only where a singular point can be located.
     """
-    if not len(track.pieces) or (located and not _is_near_singular(problem, track.at(-1, track.reached)[0])):
+    if not len(track.pieces) or (
+        located and not _is_near_singular(problem, track.at(-1, track.reached)[0])
+    ):
         return None
     for reach in (0.1, 0.2, 0.05, 0.4, 0.02):
         begin = track.reached - reach * problem.scale
         if begin < track.centers[0]:
             continue
-        last = int(np.argmin(np.abs(track.centers - begin) / track.radii))  # pieces reach back as well as on
+        last = int(
+            np.argmin(np.abs(track.centers - begin) / track.radii)
+        )  # pieces reach back as well as on
         for slack in (10.0, 100.0):
             tolerance = slack * settings.tolerance
             point, heading = track.at(last, begin)
-            made = bridge_by_collocation(problem, point, heading, settings.order, tolerance, 2 * reach * problem.scale)
+            made = bridge_by_collocation(
+                problem,
+                point,
+                heading,
+                settings.order,
+                tolerance,
+                2 * reach * problem.scale,
+            )
             enough = 10.0 * settings.tolerance
-            if made is not None and made[2] <= enough and _spans_a_crossing(problem, made[0], tolerance):
+            if (
+                made is not None
+                and made[2] <= enough
+                and _spans_a_crossing(problem, made[0], tolerance)
+            ):
                 piece, length, residual = made
                 return track.extended(
-                    last + 1, piece[None], np.array([begin + length / 2]), np.array([length / 2]), np.array([residual])
+                    last + 1,
+                    piece[None],
+                    np.array([begin + length / 2]),
+                    np.array([length / 2]),
+                    np.array([residual]),
                 )
     return None
 
 
 def _is_near_singular(problem: Problem, point: np.ndarray) -> bool:
-    """Whether a singular point can be located near ``point``, so that a bridge is worth trying."""
+    """Whether a singular point can be located near ``point``, so that a bridge is worth
+    trying."""
     if problem.n > LARGE:
         return False
-    values = np.linalg.svd(problem.jacobians(point[None])[0] / problem.magnitude, compute_uv=False)
+    values = np.linalg.svd(
+        problem.jacobians(point[None])[0] / problem.magnitude, compute_uv=False
+    )
     small = problem.n - int(np.count_nonzero(values > 1e-2))
     return any(
         locate_singular_point(problem, point, k, 0.05 * problem.scale) is not None
-        for k in sorted({2, min(small, 4)}) if k > 1
+        for k in sorted({2, min(small, 4)})
+        if k > 1
     )
 
 
 def _spans_a_crossing(problem: Problem, piece: np.ndarray, tolerance: float) -> bool:
-    """Whether a bridge meets the weakest equation to rounding, as it does where branches really cross.
+    """Whether a bridge meets the weakest equation to rounding, as it does where
+    branches really cross.
 
-    Straight across a near miss of width w that equation is off by w^2, while its singular value goes to zero: a
-    residual that no correction of the size of ``tolerance`` explains.
+    Straight across a near miss of width w that equation is off by w^2, while its
+    singular value goes to zero: a residual that no correction of the size of
+    ``tolerance`` explains.
     """
     points = np.vander(np.linspace(-1.0, 1.0, 61), len(piece), increasing=True) @ piece
     residuals = problem.residuals(points) / problem.magnitude
@@ -208,26 +276,44 @@ def _breaks(centers: np.ndarray, radii: np.ndarray, length: float) -> np.ndarray
 
 
 def _assemble(
-    problem: Problem, track: _Track, outcome: Outcome, end: float, begin: float = 0.0, gap: float = 0.0
+    problem: Problem,
+    track: _Track,
+    outcome: Outcome,
+    end: float,
+    begin: float = 0.0,
+    gap: float = 0.0,
 ) -> Branch:
     """The branch of the pieces from arclength ``begin`` to ``end``."""
-    breaks = _breaks(track.centers, track.radii, end) if len(track.pieces) else np.zeros(1)
-    keep = slice(int(np.searchsorted(breaks[1:], begin, side="right")), int(np.searchsorted(breaks[:-1], end)))
+    breaks = (
+        _breaks(track.centers, track.radii, end) if len(track.pieces) else np.zeros(1)
+    )
+    keep = slice(
+        int(np.searchsorted(breaks[1:], begin, side="right")),
+        int(np.searchsorted(breaks[:-1], end)),
+    )
     inner = breaks[keep][1:] - begin
     return Branch(
-        track.pieces[keep], track.centers[keep] - begin, track.radii[keep],
-        np.concatenate([[0.0], inner, [end - begin]]) if len(track.pieces) else np.zeros(1),
-        track.residuals[keep], problem.periods, outcome, gap,
-    )  # fmt: skip
+        track.pieces[keep],
+        track.centers[keep] - begin,
+        track.radii[keep],
+        np.concatenate([[0.0], inner, [end - begin]])
+        if len(track.pieces)
+        else np.zeros(1),
+        track.residuals[keep],
+        problem.periods,
+        outcome,
+        gap,
+    )
 
 
 def _end_of_curve(
     problem: Problem, track: _Track, first: int, tolerance: float
 ) -> tuple[Outcome, float, float] | None:
-    """Where the curve, from piece ``first`` on, closes or first leaves the bounds: outcome, end and begin.
+    """Where the curve, from piece ``first`` on, closes or first leaves the bounds:
+    outcome, end and begin.
 
-    It closes when it passes its start again, or the clearest of its first points: a start beside a
-    singular point may lie off the curve by more than it shows.
+    It closes when it passes its start again, or the clearest of its first points: a
+    start beside a singular point may lie off the curve by more than it shows.
     """
     if not len(track.pieces):
         return None
@@ -244,17 +330,28 @@ def _end_of_curve(
 
 
 def _closing(
-    problem: Problem, track: _Track, first: int, begun: int, begin: float, tolerance: float
+    problem: Problem,
+    track: _Track,
+    first: int,
+    begun: int,
+    begin: float,
+    tolerance: float,
 ) -> float | None:
-    """Arclength at which the curve passes again, in the same direction, the point of piece ``begun`` at ``begin``."""
+    """Arclength at which the curve passes again, in the same direction, the point of
+    piece ``begun`` at ``begin``."""
     pieces, centers, radii = track.pieces, track.centers, track.radii
     order = pieces.shape[1] - 1
     start, slope = track.at(begun, begin)
-    close, close_residual = max(1e-9, 30 * tolerance) * problem.scale, max(1e-14, 0.1 * tolerance) * problem.scale
+    close, close_residual = (
+        max(1e-9, 30 * tolerance) * problem.scale,
+        max(1e-14, 0.1 * tolerance) * problem.scale,
+    )
     away = np.linalg.norm(problem.difference(pieces[first:, 0], start), axis=1)
     for i in first + np.flatnonzero(away < 1.1 * radii[first:]):
         grid = np.linspace(-1.0, 1.0, 17)
-        gap = problem.difference(np.vander(grid, order + 1, increasing=True) @ pieces[i], start)
+        gap = problem.difference(
+            np.vander(grid, order + 1, increasing=True) @ pieces[i], start
+        )
         x = grid[np.argmin(np.linalg.norm(gap, axis=1))]
         for _ in range(6):
             powers = x ** np.arange(order + 1)
@@ -268,10 +365,20 @@ def _closing(
         same_way = tangent @ slope > 0.9 * np.linalg.norm(tangent)
         apart = float(np.linalg.norm(offset))
         again = s > begin + 0.5 * radii[begun]
-        if abs(x) > 1.02 or not again or not same_way or apart > RESOLVED * problem.scale:
+        if (
+            abs(x) > 1.02
+            or not again
+            or not same_way
+            or apart > RESOLVED * problem.scale
+        ):
             continue
-        # where a singular value is small a point is known no better than rounding over it
-        if apart < close or np.linalg.norm(problem.jacobian(start) @ offset) < close_residual * problem.magnitude:
+        # where a singular value is small a point is known no better than rounding over
+        # it
+        if (
+            apart < close
+            or np.linalg.norm(problem.jacobian(start) @ offset)
+            < close_residual * problem.magnitude
+        ):
             return float(s)
     return None
 
@@ -284,7 +391,10 @@ def _leaving(problem: Problem, track: _Track, first: int) -> float | None:
 
     def outside(piece: np.ndarray, x: np.ndarray) -> np.ndarray:
         points = np.vander(x, len(piece), increasing=True) @ piece
-        return np.max(np.maximum(problem.bounds[:, 0] - points, points - problem.bounds[:, 1]), axis=1)
+        return np.max(
+            np.maximum(problem.bounds[:, 0] - points, points - problem.bounds[:, 1]),
+            axis=1,
+        )
 
     edges = _breaks(centers, radii, centers[-1] + radii[-1])
     for i in range(first, len(pieces)):
@@ -304,7 +414,8 @@ def _leaving(problem: Problem, track: _Track, first: int) -> float | None:
 
 
 def _join(before: Branch, after: Branch) -> Branch:
-    """One open branch from two that share the end of the first and the start of the second."""
+    """One open branch from two that share the end of the first and the start of the
+    second."""
     shift = before.length
     return replace(
         after,
@@ -313,5 +424,7 @@ def _join(before: Branch, after: Branch) -> Branch:
         radii=np.concatenate([before.radii, after.radii]),
         breaks=np.concatenate([before.breaks, after.breaks[1:] + shift]),
         residuals=np.concatenate([before.residuals, after.residuals]),
-        outcome=Outcome.STALLED if Outcome.STALLED in (before.outcome, after.outcome) else after.outcome,
+        outcome=Outcome.STALLED
+        if Outcome.STALLED in (before.outcome, after.outcome)
+        else after.outcome,
     )

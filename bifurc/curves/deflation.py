@@ -1,13 +1,14 @@
 """Curves along which F' has a lower rank throughout: shaky motions, double components.
 
-There F = 0 does not determine the curve well enough to correct a point onto it: across it F grows with the
-square of the distance. One step of deflation (Ojika 1987; Leykin, Verschelde and Zhao 2006) adds a null vector
-v that is not the tangent as further unknown,
+There F = 0 does not determine the curve well enough to correct a point onto it: across
+it F grows with the square of the distance. One step of deflation (Ojika 1987; Leykin,
+Verschelde and Zhao 2006) adds a null vector v that is not the tangent as further
+unknown,
 
     F(u) = 0,   F'(u) v = 0,   a . v = 1,   t . v = 0,
 
-with a and t from the null space at the start of a run. The curve of (u, v) is regular where the
-double component is of first order.
+with a and t from the null space at the start of a run. The curve of (u, v) is regular
+where the double component is of first order.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ from bifurc.singular.sphere import section
 
 __all__ = ["Deflated", "lower_rank_direction"]
 
-LOWER = 1e-5  # singular value that counts as zero at a start: seeds reach a double component only to 1e-8
+# singular value that counts as zero at a start: seeds reach a double component only to
+# 1e-8
+LOWER = 1e-5
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 
 
@@ -63,7 +66,15 @@ class Deflated(Problem):
 
     def __init__(self, problem: Problem):
         self._problem = problem
-        for name in ("names", "units", "periods", "bounds", "magnitude", "scale", "derivatives"):
+        for name in (
+            "names",
+            "units",
+            "periods",
+            "bounds",
+            "magnitude",
+            "scale",
+            "derivatives",
+        ):
             setattr(self, name, getattr(problem, name))
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
@@ -79,17 +90,27 @@ class Deflated(Problem):
         return self._problem.hessian(point)
 
     def march(
-        self, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,
-        longest: float, count: int,
-    ) -> March:  # fmt: skip
-        """A few pieces of the curve from ``start`` along ``tangent``, by collocation on the deflated system."""
+        self,
+        start: np.ndarray,
+        tangent: np.ndarray,
+        order: int,
+        tolerance: float,
+        shortest: float,
+        longest: float,
+        count: int,
+    ) -> March:
+        """A few pieces of the curve from ``start`` along ``tangent``, by collocation on
+        the deflated system."""
         right = np.linalg.svd(self.jacobians(start[None])[0], full_matrices=True)[2]
         null_space = right[self.n - 2 :]
         t = null_space.T @ (null_space @ tangent)
         t /= np.linalg.norm(t)
         a = null_space.T @ np.array([[0.0, -1.0], [1.0, 0.0]]) @ (null_space @ t)
         pair = _WithNullVector(self._problem, a, t)
-        begin, heading = np.concatenate([start, a]), np.concatenate([t, np.zeros(self.n)])
+        begin, heading = (
+            np.concatenate([start, a]),
+            np.concatenate([t, np.zeros(self.n)]),
+        )
         status, pieces, _, _, residuals = march_by_collocation(
             pair, begin, heading, order, tolerance, shortest, longest, min(count, RUN)
         )
@@ -103,19 +124,29 @@ class Deflated(Problem):
 
 
 def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | None:
-    """Unit tangent (n,) of a curve through ``point`` along which F' has rank n - 2; None where there is none.
+    """Unit tangent (n,) of a curve through ``point`` along which F' has rank n - 2;
+    None where there is none.
 
-    There the section with a small sphere shows two opposite half-branches, and F' has no higher rank on either.
+    There the section with a small sphere shows two opposite half-branches, and F' has
+    no higher rank on either.
     """
-    _, sigma, right = np.linalg.svd(problem.jacobians(point[None])[0] / problem.magnitude, full_matrices=True)
+    _, sigma, right = np.linalg.svd(
+        problem.jacobians(point[None])[0] / problem.magnitude, full_matrices=True
+    )
     padded = np.concatenate([sigma, np.zeros(len(right) - len(sigma))])
     if np.count_nonzero(padded < LOWER) != 2:
         return None
     cut = section(problem, point, right[problem.n - 2 :].T, 1e-2 * problem.scale)
     if cut.dimension != 1 or len(cut.points) != 2:
         return None
-    values = np.linalg.svd(problem.jacobians(cut.points) / problem.magnitude, compute_uv=False)
+    values = np.linalg.svd(
+        problem.jacobians(cut.points) / problem.magnitude, compute_uv=False
+    )
     if values.shape[1] >= problem.n - 1 and values[:, problem.n - 2].max() > LOWER:
         return None
     along = cut.points[1] - cut.points[0]
-    return along / np.linalg.norm(along) if np.linalg.norm(along) > 1e-2 * problem.scale else None
+    return (
+        along / np.linalg.norm(along)
+        if np.linalg.norm(along) > 1e-2 * problem.scale
+        else None
+    )

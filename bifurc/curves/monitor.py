@@ -1,7 +1,7 @@
 """What happens along a traced curve: singular values, user test functions, dead points.
 
-Everything is evaluated on the dense curve after tracing, in batches, at Chebyshev nodes of each piece, and read
-off the interpolants; detection never disturbs the tracing.
+Everything is evaluated on the dense curve after tracing, in batches, at Chebyshev nodes
+of each piece, and read off the interpolants; detection never disturbs the tracing.
 """
 
 from __future__ import annotations
@@ -16,17 +16,25 @@ from bifurc.branch import Branch
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
 
-__all__ = ["Profile", "dead_points", "profile_branch", "roots_along", "singular_value_minima"]
+__all__ = [
+    "Profile",
+    "dead_points",
+    "profile_branch",
+    "roots_along",
+    "singular_value_minima",
+]
 
 NODES, FINE = 16, 96
 
 
 @dataclass(frozen=True)
 class Profile:
-    """Singular values of F', over the problem's magnitude, at Chebyshev nodes of every piece of a curve.
+    """Singular values of F', over the problem's magnitude, at Chebyshev nodes of every
+    piece of a curve.
 
-    ``arclength`` (p, NODES), ``values`` (p, NODES, n) in decreasing order, ``rank``: the rank that F' has along
-    the curve but for single points, n - 1 as a rule. Number ``rank`` is the one to watch.
+    ``arclength`` (p, NODES), ``values`` (p, NODES, n) in decreasing order, ``rank``:
+    the rank that F' has along the curve but for single points, n - 1 as a rule. Number
+    ``rank`` is the one to watch.
     """
 
     arclength: np.ndarray
@@ -41,7 +49,8 @@ class Profile:
 
 @lru_cache(maxsize=1)
 def _nodes() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Chebyshev nodes on (0, 1), a fine grid, and the matrix that interpolates from the first to the second."""
+    """Chebyshev nodes on (0, 1), a fine grid, and the matrix that interpolates from the
+    first to the second."""
     nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
     fine = np.linspace(-1.0, 1.0, FINE + 1)
     onto = np.polynomial.chebyshev.chebvander(fine, NODES - 1)
@@ -55,16 +64,22 @@ def _on_pieces(branch: Branch, fractions: np.ndarray) -> np.ndarray:
 
 
 def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """Singular values (..., n) of F' at points (..., n), over the problem's magnitude, padded with zeros."""
+    """Singular values (..., n) of F' at points (..., n), over the problem's magnitude,
+    padded with zeros."""
     flat = points.reshape(-1, points.shape[-1])
-    values = np.linalg.svd(problem.jacobians(flat) / problem.magnitude, compute_uv=False)
+    values = np.linalg.svd(
+        problem.jacobians(flat) / problem.magnitude, compute_uv=False
+    )
     out = np.zeros((len(flat), problem.n))
     out[:, : values.shape[1]] = values[:, : problem.n]
     return out.reshape(points.shape)
 
 
-def profile_branch(problem: Problem, branch: Branch, tolerance: float = 1e-9) -> Profile:
-    """The singular values along a curve; ``tolerance``: what counts as zero, over the problem's magnitude."""
+def profile_branch(
+    problem: Problem, branch: Branch, tolerance: float = 1e-9
+) -> Profile:
+    """The singular values along a curve; ``tolerance``: what counts as zero, over the
+    problem's magnitude."""
     arclength = _on_pieces(branch, _nodes()[0])
     values = singular_values(problem, branch(arclength))
     typical = np.median(values.reshape(-1, problem.n), axis=0)
@@ -72,19 +87,25 @@ def profile_branch(problem: Problem, branch: Branch, tolerance: float = 1e-9) ->
     return Profile(arclength, values, max(min(rank, problem.n - 1), 1))
 
 
-def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) -> tuple[np.ndarray, np.ndarray]:
-    """Arclengths (k,) and values (k,) of the local minima of the smallest regular singular value.
+def singular_value_minima(
+    problem: Problem, branch: Branch, profile: Profile
+) -> tuple[np.ndarray, np.ndarray]:
+    """Arclengths (k,) and values (k,) of the local minima of the smallest regular
+    singular value.
 
-    Candidates are minima of two interpolants: of the square of that value, and of the product of the squares
-    of all regular ones, which is smooth even where singular values meet (there only zeros count). Each is then
-    refined on the exact values. Where the curve crosses a singular point the value found is small but not
-    zero; `bifurc.singular.locate` decides.
+    Candidates are minima of two interpolants: of the square of that value, and of the
+    product of the squares of all regular ones, which is smooth even where singular
+    values meet (there only zeros count). Each is then refined on the exact values.
+    Where the curve crosses a singular point the value found is small but not zero;
+    `bifurc.singular.locate` decides.
     """
     _, fine, onto = _nodes()
     regular = profile.values[..., : profile.rank] ** 2
     grid = _on_pieces(branch, fine)
     s, reach = _grid_minima(grid, regular[..., -1] @ onto.T, branch.closed)
-    product_s, product_reach = _grid_minima(grid, regular.prod(axis=-1) @ onto.T, branch.closed)
+    product_s, product_reach = _grid_minima(
+        grid, regular.prod(axis=-1) @ onto.T, branch.closed
+    )
     of_product = np.repeat([False, True], [len(s), len(product_s)])
     s, reach = np.concatenate([s, product_s]), np.concatenate([reach, product_reach])
     value = np.empty_like(s)
@@ -100,8 +121,11 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
     return _without_repeats(s[genuine], value[genuine], branch)
 
 
-def _grid_minima(grid: np.ndarray, quantity: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Arclengths and grid spacings of the local minima of ``quantity`` on the pieces' fine grids."""
+def _grid_minima(
+    grid: np.ndarray, quantity: np.ndarray, closed: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Arclengths and grid spacings of the local minima of ``quantity`` on the pieces'
+    fine grids."""
     s, q = grid[:, :-1].ravel(), quantity[:, :-1].ravel()
     spacing = np.repeat(grid[:, 1] - grid[:, 0], grid.shape[1] - 1)
     if not closed:
@@ -114,8 +138,11 @@ def _grid_minima(grid: np.ndarray, quantity: np.ndarray, closed: bool) -> tuple[
     return s[found], 2.0 * spacing[found]
 
 
-def _without_repeats(s: np.ndarray, value: np.ndarray, branch: Branch) -> tuple[np.ndarray, np.ndarray]:
-    """Sorted by arclength, one of each group closer than 1e-4 of the curve's largest piece."""
+def _without_repeats(
+    s: np.ndarray, value: np.ndarray, branch: Branch
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sorted by arclength, one of each group closer than 1e-4 of the curve's largest
+    piece."""
     if branch.closed:
         s = s % branch.length
     order = np.argsort(s)
@@ -128,18 +155,27 @@ def _without_repeats(s: np.ndarray, value: np.ndarray, branch: Branch) -> tuple[
                 keep[-1] = i
             continue
         keep.append(i)
-    if branch.closed and len(keep) > 1 and s[keep[0]] + branch.length - s[keep[-1]] < apart:
+    if (
+        branch.closed
+        and len(keep) > 1
+        and s[keep[0]] + branch.length - s[keep[-1]] < apart
+    ):
         keep.pop(0 if value[keep[0]] > value[keep[-1]] else -1)
     return s[keep], value[keep]
 
 
-def roots_along(branch: Branch, function: Callable[[np.ndarray], np.ndarray]) -> list[np.ndarray]:
+def roots_along(
+    branch: Branch, function: Callable[[np.ndarray], np.ndarray]
+) -> list[np.ndarray]:
     """Arclengths of the sign changes along a curve of test functions.
 
-    ``function`` maps arclengths (k,) to values (k, q); one array of roots is returned for each of the q
-    functions. Sign changes are bracketed on the Chebyshev nodes of every piece and refined all together.
+    ``function`` maps arclengths (k,) to values (k, q); one array of roots is returned
+    for each of the q functions. Sign changes are bracketed on the Chebyshev nodes of
+    every piece and refined all together.
     """
-    s = np.concatenate([[0.0], _on_pieces(branch, _nodes()[0]).ravel(), [branch.length]])
+    s = np.concatenate(
+        [[0.0], _on_pieces(branch, _nodes()[0]).ravel(), [branch.length]]
+    )
     values = function(s)
     index, which = np.nonzero(values[:-1] * values[1:] < 0)
     if not len(index):
@@ -153,7 +189,8 @@ def roots_along(branch: Branch, function: Callable[[np.ndarray], np.ndarray]) ->
 
 
 def dead_points(branch: Branch) -> list[np.ndarray]:
-    """For each unknown the arclengths of its dead points: du_i/ds changes sign. None for one that stays constant."""
+    """For each unknown the arclengths of its dead points: du_i/ds changes sign. None
+    for one that stays constant."""
     slopes = np.abs(branch(branch.arclengths(64), 1)).max(axis=0)
     moving = np.flatnonzero(slopes > 1e-8)
     roots = iter(roots_along(branch, lambda s: branch(s, 1)[:, moving]))

@@ -1,7 +1,9 @@
-"""Figures of an atlas: the transition map, unknowns against the input, singular values, and the graph of forms.
+"""Figures of an atlas: the transition map, unknowns against the input, singular values,
+and the graph of forms.
 
-Each function draws into the figure given, or makes one, and returns it; nothing depends on the state of pyplot or on
-the user's settings. Forms are told apart by colour (safe for the colour-blind) and by line style (safe in print).
+Each function draws into the figure given, or makes one, and returns it; nothing depends
+on the state of pyplot or on the user's settings. Forms are told apart by colour (safe
+for the colour-blind) and by line style (safe in print).
 """
 
 from __future__ import annotations
@@ -29,24 +31,40 @@ from bifurc.figures.drawing import (
     note_emptiness,
 )
 from bifurc.figures.form_graph import plot_form_graph
-from bifurc.figures.planes import Scale, choose_plane, curve_points, cut_to_frame, scale_of
+from bifurc.figures.planes import (
+    Scale,
+    choose_plane,
+    curve_points,
+    cut_to_frame,
+    scale_of,
+)
 from bifurc.problem import ProblemError
 
-__all__ = ["plot_form_graph", "plot_joint_angles", "plot_singular_values", "plot_transition_map", "save_figures"]
+__all__ = [
+    "plot_form_graph",
+    "plot_joint_angles",
+    "plot_singular_values",
+    "plot_transition_map",
+    "save_figures",
+]
 
 
 def plot_transition_map(
     atlas: Atlas, figure: Figure | None = None, joints: Sequence[int] | None = None
 ) -> Figure:
-    """The forms in the plane of two unknowns, with the singular points marked and named.
+    """The forms in the plane of two unknowns, with the singular points marked and
+    named.
 
-    ``joints`` are two numbers of unknowns, from 1; left out, the plane is chosen that tells the forms apart best.
-    Angles are drawn in degrees on the torus. Raises `ProblemError` for numbers that are not two of the unknowns.
+    ``joints`` are two numbers of unknowns, from 1; left out, the plane is chosen that
+    tells the forms apart best. Angles are drawn in degrees on the torus. Raises
+    `ProblemError` for numbers that are not two of the unknowns.
     """
     plane = choose_plane(atlas) if joints is None else _checked(atlas, joints)
     width, height = legend_size(atlas)
     with rc_context(SETTINGS):
-        figure = figure or Figure(figsize=(4.9 + width, max(4.9, height)), layout="constrained")
+        figure = figure or Figure(
+            figsize=(4.9 + width, max(4.9, height)), layout="constrained"
+        )
         axes = figure.subplots()
         _draw_plane(axes, atlas, plane)
         draw_marks(axes, atlas, plane)
@@ -56,10 +74,13 @@ def plot_transition_map(
     return figure
 
 
-def plot_joint_angles(atlas: Atlas, figure: Figure | None = None, input_joint: int = 1) -> Figure:
+def plot_joint_angles(
+    atlas: Atlas, figure: Figure | None = None, input_joint: int = 1
+) -> Figure:
     """Every unknown against the input one, in panels of their own.
 
-    ``input_joint`` is counted from 1. Raises `ProblemError` where there is no such unknown.
+    ``input_joint`` is counted from 1. Raises `ProblemError` where there is no such
+    unknown.
     """
     n = len(atlas.names)
     (first,) = _checked(atlas, [input_joint], count=1)
@@ -87,9 +108,11 @@ def plot_joint_angles(atlas: Atlas, figure: Figure | None = None, input_joint: i
 
 
 def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
-    """The regular singular values along each form on a logarithmic scale, in one panel a form.
+    """The regular singular values along each form on a logarithmic scale, in one panel
+    a form.
 
-    The smallest is drawn strongly. It vanishes at singular points (dashed, named); near misses carry their value.
+    The smallest is drawn strongly. It vanishes at singular points (dashed, named); near
+    misses carry their value.
     """
     count = max(len(atlas.forms), 1)
     columns = 1 if count == 1 else 2 if count <= 8 else 3
@@ -99,16 +122,26 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
         size = (4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4)
         figure = figure or Figure(figsize=size)
         panels = figure.subplots(rows, columns, squeeze=False, sharey=True)
-        width, height = figure.get_size_inches()  # margins in inches: no layout engine need measure the text
+        width, height = (
+            figure.get_size_inches()
+        )  # margins in inches: no layout engine need measure the text
         figure.subplots_adjust(
-            left=0.85 / width, right=1 - 0.2 / width, bottom=0.6 / height, top=1 - 0.45 / height,
-            wspace=0.3 / (width / columns - 0.3), hspace=0.75 / (height / rows - 0.75),
-        )  # fmt: skip
+            left=0.85 / width,
+            right=1 - 0.2 / width,
+            bottom=0.6 / height,
+            top=1 - 0.45 / height,
+            wspace=0.3 / (width / columns - 0.3),
+            hspace=0.75 / (height / rows - 0.75),
+        )
         for axes in panels.flat[count:]:
             axes.set_visible(False)
         for i, axes in enumerate(panels.flat[: len(atlas.forms)]):
             _draw_singular_values(axes, atlas, i, low, high)
-        unit = f" ({atlas.units[0]})" if len(set(atlas.units)) == 1 and atlas.units[0] else ""
+        unit = (
+            f" ({atlas.units[0]})"
+            if len(set(atlas.units)) == 1 and atlas.units[0]
+            else ""
+        )
         figure.supxlabel(f"arclength{unit}", fontsize=9)
         figure.supylabel("singular value", fontsize=9)
         note_emptiness(panels.flat[0], atlas)
@@ -116,19 +149,26 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
 
 
 def save_figures(atlas: Atlas, folder: str | os.PathLike[str]) -> list[Path]:
-    """Paths of the four figures just written into an existing ``folder``, as PNG and SVG each.
+    """Paths of the four figures just written into an existing ``folder``, as PNG and
+    SVG each.
 
-    The same atlas gives the same bytes. Each file is written beside its place and renamed when it is whole.
+    The same atlas gives the same bytes. Each file is written beside its place and
+    renamed when it is whole.
     """
     figures: dict[str, Callable[[Atlas], Figure]] = {
-        "transition_map": plot_transition_map, "joint_angles": plot_joint_angles,
-        "singular_values": plot_singular_values, "form_graph": plot_form_graph,
-    }  # fmt: skip
+        "transition_map": plot_transition_map,
+        "joint_angles": plot_joint_angles,
+        "singular_values": plot_singular_values,
+        "form_graph": plot_form_graph,
+    }
     paths = []
     for name, plot in figures.items():
         figure = plot(atlas)
         endings: dict[str, dict[str, Any]] = {
-            "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 2}},
+            "png": {
+                "metadata": {"Software": None},
+                "pil_kwargs": {"compress_level": 2},
+            },
             "svg": {"metadata": {"Date": None, "Creator": None}},
         }
         for ending, options in endings.items():
@@ -150,12 +190,20 @@ def save_figures(atlas: Atlas, folder: str | os.PathLike[str]) -> list[Path]:
 
 def _checked(atlas: Atlas, joints: Sequence[int], count: int = 2) -> tuple[int, ...]:
     n = len(atlas.names)
-    if len(joints) != count or len(set(joints)) != count or not all(1 <= j <= n for j in joints):
-        raise ProblemError("joints", list(joints), f"{count} of the unknowns, numbered from 1 to {n}")
+    if (
+        len(joints) != count
+        or len(set(joints)) != count
+        or not all(1 <= j <= n for j in joints)
+    ):
+        raise ProblemError(
+            "joints", list(joints), f"{count} of the unknowns, numbered from 1 to {n}"
+        )
     return tuple(j - 1 for j in joints)
 
 
-def _draw_plane(axes: Axes, atlas: Atlas, plane: tuple[int, ...], width: float = 1.8) -> None:
+def _draw_plane(
+    axes: Axes, atlas: Atlas, plane: tuple[int, ...], width: float = 1.8
+) -> None:
     """All forms in a plane, with axes to match."""
     scales = (scale_of(atlas, plane[0]), scale_of(atlas, plane[-1]))
     for i, form in enumerate(atlas.forms):
@@ -186,67 +234,96 @@ def _set_axis(axes: Axes, which: str, scale: Scale) -> None:
 
 
 def _range_of_singular_values(atlas: Atlas) -> tuple[float, float]:
-    """Limits of the logarithmic axis: a decade below everything that is not zero, and five decades at least."""
+    """Limits of the logarithmic axis: a decade below everything that is not zero, and
+    five decades at least."""
     if not atlas.forms:
         return 1e-5, 1.0
     high = max(float(form.profile.values.max()) for form in atlas.forms)
-    small = [e.value for e in atlas.near_misses] + [float(form.profile.smallest.min()) for form in atlas.forms]
+    small = [e.value for e in atlas.near_misses] + [
+        float(form.profile.smallest.min()) for form in atlas.forms
+    ]
     low = max(min(small) / 10, 1e-16 * high)
     if atlas.points:
         low = min(low, 1e-5 * high)
     return 10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(2 * high))
 
 
-def _draw_singular_values(axes: Axes, atlas: Atlas, index: int, low: float, high: float) -> None:
+def _draw_singular_values(
+    axes: Axes, atlas: Atlas, index: int, low: float, high: float
+) -> None:
     form = atlas.forms[index]
     style = form_style(index)
     s = form.profile.arclength.ravel()
     values = form.profile.values.reshape(len(s), -1)[:, : form.rank]
-    stops = [(at, point) for point in atlas.points for i, at in point.passes if i == index]
+    stops = [
+        (at, point) for point in atlas.points for i, at in point.passes if i == index
+    ]
     misses = [event for event in atlas.near_misses if event.form == index]
     axes.plot(s, values[:, :-1], color="0.75", linewidth=0.8, zorder=1)
-    turns = (-form.branch.length, 0.0, form.branch.length) if form.branch.closed else (0.0,)
+    turns = (
+        (-form.branch.length, 0.0, form.branch.length) if form.branch.closed else (0.0,)
+    )
     zeros = [at + turn for at, _ in stops for turn in turns]
     x = np.concatenate([s, [event.s for event in misses]])
     y = np.concatenate([values[:, -1], [event.value for event in misses]])
     x, y = _with_zeros(x, y, zeros)
-    draw_curve(axes, np.stack([x, np.maximum(y, 1e-3 * low)], axis=1), style, 1.6, cut=True)
+    draw_curve(
+        axes, np.stack([x, np.maximum(y, 1e-3 * low)], axis=1), style, 1.6, cut=True
+    )
     for event in misses:
         axes.plot([event.s], [event.value], "v", color="black", markersize=4, zorder=4)
         left = event.s > 0.85 * form.branch.length
         axes.annotate(
-            f"{event.value:.1e}", (event.s, event.value), (-5 if left else 5, -3), textcoords="offset points",
-            ha="right" if left else "left", va="top", fontsize=7,
-        )  # fmt: skip
+            f"{event.value:.1e}",
+            (event.s, event.value),
+            (-5 if left else 5, -3),
+            textcoords="offset points",
+            ha="right" if left else "left",
+            va="top",
+            fontsize=7,
+        )
     _name_stops(axes, stops, form.branch.length)
     axes.set(yscale="log", ylim=(low, high), xlim=(0.0, form.branch.length))
     axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=14 if stops else 6)
+    axes.set_title(
+        form.name, color=style.color, fontsize=9, loc="left", pad=14 if stops else 6
+    )
     axes.grid(True)
 
 
 def _power_of_ten(value: float, _: int) -> str:
-    """A tick's label in plain characters: matplotlib's own needs a parser of formulas, a fifth of a second to load."""
-    return "10" + str(round(np.log10(value))).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    """A tick's label in plain characters: matplotlib's own needs a parser of formulas,
+    a fifth of a second to load."""
+    return "10" + str(round(np.log10(value))).translate(
+        str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+    )
 
 
-def _with_zeros(s: np.ndarray, values: np.ndarray, zeros: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Samples and zeros, with steep stretches filled in linearly: drawn straight in logarithms they would mislead."""
+def _with_zeros(
+    s: np.ndarray, values: np.ndarray, zeros: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Samples and zeros, with steep stretches filled in linearly: drawn straight in
+    logarithms they would mislead."""
     x, y = np.concatenate([s, zeros]), np.concatenate([values, np.zeros(len(zeros))])
     order = np.argsort(x, kind="stable")
     x, y = x[order], y[order]
     small, large = np.minimum(y[:-1], y[1:]), np.maximum(y[:-1], y[1:])
     steep = np.flatnonzero(large > 1.3 * small)
-    near = 10.0 ** np.concatenate([np.arange(-8.0, -1.5, 0.25), np.arange(-1.5, -0.25, 0.1)])
+    near = 10.0 ** np.concatenate(
+        [np.arange(-8.0, -1.5, 0.25), np.arange(-1.5, -0.25, 0.1)]
+    )
     fraction = np.concatenate([near, 1.0 - near])
     inner = (x[steep, None] + fraction * np.diff(x)[steep, None]).ravel()
     filled = np.union1d(x, inner)
     return filled, np.interp(filled, x, y)
 
 
-def _name_stops(axes: Axes, stops: list[tuple[float, MeetingPoint]], length: float) -> None:
-    """Dashed lines at singular points, their names above the panel, those close together in one label."""
+def _name_stops(
+    axes: Axes, stops: list[tuple[float, MeetingPoint]], length: float
+) -> None:
+    """Dashed lines at singular points, their names above the panel, those close
+    together in one label."""
     groups: list[list[tuple[float, MeetingPoint]]] = []
     for at, point in sorted(stops, key=lambda stop: stop[0]):
         axes.axvline(at, color="0.35", linewidth=0.8, linestyle=(0, (3, 2)), zorder=0)
@@ -256,7 +333,12 @@ def _name_stops(axes: Axes, stops: list[tuple[float, MeetingPoint]], length: flo
             groups.append([(at, point)])
     for group in groups:
         axes.annotate(
-            ", ".join(point.name for _, point in group), (float(np.mean([at for at, _ in group])), 1.0),
-            (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points", ha="center", va="bottom",
+            ", ".join(point.name for _, point in group),
+            (float(np.mean([at for at, _ in group])), 1.0),
+            (0, 2),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
             fontsize=8,
-        )  # fmt: skip
+        )

@@ -1,9 +1,9 @@
 """An atlas as an `xarray.Dataset` and as a NetCDF file, and back without loss.
 
-What comes in rows of different length (pieces of forms, passes of singular points, samples of surfaces) is
-stored one behind the other, with the row sizes in a variable of its own (CF: contiguous ragged array; the
-attribute ``sample_dimension`` of the sizes names the dimension they count). Samples along the forms are padded
-with NaN.
+What comes in rows of different length (pieces of forms, passes of singular points,
+samples of surfaces) is stored one behind the other, with the row sizes in a variable of
+its own (CF: contiguous ragged array; the attribute ``sample_dimension`` of the sizes
+names the dimension they count). Samples along the forms are padded with NaN.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ LINKAGE_UNITS = {"twists": "rad"}
 
 
 class AtlasFileError(ValueError):
-    """A dataset or file that holds no atlas: ``source`` names it, ``missing`` what it lacks."""
+    """A dataset or file that holds no atlas: ``source`` names it, ``missing`` what it
+    lacks."""
 
     def __init__(self, source: str, reason: str, missing: Iterable[str] = ()):
         self.source, self.missing = source, tuple(missing)
@@ -48,16 +49,22 @@ class AtlasFileError(ValueError):
 def save_atlas(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
     """The path of the NetCDF file just written; an older file is replaced.
 
-    The file is written under a temporary name beside it and renamed, so that no half-written file is ever
-    found under ``path``. Raises `OSError` where the folder cannot be written.
+    The file is written under a temporary name beside it and renamed, so that no
+    half-written file is ever found under ``path``. Raises `OSError` where the folder
+    cannot be written.
     """
     target = Path(path)
     if not target.parent.is_dir():
         raise NotADirectoryError(f"{target.parent}: there is no such folder")
     dataset = to_dataset(atlas)
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    dataset.attrs |= {"date_created": now, "history": f"{now} written by {dataset.attrs['source']}"}
-    with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
+    dataset.attrs |= {
+        "date_created": now,
+        "history": f"{now} written by {dataset.attrs['source']}",
+    }
+    with tempfile.TemporaryDirectory(
+        prefix=f".{target.name}.", dir=target.parent
+    ) as folder:
         part = Path(folder) / target.name
         dataset.to_netcdf(part, engine="netcdf4", format="NETCDF4")
         os.replace(part, target)
@@ -67,7 +74,8 @@ def save_atlas(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
 def load_atlas(path: str | os.PathLike[str]) -> Atlas:
     """The atlas that `save_atlas` wrote.
 
-    Raises `FileNotFoundError`, and `AtlasFileError` for a file that is not NetCDF or holds no atlas.
+    Raises `FileNotFoundError`, and `AtlasFileError` for a file that is not NetCDF or
+    holds no atlas.
     """
     source = Path(path)
     if not source.is_file():
@@ -76,7 +84,9 @@ def load_atlas(path: str | os.PathLike[str]) -> Atlas:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as opened:
             dataset = opened.load()
     except (OSError, ValueError) as error:
-        raise AtlasFileError(str(source), f"it cannot be read as NetCDF ({error})") from error
+        raise AtlasFileError(
+            str(source), f"it cannot be read as NetCDF ({error})"
+        ) from error
     return _read(dataset, str(source))
 
 
@@ -86,10 +96,12 @@ def load_atlas(path: str | os.PathLike[str]) -> Atlas:
 def to_dataset(atlas: Atlas) -> xr.Dataset:
     """The atlas as a dataset.
 
-    Its dimensions are ``form``, ``sample``, ``joint`` (``unknown`` where the unknowns are not all angles),
-    ``singular_value``, ``piece``, ``power``, ``point`` (singular points), ``pass`` and others named after what they
-    count. ``sample`` runs over the points at which the singular values were taken, denser where the curve bends more.
-    Entries of ``atlas.info["linkage"]`` become variables along ``joint`` and attributes called ``linkage_...``.
+    Its dimensions are ``form``, ``sample``, ``joint`` (``unknown`` where the unknowns
+    are not all angles), ``singular_value``, ``piece``, ``power``, ``point`` (singular
+    points), ``pass`` and others named after what they count. ``sample`` runs over the
+    points at which the singular values were taken, denser where the curve bends more.
+    Entries of ``atlas.info["linkage"]`` become variables along ``joint`` and attributes
+    called ``linkage_...``.
     """
     joint = "joint" if all(unit == "rad" for unit in atlas.units) else "unknown"
     unit = atlas.units[0] if len(set(atlas.units)) == 1 and atlas.units[0] else "1"
@@ -117,7 +129,11 @@ def _attributes(atlas: Atlas, joint: str) -> dict[str, Any]:
         release = "unknown"
     plain: dict[str, Any] = {}
     for key, value in atlas.info.items():
-        nested = {f"{key}_{k}": v for k, v in value.items()} if isinstance(value, dict) else {key: value}
+        nested = (
+            {f"{key}_{k}": v for k, v in value.items()}
+            if isinstance(value, dict)
+            else {key: value}
+        )
         plain |= {k: v for k, v in nested.items() if type(v) in (int, float, str)}
         plain |= {k: int(v) for k, v in nested.items() if type(v) is bool}
     return plain | {
@@ -137,7 +153,8 @@ def _attributes(atlas: Atlas, joint: str) -> dict[str, Any]:
 
 
 def _linkage(atlas: Atlas, joint: str) -> tuple[dict[str, Variable], dict[str, Any]]:
-    """Variables and attributes of ``info["linkage"]``: one number for each unknown makes a variable."""
+    """Variables and attributes of ``info["linkage"]``: one number for each unknown
+    makes a variable."""
     variables: dict[str, Variable] = {}
     attributes: dict[str, Any] = {}
     for key, value in atlas.info.get("linkage", {}).items():
@@ -145,7 +162,9 @@ def _linkage(atlas: Atlas, joint: str) -> tuple[dict[str, Variable], dict[str, A
             attributes[f"linkage_{key}"] = value
         elif np.shape(value) == (len(atlas.names),):
             units = LINKAGE_UNITS.get(key, "")
-            variables[f"linkage_{key}"] = variable(joint, np.array(value, dtype=float), f"{key} of the linkage", units)
+            variables[f"linkage_{key}"] = variable(
+                joint, np.array(value, dtype=float), f"{key} of the linkage", units
+            )
     return variables, attributes
 
 
@@ -153,7 +172,8 @@ def _linkage(atlas: Atlas, joint: str) -> tuple[dict[str, Variable], dict[str, A
 
 
 def from_dataset(dataset: xr.Dataset) -> Atlas:
-    """The atlas that `to_dataset` stored; raises `AtlasFileError` that lists what is missing."""
+    """The atlas that `to_dataset` stored; raises `AtlasFileError` that lists what is
+    missing."""
     return _read(dataset, "dataset")
 
 
@@ -203,9 +223,13 @@ def _read_form(get: dict[str, np.ndarray], i: int) -> Form:
         int(get["rank"][i]),
     )
     return Form(
-        str(get["form"][i]), branch, profile, float(get["min_singular_value"][i]), int(get["component"][i]),
+        str(get["form"][i]),
+        branch,
+        profile,
+        float(get["min_singular_value"][i]),
+        int(get["component"][i]),
         from_text(str(get["labels"][i])),
-    )  # fmt: skip
+    )
 
 
 def _read_point(get: dict[str, np.ndarray], i: int) -> MeetingPoint:
@@ -223,7 +247,11 @@ def _read_point(get: dict[str, np.ndarray], i: int) -> MeetingPoint:
         order=int(get["point_order"][i]),
         radius=float(get["point_radius"][i]),
     )
-    passes = zip(part("pass_form", "pass").tolist(), part("pass_arclength", "pass").tolist(), strict=True)
+    passes = zip(
+        part("pass_form", "pass").tolist(),
+        part("pass_arclength", "pass").tolist(),
+        strict=True,
+    )
     return MeetingPoint(
         name=str(get["point"][i]),
         kind=Kind[str(get["point_kind"][i])],
@@ -236,25 +264,47 @@ def _read_point(get: dict[str, np.ndarray], i: int) -> MeetingPoint:
 
 
 def _read_events(get: dict[str, np.ndarray], name: str, what: str) -> tuple[Event, ...]:
-    """Near misses with their "value", or dead points with the "index" of the unknown."""
+    """Near misses with their "value", or dead points with the "index" of the
+    unknown."""
     return tuple(
         Event(form, s, u, **{what: number})
         for form, s, u, number in zip(
-            get[f"{name}_form"].tolist(), get[f"{name}_arclength"].tolist(), get[f"{name}_configuration"],
-            get[f"{name}_{what}"].tolist(), strict=True,
+            get[f"{name}_form"].tolist(),
+            get[f"{name}_arclength"].tolist(),
+            get[f"{name}_configuration"],
+            get[f"{name}_{what}"].tolist(),
+            strict=True,
         )
-    )  # fmt: skip
+    )
 
 
 def _check(dataset: xr.Dataset, source: str) -> None:
     """Raise `AtlasFileError` unless the dataset has everything an atlas needs."""
     kind = dataset.attrs.get("format")
     if kind != FORMAT:
-        raise AtlasFileError(source, f"its attribute 'format' is {kind!r}; it must be {FORMAT!r}", ["format"])
+        raise AtlasFileError(
+            source,
+            f"its attribute 'format' is {kind!r}; it must be {FORMAT!r}",
+            ["format"],
+        )
     found = int(dataset.attrs.get("format_version", 0))
     if found != FORMAT_VERSION:
-        raise AtlasFileError(source, f"its format version is {found}; this release reads {FORMAT_VERSION}")
-    nothing = Atlas((), (), np.empty(0), (), (), (), (), np.empty((0, 0)), (), Completeness("", "", 1.0))
+        raise AtlasFileError(
+            source,
+            f"its format version is {found}; this release reads {FORMAT_VERSION}",
+        )
+    nothing = Atlas(
+        (),
+        (),
+        np.empty(0),
+        (),
+        (),
+        (),
+        (),
+        np.empty((0, 0)),
+        (),
+        Completeness("", "", 1.0),
+    )
     model = to_dataset(nothing)
     needed = [str(name) for name in model.variables if name != "joint"]
     needed.append(str(dataset.attrs.get("unknown_dimension", "joint")))

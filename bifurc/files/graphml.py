@@ -16,14 +16,18 @@ __all__ = ["plain_graph", "write_graphml"]
 
 
 def write_graphml(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
-    """The path of the GraphML file just written, with both graphs of the atlas; see `plain_graph`.
+    """The path of the GraphML file just written, with both graphs of the atlas; see
+    `plain_graph`.
 
-    Written under a temporary name beside it and renamed, so that no half-written file is ever found there.
+    Written under a temporary name beside it and renamed, so that no half-written file
+    is ever found there.
     """
     target = Path(path)
     if not target.parent.is_dir():
         raise NotADirectoryError(f"{target.parent}: there is no such folder")
-    with tempfile.TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as folder:
+    with tempfile.TemporaryDirectory(
+        prefix=f".{target.name}.", dir=target.parent
+    ) as folder:
         part = Path(folder) / target.name
         nx.write_graphml_xml(plain_graph(atlas), part)
         os.replace(part, target)
@@ -31,10 +35,12 @@ def write_graphml(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
 
 
 def plain_graph(atlas: Atlas) -> nx.MultiGraph:
-    """The graph of forms and the graph of arcs side by side, with attributes of plain types.
+    """The graph of forms and the graph of arcs side by side, with attributes of plain
+    types.
 
-    The attribute ``layer`` of nodes and edges is "forms" or "arcs", ``label`` the name. Nodes are called
-    ``form/NAME`` and ``point/NAME``. A vector becomes one attribute for each unknown, such as ``travel_theta1``.
+    The attribute ``layer`` of nodes and edges is "forms" or "arcs", ``label`` the name.
+    Nodes are called ``form/NAME`` and ``point/NAME``. A vector becomes one attribute
+    for each unknown, such as ``travel_theta1``.
     """
     out = nx.MultiGraph()
     for name, data in atlas.graph.nodes(data=True):
@@ -45,7 +51,9 @@ def plain_graph(atlas: Atlas) -> nx.MultiGraph:
         out.add_node(f"point/{name}", label=name, layer="arcs", **_plain(data, atlas))
     for a, b, data in atlas.arcs.edges(data=True):
         form = atlas.forms[data["form"]].name
-        out.add_edge(f"point/{a}", f"point/{b}", label=form, layer="arcs", **_plain(data, atlas))
+        out.add_edge(
+            f"point/{a}", f"point/{b}", label=form, layer="arcs", **_plain(data, atlas)
+        )
     return out
 
 
@@ -54,7 +62,10 @@ def _plain(data: dict[str, Any], atlas: Atlas) -> dict[str, Any]:
     out: dict[str, Any] = {}
     for key, value in data.items():
         if isinstance(value, np.ndarray):
-            out |= {f"{key}_{name}": float(x) for name, x in zip(atlas.names, value, strict=True)}
+            out |= {
+                f"{key}_{name}": float(x)
+                for name, x in zip(atlas.names, value, strict=True)
+            }
         else:
             out[key] = value.item() if isinstance(value, np.generic) else value
     return out

@@ -23,7 +23,9 @@ def atlas_variables(atlas: Atlas, joint: str, unit: str) -> dict[str, Variable]:
     """
     n = len(atlas.names)
     return {
-        "period": variable(joint, atlas.periods, "period of the unknown, inf for none", unit),
+        "period": variable(
+            joint, atlas.periods, "period of the unknown, inf for none", unit
+        ),
         "unit": variable(joint, texts(atlas.units), "unit of the unknown"),
         **_form_variables(atlas.forms, n, joint, unit),
         **_point_variables(atlas.points, n, joint, unit),
@@ -32,10 +34,16 @@ def atlas_variables(atlas: Atlas, joint: str, unit: str) -> dict[str, Variable]:
     }
 
 
-def variable(dimensions: str | tuple[str, ...], values: Any, long_name: str, units: str = "") -> Variable:
+def variable(
+    dimensions: str | tuple[str, ...], values: Any, long_name: str, units: str = ""
+) -> Variable:
     """One variable with its long name and units."""
     names = (dimensions,) if isinstance(dimensions, str) else dimensions
-    return names, np.asarray(values), {"long_name": long_name} | ({"units": units} if units else {})
+    return (
+        names,
+        np.asarray(values),
+        {"long_name": long_name} | ({"units": units} if units else {}),
+    )
 
 
 def split_rows(values: np.ndarray, counts: np.ndarray) -> list[np.ndarray]:
@@ -43,73 +51,200 @@ def split_rows(values: np.ndarray, counts: np.ndarray) -> list[np.ndarray]:
     return np.split(values, np.cumsum(counts))[: len(counts)]
 
 
-def _form_variables(forms: Sequence[Form], n: int, joint: str, unit: str) -> dict[str, Variable]:
+def _form_variables(
+    forms: Sequence[Form], n: int, joint: str, unit: str
+) -> dict[str, Variable]:
     branches = [form.branch for form in forms]
     order = max((b.pieces.shape[1] for b in branches), default=1)
-    pieces = [np.pad(b.pieces, ((0, 0), (0, order - b.pieces.shape[1]), (0, 0))) for b in branches]
+    pieces = [
+        np.pad(b.pieces, ((0, 0), (0, order - b.pieces.shape[1]), (0, 0)))
+        for b in branches
+    ]
     s = [form.profile.arclength.ravel() for form in forms]
     values = [form.profile.values.reshape(-1, n) for form in forms]
-    points = [branch(at) if len(branch.pieces) else np.empty((0, n)) for branch, at in zip(branches, s, strict=True)]
+    points = [
+        branch(at) if len(branch.pieces) else np.empty((0, n))
+        for branch, at in zip(branches, s, strict=True)
+    ]
     along = ("form", "sample")
     return {
         "arclength": variable(along, _padded(s, ()), "arclength along the form", unit),
-        "configuration": variable((*along, joint), _padded(points, (n,)), "unknowns along the form", unit),
+        "configuration": variable(
+            (*along, joint), _padded(points, (n,)), "unknowns along the form", unit
+        ),
         "singular_values": variable(
-            (*along, "singular_value"), _padded(values, (n,)), "singular values of F' over its magnitude", "1"
+            (*along, "singular_value"),
+            _padded(values, (n,)),
+            "singular values of F' over its magnitude",
+            "1",
         ),
         "sample_count": _sizes("form", s, "sample"),
-        "sample_nodes": variable("form", _ints(f.profile.arclength.shape[1] for f in forms), "samples on each piece"),
-        "length": variable("form", _floats(b.length for b in branches), "arclength of the whole form", unit),
-        "closed": variable("form", np.array([b.closed for b in branches], bool), "whether the form is a closed curve"),
-        "winding": variable(("form", joint), _rows([b.winding for b in branches], n, int), "turns along a closed form"),
-        "max_residual": variable("form", _floats(b.max_residual for b in branches), "largest relative residual", "1"),
+        "sample_nodes": variable(
+            "form",
+            _ints(f.profile.arclength.shape[1] for f in forms),
+            "samples on each piece",
+        ),
+        "length": variable(
+            "form",
+            _floats(b.length for b in branches),
+            "arclength of the whole form",
+            unit,
+        ),
+        "closed": variable(
+            "form",
+            np.array([b.closed for b in branches], bool),
+            "whether the form is a closed curve",
+        ),
+        "winding": variable(
+            ("form", joint),
+            _rows([b.winding for b in branches], n, int),
+            "turns along a closed form",
+        ),
+        "max_residual": variable(
+            "form",
+            _floats(b.max_residual for b in branches),
+            "largest relative residual",
+            "1",
+        ),
         "min_singular_value": variable(
-            "form", _floats(f.min_singular_value for f in forms), "smallest regular singular value along the form", "1"
+            "form",
+            _floats(f.min_singular_value for f in forms),
+            "smallest regular singular value along the form",
+            "1",
         ),
-        "rank": variable("form", _ints(f.rank for f in forms), "rank of F' along the form"),
-        "component": variable("form", _ints(f.component for f in forms), "number of the connected component"),
-        "labels": variable("form", texts(to_text(dict(f.labels)) for f in forms), "what was recognised, as JSON"),
-        "outcome": variable("form", texts(b.outcome.name for b in branches), "why tracing ended"),
-        "gap": variable("form", _floats(b.gap for b in branches), "residual at an uncorrected start", "1"),
+        "rank": variable(
+            "form", _ints(f.rank for f in forms), "rank of F' along the form"
+        ),
+        "component": variable(
+            "form",
+            _ints(f.component for f in forms),
+            "number of the connected component",
+        ),
+        "labels": variable(
+            "form",
+            texts(to_text(dict(f.labels)) for f in forms),
+            "what was recognised, as JSON",
+        ),
+        "outcome": variable(
+            "form", texts(b.outcome.name for b in branches), "why tracing ended"
+        ),
+        "gap": variable(
+            "form",
+            _floats(b.gap for b in branches),
+            "residual at an uncorrected start",
+            "1",
+        ),
         "piece_count": _sizes("form", pieces, "piece"),
-        "piece_order": variable("form", _ints(b.pieces.shape[1] - 1 for b in branches), "degree of the pieces"),
-        "coefficient": variable(
-            ("piece", "power", joint), _joined(pieces, (order, n)), "coefficients in (s - center) / radius", unit
+        "piece_order": variable(
+            "form",
+            _ints(b.pieces.shape[1] - 1 for b in branches),
+            "degree of the pieces",
         ),
-        "center": variable("piece", _joined([b.centers for b in branches]), "arclength at its centre", unit),
-        "radius": variable("piece", _joined([b.radii for b in branches]), "radius in which it is trusted", unit),
-        "piece_residual": variable("piece", _joined([b.residuals for b in branches]), "largest relative residual", "1"),
+        "coefficient": variable(
+            ("piece", "power", joint),
+            _joined(pieces, (order, n)),
+            "coefficients in (s - center) / radius",
+            unit,
+        ),
+        "center": variable(
+            "piece",
+            _joined([b.centers for b in branches]),
+            "arclength at its centre",
+            unit,
+        ),
+        "radius": variable(
+            "piece",
+            _joined([b.radii for b in branches]),
+            "radius in which it is trusted",
+            unit,
+        ),
+        "piece_residual": variable(
+            "piece",
+            _joined([b.residuals for b in branches]),
+            "largest relative residual",
+            "1",
+        ),
         "break_count": _sizes("form", [b.breaks for b in branches], "break"),
-        "break_arclength": variable("break", _joined([b.breaks for b in branches]), "where pieces hand over", unit),
-    }  # fmt: skip
+        "break_arclength": variable(
+            "break",
+            _joined([b.breaks for b in branches]),
+            "where pieces hand over",
+            unit,
+        ),
+    }
 
 
-def _point_variables(points: Sequence[MeetingPoint], n: int, joint: str, unit: str) -> dict[str, Variable]:
+def _point_variables(
+    points: Sequence[MeetingPoint], n: int, joint: str, unit: str
+) -> dict[str, Variable]:
     found = [point.point for point in points]
     passes = [np.array(point.passes, dtype=float).reshape(-1, 2) for point in points]
     joined = _joined(passes, (2,))
     vectors = {
-        "pass_tangent": ("pass", [p.tangents for p in points], "unit tangent of the form that passes"),
-        "null_vector": ("null", [p.null_space.T for p in found], "orthonormal basis of the null space of F'"),
-        "half_branch": ("half", [p.half_branches for p in found], "unit direction in which solutions leave"),
-        "cone_tangent": ("cone", [p.tangents for p in found], "unit tangent from the second-order equations"),
+        "pass_tangent": (
+            "pass",
+            [p.tangents for p in points],
+            "unit tangent of the form that passes",
+        ),
+        "null_vector": (
+            "null",
+            [p.null_space.T for p in found],
+            "orthonormal basis of the null space of F'",
+        ),
+        "half_branch": (
+            "half",
+            [p.half_branches for p in found],
+            "unit direction in which solutions leave",
+        ),
+        "cone_tangent": (
+            "cone",
+            [p.tangents for p in found],
+            "unit tangent from the second-order equations",
+        ),
     }
     out = {
-        "point_kind": variable("point", texts(p.kind.name for p in points), "what the singular point is"),
+        "point_kind": variable(
+            "point", texts(p.kind.name for p in points), "what the singular point is"
+        ),
         "point_note": variable("point", texts(p.note for p in points), "remark"),
-        "point_configuration": variable(("point", joint), _rows([p.u for p in found], n), "singular point", unit),
-        "point_rank": variable("point", _ints(p.rank for p in found), "rank of F' at the point"),
-        "point_error": variable("point", _floats(p.error for p in found), "estimated error of the point", unit),
-        "point_dimension": variable("point", _ints(p.dimension for p in found), "dimension of the solutions nearby"),
-        "point_order": variable("point", _ints(p.order for p in found), "order that decided; 0: the section alone"),
-        "point_radius": variable("point", _floats(p.radius for p in found), "radius of the section", unit),
+        "point_configuration": variable(
+            ("point", joint), _rows([p.u for p in found], n), "singular point", unit
+        ),
+        "point_rank": variable(
+            "point", _ints(p.rank for p in found), "rank of F' at the point"
+        ),
+        "point_error": variable(
+            "point",
+            _floats(p.error for p in found),
+            "estimated error of the point",
+            unit,
+        ),
+        "point_dimension": variable(
+            "point",
+            _ints(p.dimension for p in found),
+            "dimension of the solutions nearby",
+        ),
+        "point_order": variable(
+            "point",
+            _ints(p.order for p in found),
+            "order that decided; 0: the section alone",
+        ),
+        "point_radius": variable(
+            "point", _floats(p.radius for p in found), "radius of the section", unit
+        ),
         "met_surface": variable(
-            "meeting", _ints(k for p in points for k in p.surfaces), "index of a surface it lies on"
+            "meeting",
+            _ints(k for p in points for k in p.surfaces),
+            "index of a surface it lies on",
         ),
         "meeting_count": _sizes("point", [p.surfaces for p in points], "meeting"),
-        "pass_form": variable("pass", joined[:, 0].astype(int), "index of the form that passes, from 0"),
-        "pass_arclength": variable("pass", joined[:, 1], "arclength at which it passes", unit),
-    }  # fmt: skip
+        "pass_form": variable(
+            "pass", joined[:, 0].astype(int), "index of the form that passes, from 0"
+        ),
+        "pass_arclength": variable(
+            "pass", joined[:, 1], "arclength at which it passes", unit
+        ),
+    }
     for name, (dimension, rows, meaning) in vectors.items():
         out[f"{dimension}_count"] = _sizes("point", rows, dimension)
         out[name] = variable((dimension, joint), _joined(rows, (n,)), meaning, "1")
@@ -118,18 +253,30 @@ def _point_variables(points: Sequence[MeetingPoint], n: int, joint: str, unit: s
 
 def _event_variables(atlas: Atlas, joint: str, unit: str) -> dict[str, Variable]:
     n, out = len(atlas.names), {}
-    for name, events in (("near_miss", atlas.near_misses), ("dead_point", atlas.dead_points)):
-        out[f"{name}_form"] = variable(name, _ints(e.form for e in events), "index of the form, from 0")
-        out[f"{name}_arclength"] = variable(name, _floats(e.s for e in events), "arclength along the form", unit)
+    for name, events in (
+        ("near_miss", atlas.near_misses),
+        ("dead_point", atlas.dead_points),
+    ):
+        out[f"{name}_form"] = variable(
+            name, _ints(e.form for e in events), "index of the form, from 0"
+        )
+        out[f"{name}_arclength"] = variable(
+            name, _floats(e.s for e in events), "arclength along the form", unit
+        )
         out[f"{name}_configuration"] = variable(
             (name, joint), _rows([e.u for e in events], n), "unknowns there", unit
         )
     return out | {
         "near_miss_value": variable(
-            "near_miss", _floats(e.value for e in atlas.near_misses), "smallest regular singular value there", "1"
+            "near_miss",
+            _floats(e.value for e in atlas.near_misses),
+            "smallest regular singular value there",
+            "1",
         ),
         "dead_point_index": variable(
-            "dead_point", _ints(e.index for e in atlas.dead_points), f"index of the {joint} that turns back, from 0"
+            "dead_point",
+            _ints(e.index for e in atlas.dead_points),
+            f"index of the {joint} that turns back, from 0",
         ),
     }
 
@@ -137,19 +284,28 @@ def _event_variables(atlas: Atlas, joint: str, unit: str) -> dict[str, Variable]
 def _solution_variables(atlas: Atlas, joint: str, unit: str) -> dict[str, Variable]:
     n, surfaces = len(atlas.names), [surface.samples for surface in atlas.surfaces]
     return {
-        "rigid_assembly": variable(("assembly", joint), _rows(atlas.rigid, n), "isolated solution", unit),
-        "surface_dimension": variable("surface", _ints(s.dimension for s in atlas.surfaces), "dimension"),
+        "rigid_assembly": variable(
+            ("assembly", joint), _rows(atlas.rigid, n), "isolated solution", unit
+        ),
+        "surface_dimension": variable(
+            "surface", _ints(s.dimension for s in atlas.surfaces), "dimension"
+        ),
         **surface_variables(atlas.surfaces, n, joint, unit, variable),
         "surface_sample_count": _sizes("surface", surfaces, "surface_sample"),
         "surface_configuration": variable(
-            ("surface_sample", joint), _joined(surfaces, (n,)), "solution on a surface", unit
+            ("surface_sample", joint),
+            _joined(surfaces, (n,)),
+            "solution on a surface",
+            unit,
         ),
     }
 
 
 def _sizes(owner: str, rows: Sequence[Sized], dimension: str) -> Variable:
     """Row sizes of a ragged array."""
-    names, values, attributes = variable(owner, _ints(len(r) for r in rows), f"number of {dimension} entries")
+    names, values, attributes = variable(
+        owner, _ints(len(r) for r in rows), f"number of {dimension} entries"
+    )
     return names, values, attributes | {"sample_dimension": dimension}
 
 

@@ -1,8 +1,10 @@
-"""Curve pieces for a problem that offers no series: corrected points at Chebyshev nodes, interpolated.
+"""Curve pieces for a problem that offers no series: corrected points at Chebyshev
+nodes, interpolated.
 
-A piece follows the curve over a stretch of the hyperplane coordinate t . (u - u_0), corrects a point at
-every Chebyshev node of it, and is accepted when the last coefficients of the interpolant have fallen
-to the tolerance: spectral accuracy between the nodes from nothing but F and F'.
+A piece follows the curve over a stretch of the hyperplane coordinate t . (u - u_0),
+corrects a point at every Chebyshev node of it, and is accepted when the last
+coefficients of the interpolant have fallen to the tolerance: spectral accuracy between
+the nodes from nothing but F and F'.
 """
 
 from __future__ import annotations
@@ -27,9 +29,15 @@ PREDICT_FROM = 10  # nodes through which the next one is predicted
 
 
 def march_by_collocation(
-    problem: Problem, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,
-    longest: float, count: int,
-) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    problem: Problem,
+    start: np.ndarray,
+    tangent: np.ndarray,
+    order: int,
+    tolerance: float,
+    shortest: float,
+    longest: float,
+    count: int,
+) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """(status, pieces, steps, radii, residuals) as in `bifurc.problem.March`."""
     point, gap, _ = correct_across(problem, start, tangent, tolerance)
     pieces: list[np.ndarray] = []
@@ -37,11 +45,24 @@ def march_by_collocation(
     residuals: list[float] = []
     status = RAN
     if gap > 100 * tolerance + 1e-12:
-        return OPEN, np.empty((0, order + 1, problem.n)), np.empty(0), np.empty(0), np.array([gap])
-    heading, width = Bordered(problem.jacobian(point) / problem.magnitude, tangent).null_vector(), longest / 4
+        return (
+            OPEN,
+            np.empty((0, order + 1, problem.n)),
+            np.empty(0),
+            np.empty(0),
+            np.array([gap]),
+        )
+    heading, width = (
+        Bordered(problem.jacobian(point) / problem.magnitude, tangent).null_vector(),
+        longest / 4,
+    )
     low, high = problem.bounds.T
-    while len(pieces) < count and (not pieces or np.all((low <= point) & (point <= high))):
-        piece, length, residual, width = _piece(problem, point, heading, order, tolerance, shortest, width)
+    while len(pieces) < count and (
+        not pieces or np.all((low <= point) & (point <= high))
+    ):
+        piece, length, residual, width = _piece(
+            problem, point, heading, order, tolerance, shortest, width
+        )
         if piece is None:
             status = STALLED
             break
@@ -54,16 +75,28 @@ def march_by_collocation(
         width = min(width, 2 * longest)
     half = np.array(radii)
     steps = half + np.concatenate([[0.0], half[:-1]]) if len(half) else half
-    return status, np.array(pieces).reshape(-1, order + 1, problem.n), steps, half, np.array(residuals)
+    return (
+        status,
+        np.array(pieces).reshape(-1, order + 1, problem.n),
+        steps,
+        half,
+        np.array(residuals),
+    )
 
 
 def bridge_by_collocation(
-    problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, width: float
+    problem: Problem,
+    start: np.ndarray,
+    heading: np.ndarray,
+    order: int,
+    tolerance: float,
+    width: float,
 ) -> tuple[np.ndarray, float, float] | None:
-    """One piece of about ``width`` from ``start``: (coefficients (order + 1, n), arclength, residual), or None.
+    """One piece of about ``width`` from ``start``: (coefficients (order + 1, n),
+    arclength, residual), or None.
 
-    Over a point in the middle where no series can be made: no node lies there, and the nodes next to it
-    need only be as good as ``tolerance``.
+    Over a point in the middle where no series can be made: no node lies there, and the
+    nodes next to it need only be as good as ``tolerance``.
     """
     odd = order - 1 + order % 2  # an even number of nodes leaves the middle free
     made = _attempt(problem, start, heading, odd, tolerance, width)
@@ -74,10 +107,16 @@ def bridge_by_collocation(
 
 
 def _piece(
-    problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, shortest: float,
+    problem: Problem,
+    start: np.ndarray,
+    heading: np.ndarray,
+    order: int,
+    tolerance: float,
+    shortest: float,
     width: float,
-) -> tuple[np.ndarray | None, float, float, float]:  # fmt: skip
-    """One accepted piece (or None), its arclength, its residual and the width to try next."""
+) -> tuple[np.ndarray | None, float, float, float]:
+    """One accepted piece (or None), its arclength, its residual and the width to try
+    next."""
     while width >= shortest:
         made = _attempt(problem, start, heading, order, tolerance, width)
         if not isinstance(made, float):
@@ -87,9 +126,15 @@ def _piece(
 
 
 def _attempt(
-    problem: Problem, start: np.ndarray, heading: np.ndarray, order: int, tolerance: float, width: float
+    problem: Problem,
+    start: np.ndarray,
+    heading: np.ndarray,
+    order: int,
+    tolerance: float,
+    width: float,
 ) -> tuple[np.ndarray, float, float, float] | float:
-    """A piece of the given width with the next width to try, or the factor by which the width is to shrink."""
+    """A piece of the given width with the next width to try, or the factor by which the
+    width is to shrink."""
     basis = _basis(order)
     nodes = _follow(problem, start, heading, basis, width, tolerance)
     if nodes is None:
@@ -98,7 +143,9 @@ def _attempt(
     tail, enough = float(np.abs(coefficients[-2:]).max()), tolerance * problem.scale
     if tail <= enough:
         piece, length = _by_arclength(coefficients)
-        inside = np.vander(np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True)
+        inside = np.vander(
+            np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True
+        )
         misfit = problem.residuals(inside @ piece) / problem.magnitude
         residual = float(np.linalg.norm(misfit, axis=1).max())
         if residual <= 30 * tolerance:
@@ -110,9 +157,10 @@ def _attempt(
 
 @dataclass(frozen=True)
 class _Basis:
-    """Chebyshev polynomials up to an order: ``nodes`` from -1 to 1, the matrices that make coefficients
-    ``from_values`` at the nodes and monomials ``to_powers``, the matrices that differentiate and integrate, and the
-    weights (k,) for each k by which the first k nodes predict the next."""
+    """Chebyshev polynomials up to an order: ``nodes`` from -1 to 1, the matrices that
+    make coefficients ``from_values`` at the nodes and monomials ``to_powers``, the
+    matrices that differentiate and integrate, and the weights (k,) for each k by which
+    the first k nodes predict the next."""
 
     nodes: np.ndarray
     from_values: np.ndarray
@@ -132,37 +180,53 @@ def _basis(order: int) -> _Basis:
         to_powers[: len(powers), k] = powers
     from_values = np.linalg.inv(chebyshev.chebvander(nodes, order))
     return _Basis(
-        nodes, from_values, to_powers, chebyshev.chebder(unit, axis=0), chebyshev.chebint(unit, lbnd=-1, axis=0),
+        nodes,
+        from_values,
+        to_powers,
+        chebyshev.chebder(unit, axis=0),
+        chebyshev.chebint(unit, lbnd=-1, axis=0),
         tuple(_predictor(nodes, k) for k in range(order + 1)),
-    )  # fmt: skip
+    )
 
 
 def _follow(
-    problem: Problem, start: np.ndarray, heading: np.ndarray, basis: _Basis, width: float, tolerance: float
+    problem: Problem,
+    start: np.ndarray,
+    heading: np.ndarray,
+    basis: _Basis,
+    width: float,
+    tolerance: float,
 ) -> np.ndarray | None:
-    """Curve points (k, n) at the nodes of a piece, which lies along ``heading`` from ``start``; None where correction
-    fails.
+    """Curve points (k, n) at the nodes of a piece, which lies along ``heading`` from
+    ``start``; None where correction fails.
 
-    Each is predicted by the polynomial through the last few points before it, and corrected with the factorisation
-    that served the one before it.
+    Each is predicted by the polynomial through the last few points before it, and
+    corrected with the factorisation that served the one before it.
     """
     offsets = 0.5 * width * (basis.nodes + 1.0)
     points = np.empty((len(offsets), len(start)))
     points[0] = start
-    factored: Bordered | None = Bordered(problem.jacobian(start) / problem.magnitude, heading)
+    factored: Bordered | None = Bordered(
+        problem.jacobian(start) / problem.magnitude, heading
+    )
     for k in range(1, len(offsets)):
         reach = offsets[k] - offsets[k - 1]
         guess = basis.predictors[k] @ points[:k] if k > 1 else start
         guess = guess + (offsets[k] - (guess - start) @ heading) * heading
-        points[k], gap, factored = correct_across(problem, guess, heading, tolerance, factored)
-        if gap > 100 * tolerance or np.linalg.norm(points[k] - points[k - 1]) > 4 * reach:
+        points[k], gap, factored = correct_across(
+            problem, guess, heading, tolerance, factored
+        )
+        if (
+            gap > 100 * tolerance
+            or np.linalg.norm(points[k] - points[k - 1]) > 4 * reach
+        ):
             return None
     return points
 
 
 def _predictor(nodes: np.ndarray, k: int) -> np.ndarray:
-    """Weights (k,) by which the values at the first ``k`` nodes give that of the polynomial through the last
-    `PREDICT_FROM` of them at node ``k`` (Lagrange)."""
+    """Weights (k,) by which the values at the first ``k`` nodes give that of the
+    polynomial through the last `PREDICT_FROM` of them at node ``k`` (Lagrange)."""
     weights, first = np.zeros(k), max(0, k - PREDICT_FROM)
     for i in range(first, k):
         others = np.delete(nodes[first:k], i - first)
@@ -171,12 +235,14 @@ def _predictor(nodes: np.ndarray, k: int) -> np.ndarray:
 
 
 def reparametrised(piece: np.ndarray) -> tuple[np.ndarray, float]:
-    """A piece (order + 1, n) of monomials on [-1, 1], in any parameter, with arclength as parameter; and its length."""
+    """A piece (order + 1, n) of monomials on [-1, 1], in any parameter, with arclength
+    as parameter; and its length."""
     return _by_arclength(np.linalg.solve(_basis(len(piece) - 1).to_powers, piece))
 
 
 def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:
-    """A Chebyshev piece (order + 1, n) on any coordinate as monomials in arclength on [-1, 1], and its length."""
+    """A Chebyshev piece (order + 1, n) on any coordinate as monomials in arclength on
+    [-1, 1], and its length."""
     order = len(coefficients) - 1
     basis, fine = _basis(order), _basis(3 * order)
     slope = _polynomials(fine.nodes, order - 1) @ (basis.derivative @ coefficients)
@@ -190,7 +256,9 @@ def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:
         x = np.clip(x - step, -1.0, 1.0)
         if np.abs(step).max() < 1e-8:  # the next would be its square
             break
-    return basis.to_powers @ (basis.from_values @ (_polynomials(x, order) @ coefficients)), length
+    return basis.to_powers @ (
+        basis.from_values @ (_polynomials(x, order) @ coefficients)
+    ), length
 
 
 def _polynomials(x: np.ndarray, order: int) -> np.ndarray:

@@ -1,4 +1,5 @@
-"""Rank-aware correction onto the solution set of an overdetermined, consistent system."""
+"""Rank-aware correction onto the solution set of an overdetermined, consistent
+system."""
 
 from __future__ import annotations
 
@@ -12,22 +13,37 @@ from bifurc.numerics.bordered import Bordered
 if TYPE_CHECKING:
     from bifurc.problem import Problem
 
-__all__ = ["correct_across", "correct_normal", "null_vector", "project_by_least_squares", "project_to_sphere_by_newton"]
+__all__ = [
+    "correct_across",
+    "correct_normal",
+    "null_vector",
+    "project_by_least_squares",
+    "project_to_sphere_by_newton",
+]
 
 DAMPING = 1e-14  # of normal equations, over the largest squared singular value
-LARGE = 64  # unknowns beyond which tangents come from bordered systems instead of an SVD
-SLOW = 0.05  # residual left by one step, as a share, above which a factorisation made elsewhere is given up
+LARGE = (
+    64  # unknowns beyond which tangents come from bordered systems instead of an SVD
+)
+# residual left by one step, as a share, above which a factorisation made elsewhere is
+# given up
+SLOW = 0.05
 
 
-def null_vector(problem: Problem, point: np.ndarray, along: np.ndarray | None = None) -> np.ndarray:
+def null_vector(
+    problem: Problem, point: np.ndarray, along: np.ndarray | None = None
+) -> np.ndarray:
     """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
 
-    It has no sign of its own: it is turned to agree with ``along`` where that is given. Where the null space is
-    larger, ``along`` is projected on it. A large problem is bordered instead of decomposed.
+    It has no sign of its own: it is turned to agree with ``along`` where that is given.
+    Where the null space is larger, ``along`` is projected on it. A large problem is
+    bordered instead of decomposed.
     """
     jacobian = problem.jacobian(point)
     if problem.n > LARGE or issparse(jacobian):
-        border = np.random.default_rng(0).normal(size=problem.n) if along is None else along
+        border = (
+            np.random.default_rng(0).normal(size=problem.n) if along is None else along
+        )
         first = Bordered(jacobian, border / np.linalg.norm(border)).null_vector()
         return Bordered(jacobian, first).null_vector()
     _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
@@ -41,15 +57,20 @@ def null_vector(problem: Problem, point: np.ndarray, along: np.ndarray | None = 
 
 
 def correct_across(
-    problem: Problem, point: np.ndarray, tangent: np.ndarray, tolerance: float, factored: Bordered | None = None
+    problem: Problem,
+    point: np.ndarray,
+    tangent: np.ndarray,
+    tolerance: float,
+    factored: Bordered | None = None,
 ) -> tuple[np.ndarray, float, Bordered | None]:
-    """``point`` corrected onto the curve in the hyperplane across ``tangent``, the relative residual left, and the
-    factorisation used last.
+    """``point`` corrected onto the curve in the hyperplane across ``tangent``, the
+    relative residual left, and the factorisation used last.
 
-    Gauss-Newton on ``[F'; t] d = [-F; 0]`` in the least-squares sense, with a factorisation made nearby
-    (``factored``, of the same tangent) as long as the residual falls fast enough with it, and a fresh one where
-    it does not. It converges as long as the system is consistent, whatever the number of redundant equations,
-    and to the smallest residual where it is not.
+    Gauss-Newton on ``[F'; t] d = [-F; 0]`` in the least-squares sense, with a
+    factorisation made nearby (``factored``, of the same tangent) as long as the
+    residual falls fast enough with it, and a fresh one where it does not. It converges
+    as long as the system is consistent, whatever the number of redundant equations, and
+    to the smallest residual where it is not.
     """
     limit = 0.01 * tolerance * problem.scale
     u, best, best_gap, previous, fresh = point.copy(), point, np.inf, np.inf, False
@@ -63,7 +84,10 @@ def correct_across(
             break
         rate = gap / previous if previous < np.inf else 1.0
         if factored is None or slow:
-            factored, fresh = Bordered(problem.jacobian(best) / problem.magnitude, tangent), True
+            factored, fresh = (
+                Bordered(problem.jacobian(best) / problem.magnitude, tangent),
+                True,
+            )
             u, residual, gap = best, at_best, best_gap
         else:
             fresh = False
@@ -71,22 +95,34 @@ def correct_across(
         step = factored.solve(-residual)
         u = u + step
         if np.sqrt(step @ step) * max(rate, 0.01) <= limit:
-            return u, gap, factored  # the residual before a last step after which the next is too small to matter
+            return (
+                u,
+                gap,
+                factored,
+            )  # the residual before a last step after which the next is too small to matter
     return best, best_gap, factored
 
 
-def correct_normal(problem: Problem, points: np.ndarray, bases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solutions (k, n) straight above ``points`` (k, n) of tangent planes (k, n, 2), and the relative residuals (k,).
+def correct_normal(
+    problem: Problem, points: np.ndarray, bases: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solutions (k, n) straight above ``points`` (k, n) of tangent planes (k, n, 2),
+    and the relative residuals (k,).
 
-    Gauss-Newton on ``[F'; T^T] d = [-F; 0]``, as for curves, by normal equations: far faster than an SVD of every
-    matrix, and what a step loses to rounding the next one mends. `DAMPING` keeps them regular at singular points.
+    Gauss-Newton on ``[F'; T^T] d = [-F; 0]``, as for curves, by normal equations: far
+    faster than an SVD of every matrix, and what a step loses to rounding the next one
+    mends. `DAMPING` keeps them regular at singular points.
     """
     points = points.copy()
     across = np.swapaxes(bases, 1, 2)
     for _ in range(10):
         residual = problem.residuals(points) / problem.magnitude
         jacobian = problem.jacobians(points) / problem.magnitude
-        matrix = np.swapaxes(jacobian, 1, 2) @ jacobian + bases @ across + DAMPING * np.eye(problem.n)
+        matrix = (
+            np.swapaxes(jacobian, 1, 2) @ jacobian
+            + bases @ across
+            + DAMPING * np.eye(problem.n)
+        )
         right = np.swapaxes(jacobian, 1, 2) @ residual[:, :, None]
         step = -np.linalg.solve(matrix, right)[:, :, 0]
         size = np.linalg.norm(step, axis=1)
@@ -99,10 +135,11 @@ def correct_normal(problem: Problem, points: np.ndarray, bases: np.ndarray) -> t
 def project_by_least_squares(
     problem: Problem, starts: np.ndarray, iterations: int = 80
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solutions (k, n) reached from every start (k, n), and the relative residual (k,) left at each.
+    """Solutions (k, n) reached from every start (k, n), and the relative residual (k,)
+    left at each.
 
-    Levenberg-Marquardt with the residual norm as damping, which converges quadratically to solution sets that
-    are not isolated points as well (Fan & Yuan 2005).
+    Levenberg-Marquardt with the residual norm as damping, which converges quadratically
+    to solution sets that are not isolated points as well (Fan & Yuan 2005).
     """
     points, gaps = np.array(starts, dtype=float), np.empty(len(starts))
 
@@ -130,25 +167,41 @@ def project_by_least_squares(
 
 
 def project_to_sphere_by_newton(
-    problem: Problem, starts: np.ndarray, center: np.ndarray, radius: float, iterations: int = 25
+    problem: Problem,
+    starts: np.ndarray,
+    center: np.ndarray,
+    radius: float,
+    iterations: int = 25,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals (k,) and last steps (k,).
+    """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals (k,)
+    and last steps (k,).
 
-    Gauss-Newton without damping: next to a singular point the equations differ in size by the radius, which a
-    merit function would see and Newton's method does not. Steps are cut to a third of the radius.
+    Gauss-Newton without damping: next to a singular point the equations differ in size
+    by the radius, which a merit function would see and Newton's method does not. Steps
+    are cut to a third of the radius.
     """
-    points, gaps, last = np.array(starts, dtype=float), np.empty(len(starts)), np.empty(len(starts))
+    points, gaps, last = (
+        np.array(starts, dtype=float),
+        np.empty(len(starts)),
+        np.empty(len(starts)),
+    )
     for k, u in enumerate(points):
         for _ in range(iterations):
             offset = (u - center) / radius
-            matrix = np.vstack([problem.jacobians(u[None])[0] / problem.magnitude, offset])
+            matrix = np.vstack(
+                [problem.jacobians(u[None])[0] / problem.magnitude, offset]
+            )
             right = np.append(
-                -problem.residuals(u[None])[0] / problem.magnitude, 0.5 * radius * (1.0 - offset @ offset)
+                -problem.residuals(u[None])[0] / problem.magnitude,
+                0.5 * radius * (1.0 - offset @ offset),
             )
             step = np.linalg.lstsq(matrix, right, rcond=1e-14)[0]
             last[k] = np.linalg.norm(step)
             u = u + step * min(1.0, radius / (3.0 * last[k] + 1e-300))
             if last[k] < 1e-14 * problem.scale:
                 break
-        points[k], gaps[k] = u, np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
+        points[k], gaps[k] = (
+            u,
+            np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude,
+        )
     return points, gaps, last

@@ -1,4 +1,5 @@
-"""Routes: the shortest chain of arcs, and of paths over surfaces, from one configuration to another."""
+"""Routes: the shortest chain of arcs, and of paths over surfaces, from one
+configuration to another."""
 
 from __future__ import annotations
 
@@ -10,7 +11,13 @@ from typing import TYPE_CHECKING, Any
 import networkx as nx
 import numpy as np
 
-from bifurc.routes.surface_legs import add_crossings, charts_of, foot_on, measure_crossing, middle_of
+from bifurc.routes.surface_legs import (
+    add_crossings,
+    charts_of,
+    foot_on,
+    measure_crossing,
+    middle_of,
+)
 from bifurc.surfaces.geodesic import resample
 
 if TYPE_CHECKING:
@@ -31,11 +38,14 @@ class RouteError(LookupError):
 
 @dataclass(frozen=True)
 class Leg:
-    """One stretch of a route: along ``form`` from arclength ``start`` to ``end``, backwards where end < start.
+    """One stretch of a route: along ``form`` from arclength ``start`` to ``end``,
+    backwards where end < start.
 
-    On a closed form arclengths may exceed its length. Over a surface (``dimension`` 2) ``form`` is its name, and the
-    arclength is that of the leg itself, from 0 to its length. The leg leaves at the singular point ``at`` (empty at the
-    goal). ``travel`` (n,) is the total turning of each unknown, ``path`` (k, n) the leg's share of that of the route.
+    On a closed form arclengths may exceed its length. Over a surface (``dimension`` 2)
+    ``form`` is its name, and the arclength is that of the leg itself, from 0 to its
+    length. The leg leaves at the singular point ``at`` (empty at the goal). ``travel``
+    (n,) is the total turning of each unknown, ``path`` (k, n) the leg's share of that
+    of the route.
     """
 
     form: str
@@ -54,7 +64,8 @@ class Leg:
 
 @dataclass(frozen=True)
 class Route:
-    """A chain of legs from one configuration to another, and the path (k, n) along them, without jumps.
+    """A chain of legs from one configuration to another, and the path (k, n) along
+    them, without jumps.
 
     No legs and a path of one point, where start and goal are the same configuration.
     """
@@ -70,7 +81,11 @@ class Route:
     @property
     def travel(self) -> np.ndarray:
         """Total turning (n,) of each unknown."""
-        return np.sum([leg.travel for leg in self.legs], axis=0) if self.legs else np.zeros(self.path.shape[1])
+        return (
+            np.sum([leg.travel for leg in self.legs], axis=0)
+            if self.legs
+            else np.zeros(self.path.shape[1])
+        )
 
 
 def wrap(point: np.ndarray, periods: np.ndarray) -> np.ndarray:
@@ -79,12 +94,18 @@ def wrap(point: np.ndarray, periods: np.ndarray) -> np.ndarray:
     periodic = np.isfinite(periods)
     period = periods[periodic]
     turned = out[..., periodic] - period * np.round(out[..., periodic] / period)
-    out[..., periodic] = np.where(turned <= -0.5 * period + 1e-9, turned + period, turned)
+    out[..., periodic] = np.where(
+        turned <= -0.5 * period + 1e-9, turned + period, turned
+    )
     return out
 
 
 def find_route(
-    atlas: Atlas, start: str | np.ndarray, goal: str | np.ndarray, count: int = 400, problem: Problem | None = None
+    atlas: Atlas,
+    start: str | np.ndarray,
+    goal: str | np.ndarray,
+    count: int = 400,
+    problem: Problem | None = None,
 ) -> Route:
     """The shortest route from ``start`` to ``goal``; see `Atlas.route`."""
     charts = charts_of(atlas, problem)
@@ -100,8 +121,12 @@ def find_route(
     try:
         chain = _shortest_chain(atlas, graph, charts, lost)
     except nx.NetworkXNoPath:
-        raise RouteError(_no_route(atlas, graph, list(on[START]), start, goal, lost)) from None
-    legs = [_leg(atlas, charts, edge, a, b, count / _length(chain)) for a, b, edge in chain]
+        raise RouteError(
+            _no_route(atlas, graph, list(on[START]), start, goal, lost)
+        ) from None
+    legs = [
+        _leg(atlas, charts, edge, a, b, count / _length(chain)) for a, b, edge in chain
+    ]
     return _joined(atlas, legs, start)
 
 
@@ -111,29 +136,41 @@ def find_route(
 def _place(
     atlas: Atlas, charts: dict[int, ChartAtlas], where: str | np.ndarray
 ) -> tuple[tuple[int, float] | None, dict[int, np.ndarray]]:
-    """(index of a form, arclength) or None, and points (n,) by the indices of surfaces, for a name or configuration."""
+    """(index of a form, arclength) or None, and points (n,) by the indices of surfaces,
+    for a name or configuration."""
     if isinstance(where, str):
         return _place_of_name(atlas, charts, where)
     point = np.asarray(where, dtype=float)
     if point.shape != (len(atlas.names),) or not np.all(np.isfinite(point)):
-        raise RouteError(f"configuration {point}: it must be {len(atlas.names)} finite numbers")
+        raise RouteError(
+            f"configuration {point}: it must be {len(atlas.names)} finite numbers"
+        )
     if not atlas.forms and not charts:
         raise RouteError(f"the atlas has no forms{_only_sampled(atlas)}")
     form, on, misses = None, {}, []
     if atlas.forms:
-        distances, arclengths = np.array([f.branch.nearest(point) for f in atlas.forms])[..., 0].T
+        distances, arclengths = np.array(
+            [f.branch.nearest(point) for f in atlas.forms]
+        )[..., 0].T
         index = int(np.argmin(distances))
         form = (index, float(arclengths[index])) if distances[index] <= ON else None
-        misses.append(f"{distances[index]:.2g} away from the nearest form, {atlas.forms[index].name!r}")
+        misses.append(
+            f"{distances[index]:.2g} away from the nearest form, {atlas.forms[index].name!r}"
+        )
     for k, over in charts.items():
         name = repr(atlas.surfaces[k].name)
         if over.problem is None:
-            misses.append(f"perhaps on {name}: an atlas read from a file can tell only with its problem")
+            misses.append(
+                f"perhaps on {name}: an atlas read from a file can tell only with its problem"
+            )
             continue
         distance, foot = foot_on(over, point)
         if foot is not None and distance <= ON:
             on[k] = foot
-        misses.append(f"{distance:.2g} away from " + (name if foot is not None else _charts_of(over, name)))
+        misses.append(
+            f"{distance:.2g} away from "
+            + (name if foot is not None else _charts_of(over, name))
+        )
     if form is None and not on:
         raise RouteError(
             f"configuration {_describe(point)}: it lies {' and '.join(misses)}{_only_sampled(atlas)}"
@@ -142,7 +179,9 @@ def _place(
 
 
 def _charts_of(charts: ChartAtlas, name: str) -> str:
-    return f"the charts of {name}" + ("" if charts.complete else f" ({charts.outcome.value})")
+    return f"the charts of {name}" + (
+        "" if charts.complete else f" ({charts.outcome.value})"
+    )
 
 
 def _place_of_name(
@@ -158,20 +197,37 @@ def _place_of_name(
     k = next(k for k, surface in enumerate(atlas.surfaces) if surface.name == full)
     if k not in charts:
         raise RouteError(f"{full}: no route leads there{_only_sampled(atlas)}")
-    return None, {k: middle_of(charts[k], [p.point.u for p in atlas.points if k in p.surfaces])}
+    return None, {
+        k: middle_of(charts[k], [p.point.u for p in atlas.points if k in p.surfaces])
+    }
 
 
-def _insert(graph: nx.MultiGraph, atlas: Atlas, node: tuple[str], index: int, s: float) -> None:
+def _insert(
+    graph: nx.MultiGraph, atlas: Atlas, node: tuple[str], index: int, s: float
+) -> None:
     """Split the arc of a form that holds arclength ``s`` by a new ``node``."""
     branch = atlas.forms[index].branch
-    arcs = [(a, b, key, arc) for a, b, key, arc in graph.edges(keys=True, data=True) if arc["form"] == index]
+    arcs = [
+        (a, b, key, arc)
+        for a, b, key, arc in graph.edges(keys=True, data=True)
+        if arc["form"] == index
+    ]
     if branch.closed:
-        s = min(arc["start"] for *_, arc in arcs) + (s - min(arc["start"] for *_, arc in arcs)) % branch.length
-    # the arcs of a form follow each other without gaps but for rounding: the nearest one holds s
-    a, b, key, arc = min(arcs, key=lambda found: max(found[3]["start"] - s, s - found[3]["end"]))
+        s = (
+            min(arc["start"] for *_, arc in arcs)
+            + (s - min(arc["start"] for *_, arc in arcs)) % branch.length
+        )
+    # the arcs of a form follow each other without gaps but for rounding: the nearest
+    # one holds s
+    a, b, key, arc = min(
+        arcs, key=lambda found: max(found[3]["start"] - s, s - found[3]["end"])
+    )
     s = float(np.clip(s, arc["start"], arc["end"]))
     graph.remove_edge(a, b, key)
-    for first, last, low, high in ((arc["first"], node, arc["start"], s), (node, arc["last"], s, arc["end"])):
+    for first, last, low, high in (
+        (arc["first"], node, arc["start"], s),
+        (node, arc["last"], s, arc["end"]),
+    ):
         graph.add_edge(first, last, **atlas.arc(index, low, high, first, last))
 
 
@@ -180,17 +236,31 @@ def _insert(graph: nx.MultiGraph, atlas: Atlas, node: tuple[str], index: int, s:
 Chain = list[tuple[Hashable, Hashable, dict[str, Any]]]
 
 
-def _shortest_chain(atlas: Atlas, graph: nx.MultiGraph, charts: dict[int, ChartAtlas], lost: list[str]) -> Chain:
-    """The shortest chain from start to goal: nodes and edges; why ways over surfaces are ``lost`` is added to the list.
+def _shortest_chain(
+    atlas: Atlas, graph: nx.MultiGraph, charts: dict[int, ChartAtlas], lost: list[str]
+) -> Chain:
+    """The shortest chain from start to goal: nodes and edges; why ways over surfaces
+    are ``lost`` is added to the list.
 
-    Paths over surfaces are made only where the shortest chain asks for them: until then an edge has a length below its
-    own, so that a chain all of whose edges are measured is the shortest (Dellin and Srinivasa 2016, LazySP).
+    Paths over surfaces are made only where the shortest chain asks for them: until then
+    an edge has a length below its own, so that a chain all of whose edges are measured
+    is the shortest (Dellin and Srinivasa 2016, LazySP).
     """
     while True:
         nodes = nx.shortest_path(graph, START, GOAL, weight="length")
-        keys = [min(graph[a][b], key=lambda key: graph[a][b][key]["length"]) for a, b in pairwise(nodes)]
-        chain = [(a, b, graph[a][b][key]) for (a, b), key in zip(pairwise(nodes), keys, strict=True)]
-        waiting = [(a, b, key) for (a, b, edge), key in zip(chain, keys, strict=True) if edge.get("path", 0) is None]
+        keys = [
+            min(graph[a][b], key=lambda key: graph[a][b][key]["length"])
+            for a, b in pairwise(nodes)
+        ]
+        chain = [
+            (a, b, graph[a][b][key])
+            for (a, b), key in zip(pairwise(nodes), keys, strict=True)
+        ]
+        waiting = [
+            (a, b, key)
+            for (a, b, edge), key in zip(chain, keys, strict=True)
+            if edge.get("path", 0) is None
+        ]
         if not waiting:
             return chain
         for a, b, key in waiting:
@@ -202,7 +272,9 @@ def _shortest_chain(atlas: Atlas, graph: nx.MultiGraph, charts: dict[int, ChartA
             try:
                 measure_crossing(charts[k], graph[a][b][key])
             except ValueError as error:
-                lost.append(f"{atlas.surfaces[k].name} ({charts[k].outcome.value}): {error}")
+                lost.append(
+                    f"{atlas.surfaces[k].name} ({charts[k].outcome.value}): {error}"
+                )
                 graph.remove_edge(a, b, key)
 
 
@@ -211,32 +283,57 @@ def _length(chain: Chain) -> float:
 
 
 def _leg(
-    atlas: Atlas, charts: dict[int, ChartAtlas], edge: dict[str, Any], first: Hashable, last: Hashable, density: float
+    atlas: Atlas,
+    charts: dict[int, ChartAtlas],
+    edge: dict[str, Any],
+    first: Hashable,
+    last: Hashable,
+    density: float,
 ) -> Leg:
-    """The leg along an edge from the node ``first``, with about so many samples a length on its path."""
+    """The leg along an edge from the node ``first``, with about so many samples a
+    length on its path."""
     forwards = edge["first"] == first
     at = last if isinstance(last, str) else ""  # the goal is no point of the atlas
-    samples = 1 + max(1, round(density * edge["length"])) if edge["length"] > NO_WAY else 1
+    samples = (
+        1 + max(1, round(density * edge["length"])) if edge["length"] > NO_WAY else 1
+    )
     if "form" in edge:
-        start, end = (edge["start"], edge["end"]) if forwards else (edge["end"], edge["start"])
+        start, end = (
+            (edge["start"], edge["end"]) if forwards else (edge["end"], edge["start"])
+        )
         form = atlas.forms[edge["form"]]
-        return Leg(form.name, start, end, at, edge["travel"], 1, form.branch(np.linspace(start, end, samples)))
+        return Leg(
+            form.name,
+            start,
+            end,
+            at,
+            edge["travel"],
+            1,
+            form.branch(np.linspace(start, end, samples)),
+        )
     k, along = edge["surface"], edge["path"] if forwards else edge["path"][::-1]
     path = resample(charts[k], along, samples - 1) if samples > 1 else along[:1]
     return Leg(atlas.surfaces[k].name, 0.0, edge["length"], at, edge["travel"], 2, path)
 
 
 def _joined(atlas: Atlas, legs: Sequence[Leg], start: str | np.ndarray) -> Route:
-    """The route along the legs, each shifted by whole periods to where the one before it ended; empty ones go."""
+    """The route along the legs, each shifted by whole periods to where the one before
+    it ended; empty ones go."""
     periodic = np.isfinite(atlas.periods)
     period = atlas.periods[periodic]
     first = legs[0].path[0]
-    end = wrap(first, atlas.periods) if isinstance(start, str) else np.asarray(start, dtype=float)
+    end = (
+        wrap(first, atlas.periods)
+        if isinstance(start, str)
+        else np.asarray(start, dtype=float)
+    )
     kept: list[Leg] = []
     parts: list[np.ndarray] = []
     for leg in legs:
         path = leg.path.copy()
-        path[:, periodic] += period * np.round((end[periodic] - path[0, periodic]) / period)
+        path[:, periodic] += period * np.round(
+            (end[periodic] - path[0, periodic]) / period
+        )
         if parts:
             path[0] = end  # the same point but for rounding
         end = path[-1]
@@ -250,21 +347,56 @@ def _joined(atlas: Atlas, legs: Sequence[Leg], start: str | np.ndarray) -> Route
 
 
 def _no_route(
-    atlas: Atlas, graph: nx.MultiGraph, on: Sequence[int], start: str | np.ndarray, goal: str | np.ndarray,
+    atlas: Atlas,
+    graph: nx.MultiGraph,
+    on: Sequence[int],
+    start: str | np.ndarray,
+    goal: str | np.ndarray,
     lost: Sequence[str],
-) -> str:  # fmt: skip
-    edges = [edge for *_, edge in graph.edges(nx.node_connected_component(graph, START), data=True)]
-    names = [atlas.forms[i].name for i in sorted({edge["form"] for edge in edges if "form" in edge})]
-    names += [atlas.surfaces[k].name for k in sorted({*on, *(edge["surface"] for edge in edges if "surface" in edge)})]
+) -> str:
+    edges = [
+        edge
+        for *_, edge in graph.edges(
+            nx.node_connected_component(graph, START), data=True
+        )
+    ]
+    names = [
+        atlas.forms[i].name
+        for i in sorted({edge["form"] for edge in edges if "form" in edge})
+    ]
+    names += [
+        atlas.surfaces[k].name
+        for k in sorted(
+            {*on, *(edge["surface"] for edge in edges if "surface" in edge)}
+        )
+    ]
     reached = f"only {', '.join(map(repr, names))} can be reached from the start{_only_sampled(atlas)}"
-    return "; ".join([f"there is no route from {_describe(start)} to {_describe(goal)}: {reached}", *lost])
+    return "; ".join(
+        [
+            f"there is no route from {_describe(start)} to {_describe(goal)}: {reached}",
+            *lost,
+        ]
+    )
 
 
 def _only_sampled(atlas: Atlas) -> str:
-    """A hint at components over which no route is looked for, empty where there are none."""
-    names = [f"{s.name} (dimension {s.dimension})" for s in atlas.surfaces if s.charts is None]
-    return f"; without charts no route goes over {', '.join(names)}: it is only sampled" if names else ""
+    """A hint at components over which no route is looked for, empty where there are
+    none."""
+    names = [
+        f"{s.name} (dimension {s.dimension})"
+        for s in atlas.surfaces
+        if s.charts is None
+    ]
+    return (
+        f"; without charts no route goes over {', '.join(names)}: it is only sampled"
+        if names
+        else ""
+    )
 
 
 def _describe(where: str | np.ndarray) -> str:
-    return repr(where) if isinstance(where, str) else np.array2string(np.asarray(where), precision=6)
+    return (
+        repr(where)
+        if isinstance(where, str)
+        else np.array2string(np.asarray(where), precision=6)
+    )

@@ -1,4 +1,5 @@
-"""Components of dimension 2 and more in a search: which seeds lie on them, their charts, their singular points."""
+"""Components of dimension 2 and more in a search: which seeds lie on them, their
+charts, their singular points."""
 
 from __future__ import annotations
 
@@ -19,19 +20,26 @@ from bifurc.surfaces.walk import reached_charts
 __all__ = ["Components", "lies_on", "singular_points_of", "sort_out"]
 
 RADIUS = 0.7  # of the largest charts, over the problem's scale
-SMALL = 0.2  # singular value, over the median on the surface, below which a singular point is looked for
+# singular value, over the median on the surface, below which a singular point is looked
+# for
+SMALL = 0.2
 MOST_POINTS = 200  # singular points of surfaces that are located
-MOST_SAMPLES = 24  # those among them that are samples of curves of singular points, which have no end
-NEXT = 0.02  # distance from a singular point, over the scale, at which others on a curve with it are looked for
+# those among them that are samples of curves of singular points, which have no end
+MOST_SAMPLES = 24
+# distance from a singular point, over the scale, at which others on a curve with it are
+# looked for
+NEXT = 0.02
 
 
 @dataclass
 class Components:
-    """Numbers of the seeds on components of dimension 2 and more, by dimension, and charts over the surfaces.
+    """Numbers of the seeds on components of dimension 2 and more, by dimension, and
+    charts over the surfaces.
 
-    Parts of the charts that do not hang together are surfaces of their own: each but the last was finished, as far as
-    its singular points, before the next was begun. ``part_of`` (k,) is the part that each seed of dimension 2
-    belongs to, -1 where none is known.
+    Parts of the charts that do not hang together are surfaces of their own: each but
+    the last was finished, as far as its singular points, before the next was begun.
+    ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
+    is known.
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
@@ -39,16 +47,22 @@ class Components:
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
     notes: dict[int, str] = field(default_factory=dict)  # by the number of the part
 
-    def cover(self, problem: Problem, points: np.ndarray, charts: int, deadline: Deadline) -> list[int]:
-        """Make up to ``charts`` charts over the surfaces on which those of the seeds ``points`` (k, n) lie.
+    def cover(
+        self, problem: Problem, points: np.ndarray, charts: int, deadline: Deadline
+    ) -> list[int]:
+        """Make up to ``charts`` charts over the surfaces on which those of the seeds
+        ``points`` (k, n) lie.
 
-        Where the covering is unfinished, the seeds beside the charts walk over the surface to find out which they
-        belong to. Where no chart fits about any seed there is no surface: the numbers of these seeds come back.
+        Where the covering is unfinished, the seeds beside the charts walk over the
+        surface to find out which they belong to. Where no chart fits about any seed
+        there is no surface: the numbers of these seeds come back.
         """
         on = points[self.seeds.get(2, [])]
         if not len(on) or charts <= 0 or deadline.passed:
             return []
-        made = cover_surface(problem, on, radius=RADIUS, charts=charts, seconds=deadline.left)
+        made = cover_surface(
+            problem, on, radius=RADIUS, charts=charts, seconds=deadline.left
+        )
         if not len(made):
             return [] if deadline.passed else self.seeds.pop(2)
         self.charts = made
@@ -59,17 +73,32 @@ class Components:
         return []
 
     def take_note(self, left_out: np.ndarray, on_curves: np.ndarray) -> None:
-        """Remember charts at which singular points were not looked for, and charts next to curves of them."""
+        """Remember charts at which singular points were not looked for, and charts next
+        to curves of them."""
         assert self.charts is not None
         part = self.charts.part
         for k in range(int(part.max()) + 1):
-            more, curves = (int(np.count_nonzero(part[numbers] == k)) for numbers in (left_out, on_curves))
-            notes = [f"{curves} of its singular points are samples of curves of such points"] if curves else []
-            notes += [f"at {more} places singular points were not looked for"] if more else []
+            more, curves = (
+                int(np.count_nonzero(part[numbers] == k))
+                for numbers in (left_out, on_curves)
+            )
+            notes = (
+                [
+                    f"{curves} of its singular points are samples of curves of such points"
+                ]
+                if curves
+                else []
+            )
+            notes += (
+                [f"at {more} places singular points were not looked for"]
+                if more
+                else []
+            )
             self.notes[k] = "; ".join(notes)
 
     def surfaces(self, points: np.ndarray) -> tuple[Surface, ...]:
-        """Connected surfaces as far as there are charts, then what none of them is known to hold, by dimension."""
+        """Connected surfaces as far as there are charts, then what none of them is
+        known to hold, by dimension."""
         out: list[Surface] = []
         for dimension, numbers in sorted(self.seeds.items()):
             rest = points[numbers]
@@ -77,21 +106,32 @@ class Components:
                 for k, part in enumerate(self.charts.parts()):
                     on = rest[self.part_of == k]
                     samples = on if len(on) else part.centers[:1]
-                    out.append(Surface(2, samples, charts=part, note=self.notes.get(k, "")))
+                    out.append(
+                        Surface(2, samples, charts=part, note=self.notes.get(k, ""))
+                    )
                 rest = rest[self.part_of < 0]
             if len(rest):
                 out.append(Surface(dimension, rest))
         return tuple(out)
 
 
-def sort_out(problem: Problem, points: np.ndarray, values: np.ndarray, deadline: Deadline) -> Components:
-    """The seeds ``points`` (k, n) that lie on components of dimension 2 and more; ``values`` (k, n) are their
-    singular values. Singular points of surfaces are left out: they are looked at one by one."""
+def sort_out(
+    problem: Problem, points: np.ndarray, values: np.ndarray, deadline: Deadline
+) -> Components:
+    """The seeds ``points`` (k, n) that lie on components of dimension 2 and more;
+    ``values`` (k, n) are their singular values. Singular points of surfaces are left
+    out: they are looked at one by one."""
     found = Components()
-    doubtful = np.flatnonzero(values[:, max(problem.n - 2, 0)] < NULL) if problem.n > 1 else np.empty(0, dtype=int)
+    doubtful = (
+        np.flatnonzero(values[:, max(problem.n - 2, 0)] < NULL)
+        if problem.n > 1
+        else np.empty(0, dtype=int)
+    )
     local = local_dimensions(problem, points[doubtful], deadline)
     for dimension in np.unique(local.dimension[local.dimension >= 2]):
-        on = (local.dimension == dimension) & ((local.nullity == dimension) | (dimension > 2))
+        on = (local.dimension == dimension) & (
+            (local.nullity == dimension) | (dimension > 2)
+        )
         if np.any(on):
             found.seeds[int(dimension)] = doubtful[on].tolist()
     return found
@@ -100,11 +140,13 @@ def sort_out(problem: Problem, points: np.ndarray, values: np.ndarray, deadline:
 def singular_points_of(
     problem: Problem, components: Components, deadline: Deadline
 ) -> list[tuple[np.ndarray, np.ndarray, float]]:
-    """Points of surfaces where the rank of F' is lower than n - 2: each with its null space and error, nothing twice.
+    """Points of surfaces where the rank of F' is lower than n - 2: each with its null
+    space and error, nothing twice.
 
-    They are looked for at the charts where the smallest regular singular value is smaller than at all neighbours, and
-    where no chart fits, the clearest first; at most `MOST_POINTS`, and `MOST_SAMPLES` of those that form curves. What
-    that leaves out, and how many are samples of curves, becomes a note on the surface.
+    They are looked for at the charts where the smallest regular singular value is
+    smaller than at all neighbours, and where no chart fits, the clearest first; at most
+    `MOST_POINTS`, and `MOST_SAMPLES` of those that form curves. What that leaves out,
+    and how many are samples of curves, becomes a note on the surface.
     """
     charts = components.charts
     if charts is None or problem.n < 3:
@@ -129,9 +171,13 @@ def singular_points_of(
             continue
         on_curve = located[2] > 0.1 * reach or _is_on_singular_curve(problem, *located)
         point, null_space, error = located
-        if on_curve:  # along it there is nothing to locate, and that is all that the error says
+        if (
+            on_curve
+        ):  # along it there is nothing to locate, and that is all that the error says
             error = min(error, 1e-6 * problem.scale)
-        gaps = [np.linalg.norm(problem.difference(other, point)) for other, _, _ in found]
+        gaps = [
+            np.linalg.norm(problem.difference(other, point)) for other, _, _ in found
+        ]
         enough = on_curve and len(on_curves) >= MOST_SAMPLES
         if not enough and min(gaps, default=np.inf) > 1e-5 * problem.scale + 10 * error:
             found.append((point, null_space, error))
@@ -140,16 +186,28 @@ def singular_points_of(
     return found
 
 
-def _is_on_singular_curve(problem: Problem, point: np.ndarray, null_space: np.ndarray, error: float) -> bool:
-    """Whether there are other singular points of the same kind near one (n,), whatever the direction."""
+def _is_on_singular_curve(
+    problem: Problem, point: np.ndarray, null_space: np.ndarray, error: float
+) -> bool:
+    """Whether there are other singular points of the same kind near one (n,), whatever
+    the direction."""
     away = NEXT * problem.scale + 100 * error
     for start in point + away * np.concatenate([null_space.T, -null_space.T]):
         other = locate_singular_point(problem, start, null_space.shape[1], 2.0 * away)
-        if other is not None and np.linalg.norm(problem.difference(other[0], point)) > 0.2 * away + 10 * other[2]:
+        if (
+            other is not None
+            and np.linalg.norm(problem.difference(other[0], point))
+            > 0.2 * away + 10 * other[2]
+        ):
             return True
     return False
 
 
 def lies_on(surfaces: tuple[Surface, ...], point: np.ndarray) -> tuple[int, ...]:
-    """Indices of the surfaces with charts on which a singular point (n,) of dimension 2 or more lies."""
-    return tuple(k for k, s in enumerate(surfaces) if s.charts is not None and len(entrances(s.charts, point)))
+    """Indices of the surfaces with charts on which a singular point (n,) of dimension 2
+    or more lies."""
+    return tuple(
+        k
+        for k, s in enumerate(surfaces)
+        if s.charts is not None and len(entrances(s.charts, point))
+    )

@@ -20,7 +20,11 @@ from bifurc.problem import Problem, ProblemError
 from bifurc.search.components import singular_points_of, sort_out
 from bifurc.search.findings import SAME, Findings, assemble_atlas
 from bifurc.seeding import CLOSED, Seeds
-from bifurc.singular.locate import SingularPoint, classify_singular_point, locate_singular_point
+from bifurc.singular.locate import (
+    SingularPoint,
+    classify_singular_point,
+    locate_singular_point,
+)
 from bifurc.singular.sphere import is_on_surface
 
 __all__ = ["explore"]
@@ -28,7 +32,9 @@ __all__ = ["explore"]
 log = logging.getLogger(__name__)
 
 STUB = 2e-2  # length, in scales, below which a branch that stalls at both ends is none
-NEARLY = 1e-3  # singular value, over the problem's magnitude, below which a singular point is looked for
+# singular value, over the problem's magnitude, below which a singular point is looked
+# for
+NEARLY = 1e-3
 
 
 def explore(
@@ -45,13 +51,16 @@ def explore(
 ) -> Atlas:
     """All solution curves of a problem, all singular points on them, nothing twice.
 
-    Seeds come from `Problem.seeds` (complete slices where the problem has them, and ``starts`` random starts
-    drawn with ``seed``) unless given. Every branch found is traced whole and monitored; from every singular
-    point the directions in which other branches leave become further starts. ``progress`` is called with what
-    was found and how many. Ctrl-C ends the search early: the atlas holds what was found, and
-    ``info["interrupted"]`` is true. The search also ends when the ``budget`` (s) is used up, but for the step
-    it is in: the completeness says so, and ``info["out_of_time"]``. Surfaces are covered with up to ``charts`` charts.
-    With ``prove`` the problem's audit, if it has one, takes the time to find out whether a branch can be missing.
+    Seeds come from `Problem.seeds` (complete slices where the problem has them, and
+    ``starts`` random starts drawn with ``seed``) unless given. Every branch found is
+    traced whole and monitored; from every singular point the directions in which other
+    branches leave become further starts. ``progress`` is called with what was found and
+    how many. Ctrl-C ends the search early: the atlas holds what was found, and
+    ``info["interrupted"]`` is true. The search also ends when the ``budget`` (s) is
+    used up, but for the step it is in: the completeness says so, and
+    ``info["out_of_time"]``. Surfaces are covered with up to ``charts`` charts. With
+    ``prove`` the problem's audit, if it has one, takes the time to find out whether a
+    branch can be missing.
     """
     if not budget > 0:
         raise ProblemError("budget", budget, "a positive number of seconds")
@@ -68,8 +77,12 @@ def explore(
                 gathered = problem.seeds(np.random.default_rng(seed), starts)
             held.check()
             _work_through(problem, gathered, found, settings, progress, held)
-            _work_on_surfaces(problem, gathered, found, settings, charts, progress, held)
-            gathered = _audited(problem, gathered, found, settings, progress, held, prove)
+            _work_on_surfaces(
+                problem, gathered, found, settings, charts, progress, held
+            )
+            gathered = _audited(
+                problem, gathered, found, settings, progress, held, prove
+            )
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
@@ -77,10 +90,15 @@ def explore(
         nothing = np.empty((0, problem.n))
         gathered = Seeds(nothing, np.empty(0, dtype=bool), np.empty(0), nothing)
     info = {
-        "seed": seed, "starts": starts, "settings": asdict(settings), "interrupted": interrupted,
-        "budget": budget, "out_of_time": deadline.passed, "derivatives": problem.derivatives,
+        "seed": seed,
+        "starts": starts,
+        "settings": asdict(settings),
+        "interrupted": interrupted,
+        "budget": budget,
+        "out_of_time": deadline.passed,
+        "derivatives": problem.derivatives,
         "seconds": time.perf_counter() - began,
-    }  # fmt: skip
+    }
     return assemble_atlas(problem, found, gathered, interrupted, info)
 
 
@@ -88,10 +106,15 @@ def explore(
 
 
 def _work_through(
-    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings,
-    progress: Callable[[str, int], None] | None, held: HeldInterrupt,
-) -> None:  # fmt: skip
-    """Trace from every seed that lies on no surface, and from every half-branch that shows up on the way."""
+    problem: Problem,
+    seeds: Seeds,
+    found: Findings,
+    settings: TraceSettings,
+    progress: Callable[[str, int], None] | None,
+    held: HeldInterrupt,
+) -> None:
+    """Trace from every seed that lies on no surface, and from every half-branch that
+    shows up on the way."""
     if not len(seeds.points):
         return
     values = singular_values(problem, seeds.points)
@@ -99,14 +122,23 @@ def _work_through(
     for dimension, numbers in found.components.seeds.items():
         found.owner.update((k, ("component of dimension", dimension)) for k in numbers)
     waiting = [k for k in range(len(seeds.points)) if k not in found.owner]
-    _trace_from(problem, seeds, waiting, values[waiting], found, settings, progress, held)
+    _trace_from(
+        problem, seeds, waiting, values[waiting], found, settings, progress, held
+    )
 
 
 def _trace_from(
-    problem: Problem, seeds: Seeds, waiting: list[int], values: np.ndarray, found: Findings, settings: TraceSettings,
-    progress: Callable[[str, int], None] | None, held: HeldInterrupt,
-) -> None:  # fmt: skip
-    """Trace from the seeds numbered ``waiting``, with singular ``values`` (k, n), that lie on nothing known."""
+    problem: Problem,
+    seeds: Seeds,
+    waiting: list[int],
+    values: np.ndarray,
+    found: Findings,
+    settings: TraceSettings,
+    progress: Callable[[str, int], None] | None,
+    held: HeldInterrupt,
+) -> None:
+    """Trace from the seeds numbered ``waiting``, with singular ``values`` (k, n), that
+    lie on nothing known."""
     # the clearest first: those whose curve is far from singular
     order = np.argsort(-values[:, max(problem.n - 2, 0)], kind="stable")
     own = dict(zip(waiting, values, strict=True))
@@ -115,23 +147,36 @@ def _trace_from(
     while waiting and not found.deadline.passed:
         for number in range(matched, len(found.branches)):
             within = SAME * problem.scale
-            on = found.branches[number].nearest(seeds.points[waiting], within=within)[0] < within
-            found.owner.update((waiting[k], ("form", number)) for k in np.flatnonzero(on))
+            on = (
+                found.branches[number].nearest(seeds.points[waiting], within=within)[0]
+                < within
+            )
+            found.owner.update(
+                (waiting[k], ("form", number)) for k in np.flatnonzero(on)
+            )
             waiting = [waiting[k] for k in np.flatnonzero(~on)]
         matched = len(found.branches)
         if progress is not None:
             progress("forms", matched)
         if waiting:
             i = waiting.pop(0)
-            found.owner[i] = _take_seed(problem, seeds.points[i], own[i], found, settings)
+            found.owner[i] = _take_seed(
+                problem, seeds.points[i], own[i], found, settings
+            )
         held.check()
 
 
 def _audited(
-    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings,
-    progress: Callable[[str, int], None] | None, held: HeldInterrupt, prove: bool,
-) -> Seeds:  # fmt: skip
-    """Hold the branches against the problem's audit, and trace what it leads to; the seeds with those of the audit."""
+    problem: Problem,
+    seeds: Seeds,
+    found: Findings,
+    settings: TraceSettings,
+    progress: Callable[[str, int], None] | None,
+    held: HeldInterrupt,
+    prove: bool,
+) -> Seeds:
+    """Hold the branches against the problem's audit, and trace what it leads to; the
+    seeds with those of the audit."""
     while seeds.audit is not None and not found.deadline.passed:
         found.audit = seeds.audit(found.branches, found.deadline.left if prove else 0.0)
         held.check()
@@ -142,16 +187,30 @@ def _audited(
             break
         seeds = seeds.with_constructed(starts)
         numbers = list(range(before, len(seeds.points)))
-        _trace_from(problem, seeds, numbers, singular_values(problem, starts), found, settings, progress, held)
+        _trace_from(
+            problem,
+            seeds,
+            numbers,
+            singular_values(problem, starts),
+            found,
+            settings,
+            progress,
+            held,
+        )
         if len(found.branches) == known:
             break
     return seeds
 
 
 def _take_seed(
-    problem: Problem, point: np.ndarray, values: np.ndarray, found: Findings, settings: TraceSettings
+    problem: Problem,
+    point: np.ndarray,
+    values: np.ndarray,
+    found: Findings,
+    settings: TraceSettings,
 ) -> tuple[str, int]:
-    """Find out what a seed lies on: a curve, a rigid assembly, a singular point, or a surface."""
+    """Find out what a seed lies on: a curve, a rigid assembly, a singular point, or a
+    surface."""
     n = problem.n
     if values[n - 1] > 1e-6:
         return "rigid", _known_or_new(problem, point, found.rigid)
@@ -161,16 +220,25 @@ def _take_seed(
             return "point", known
         for number, branch in enumerate(found.branches):
             if branch.nearest(point)[0][0] < 1e-4 * problem.scale:
-                return "form", number  # where the rank is low a seed is good to half the digits only
+                return (
+                    "form",
+                    number,
+                )  # where the rank is low a seed is good to half the digits only
         along = lower_rank_direction(problem, point)
         if along is not None:
             number = len(found.branches)
-            return ("form", number) if _trace_lower_rank(problem, point, along, found, settings) else ("no solution", 0)
+            return (
+                ("form", number)
+                if _trace_lower_rank(problem, point, along, found, settings)
+                else ("no solution", 0)
+            )
         nullity = int(np.count_nonzero(values < 1e-4))
         located = _examine(problem, point, nullity, found, reach=1e-2)
         if located is not None:
             number = next(i for i, p in enumerate(found.points) if p is located)
-            starts = [(located.u + located.radius * h, h) for h in located.half_branches]
+            starts = [
+                (located.u + located.radius * h, h) for h in located.half_branches
+            ]
             _trace_and_follow(problem, starts, found, settings)
             return "point", number
     number = len(found.branches)
@@ -183,9 +251,14 @@ def _take_seed(
 
 
 def _trace_lower_rank(
-    problem: Problem, point: np.ndarray, along: np.ndarray, found: Findings, settings: TraceSettings
+    problem: Problem,
+    point: np.ndarray,
+    along: np.ndarray,
+    found: Findings,
+    settings: TraceSettings,
 ) -> bool:
-    """Trace the curve of lower rank through ``point``; what may cross it is left to other seeds."""
+    """Trace the curve of lower rank through ``point``; what may cross it is left to
+    other seeds."""
     branch = trace_branch(Deflated(problem), point, along, settings)
     if not _is_curve(problem, branch):
         log.info("no curve of lower rank through %s: %s", point, branch.outcome.value)
@@ -195,10 +268,16 @@ def _trace_lower_rank(
 
 
 def _work_on_surfaces(
-    problem: Problem, seeds: Seeds, found: Findings, settings: TraceSettings, charts: int,
-    progress: Callable[[str, int], None] | None, held: HeldInterrupt,
-) -> None:  # fmt: skip
-    """Cover the surfaces with charts, locate singular points on them, and trace the curves that leave there."""
+    problem: Problem,
+    seeds: Seeds,
+    found: Findings,
+    settings: TraceSettings,
+    charts: int,
+    progress: Callable[[str, int], None] | None,
+    held: HeldInterrupt,
+) -> None:
+    """Cover the surfaces with charts, locate singular points on them, and trace the
+    curves that leave there."""
     refused = found.components.cover(problem, seeds.points, charts, found.deadline)
     if refused:
         values = singular_values(problem, seeds.points[refused])
@@ -216,14 +295,21 @@ def _work_on_surfaces(
 
 
 def _trace_and_follow(
-    problem: Problem, queue: list[tuple[np.ndarray, np.ndarray | None]], found: Findings, settings: TraceSettings
+    problem: Problem,
+    queue: list[tuple[np.ndarray, np.ndarray | None]],
+    found: Findings,
+    settings: TraceSettings,
 ) -> bool:
-    """Trace the branches through the starts and everything that hangs on them; False where there is no curve."""
+    """Trace the branches through the starts and everything that hangs on them; False
+    where there is no curve."""
     traced = False
     while queue and not found.deadline.passed:
         point, along = queue.pop()
         within = SAME * problem.scale
-        if any(branch.nearest(point, within=within)[0][0] < within for branch in found.branches):
+        if any(
+            branch.nearest(point, within=within)[0][0] < within
+            for branch in found.branches
+        ):
             continue
         branch = trace_branch(problem, point, along, settings)
         if branch.outcome is Outcome.OPEN:
@@ -233,43 +319,60 @@ def _trace_and_follow(
             continue
         traced = True
         if any(_is_the_same(problem, branch, known) for known in found.branches):
-            continue  # the start lay beside the curve, by rounding over a small singular value
+            # the start lay beside the curve, by rounding over a small singular value
+            continue
         queue = queue + _add_branch(problem, branch, found)
     return traced
 
 
 def _is_curve(problem: Problem, branch: Branch) -> bool:
-    """Whether a traced branch is more than the trace of rounding beside a singular point."""
+    """Whether a traced branch is more than the trace of rounding beside a singular
+    point."""
     shortest = STUB if branch.outcome is Outcome.STALLED else STUB / 20
     return bool(len(branch.pieces)) and branch.length > shortest * problem.scale
 
 
 def _is_the_same(problem: Problem, branch: Branch, known: Branch) -> bool:
     """Whether a branch runs along a known one."""
-    distance, _ = known.nearest(branch(branch.length * np.array([0.11, 0.29, 0.47, 0.71, 0.93])))
+    distance, _ = known.nearest(
+        branch(branch.length * np.array([0.11, 0.29, 0.47, 0.71, 0.93]))
+    )
     return bool(np.all(distance < SAME * problem.scale))
 
 
 def _add_branch(
     problem: Problem, branch: Branch, found: Findings
 ) -> list[tuple[np.ndarray, np.ndarray | None]]:
-    """Record a traced branch and the singular points on it; starts on all branches through them come back."""
+    """Record a traced branch and the singular points on it; starts on all branches
+    through them come back."""
     profile = profile_branch(problem, branch)
     s, value = singular_value_minima(problem, branch, profile)
     found.branches.append(branch)
     found.profiles.append(profile)
     found.minima.append((s, value))
     located: list[float] = []
-    candidates = [(float(at), max(NEARLY, 3 * small)) for at, small in zip(s, value, strict=True) if small < NEARLY]
-    if branch.outcome is Outcome.STALLED:  # at a cusp the curve ends before the singular point is reached
+    candidates = [
+        (float(at), max(NEARLY, 3 * small))
+        for at, small in zip(s, value, strict=True)
+        if small < NEARLY
+    ]
+    if (
+        branch.outcome is Outcome.STALLED
+    ):  # at a cusp the curve ends before the singular point is reached
         candidates += [(0.0, 10 * NEARLY), (branch.length, 10 * NEARLY)]
     starts: list[tuple[np.ndarray, np.ndarray | None]] = []
     for at, small in candidates:
         if found.deadline.passed:
             break
-        nullity = int(np.count_nonzero(singular_values(problem, branch(at)[None])[0] < small))
+        nullity = int(
+            np.count_nonzero(singular_values(problem, branch(at)[None])[0] < small)
+        )
         known = len(found.points)
-        point = _examine(problem, branch(at), nullity, found, reach=0.05) if nullity > 1 else None
+        point = (
+            _examine(problem, branch(at), nullity, found, reach=0.05)
+            if nullity > 1
+            else None
+        )
         if point is not None:
             located.append(at)
         if point is not None and len(found.points) > known:
@@ -281,9 +384,14 @@ def _add_branch(
 def _examine(
     problem: Problem, near: np.ndarray, nullity: int, found: Findings, reach: float
 ) -> SingularPoint | None:
-    """Locate and classify the singular point near a configuration; one already known is returned as it is."""
+    """Locate and classify the singular point near a configuration; one already known is
+    returned as it is."""
     for k in sorted({max(nullity, 2), 2, 3}, key=lambda k: abs(k - nullity)):
-        result = locate_singular_point(problem, near, k, reach * problem.scale) if k <= problem.n else None
+        result = (
+            locate_singular_point(problem, near, k, reach * problem.scale)
+            if k <= problem.n
+            else None
+        )
         if result is None:
             continue
         known = _known_point(problem, result[0], result[2], found)
@@ -295,7 +403,11 @@ def _examine(
 
 
 def _point_of(
-    problem: Problem, u: np.ndarray, null_space: np.ndarray, error: float, found: Findings
+    problem: Problem,
+    u: np.ndarray,
+    null_space: np.ndarray,
+    error: float,
+    found: Findings,
 ) -> SingularPoint:
     """The known singular point that a located one is, or a new one, classified."""
     known = _known_point(problem, u, error, found)
@@ -306,14 +418,21 @@ def _point_of(
     return point
 
 
-def _known_point(problem: Problem, u: np.ndarray, error: float, found: Findings) -> SingularPoint | None:
+def _known_point(
+    problem: Problem, u: np.ndarray, error: float, found: Findings
+) -> SingularPoint | None:
     """The known singular point at ``u``, located to within ``error``, or None."""
-    number = _nearest(problem, u, [p.u for p in found.points], SAME + 2 * error / problem.scale)
+    number = _nearest(
+        problem, u, [p.u for p in found.points], SAME + 2 * error / problem.scale
+    )
     return None if number is None else found.points[number]
 
 
-def _nearest(problem: Problem, point: np.ndarray, others: list[np.ndarray], within: float) -> int | None:
-    """Number of the first of ``others`` at less than ``within`` scales from ``point``, or None."""
+def _nearest(
+    problem: Problem, point: np.ndarray, others: list[np.ndarray], within: float
+) -> int | None:
+    """Number of the first of ``others`` at less than ``within`` scales from ``point``,
+    or None."""
     for i, other in enumerate(others):
         if np.linalg.norm(problem.difference(other, point)) < within * problem.scale:
             return i

@@ -21,38 +21,59 @@ from bifurc.singular.locate import Kind, SingularPoint
 
 __all__ = ["SAME", "Findings", "assemble_atlas"]
 
-SAME = 1e-6  # distance, in units of the problem's scale, below which a point lies on a traced curve
+# distance, in units of the problem's scale, below which a point lies on a traced curve
+SAME = 1e-6
 INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R", Kind.DIMENSION_CHANGE: "D"}
 
 
 @dataclass
 class Findings:
-    """What is known so far. ``owner`` labels every seed with what it lies on: (kind, number)."""
+    """What is known so far. ``owner`` labels every seed with what it lies on: (kind,
+    number)."""
 
     branches: list[Branch] = field(default_factory=list)
     profiles: list[Profile] = field(default_factory=list)
     minima: list[tuple[np.ndarray, np.ndarray]] = field(default_factory=list)
-    located: list[list[float]] = field(default_factory=list)  # arclengths of minima that are singular points
+    located: list[list[float]] = field(
+        default_factory=list
+    )  # arclengths of minima that are singular points
     points: list[SingularPoint] = field(default_factory=list)
     rigid: list[np.ndarray] = field(default_factory=list)
     components: Components = field(default_factory=Components)
-    gaps: list[float] = field(default_factory=list)  # residuals of starts that only nearly solve the system
+    gaps: list[float] = field(
+        default_factory=list
+    )  # residuals of starts that only nearly solve the system
     owner: dict[int, tuple[str, int]] = field(default_factory=dict)
     audit: Audit | None = None  # the last word on what the branches leave out
     deadline: Deadline = field(default_factory=Deadline)
 
 
-def assemble_atlas(problem: Problem, found: Findings, seeds: Seeds, interrupted: bool, info: dict[str, Any]) -> Atlas:
+def assemble_atlas(
+    problem: Problem,
+    found: Findings,
+    seeds: Seeds,
+    interrupted: bool,
+    info: dict[str, Any],
+) -> Atlas:
     """The atlas of the findings, in an order that does not depend on the seeds."""
-    order = sorted(range(len(found.branches)), key=lambda i: (-round(found.branches[i].length, 6), i))
+    order = sorted(
+        range(len(found.branches)),
+        key=lambda i: (-round(found.branches[i].length, 6), i),
+    )
     branches = [found.branches[i] for i in order]
     surfaces = tuple(
         replace(surface, name=f"surface {i}")
         for i, surface in enumerate(found.components.surfaces(seeds.points), start=1)
     )
     points = [_meeting_point(problem, p, branches, surfaces) for p in found.points]
-    points = sorted(points, key=lambda p: (p.kind.value, *np.round(wrap(p.point.u, problem.periods), 6)))
-    points = [replace(p, name=f"{INITIALS.get(p.kind, 'S')}{i}") for i, p in enumerate(points, start=1)]
+    points = sorted(
+        points,
+        key=lambda p: (p.kind.value, *np.round(wrap(p.point.u, problem.periods), 6)),
+    )
+    points = [
+        replace(p, name=f"{INITIALS.get(p.kind, 'S')}{i}")
+        for i, p in enumerate(points, start=1)
+    ]
     component = _components(len(branches), points)
     passing = {i for point in points for i, _ in point.passes}
     forms, near, dead = [], [], []
@@ -66,45 +87,71 @@ def assemble_atlas(problem: Problem, found: Findings, seeds: Seeds, interrupted:
             for s, v in zip(*minima, strict=True)
             if float(s) not in found.located[k] and v < 0.5 * profile.smallest.max()
         ]
-        dead += [Event(i, float(s), branch(s), index=j) for j, roots in enumerate(dead_points(branch)) for s in roots]
+        dead += [
+            Event(i, float(s), branch(s), index=j)
+            for j, roots in enumerate(dead_points(branch))
+            for s in roots
+        ]
     mobile = bool(found.branches or surfaces)
     return Atlas(
-        names=problem.names, units=problem.units, periods=problem.periods, forms=tuple(forms), points=tuple(points),
-        near_misses=tuple(near), dead_points=tuple(dead), rigid=np.array(found.rigid).reshape(-1, problem.n),
+        names=problem.names,
+        units=problem.units,
+        periods=problem.periods,
+        forms=tuple(forms),
+        points=tuple(points),
+        near_misses=tuple(near),
+        dead_points=tuple(dead),
+        rigid=np.array(found.rigid).reshape(-1, problem.n),
         surfaces=surfaces,
         completeness=_completeness(found, seeds, interrupted),
-        closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found), info=info,
-    )  # fmt: skip
+        closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found),
+        info=info,
+    )
 
 
 def _closure_gap(problem: Problem, seeds: Seeds, found: Findings) -> float:
-    """Median residual along the valley in which the system is nearly solved, where it has no curve of solutions.
+    """Median residual along the valley in which the system is nearly solved, where it
+    has no curve of solutions.
 
-    From every start that did not solve the system, Gauss-Newton steps of rank n - 1 run down to the valley but
-    not along it, so that an isolated solution at its end does not hide the gap. Where there is no valley, the
-    residuals themselves.
+    From every start that did not solve the system, Gauss-Newton steps of rank n - 1 run
+    down to the valley but not along it, so that an isolated solution at its end does
+    not hide the gap. Where there is no valley, the residuals themselves.
     """
     points = seeds.missed.copy()
     for _ in range(12):
         if not len(points):
             break
         residual = problem.residuals(points) / problem.magnitude
-        left, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude, full_matrices=False)
+        left, sigma, right = np.linalg.svd(
+            problem.jacobians(points) / problem.magnitude, full_matrices=False
+        )
         inverse = np.zeros_like(sigma)
         kept = sigma[:, : problem.n - 1] > 1e-6 * sigma[:, :1]
         inverse[:, : problem.n - 1][kept] = 1.0 / sigma[:, : problem.n - 1][kept]
         step = np.einsum("kji,kj,kmj,km->ki", right, inverse, left, residual)
-        points -= step * np.minimum(1.0, 0.5 * problem.scale / (np.linalg.norm(step, axis=1) + 1e-300))[:, None]
-    gaps = np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude if len(points) else np.empty(0)
+        points -= (
+            step
+            * np.minimum(
+                1.0, 0.5 * problem.scale / (np.linalg.norm(step, axis=1) + 1e-300)
+            )[:, None]
+        )
+    gaps = (
+        np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude
+        if len(points)
+        else np.empty(0)
+    )
     gaps = np.concatenate([np.maximum(gaps, seeds.gaps), found.gaps])
     return float(np.median(gaps)) if len(gaps) else 0.0
 
 
 def _meeting_point(
-    problem: Problem, point: SingularPoint, branches: list[Branch], surfaces: tuple[Surface, ...]
+    problem: Problem,
+    point: SingularPoint,
+    branches: list[Branch],
+    surfaces: tuple[Surface, ...],
 ) -> MeetingPoint:
-    """A singular point with the branches that pass it or end there, and the surfaces on which it lies; where the
-    branches and the section disagree, a note."""
+    """A singular point with the branches that pass it or end there, and the surfaces on
+    which it lies; where the branches and the section disagree, a note."""
     within = SAME * problem.scale + 2 * point.error
     inner = 0.05 * problem.scale  # nearer to a stalled end it is the end that counts
     through = [
@@ -113,8 +160,14 @@ def _meeting_point(
         for s in branch.passes(point.u, within)
         if branch.outcome is not Outcome.STALLED or inner < s < branch.length - inner
     ]
-    ends = [(i, s) for i, branch in enumerate(branches) for s in _ends_at(problem, branch, point)]
-    tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(-1, problem.n)
+    ends = [
+        (i, s)
+        for i, branch in enumerate(branches)
+        for s in _ends_at(problem, branch, point)
+    ]
+    tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(
+        -1, problem.n
+    )
     explained, seen = 2 * len(through) + len(ends), len(point.half_branches)
     kind, note = point.kind, ""
     if explained != seen:
@@ -126,28 +179,37 @@ def _meeting_point(
 
 
 def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
-    """Arclengths of the ends of a branch that stalled before a cusp: near the point, along a half-branch."""
+    """Arclengths of the ends of a branch that stalled before a cusp: near the point,
+    along a half-branch."""
     near, found = 0.02 * problem.scale, []
     if branch.outcome is not Outcome.STALLED or not len(point.half_branches):
         return []
     for s, inside in ((0.0, near), (branch.length, branch.length - near)):
         gap = np.linalg.norm(problem.difference(branch(s), point.u))
         offset = problem.difference(branch(inside), point.u)
-        along = float((point.half_branches @ offset).max()) / max(float(np.linalg.norm(offset)), 1e-300)
+        along = float((point.half_branches @ offset).max()) / max(
+            float(np.linalg.norm(offset)), 1e-300
+        )
         if gap < near and along > 0.95:
             found.append(s)
     return found
 
 
 def _components(count: int, points: list[MeetingPoint]) -> list[int]:
-    """Number of the connected component of every form, counted from 0 in the order of the forms."""
+    """Number of the connected component of every form, counted from 0 in the order of
+    the forms."""
     graph = nx.Graph()
     graph.add_nodes_from(range(count))
     for point in points:
-        indices = [i for i, _ in point.passes] + [("surface", k) for k in point.surfaces]
+        indices = [i for i, _ in point.passes] + [
+            ("surface", k) for k in point.surfaces
+        ]
         graph.add_edges_from(pairwise(indices))
     out = [0] * count
-    parts = ([i for i in members if isinstance(i, int)] for members in nx.connected_components(graph))
+    parts = (
+        [i for i in members if isinstance(i, int)]
+        for members in nx.connected_components(graph)
+    )
     for number, members in enumerate(sorted(filter(None, parts), key=min)):
         for i in members:
             out[i] = number
@@ -161,8 +223,10 @@ def _completeness(found: Findings, seeds: Seeds, interrupted: bool) -> Completen
     hits["no solution", 0] = len(seeds.gaps)
     missed = missed_probability(list(hits.values()))
     total = closed + len(seeds.gaps)
-    reached = f"{closed} of {total} random starts reached a solution, each listed here" if closed else (
-        f"none of {total} random starts reached a solution"
+    reached = (
+        f"{closed} of {total} random starts reached a solution, each listed here"
+        if closed
+        else (f"none of {total} random starts reached a solution")
     )
     estimate = (
         f"{reached}: one more start would reach something new with a probability of at most {missed:.2g} "
@@ -171,9 +235,15 @@ def _completeness(found: Findings, seeds: Seeds, interrupted: bool) -> Completen
     if found.deadline.passed and found.audit is None:
         left = len(seeds.points) - len(found.owner)
         reason = f"the budget of {found.deadline.seconds:.4g} s was used up with {left} starts not looked at; "
-        return Completeness("out of time", reason + estimate, missed if not left else 1.0)
+        return Completeness(
+            "out of time", reason + estimate, missed if not left else 1.0
+        )
     if interrupted:
-        return Completeness("interrupted", "the search was interrupted; " + estimate, missed)
+        return Completeness(
+            "interrupted", "the search was interrupted; " + estimate, missed
+        )
     if found.audit is None:
         return Completeness("estimated", estimate, missed)
-    return Completeness(found.audit.level, f"{found.audit.statement}; {estimate}", missed)
+    return Completeness(
+        found.audit.level, f"{found.audit.statement}; {estimate}", missed
+    )

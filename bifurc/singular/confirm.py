@@ -1,4 +1,5 @@
-"""A singular point again at fifty digits: how many digits of the double result are right."""
+"""A singular point again at fifty digits: how many digits of the double result are
+right."""
 
 from __future__ import annotations
 
@@ -18,7 +19,9 @@ Residual = Callable[[Sequence[Any]], Sequence[Any]]
 """F over mpmath numbers: n of them in, m out, right to whatever precision is set when it is called."""
 
 ITERATIONS = 40
-LINEAR = 1e-3  # a step this much shorter than the one before, or less, is linear convergence
+LINEAR = (
+    1e-3  # a step this much shorter than the one before, or less, is linear convergence
+)
 
 
 class Convergence(Enum):
@@ -32,11 +35,13 @@ class Convergence(Enum):
 
 @dataclass(frozen=True)
 class Confirmation:
-    """A singular point refined at high precision, beside the double result it was refined from.
+    """A singular point refined at high precision, beside the double result it was
+    refined from.
 
-    ``u`` (n,) and ``null_space`` (n, k) are mpmath matrices, ``error`` bounds what may be wrong with ``u``,
-    ``residual`` is |F| there. ``distance`` of the double result, and ``angle`` (rad) between its null space and this.
-    ``singular_values`` (n,) of F' at ``u`` in decreasing order; ``nullity`` of them are zero to the precision reached.
+    ``u`` (n,) and ``null_space`` (n, k) are mpmath matrices, ``error`` bounds what may
+    be wrong with ``u``, ``residual`` is |F| there. ``distance`` of the double result,
+    and ``angle`` (rad) between its null space and this. ``singular_values`` (n,) of F'
+    at ``u`` in decreasing order; ``nullity`` of them are zero to the precision reached.
     """
 
     u: Any
@@ -53,29 +58,42 @@ class Confirmation:
 
     @property
     def agreeing_digits(self) -> float:
-        """Digits after the point that the double result has right; no more than the refinement itself has."""
+        """Digits after the point that the double result has right; no more than the
+        refinement itself has."""
         return float(-mpmath.log10(max(self.distance, self.error, 10.0**-self.digits)))
 
 
 def confirm_singular_point(
-    residual: Residual, point: np.ndarray, null_space: np.ndarray, digits: int = 50, magnitude: float = 1.0
+    residual: Residual,
+    point: np.ndarray,
+    null_space: np.ndarray,
+    digits: int = 50,
+    magnitude: float = 1.0,
 ) -> Confirmation:
-    """The singular point next to ``point`` (n,), with a null space of as many dimensions as ``null_space`` (n, k) has.
+    """The singular point next to ``point`` (n,), with a null space of as many
+    dimensions as ``null_space`` (n, k) has.
 
-    ``magnitude`` is the typical size of F', as in `bifurc.problem.Problem`: singular values are zero in relation to it.
+    ``magnitude`` is the typical size of F', as in `bifurc.problem.Problem`: singular
+    values are zero in relation to it.
 
-    Gauss-Newton on F(u) = 0, F'(u) V = 0, with columns of V moved across V only, as `bifurc.singular.locate` does in doubles.
-    The derivatives are central differences at three times the digits, which makes them exact to the digits asked for.
-    Least squares are solved by QR with column pivoting, so that redundant equations are welcome. Raises `ProblemError`
-    for ``digits`` out of range.
+    Gauss-Newton on F(u) = 0, F'(u) V = 0, with columns of V moved across V only, as
+    `bifurc.singular.locate` does in doubles. The derivatives are central differences at
+    three times the digits, which makes them exact to the digits asked for. Least
+    squares are solved by QR with column pivoting, so that redundant equations are
+    welcome. Raises `ProblemError` for ``digits`` out of range.
     """
     if not 20 <= digits <= 1000:
         raise ProblemError("digits", digits, "from 20 to 1000")
     with mpmath.workdps(3 * digits + 30):
         system = _Differences(residual, mpmath.mpf(10) ** -(digits + 5))
-        u, basis = mpmath.matrix(point.tolist()), _orthonormal(mpmath.matrix(null_space.tolist()))
+        u, basis = (
+            mpmath.matrix(point.tolist()),
+            _orthonormal(mpmath.matrix(null_space.tolist())),
+        )
         moves = _refine(system, u, basis, mpmath.mpf(10) ** -digits)
-        return _compare(system, u, basis, moves, point, null_space, digits, mpmath.mpf(magnitude))
+        return _compare(
+            system, u, basis, moves, point, null_space, digits, mpmath.mpf(magnitude)
+        )
 
 
 # --- the iteration ------------------------------------------------------------------------------------
@@ -83,7 +101,8 @@ def confirm_singular_point(
 
 @dataclass(frozen=True)
 class _Differences:
-    """F and its derivatives by central differences of ``step``, at the precision that is set."""
+    """F and its derivatives by central differences of ``step``, at the precision that
+    is set."""
 
     function: Residual
     step: Any
@@ -104,11 +123,14 @@ class _Differences:
     def bend(self, u: Any, direction: Any) -> Any:
         """F'' times a direction, (m, n)."""
         h = self.step
-        return (self.jacobian(u + h * direction) - self.jacobian(u - h * direction)) / (2 * h)
+        return (self.jacobian(u + h * direction) - self.jacobian(u - h * direction)) / (
+            2 * h
+        )
 
 
 def _refine(system: _Differences, u: Any, basis: Any, goal: Any) -> list[Any]:
-    """Gauss-Newton in place on ``u`` (n, 1) and ``basis`` (n, k); the lengths of its steps come back."""
+    """Gauss-Newton in place on ``u`` (n, 1) and ``basis`` (n, k); the lengths of its
+    steps come back."""
     n, k = basis.rows, basis.cols
     moves: list[Any] = []
     for _ in range(ITERATIONS):
@@ -126,11 +148,15 @@ def _refine(system: _Differences, u: Any, basis: Any, goal: Any) -> list[Any]:
 
 
 def _augmented(system: _Differences, u: Any, basis: Any) -> tuple[Any, Any]:
-    """Matrix and right-hand side of a step: rows F', then for every column v of V [F''v, F'] and V^T dv = 0."""
+    """Matrix and right-hand side of a step: rows F', then for every column v of V
+    [F''v, F'] and V^T dv = 0."""
     n, k = basis.rows, basis.cols
     jacobian, value = system.jacobian(u), system.value(u)
     m = len(value)
-    matrix, right = mpmath.zeros(m + k * (m + k), n + k * n), mpmath.zeros(m + k * (m + k), 1)
+    matrix, right = (
+        mpmath.zeros(m + k * (m + k), n + k * n),
+        mpmath.zeros(m + k * (m + k), 1),
+    )
     matrix[:m, :n], right[:m, 0] = jacobian, -value
     for j in range(k):
         top, across, own = m + j * m, m + k * m + j * k, n + j * n
@@ -142,10 +168,13 @@ def _augmented(system: _Differences, u: Any, basis: Any) -> tuple[Any, Any]:
 
 
 def _least_squares(matrix: Any, right: Any, negligible: Any) -> list[Any]:
-    """A least-squares solution by modified Gram-Schmidt with column pivoting; columns that add nothing get zero."""
+    """A least-squares solution by modified Gram-Schmidt with column pivoting; columns
+    that add nothing get zero."""
     count = matrix.cols
     columns, rest = [list(matrix[:, j]) for j in range(count)], list(right)
-    chosen: list[tuple[int, Any, list[Any], dict[int, Any]]] = []  # column, length, projection of the right-hand side
+    chosen: list[
+        tuple[int, Any, list[Any], dict[int, Any]]
+    ] = []  # column, length, projection of the right-hand side
     left = set(range(count))
     upper: dict[int, dict[int, Any]] = {j: {} for j in range(count)}
     largest = mpmath.mpf(0)
@@ -160,7 +189,10 @@ def _least_squares(matrix: Any, right: Any, negligible: Any) -> list[Any]:
         direction = [x / size for x in columns[pivot]]
         for j in left:
             upper[j][pivot] = mpmath.fdot(direction, columns[j])
-            columns[j] = [x - upper[j][pivot] * d for x, d in zip(columns[j], direction, strict=True)]
+            columns[j] = [
+                x - upper[j][pivot] * d
+                for x, d in zip(columns[j], direction, strict=True)
+            ]
         onto = mpmath.fdot(direction, rest)
         rest = [x - onto * d for x, d in zip(rest, direction, strict=True)]
         chosen.append((pivot, size, onto, upper[pivot]))
@@ -168,7 +200,9 @@ def _least_squares(matrix: Any, right: Any, negligible: Any) -> list[Any]:
     order = [pivot for pivot, *_ in chosen]
     for place in range(len(chosen) - 1, -1, -1):
         pivot, size, onto, _ = chosen[place]
-        solution[pivot] = (onto - sum(upper[j][pivot] * solution[j] for j in order[place + 1 :])) / size
+        solution[pivot] = (
+            onto - sum(upper[j][pivot] * solution[j] for j in order[place + 1 :])
+        ) / size
     return solution
 
 
@@ -176,31 +210,52 @@ def _least_squares(matrix: Any, right: Any, negligible: Any) -> list[Any]:
 
 
 def _compare(
-    system: _Differences, u: Any, basis: Any, moves: list[Any], point: np.ndarray, null_space: np.ndarray, digits: int,
+    system: _Differences,
+    u: Any,
+    basis: Any,
+    moves: list[Any],
+    point: np.ndarray,
+    null_space: np.ndarray,
+    digits: int,
     magnitude: Any,
-) -> Confirmation:  # fmt: skip
+) -> Confirmation:
     """What the refinement says of the double result."""
     jacobian = system.jacobian(u)
     squares = mpmath.eigsy(jacobian.T * jacobian, eigvals_only=True)
     sigma = sorted((mpmath.sqrt(abs(x)) for x in squares), reverse=True)
     residual = mpmath.norm(system.value(u))
     precise = mpmath.mpf(10) ** -digits
-    convergence = _judge(moves, residual / magnitude, sigma[len(sigma) - basis.cols] / magnitude, precise)
+    convergence = _judge(
+        moves, residual / magnitude, sigma[len(sigma) - basis.cols] / magnitude, precise
+    )
     ratio = moves[-1] / moves[-2] if len(moves) > 1 and moves[-2] else mpmath.mpf(0)
     tail = ratio / (1 - ratio) if ratio < 1 else mpmath.inf
-    error = max(moves[-1] * min(tail, 1 if convergence is Convergence.QUADRATIC else mpmath.inf), precise)
+    error = max(
+        moves[-1]
+        * min(tail, 1 if convergence is Convergence.QUADRATIC else mpmath.inf),
+        precise,
+    )
     before = _orthonormal(mpmath.matrix(null_space.tolist()))
     return Confirmation(
-        u=u, null_space=basis, error=float(error), residual=float(residual),
+        u=u,
+        null_space=basis,
+        error=float(error),
+        residual=float(residual),
         distance=float(mpmath.norm(mpmath.matrix(point.tolist()) - u)),
         angle=float(mpmath.norm(before - basis * (basis.T * before))),
         singular_values=tuple(float(x) for x in sigma),
-        nullity=sum(1 for x in sigma if x <= magnitude * max(100 * error, mpmath.sqrt(precise))),
-        convergence=convergence, iterations=len(moves), digits=digits,
-    )  # fmt: skip
+        nullity=sum(
+            1 for x in sigma if x <= magnitude * max(100 * error, mpmath.sqrt(precise))
+        ),
+        convergence=convergence,
+        iterations=len(moves),
+        digits=digits,
+    )
 
 
-def _judge(moves: list[Any], residual: Any, largest_zero: Any, precise: Any) -> Convergence:
+def _judge(
+    moves: list[Any], residual: Any, largest_zero: Any, precise: Any
+) -> Convergence:
     """What the lengths of the steps say, and what is left of F and F' V."""
     shrinking = len(moves) < 2 or moves[-1] < 0.9 * moves[-2] or moves[-1] < precise
     settled = moves[-1] < mpmath.mpf("1e-7")

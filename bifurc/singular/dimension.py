@@ -1,8 +1,10 @@
 """The dimension of the solution set about a solution.
 
-Where F' has one rank r in a neighbourhood of a solution, the solutions there are a manifold of dimension n - r
-(constant rank theorem; Lee 2013, Introduction to Smooth Manifolds, theorem 4.12). The corank at a single point does not
-tell: it is larger at singular points, and all along components that are shaky. So the null space of F' is probed.
+Where F' has one rank r in a neighbourhood of a solution, the solutions there are a
+manifold of dimension n - r (constant rank theorem; Lee 2013, Introduction to Smooth
+Manifolds, theorem 4.12). The corank at a single point does not tell: it is larger at
+singular points, and all along components that are shaky. So the null space of F' is
+probed.
 """
 
 from __future__ import annotations
@@ -19,9 +21,15 @@ if TYPE_CHECKING:
 
 __all__ = ["LocalDimensions", "local_dimensions", "null_spaces", "tangent_planes"]
 
-NULL = 1e-7  # singular value, over the problem's magnitude, below which a direction belongs to the null space
-RADIUS = 5e-3  # of the probes, over the scale: at much less, degenerate singular points would look like surfaces
-KEPT = 0.05  # a probe that loses a larger share of itself when it is projected does not lie along the solutions
+# singular value, over the problem's magnitude, below which a direction belongs to the
+# null space
+NULL = 1e-7
+# of the probes, over the scale: at much less, degenerate singular points would look
+# like surfaces
+RADIUS = 5e-3
+# a probe that loses a larger share of itself when it is projected does not lie along
+# the solutions
+KEPT = 0.05
 CHUNK = 256  # points probed between two looks at the clock
 
 
@@ -29,9 +37,10 @@ CHUNK = 256  # points probed between two looks at the clock
 class LocalDimensions:
     """What the solution set is about each of k solutions.
 
-    ``dimension`` (k,) of the solutions nearby, the largest where several components meet, -1 where it was not found;
-    ``nullity`` (k,) of F' at the point; ``regular`` (k,) whether the solutions nearby are a manifold and F' has
-    the rank that belongs to it.
+    ``dimension`` (k,) of the solutions nearby, the largest where several components
+    meet, -1 where it was not found; ``nullity`` (k,) of F' at the point; ``regular``
+    (k,) whether the solutions nearby are a manifold and F' has the rank that belongs to
+    it.
     """
 
     dimension: np.ndarray
@@ -40,18 +49,22 @@ class LocalDimensions:
 
 
 def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values (k, n) of F' over its magnitude, padded with zeros, and right singular vectors (k, n, n)."""
+    """Singular values (k, n) of F' over its magnitude, padded with zeros, and right
+    singular vectors (k, n, n)."""
     _, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude)
     padded = np.zeros((len(points), problem.n))
     padded[:, : sigma.shape[1]] = sigma[:, : problem.n]
     return padded, right
 
 
-def tangent_planes(problem: Problem, points: np.ndarray, near: np.ndarray) -> np.ndarray:
-    """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k, n), turned as little as possible
-    against the bases ``near`` (k, n, 2) or (n, 2).
+def tangent_planes(
+    problem: Problem, points: np.ndarray, near: np.ndarray
+) -> np.ndarray:
+    """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k,
+    n), turned as little as possible against the bases ``near`` (k, n, 2) or (n, 2).
 
-    Where the null space is larger, at singular points, the part of it that is nearest to ``near`` is taken.
+    Where the null space is larger, at singular points, the part of it that is nearest
+    to ``near`` is taken.
     """
     sigma, right = null_spaces(problem, points)
     nullity = np.maximum(np.count_nonzero(sigma < NULL, axis=1), 2)
@@ -61,14 +74,18 @@ def tangent_planes(problem: Problem, points: np.ndarray, near: np.ndarray) -> np
     return np.swapaxes(null, 1, 2) @ left @ across
 
 
-def local_dimensions(problem: Problem, points: np.ndarray, deadline: Deadline | None = None) -> LocalDimensions:
+def local_dimensions(
+    problem: Problem, points: np.ndarray, deadline: Deadline | None = None
+) -> LocalDimensions:
     """Dimension of the solution set about each of the solutions ``points`` (k, n).
 
-    From every point probes go out along the null space of F', of dimension d, and are projected onto the solutions.
-    Where all of them stay what they were, but for curvature, the solutions fill d dimensions. Where F' has a higher
-    rank at the ends of probes, the point is singular, and the dimension is the largest found at those ends. Where
-    the rank is the same all around and yet probes are lost, the component is shaky: the dimension is that of the
-    space which the ends of the probes span. Points not reached before the ``deadline`` get dimension -1.
+    From every point probes go out along the null space of F', of dimension d, and are
+    projected onto the solutions. Where all of them stay what they were, but for
+    curvature, the solutions fill d dimensions. Where F' has a higher rank at the ends
+    of probes, the point is singular, and the dimension is the largest found at those
+    ends. Where the rank is the same all around and yet probes are lost, the component
+    is shaky: the dimension is that of the space which the ends of the probes span.
+    Points not reached before the ``deadline`` get dimension -1.
     """
     deadline = deadline or Deadline()
     count = len(points)
@@ -83,12 +100,17 @@ def local_dimensions(problem: Problem, points: np.ndarray, deadline: Deadline | 
         for k in np.unique(nullity[part]):
             rows = begin + np.flatnonzero(nullity[part] == k)
             basis = right[rows - begin, problem.n - k :]
-            dimension[rows], regular[rows] = _dimensions_of_nullity(problem, points[rows], basis)
+            dimension[rows], regular[rows] = _dimensions_of_nullity(
+                problem, points[rows], basis
+            )
     return LocalDimensions(dimension, nullity, regular)
 
 
-def _dimensions_of_nullity(problem: Problem, points: np.ndarray, basis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Dimension and regularity of points (b, n) whose null spaces (b, k, n) all have dimension k."""
+def _dimensions_of_nullity(
+    problem: Problem, points: np.ndarray, basis: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Dimension and regularity of points (b, n) whose null spaces (b, k, n) all have
+    dimension k."""
     count, k = basis.shape[:2]
     if k == 0:
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
@@ -104,7 +126,8 @@ def _dimensions_of_nullity(problem: Problem, points: np.ndarray, basis: np.ndarr
 def _probe(
     problem: Problem, points: np.ndarray, basis: np.ndarray, radius: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Ends (b, p, n) of probes, their coordinates (b, p, k) in the null space over the radius, and losses (b, p)."""
+    """Ends (b, p, n) of probes, their coordinates (b, p, k) in the null space over the
+    radius, and losses (b, p)."""
     count, k, n = basis.shape
     rng = np.random.default_rng(k)
     axes = np.linalg.qr(rng.normal(size=(k, k)))[0]
@@ -114,21 +137,27 @@ def _probe(
     starts = points[:, None] + length * (x @ basis)
     ends, gaps = problem.project(starts.reshape(-1, n))
     ends, gaps = ends.reshape(starts.shape), gaps.reshape(count, len(x))
-    reached = np.einsum("bpn,bkn->bpk", problem.difference(ends, points[:, None]), basis) / length
+    reached = (
+        np.einsum("bpn,bkn->bpk", problem.difference(ends, points[:, None]), basis)
+        / length
+    )
     loss = np.linalg.norm(reached - x, axis=2)
     loss[gaps > 1e-10] = np.inf
     return ends, reached, loss
 
 
 def _dimension_beside(problem: Problem, ends: np.ndarray, reached: np.ndarray) -> int:
-    """Dimension about a point that lost probes, from the ``ends`` (p, n) of the others and where they ``reached``."""
+    """Dimension about a point that lost probes, from the ``ends`` (p, n) of the others
+    and where they ``reached``."""
     away = np.linalg.norm(reached, axis=1) > 0.1
     if not np.any(away):
         return 0
     sigma, right = null_spaces(problem, ends[away])
     nullity = np.count_nonzero(sigma < 10 * NULL, axis=1)
     found = 0
-    for i in np.flatnonzero(nullity < reached.shape[1]):  # the rank is higher there: the point itself is singular
+    for i in np.flatnonzero(
+        nullity < reached.shape[1]
+    ):  # the rank is higher there: the point itself is singular
         own = right[i, problem.n - nullity[i] :][None]
         if nullity[i] <= found or not nullity[i]:
             continue
@@ -136,5 +165,7 @@ def _dimension_beside(problem: Problem, ends: np.ndarray, reached: np.ndarray) -
             found = int(nullity[i])
     if found or np.any(nullity < reached.shape[1]):
         return found if found else -1
-    spread = np.linalg.svd(reached[away], compute_uv=False) / np.sqrt(np.count_nonzero(away))
+    spread = np.linalg.svd(reached[away], compute_uv=False) / np.sqrt(
+        np.count_nonzero(away)
+    )
     return int(np.count_nonzero(spread > KEPT))

@@ -1,4 +1,5 @@
-"""A surface of solutions as an atlas of charts: area, Euler characteristic, connected parts and paths."""
+"""A surface of solutions as an atlas of charts: area, Euler characteristic, connected
+parts and paths."""
 
 from __future__ import annotations
 
@@ -17,7 +18,8 @@ from bifurc.surfaces.geodesic import shortest_path
 __all__ = ["ChartAtlas", "Covering"]
 
 NEAREST = 16  # charts near a point, one of which holds it if any does
-BESIDE = 12.0  # distance of a chart from a singular point next to it, over its radius, at most
+# distance of a chart from a singular point next to it, over its radius, at most
+BESIDE = 12.0
 
 
 class Covering(Enum):
@@ -26,18 +28,22 @@ class Covering(Enum):
     COMPLETE = "complete: every part of the surface inside the bounds is covered"
     SINGULAR = "incomplete: no chart fits at some places; look for singular points of the surface there"
     CHART_LIMIT = "incomplete: the largest number of charts is reached; allow more of them, or a larger radius"
-    OUT_OF_TIME = "incomplete: the time is over; allow more of it and continue from these charts"
+    OUT_OF_TIME = (
+        "incomplete: the time is over; allow more of it and continue from these charts"
+    )
 
 
 @dataclass(frozen=True)
 class ChartAtlas:
     """A surface of solutions, or several, as charts that overlap.
 
-    ``centers`` (c, n) are solutions, ``bases`` (c, n, 2) orthonormal bases of the tangent planes there, ``radii`` (c,)
-    those of the disks. The polygon of a chart lists the ``vertices`` (v, n) around it, solutions that it shares with
-    its neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one behind the other.
-    ``neighbours`` (p, 2) are the pairs of charts whose polygons have an edge in common. Paths are corrected onto the
-    surface by the equations of ``problem``; an atlas read from a file has none.
+    ``centers`` (c, n) are solutions, ``bases`` (c, n, 2) orthonormal bases of the
+    tangent planes there, ``radii`` (c,) those of the disks. The polygon of a chart
+    lists the ``vertices`` (v, n) around it, solutions that it shares with its
+    neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one
+    behind the other. ``neighbours`` (p, 2) are the pairs of charts whose polygons have
+    an edge in common. Paths are corrected onto the surface by the equations of
+    ``problem``; an atlas read from a file has none.
     """
 
     centers: np.ndarray
@@ -61,35 +67,45 @@ class ChartAtlas:
 
     @cached_property
     def triangles(self) -> np.ndarray:
-        """Corners (t, 3, n) of flat triangles that follow the surface: from each centre to the edges of its polygon.
+        """Corners (t, 3, n) of flat triangles that follow the surface: from each centre
+        to the edges of its polygon.
 
-        The corners are solutions; those of one triangle lie together, across the ends of a period where need be.
+        The corners are solutions; those of one triangle lie together, across the ends
+        of a period where need be.
         """
         owner, first, second = self._edges
         corners = self.centers[owner]
-        sides = [corners + self.apart(self.vertices[v], corners) for v in (first, second)]
+        sides = [
+            corners + self.apart(self.vertices[v], corners) for v in (first, second)
+        ]
         return np.stack([corners, *sides], axis=1)
 
     @cached_property
     def area(self) -> float:
-        """Area of the triangles: below that of a surface all covered by a share of (radius x curvature)^2 / 8."""
+        """Area of the triangles: below that of a surface all covered by a share of
+        (radius x curvature)^2 / 8."""
         return float(self.triangle_areas.sum())
 
     @cached_property
     def triangle_areas(self) -> np.ndarray:
         """Area (t,) of every triangle."""
         a, b = (self.triangles[:, k] - self.triangles[:, 0] for k in (1, 2))
-        gram = np.einsum("ti,ti->t", a, a) * np.einsum("ti,ti->t", b, b) - np.einsum("ti,ti->t", a, b) ** 2
+        gram = (
+            np.einsum("ti,ti->t", a, a) * np.einsum("ti,ti->t", b, b)
+            - np.einsum("ti,ti->t", a, b) ** 2
+        )
         return 0.5 * np.sqrt(np.maximum(gram, 0.0))
 
     @cached_property
     def border(self) -> int:
-        """Number of edges that belong to one polygon alone: where surface meets bounds, or the covering ends."""
+        """Number of edges that belong to one polygon alone: where surface meets bounds,
+        or the covering ends."""
         return int(np.count_nonzero(self._edge_counts == 1))
 
     @cached_property
     def euler_characteristic(self) -> int | None:
-        """Vertices - edges + polygons; None for an incomplete covering, or where polygons do not fit together."""
+        """Vertices - edges + polygons; None for an incomplete covering, or where
+        polygons do not fit together."""
         counts = self._edge_counts
         if not self.complete or np.any(counts > 2):
             return None
@@ -97,22 +113,39 @@ class ChartAtlas:
 
     @cached_property
     def part(self) -> np.ndarray:
-        """Number (c,) of the connected surface that each chart belongs to; number 0 has most charts."""
+        """Number (c,) of the connected surface that each chart belongs to; number 0 has
+        most charts."""
         count, label = connected_components(
-            csr_array((np.ones(len(self.neighbours)), tuple(self.neighbours.T)), shape=(len(self),) * 2), directed=False
+            csr_array(
+                (np.ones(len(self.neighbours)), tuple(self.neighbours.T)),
+                shape=(len(self),) * 2,
+            ),
+            directed=False,
         )
-        return np.argsort(np.argsort(-np.bincount(label, minlength=count), kind="stable"))[label]
+        return np.argsort(
+            np.argsort(-np.bincount(label, minlength=count), kind="stable")
+        )[label]
 
     def parts(self) -> tuple[ChartAtlas, ...]:
         """The connected surfaces, the one with most charts first."""
-        return tuple(self._only(np.flatnonzero(self.part == k)) for k in range(int(self.part.max(initial=-1)) + 1))
+        return tuple(
+            self._only(np.flatnonzero(self.part == k))
+            for k in range(int(self.part.max(initial=-1)) + 1)
+        )
 
     def chart_at(self, points: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of charts in which solutions (k, n) lie, one for each; -1 where there is none."""
+        """Numbers (k,) of charts in which solutions (k, n) lie, one for each; -1 where
+        there is none."""
         count = min(NEAREST, len(self))
-        near = self._tree.query(self._in_box(points), k=np.arange(1, count + 1))[1]  # (k, count)
+        near = self._tree.query(self._in_box(points), k=np.arange(1, count + 1))[
+            1
+        ]  # (k, count)
         inside = self._inside(points, near)
-        return np.where(inside.any(axis=1), near[np.arange(len(near)), np.argmax(inside, axis=1)], -1)
+        return np.where(
+            inside.any(axis=1),
+            near[np.arange(len(near)), np.argmax(inside, axis=1)],
+            -1,
+        )
 
     def nearest(self, points: np.ndarray) -> np.ndarray:
         """Numbers (k,) of the charts whose centres are nearest to points (k, n)."""
@@ -124,53 +157,73 @@ class ChartAtlas:
 
     # --- paths ----------------------------------------------------------------------------------------
 
-    def path(self, start: np.ndarray, goal: np.ndarray, spacing: float | None = None) -> np.ndarray:
-        """Solutions (k, n) from ``start`` to ``goal`` (n,), without jumps: the shortest chain of charts, pulled tight.
+    def path(
+        self, start: np.ndarray, goal: np.ndarray, spacing: float | None = None
+    ) -> np.ndarray:
+        """Solutions (k, n) from ``start`` to ``goal`` (n,), without jumps: the shortest
+        chain of charts, pulled tight.
 
-        Neighbouring points are about ``spacing`` apart (half the median radius unless given); the goal may come out
-        shifted by whole periods. Raises `ValueError` where an end lies in no chart, or where no chain of charts leads
-        from one to the other. Without ``problem`` the path is that of the chords between the centres.
+        Neighbouring points are about ``spacing`` apart (half the median radius unless
+        given); the goal may come out shifted by whole periods. Raises `ValueError`
+        where an end lies in no chart, or where no chain of charts leads from one to the
+        other. Without ``problem`` the path is that of the chords between the centres.
         """
         start, goal = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-        return shortest_path(self, start, goal, spacing or 0.5 * float(np.median(self.radii)))
+        return shortest_path(
+            self, start, goal, spacing or 0.5 * float(np.median(self.radii))
+        )
 
     def holding(self, point: np.ndarray) -> np.ndarray:
         """Numbers (k,) of all charts in which a solution (n,) lies."""
         return np.flatnonzero(self._inside(point[None], np.arange(len(self))[None])[0])
 
     def beside(self, point: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of the charts that may be next to a singular point (n,) about which there is none.
+        """Numbers (k,) of the charts that may be next to a singular point (n,) about
+        which there is none.
 
         As at the tip of a cone: charts are the smaller the nearer they are to it.
         """
         distance = np.linalg.norm(self.apart(point, self.centers), axis=1)
-        return np.flatnonzero((distance < BESIDE * self.radii) & (distance < 2.0 * distance.min(initial=np.inf)))
+        return np.flatnonzero(
+            (distance < BESIDE * self.radii)
+            & (distance < 2.0 * distance.min(initial=np.inf))
+        )
 
     def apart(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b with periodic unknowns taken to within half a period of zero."""
         gap = a - b
         periodic = np.isfinite(self.periods)
-        gap[..., periodic] -= self.periods[periodic] * np.round(gap[..., periodic] / self.periods[periodic])
+        gap[..., periodic] -= self.periods[periodic] * np.round(
+            gap[..., periodic] / self.periods[periodic]
+        )
         return gap
 
     def _inside(self, points: np.ndarray, charts: np.ndarray) -> np.ndarray:
-        """Whether solutions (k, n) lie in the disks of ``charts`` (k, c), and not well above them: (k, c)."""
+        """Whether solutions (k, n) lie in the disks of ``charts`` (k, c), and not well
+        above them: (k, c)."""
         away = self.apart(points[:, None], self.centers[charts])
         y = np.einsum("kci,kcij->kcj", away, self.bases[charts])
         size = np.linalg.norm(y, axis=2)
-        height = np.linalg.norm(away - np.einsum("kcij,kcj->kci", self.bases[charts], y), axis=2)
+        height = np.linalg.norm(
+            away - np.einsum("kcij,kcj->kci", self.bases[charts], y), axis=2
+        )
         return (size < 1.1 * self.radii[charts]) & (height < 0.25 * size + 1e-9)
 
     @cached_property
     def _tree(self) -> cKDTree:
-        return cKDTree(self._in_box(self.centers), boxsize=np.where(np.isfinite(self.periods), self.periods, 0.0))
+        return cKDTree(
+            self._in_box(self.centers),
+            boxsize=np.where(np.isfinite(self.periods), self.periods, 0.0),
+        )
 
     def _in_box(self, points: np.ndarray) -> np.ndarray:
         """Points with periodic unknowns taken into [0, period)."""
         periodic = np.isfinite(self.periods)
         out = points.copy()
         out[:, periodic] %= self.periods[periodic]
-        out[:, periodic] = np.where(out[:, periodic] >= self.periods[periodic], 0.0, out[:, periodic])
+        out[:, periodic] = np.where(
+            out[:, periodic] >= self.periods[periodic], 0.0, out[:, periodic]
+        )
         return out
 
     # --- the complex of polygons ----------------------------------------------------------------------
@@ -200,6 +253,14 @@ class ChartAtlas:
         polygons = self.polygons[np.repeat(number >= 0, self.polygon_sizes)]
         used, renumbered = np.unique(polygons, return_inverse=True)
         return ChartAtlas(
-            self.centers[charts], self.bases[charts], self.radii[charts], number[self.neighbours[inside]],
-            self.vertices[used], renumbered, self.polygon_sizes[charts], self.periods, self.outcome, self.problem,
-        )  # fmt: skip
+            self.centers[charts],
+            self.bases[charts],
+            self.radii[charts],
+            number[self.neighbours[inside]],
+            self.vertices[used],
+            renumbered,
+            self.polygon_sizes[charts],
+            self.periods,
+            self.outcome,
+            self.problem,
+        )

@@ -1,12 +1,15 @@
-"""Components of dimension 2, covered by charts in their tangent planes (Henderson 2002).
+"""Components of dimension 2, covered by charts in their tangent planes (Henderson
+2002).
 
-Every chart is a disk in a tangent plane and a polygon about its centre, cut by the line through the intersection with
-each chart that overlaps it. A vertex of the polygon outside the disk shows that the surface is not covered there: its
-direction leads to the centre of the next chart. The surface is covered when no vertex is outside.
+Every chart is a disk in a tangent plane and a polygon about its centre, cut by the line
+through the intersection with each chart that overlaps it. A vertex of the polygon
+outside the disk shows that the surface is not covered there: its direction leads to the
+centre of the next chart. The surface is covered when no vertex is outside.
 
-M. E. Henderson 2002, Multiple parameter continuation: computing implicitly defined k-manifolds, Int. J. Bifurcation
-and Chaos 12, 451-476. In its formula for the cutting line the distance in the tangent plane is corrected for the bend
-of the surface, so that both charts are cut along the same line up to fourth order.
+M. E. Henderson 2002, Multiple parameter continuation: computing implicitly defined
+k-manifolds, Int. J. Bifurcation and Chaos 12, 451-476. In its formula for the cutting
+line the distance in the tangent plane is corrected for the bend of the surface, so that
+both charts are cut along the same line up to fourth order.
 """
 
 from __future__ import annotations
@@ -26,21 +29,30 @@ from bifurc.surfaces.polygon import clip, octagon
 __all__ = ["cover_surface"]
 
 BEND = 0.12  # largest height of the surface above a chart's disk, over its radius
-SMOOTH = 0.9  # smallest cosine between tangent planes of a chart and the next one; less is another sheet
+# smallest cosine between tangent planes of a chart and the next one; less is another
+# sheet
+SMOOTH = 0.9
 AGREE = 0.8  # smallest cosine between tangent planes of charts that may be neighbours
 SMALLEST = 1.0 / 64  # radius over the largest one below which no chart is made
 BORDER = -2  # label of the edges along the bounds
 
 
 def cover_surface(
-    problem: Problem, seeds: np.ndarray, *, radius: float = 0.5, charts: int = 2000, seconds: float = np.inf,
+    problem: Problem,
+    seeds: np.ndarray,
+    *,
+    radius: float = 0.5,
+    charts: int = 2000,
+    seconds: float = np.inf,
     known: ChartAtlas | None = None,
-) -> ChartAtlas:  # fmt: skip
-    """Charts over the components of dimension 2 that the regular solutions ``seeds`` (k, n) lie on.
+) -> ChartAtlas:
+    """Charts over the components of dimension 2 that the regular solutions ``seeds``
+    (k, n) lie on.
 
-    ``radius`` is the largest of a chart, in units of the problem's scale: they shrink where the surface bends. At most
-    ``charts`` charts are made in at most ``seconds``; ``known`` charts, of an earlier call, are kept and continued.
-    Raises `ProblemError` for seeds of a wrong shape and limits that are not positive.
+    ``radius`` is the largest of a chart, in units of the problem's scale: they shrink
+    where the surface bends. At most ``charts`` charts are made in at most ``seconds``;
+    ``known`` charts, of an earlier call, are kept and continued. Raises `ProblemError`
+    for seeds of a wrong shape and limits that are not positive.
     """
     seeds = np.asarray(seeds, dtype=float)
     if seeds.ndim != 2 or seeds.shape[1] != problem.n:
@@ -50,7 +62,9 @@ def cover_surface(
             raise ProblemError(name, value, "positive")
     cover = _Cover(problem, radius * problem.scale)
     if known is not None:
-        for center, basis, size in zip(known.centers, known.bases, known.radii, strict=True):
+        for center, basis, size in zip(
+            known.centers, known.bases, known.radii, strict=True
+        ):
             cover.add(center, basis, float(size))
     deadline = Deadline(seconds)
     outcome = cover.grow(charts, deadline)
@@ -59,11 +73,20 @@ def cover_surface(
             break
         if not cover.holds(seed) and cover.start(seed):
             outcome = cover.grow(charts, deadline)
-    return assemble_charts(problem, cover.centers, cover.bases, cover.radii, cover.polygons, cover.labels, outcome)
+    return assemble_charts(
+        problem,
+        cover.centers,
+        cover.bases,
+        cover.radii,
+        cover.polygons,
+        cover.labels,
+        outcome,
+    )
 
 
 class _Cover:
-    """The charts made so far, their polygons in the tangent planes, and the charts whose polygons may be open."""
+    """The charts made so far, their polygons in the tangent planes, and the charts
+    whose polygons may be open."""
 
     def __init__(self, problem: Problem, largest: float):
         self.problem, self.largest = problem, largest
@@ -72,14 +95,17 @@ class _Cover:
         self.radii = np.empty(0)
         self.polygons: list[np.ndarray] = []
         self.labels: list[np.ndarray] = []
-        self.dead: list[list[np.ndarray]] = []  # directions of each chart in which no chart could be made
+        self.dead: list[
+            list[np.ndarray]
+        ] = []  # directions of each chart in which no chart could be made
         self.open: deque[int] = deque()
         self.stopped = False
 
     # --- growing --------------------------------------------------------------------------------------
 
     def grow(self, charts: int, deadline: Deadline) -> Covering:
-        """Add charts at open vertices until there are none, or until a limit is reached."""
+        """Add charts at open vertices until there are none, or until a limit is
+        reached."""
         while self.open:
             if deadline.passed:
                 return Covering.OUT_OF_TIME
@@ -102,7 +128,8 @@ class _Cover:
         return self._make(seed, right[0, -2:].T, self.largest)
 
     def _open_vertex(self, i: int) -> np.ndarray | None:
-        """A vertex (2,) of polygon i outside the disk, in no direction known to lead nowhere; None if there is none."""
+        """A vertex (2,) of polygon i outside the disk, in no direction known to lead
+        nowhere; None if there is none."""
         size = np.linalg.norm(self.polygons[i], axis=1)
         for k in np.argsort(-size):
             if size[k] <= self.radii[i] * (1.0 + 1e-9):
@@ -113,8 +140,8 @@ class _Cover:
         return None
 
     def _make(self, start: np.ndarray, basis: np.ndarray, radius: float) -> bool:
-        """Make the chart, of at most ``radius``, about the solution above ``start`` in the plane ``basis``; False where
-        none fits there."""
+        """Make the chart, of at most ``radius``, about the solution above ``start`` in
+        the plane ``basis``; False where none fits there."""
         center, gap = correct_normal(self.problem, start[None], basis[None])
         turned = tangent_planes(self.problem, center, basis)[0]
         if gap[0] > 1e-10 or np.linalg.norm(center[0] - start) > 0.5 * self.largest:
@@ -133,19 +160,33 @@ class _Cover:
         self.add(center[0], turned, radius)
         return True
 
-    def _fitting_radius(self, center: np.ndarray, basis: np.ndarray, radius: float) -> float:
-        """The largest one up to ``radius`` at which the surface stays close to the disk and tangent planes agree; 0 if
-        too small."""
+    def _fitting_radius(
+        self, center: np.ndarray, basis: np.ndarray, radius: float
+    ) -> float:
+        """The largest one up to ``radius`` at which the surface stays close to the disk
+        and tangent planes agree; 0 if too small."""
         while radius >= SMALLEST * self.largest:
             angles = np.pi / 4 * np.arange(8)
-            flat = center + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1) @ basis.T
-            points, gaps = correct_normal(self.problem, flat, np.broadcast_to(basis, (8, *basis.shape)))
+            flat = (
+                center
+                + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1) @ basis.T
+            )
+            points, gaps = correct_normal(
+                self.problem, flat, np.broadcast_to(basis, (8, *basis.shape))
+            )
             height = np.linalg.norm(points - flat, axis=1).max() / radius
             if gaps.max() < 1e-9 and height < BEND:
                 turned = tangent_planes(self.problem, points, basis)
-                if np.linalg.svd(basis.T @ turned, compute_uv=False)[:, -1].min() > AGREE:
+                if (
+                    np.linalg.svd(basis.T @ turned, compute_uv=False)[:, -1].min()
+                    > AGREE
+                ):
                     return radius
-            radius *= float(np.clip(0.9 * BEND / height, 0.5, 0.8)) if np.isfinite(height) else 0.5
+            radius *= (
+                float(np.clip(0.9 * BEND / height, 0.5, 0.8))
+                if np.isfinite(height)
+                else 0.5
+            )
         return 0.0
 
     # --- overlaps -------------------------------------------------------------------------------------
@@ -158,10 +199,14 @@ class _Cover:
             for k in np.flatnonzero(np.isfinite(self.problem.bounds[:, low_high])):
                 room = sign * (self.problem.bounds[k, low_high] - center[k])
                 if len(vertices):
-                    vertices, labels = clip(vertices, labels, sign * basis[k], max(room, 0.0), BORDER)
+                    vertices, labels = clip(
+                        vertices, labels, sign * basis[k], max(room, 0.0), BORDER
+                    )
         near, x, height = self._neighbours(center, basis, radius)
         for i, own, h in zip(near, x, height, strict=True):
-            vertices, labels = _cut(vertices, labels, own, h, radius, self.radii[i], int(i))
+            vertices, labels = _cut(
+                vertices, labels, own, h, radius, self.radii[i], int(i)
+            )
             back = self.problem.difference(center, self.centers[i])
             theirs = self.bases[i].T @ back
             h = float(np.linalg.norm(back - self.bases[i] @ theirs))
@@ -180,16 +225,21 @@ class _Cover:
     def _neighbours(
         self, center: np.ndarray, basis: np.ndarray, radius: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Numbers (k,) of the charts that overlap a disk on the same sheet, where they lie in its plane (k, 2), and how
-        high (k,) above it."""
+        """Numbers (k,) of the charts that overlap a disk on the same sheet, where they
+        lie in its plane (k, 2), and how high (k,) above it."""
         away = self.problem.difference(self.centers, center)
         distance = np.linalg.norm(away, axis=1)
         near = np.flatnonzero(distance < radius + self.radii)
         x = away[near] @ basis
         height = np.linalg.norm(away[near] - x @ basis.T, axis=1)
-        cosines = np.linalg.svd(np.swapaxes(self.bases[near], 1, 2) @ basis, compute_uv=False)[:, -1]
-        # in two disks of radius R that touch, bent by BEND, one centre lies up to 4 BEND R above the other's plane
-        same = (height < 3 * BEND * np.maximum(radius, distance[near])) & (cosines > AGREE)
+        cosines = np.linalg.svd(
+            np.swapaxes(self.bases[near], 1, 2) @ basis, compute_uv=False
+        )[:, -1]
+        # in two disks of radius R that touch, bent by BEND, one centre lies up to 4
+        # BEND R above the other's plane
+        same = (height < 3 * BEND * np.maximum(radius, distance[near])) & (
+            cosines > AGREE
+        )
         return near[same], x[same], height[same]
 
     def holds(self, point: np.ndarray) -> bool:
@@ -197,14 +247,23 @@ class _Cover:
         away = self.problem.difference(point, self.centers)
         near = np.flatnonzero(np.linalg.norm(away, axis=1) < 1.1 * self.radii)
         y = np.einsum("ki,kij->kj", away[near], self.bases[near])
-        height = np.linalg.norm(away[near] - np.einsum("kij,kj->ki", self.bases[near], y), axis=1)
+        height = np.linalg.norm(
+            away[near] - np.einsum("kij,kj->ki", self.bases[near], y), axis=1
+        )
         return bool(np.any(height < 2 * BEND * np.linalg.norm(y, axis=1) + 1e-9))
 
 
 def _cut(
-    vertices: np.ndarray, labels: np.ndarray, x: np.ndarray, height: float, radius: float, other: float, label: int
+    vertices: np.ndarray,
+    labels: np.ndarray,
+    x: np.ndarray,
+    height: float,
+    radius: float,
+    other: float,
+    label: int,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A polygon cut where the disks of ``radius`` about 0 and of radius ``other`` about ``x`` intersect."""
+    """A polygon cut where the disks of ``radius`` about 0 and of radius ``other`` about
+    ``x`` intersect."""
     distance = float(np.linalg.norm(x))
     if not len(vertices) or distance == 0.0:
         return vertices, labels

@@ -1,4 +1,5 @@
-"""The linkage that a command line names: an entry of the catalogue with parameters, or a file."""
+"""The linkage that a command line names: an entry of the catalogue with parameters, or
+a file."""
 
 from __future__ import annotations
 
@@ -24,14 +25,19 @@ class Choice:
 
 
 def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Choice:
-    """The linkage called ``text``, or read from the file ``text`` if that is one (or ends with .toml).
+    """The linkage called ``text``, or read from the file ``text`` if that is one (or
+    ends with .toml).
 
-    ``parameters`` are "key=value", angles in degrees. Raises `GeometryError`, `UnknownLinkageError` and
-    `LinkageFileError`.
+    ``parameters`` are "key=value", angles in degrees. Raises `GeometryError`,
+    `UnknownLinkageError` and `LinkageFileError`.
     """
     if _is_file(text):
         if parameters:
-            raise GeometryError("--param", parameters[0], "left out with a file, which holds the whole geometry")
+            raise GeometryError(
+                "--param",
+                parameters[0],
+                "left out with a file, which holds the whole geometry",
+            )
         return Choice(read_linkage(text)[0])
     found = _entry(text)
     values = found.complete(dict(_parameter(found, item) for item in parameters))
@@ -40,9 +46,11 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Choice:
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
-    """The loop that `choose_linkage` finds, in mpmath numbers at the precision that is set.
+    """The loop that `choose_linkage` finds, in mpmath numbers at the precision that is
+    set.
 
-    Parameters of a named linkage keep the values that its doubles have, and the constructor works on them exactly.
+    Parameters of a named linkage keep the values that its doubles have, and the
+    constructor works on them exactly.
     """
     import mpmath
 
@@ -54,12 +62,17 @@ def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
 
 
 def _entry(text: str) -> Entry:
-    """The entry called ``text``; where there is none but a file of that name, it is among the nearest."""
+    """The entry called ``text``; where there is none but a file of that name, it is
+    among the nearest."""
     try:
         return entry(text)
     except UnknownLinkageError as error:
         file = f"{text}.toml"
-        raise UnknownLinkageError(text, (file, *error.nearest)) if Path(file).is_file() else error from None
+        raise (
+            UnknownLinkageError(text, (file, *error.nearest))
+            if Path(file).is_file()
+            else error
+        ) from None
 
 
 def _is_file(text: str) -> bool:

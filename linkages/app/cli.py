@@ -1,4 +1,5 @@
-"""The command line: list, show, map, route and sweep. Modules are imported by the command that needs them."""
+"""The command line: list, show, map, route and sweep. Modules are imported by the
+command that needs them."""
 
 from __future__ import annotations
 
@@ -31,18 +32,41 @@ Exit codes:
 """
 EXPLORING = (
     click.option(
-        "--param", "parameters", multiple=True, metavar="KEY=VALUE",
+        "--param",
+        "parameters",
+        multiple=True,
+        metavar="KEY=VALUE",
         help="Parameter of a named linkage, angles in degrees; may be given several times.",
     ),
-    click.option("--starts", default=200, type=click.IntRange(min=1), show_default=True, help="Random starts."),
-    click.option("--seed", default=0, type=click.IntRange(min=0), show_default=True, help="Seed of the random starts."),
-    click.option("--tolerance", default=1e-13, show_default=True, help="How closely curves are followed."),
     click.option(
-        "--budget", type=click.FloatRange(min=0, min_open=True), default=float("inf"), metavar="SECONDS",
+        "--starts",
+        default=200,
+        type=click.IntRange(min=1),
+        show_default=True,
+        help="Random starts.",
+    ),
+    click.option(
+        "--seed",
+        default=0,
+        type=click.IntRange(min=0),
+        show_default=True,
+        help="Seed of the random starts.",
+    ),
+    click.option(
+        "--tolerance",
+        default=1e-13,
+        show_default=True,
+        help="How closely curves are followed.",
+    ),
+    click.option(
+        "--budget",
+        type=click.FloatRange(min=0, min_open=True),
+        default=float("inf"),
+        metavar="SECONDS",
         help="End the search after so long, with what was found.  [default: none]",
     ),
     click.option("-v", "--verbose", is_flag=True, help="Say more on standard error."),
-)  # fmt: skip
+)
 
 
 def exploring(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -77,7 +101,13 @@ class Commands(click.Group):
             from linkages.file import LinkageFileError
             from linkages.loop import GeometryError
 
-            known = (GeometryError, LinkageFileError, ProblemError, RouteError, UnknownLinkageError)
+            known = (
+                GeometryError,
+                LinkageFileError,
+                ProblemError,
+                RouteError,
+                UnknownLinkageError,
+            )
             if isinstance(error, known):
                 raise BadInput(str(error)) from None
             raise
@@ -110,7 +140,10 @@ def list_linkages() -> None:
     from linkages.app.summary import table
     from linkages.catalogue import catalogue
 
-    rows = [(found.name, str(found.build().n), found.title) for found in catalogue().values()]
+    rows = [
+        (found.name, str(found.build().n), found.title)
+        for found in catalogue().values()
+    ]
     click.echo(table(("name", "joints", "title"), rows))
 
 
@@ -131,20 +164,35 @@ def show(name: str) -> None:
 
 @main.command(epilog=EXIT_CODES)
 @click.argument("linkage", metavar="FILE.toml|NAME")
-@click.option("--tolerance", default=1e-8, show_default=True, help="How far a table may be from the linkage it is.")
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document and nothing else; angles in radians.")
+@click.option(
+    "--tolerance",
+    default=1e-8,
+    show_default=True,
+    help="How far a table may be from the linkage it is.",
+)
+@click.option(
+    "--json",
+    "as_json",
+    is_flag=True,
+    help="Print one JSON document and nothing else; angles in radians.",
+)
 def identify(linkage: str, tolerance: float, as_json: bool) -> None:
-    """Name the linkages of the catalogue that a table is a case of, whichever way it is read.
+    """Name the linkages of the catalogue that a table is a case of, whichever way it is
+    read.
 
-    Other first joint, direction, sense of axes and links, mirror image and scale make no difference. Where none
-    fits, the nearest are shown with the numbers that are off.
+    Other first joint, direction, sense of axes and links, mirror image and scale make
+    no difference. Where none fits, the nearest are shown with the numbers that are off.
 
     \b
     Example:
       bifurc identify my_linkage.toml
     """
     from linkages.app.choice import choose_linkage
-    from linkages.app.identify import NOT_KNOWN, describe_identification, make_identification_document
+    from linkages.app.identify import (
+        NOT_KNOWN,
+        describe_identification,
+        make_identification_document,
+    )
     from linkages.identification.identify import identify as identify_loop
 
     found = identify_loop(choose_linkage(linkage).loop, tolerance)
@@ -160,20 +208,39 @@ def identify(linkage: str, tolerance: float, as_json: bool) -> None:
 @main.command("map", epilog=EXIT_CODES)
 @click.argument("linkage", metavar="NAME|FILE.toml")
 @click.option(
-    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for dataset, graph, summary and figures."
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Folder for dataset, graph, summary and figures.",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON document and nothing else; angles in radians.")
-@click.option("--certify", is_flag=True, help="Prove that no form jumps from one arc to another, and say where.")
 @click.option(
-    "--digits", type=click.IntRange(20, 1000),
+    "--json",
+    "as_json",
+    is_flag=True,
+    help="Print one JSON document and nothing else; angles in radians.",
+)
+@click.option(
+    "--certify",
+    is_flag=True,
+    help="Prove that no form jumps from one arc to another, and say where.",
+)
+@click.option(
+    "--digits",
+    type=click.IntRange(20, 1000),
     help="Find every singular point again in arithmetic of so many digits, and show how many of the map's agree.",
 )
 @exploring
 def map_command(
-    linkage: str, parameters: tuple[str, ...], out: Path | None, as_json: bool, certify: bool, digits: int | None,
-    verbose: bool, **search: Any,
-) -> None:  # fmt: skip
-    """Map every motion form of a linkage, every bifurcation, and the graph between them.
+    linkage: str,
+    parameters: tuple[str, ...],
+    out: Path | None,
+    as_json: bool,
+    certify: bool,
+    digits: int | None,
+    verbose: bool,
+    **search: Any,
+) -> None:
+    """Map every motion form of a linkage, every bifurcation, and the graph between
+    them.
 
     \b
     Examples:
@@ -184,10 +251,14 @@ def map_command(
     """
     _listen(verbose)
     if as_json and digits:
-        raise BadInput("--digits: it has no place in the JSON document; leave out --json")
+        raise BadInput(
+            "--digits: it has no place in the JSON document; leave out --json"
+        )
     if out is not None:
         _prepare(out)
-    with HeldInterrupt():  # Ctrl-C ends the search, but not before what was found is shown and written
+    with (
+        HeldInterrupt()
+    ):  # Ctrl-C ends the search, but not before what was found is shown and written
         atlas = _explore(linkage, parameters, certify, **search)
         from linkages.app.summary import make_summary
         from linkages.app.verdict import judge
@@ -204,7 +275,9 @@ def map_command(
         click.echo("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
         written += write_figures(atlas, out)
-        click.echo(f"wrote {', '.join(path.name for path in written)} to {out}", err=True)
+        click.echo(
+            f"wrote {', '.join(path.name for path in written)} to {out}", err=True
+        )
     if verdict.code is not ExitCode.MAPPED and as_json:
         click.echo(verdict.sentence, err=True)
     click.get_current_context().exit(verdict.code)
@@ -216,11 +289,18 @@ def map_command(
 @click.argument("goal", metavar="TO")
 @exploring
 def route(
-    source: str, start: str, goal: str, parameters: tuple[str, ...], verbose: bool, **search: Any
+    source: str,
+    start: str,
+    goal: str,
+    parameters: tuple[str, ...],
+    verbose: bool,
+    **search: Any,
 ) -> None:
-    """Show how to take a linkage from one form to another, over surfaces where that is the way.
+    """Show how to take a linkage from one form to another, over surfaces where that is
+    the way.
 
-    FROM and TO are names of forms or surfaces as `bifurc map` shows them, or the part of a name that tells them apart.
+    FROM and TO are names of forms or surfaces as `bifurc map` shows them, or the part
+    of a name that tells them apart.
 
     \b
     Examples:
@@ -228,7 +308,11 @@ def route(
       bifurc route out/atlas.nc "Form III" "Form IV"
     """
     _listen(verbose)
-    atlas = _load(source) if source.endswith(".nc") else _explore(source, parameters, **search)
+    atlas = (
+        _load(source)
+        if source.endswith(".nc")
+        else _explore(source, parameters, **search)
+    )
     from bifurc.atlas import RouteError
     from linkages.app.summary import describe_route
 
@@ -246,13 +330,16 @@ main.add_command(verify_command)
 
 
 def _listen(verbose: bool) -> None:
-    """Show warnings of the library (and with ``verbose`` all it says) for the time of this command."""
+    """Show warnings of the library (and with ``verbose`` all it says) for the time of
+    this command."""
     handler = EchoHandler(logging.INFO if verbose else logging.WARNING)
     for name in ("bifurc", "linkages"):
         logger = logging.getLogger(name)
         logger.setLevel(handler.level)
         logger.addHandler(handler)
-        click.get_current_context().call_on_close(lambda logger=logger: logger.removeHandler(handler))
+        click.get_current_context().call_on_close(
+            lambda logger=logger: logger.removeHandler(handler)
+        )
 
 
 def _prepare(out: Path) -> None:
@@ -261,11 +348,18 @@ def _prepare(out: Path) -> None:
     try:
         prepare_folder(out)
     except OSError as error:
-        raise BadInput(f"--out {out}: nothing can be written there ({error.strerror})") from None
+        raise BadInput(
+            f"--out {out}: nothing can be written there ({error.strerror})"
+        ) from None
 
 
 def _explore(
-    linkage: str, parameters: tuple[str, ...], certify: bool = False, *, tolerance: float, **search: Any
+    linkage: str,
+    parameters: tuple[str, ...],
+    certify: bool = False,
+    *,
+    tolerance: float,
+    **search: Any,
 ) -> Atlas:
     from bifurc.curves.continuation import TraceSettings
     from linkages.app.choice import choose_linkage
@@ -277,7 +371,12 @@ def _explore(
     try:
         with compilation_announced():
             return map_linkage(
-                chosen.loop, chosen.patterns, certify=certify, settings=settings, progress=status, **search
+                chosen.loop,
+                chosen.patterns,
+                certify=certify,
+                settings=settings,
+                progress=status,
+                **search,
             )
     finally:
         status.wipe()

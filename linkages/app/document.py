@@ -1,4 +1,5 @@
-"""An atlas of a linkage as one JSON document: angles in radians, joints numbered from 1."""
+"""An atlas of a linkage as one JSON document: angles in radians, joints numbered from
+1."""
 
 from __future__ import annotations
 
@@ -13,7 +14,8 @@ __all__ = ["make_document"]
 
 
 def make_document(atlas: Atlas) -> dict[str, Any]:
-    """The document that `bifurc map --json` prints; docs/results.md says what each key holds."""
+    """The document that `bifurc map --json` prints; docs/results.md says what each key
+    holds."""
     names = [form.name for form in atlas.forms]
     forms = [_form(atlas, i, form) for i, form in enumerate(atlas.forms)]
     surfaces = [_surface(atlas, k, surface) for k, surface in enumerate(atlas.surfaces)]
@@ -32,20 +34,34 @@ def make_document(atlas: Atlas) -> dict[str, Any]:
             for point in atlas.bifurcations
         ],
         "rank_drops": [
-            {"theta": _angles(atlas, point.point.u), "rank": point.point.rank, "form": names[point.passes[0][0]]}
+            {
+                "theta": _angles(atlas, point.point.u),
+                "rank": point.point.rank,
+                "form": names[point.passes[0][0]],
+            }
             for point in atlas.rank_drops
         ],
         "near_misses": [
-            {"theta": _angles(atlas, miss.u), "singular_value": miss.value, "form": names[miss.form]}
+            {
+                "theta": _angles(atlas, miss.u),
+                "singular_value": miss.value,
+                "form": names[miss.form],
+            }
             for miss in atlas.near_misses
         ],
         "dead_points": [
-            {"theta": _angles(atlas, dead.u), "joint": dead.index + 1, "form": names[dead.form]}
+            {
+                "theta": _angles(atlas, dead.u),
+                "joint": dead.index + 1,
+                "form": names[dead.form],
+            }
             for dead in atlas.dead_points
         ],
         "rigid_assemblies": [_angles(atlas, theta) for theta in atlas.rigid],
         "completeness": {
-            "level": "complete slices" if sure.level in ("proved", "certified") else "estimated",
+            "level": "complete slices"
+            if sure.level in ("proved", "certified")
+            else "estimated",
             "certainty": sure.level,
             "statement": sure.statement,
             "missed_probability": sure.missed_probability,
@@ -92,12 +108,17 @@ def _surface(atlas: Atlas, number: int, surface: Surface) -> dict[str, Any]:
 
 
 def _far_from_singular(atlas: Atlas, index: int) -> float:
-    """An arclength of a form: the middle of its longest stretch without singular points."""
+    """An arclength of a form: the middle of its longest stretch without singular
+    points."""
     branch = atlas.forms[index].branch
     marks = sorted(s for point in atlas.points for i, s in point.passes if i == index)
     if not marks:
         return 0.5 * branch.length
-    marks = [*marks, marks[0] + branch.length] if branch.closed else [0.0, *marks, branch.length]
+    marks = (
+        [*marks, marks[0] + branch.length]
+        if branch.closed
+        else [0.0, *marks, branch.length]
+    )
     longest = int(np.argmax(np.diff(marks)))
     return 0.5 * (marks[longest] + marks[longest + 1])
 

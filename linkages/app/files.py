@@ -14,7 +14,8 @@ __all__ = ["prepare_folder", "staging", "write_data", "write_figures"]
 
 
 def prepare_folder(folder: Path) -> None:
-    """Make sure that files can be written to ``folder``, which is made if need be; raises `OSError` if not."""
+    """Make sure that files can be written to ``folder``, which is made if need be;
+    raises `OSError` if not."""
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryFile(dir=folder):
         pass
@@ -23,7 +24,8 @@ def prepare_folder(folder: Path) -> None:
 def write_data(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
     """Write atlas.nc, graph.graphml and summary.txt; returns the paths.
 
-    Files are made in a hidden folder inside ``folder`` and renamed when they are complete.
+    Files are made in a hidden folder inside ``folder`` and renamed when they are
+    complete.
     """
     from bifurc.files.dataset import save_atlas
     from bifurc.files.graphml import write_graphml
@@ -48,7 +50,8 @@ def write_figures(atlas: Atlas, folder: Path) -> list[Path]:
 
 @contextmanager
 def staging(folder: Path, written: list[Path]) -> Iterator[Path]:
-    """A folder whose files move to ``folder`` at the end, unless something went wrong."""
+    """A folder whose files move to ``folder`` at the end, unless something went
+    wrong."""
     with tempfile.TemporaryDirectory(prefix=".writing-", dir=folder) as name:
         yield Path(name)
         for path in sorted(Path(name).iterdir()):

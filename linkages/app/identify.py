@@ -1,4 +1,5 @@
-"""What `bifurc identify` shows: the linkages of the catalogue that a table is a case of, and with which parameters."""
+"""What `bifurc identify` shows: the linkages of the catalogue that a table is a case
+of, and with which parameters."""
 
 from __future__ import annotations
 
@@ -12,17 +13,25 @@ from linkages.identification.identify import Identification, LockedJoint, Match
 __all__ = ["NOT_KNOWN", "describe_identification", "make_identification_document"]
 
 NOT_KNOWN = 5  # exit code: no linkage of the catalogue has this geometry
-NEAREST, WORST = 3, 4  # linkages, and numbers of the table, that are shown where none fits
+NEAREST, WORST = (
+    3,
+    4,
+)  # linkages, and numbers of the table, that are shown where none fits
 
 
 def describe_identification(found: Identification) -> str:
-    """The answer as text: lengths in the unit of the table, degrees, joints numbered from 1."""
+    """The answer as text: lengths in the unit of the table, degrees, joints numbered
+    from 1."""
     if found.matches:
         count = f"{len(found.matches)} linkage{'s' if len(found.matches) > 1 else ''}"
-        parts = [f"{found.loop.name}\nA case of {count} of the catalogue, the most special first."]
+        parts = [
+            f"{found.loop.name}\nA case of {count} of the catalogue, the most special first."
+        ]
         parts += [_match(match) for match in found.matches]
     else:
-        parts = [f"{found.loop.name}\nNo linkage of the catalogue has this geometry, to {found.tolerance:.1g}."]
+        parts = [
+            f"{found.loop.name}\nNo linkage of the catalogue has this geometry, to {found.tolerance:.1g}."
+        ]
         parts += [_near(match) for match in found.nearest[:NEAREST]]
     return "\n\n".join(parts + [_locked(joint) for joint in found.locked])
 
@@ -37,15 +46,24 @@ def _match(match: Match) -> str:
 
 
 def _conditions(match: Match) -> str:
-    """The conditions of the entry, each with how far the table is from it where it is an equation in its numbers."""
-    shown = (f"    {text}" + ("" if size is None else f"  [off by {size:.1e}]") for text, size in match.conditions)
+    """The conditions of the entry, each with how far the table is from it where it is
+    an equation in its numbers."""
+    shown = (
+        f"    {text}" + ("" if size is None else f"  [off by {size:.1e}]")
+        for text, size in match.conditions
+    )
     return "\n".join(shown)
 
 
 def _near(match: Match) -> str:
     order = np.argsort(-np.abs(match.residuals), axis=None)[:WORST]
-    lines = [_number(match, *(int(i) for i in np.unravel_index(k, match.residuals.shape))) for k in order]
-    head = f"Near: {_head(match)}\n  {_parameters(match)}\n  off by {match.distance:.2g}:"
+    lines = [
+        _number(match, *(int(i) for i in np.unravel_index(k, match.residuals.shape)))
+        for k in order
+    ]
+    head = (
+        f"Near: {_head(match)}\n  {_parameters(match)}\n  off by {match.distance:.2g}:"
+    )
     return "\n".join([head, *lines, _conditions(match)])
 
 
@@ -66,7 +84,9 @@ def _head(match: Match) -> str:
 def _parameters(match: Match) -> str:
     kinds = {p.name: p.kind for p in match.entry.parameters}
     return ", ".join(
-        f"{name} = {math.degrees(value):.8g} deg" if kinds[name] == "angle" else f"{name} = {value:.8g}"
+        f"{name} = {math.degrees(value):.8g} deg"
+        if kinds[name] == "angle"
+        else f"{name} = {value:.8g}"
         for name, value in match.parameters.items()
     )
 
@@ -81,14 +101,19 @@ def _locked(found: LockedJoint) -> str:
 
 
 def make_identification_document(found: Identification) -> dict[str, Any]:
-    """The same as a JSON document, angles in radians; ``residuals`` are given less member, rows a, alpha, R."""
+    """The same as a JSON document, angles in radians; ``residuals`` are given less
+    member, rows a, alpha, R."""
     return {
         "linkage": found.loop.name,
         "tolerance": found.tolerance,
         "matches": [_document(match) for match in found.matches],
         "nearest": [_document(match) for match in found.nearest[:NEAREST]],
         "locked": [
-            {"joint": joint.joint, "angle": joint.angle, "matches": [_document(match) for match in joint.matches]}
+            {
+                "joint": joint.joint,
+                "angle": joint.angle,
+                "matches": [_document(match) for match in joint.matches],
+            }
             for joint in found.locked
         ],
     }
@@ -100,7 +125,9 @@ def _document(match: Match) -> dict[str, Any]:
         "parameters": match.parameters,
         "distance": match.distance,
         "freedom": match.freedom,
-        "conditions": [{"text": text, "residual": size} for text, size in match.conditions],
+        "conditions": [
+            {"text": text, "residual": size} for text, size in match.conditions
+        ],
         "member": match.member.tolist(),
         "residuals": match.residuals.tolist(),
     }

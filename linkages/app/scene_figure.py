@@ -1,4 +1,5 @@
-"""A configuration of a loop drawn with matplotlib: joint axes, links as common normals, offsets, joint numbers."""
+"""A configuration of a loop drawn with matplotlib: joint axes, links as common normals,
+offsets, joint numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +16,8 @@ AXIS, LINK, OFFSET = "#888888", "#0072B2", "#D55E00"
 
 
 def draw_configuration(loop: Loop, theta: np.ndarray, title: str = "") -> Figure:
-    """The loop at ``theta`` (n,), rad, seen from where it is clearest; lengths keep their proportions."""
+    """The loop at ``theta`` (n,), rad, seen from where it is clearest; lengths keep
+    their proportions."""
     scene = make_scene(loop, theta)
     figure = Figure(figsize=(5, 5), layout="constrained")
     FigureCanvasAgg(figure)
@@ -30,10 +32,14 @@ def draw_configuration(loop: Loop, theta: np.ndarray, title: str = "") -> Figure
     for number, ends in enumerate(scene.axes, start=1):
         place = scene.joints[number - 1] + 1.15 * (ends[1] - scene.joints[number - 1])
         axes.text(*place, str(number), ha="center", va="center", fontsize=12)
-    everything = np.concatenate([scene.axes.reshape(-1, 3), scene.normals.reshape(-1, 3)])
+    everything = np.concatenate(
+        [scene.axes.reshape(-1, 3), scene.normals.reshape(-1, 3)]
+    )
     low, high = everything.min(axis=0), everything.max(axis=0)
     middle, half = (low + high) / 2, 0.5 * float((high - low).max())
-    for set_limits, centre in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), middle, strict=True):
+    for set_limits, centre in zip(
+        (axes.set_xlim, axes.set_ylim, axes.set_zlim), middle, strict=True
+    ):
         set_limits(centre - half, centre + half)
     axes.set_box_aspect((1, 1, 1), zoom=1.1)
     elevation, azimuth = best_view(scene)

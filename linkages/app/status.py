@@ -1,4 +1,5 @@
-"""What is said on standard error while a command works, and what it tells its caller at the end."""
+"""What is said on standard error while a command works, and what it tells its caller at
+the end."""
 
 from __future__ import annotations
 
@@ -26,7 +27,8 @@ class ExitCode(IntEnum):
 
 
 class StatusLine:
-    """A line on a terminal that says what was found so far; it appears after a second and is wiped at the end."""
+    """A line on a terminal that says what was found so far; it appears after a second
+    and is wiped at the end."""
 
     def __init__(self, patience: float = 1.0):
         self._began, self._patience = time.monotonic(), patience
@@ -55,7 +57,8 @@ class EchoHandler(logging.Handler):
 
 @contextmanager
 def compilation_announced() -> Iterator[None]:
-    """Say once on standard error when kernels are being compiled, and how long it took altogether."""
+    """Say once on standard error when kernels are being compiled, and how long it took
+    altogether."""
     from numba.core import event
 
     class Announcement(event.Listener):
@@ -64,7 +67,10 @@ def compilation_announced() -> Iterator[None]:
         def on_start(self, event: Any) -> None:
             if not self.began:
                 self.began = time.monotonic()
-                click.echo("compiling kernels (once, kept on disk; about half a minute) ...", err=True)
+                click.echo(
+                    "compiling kernels (once, kept on disk; about half a minute) ...",
+                    err=True,
+                )
 
         def on_end(self, event: Any) -> None:
             self.ended = time.monotonic()
@@ -75,4 +81,6 @@ def compilation_announced() -> Iterator[None]:
             yield
     finally:
         if announcement.began:
-            click.echo(f"compiled in {announcement.ended - announcement.began:.1f} s", err=True)
+            click.echo(
+                f"compiled in {announcement.ended - announcement.began:.1f} s", err=True
+            )

@@ -11,13 +11,42 @@ __all__ = ["tolerance_command"]
 
 @click.command("tolerance")
 @click.argument("linkage", metavar="NAME|FILE.toml")
-@click.option("--error", default=1e-4, show_default=True, help="Standard deviation of the errors.")
-@click.option("--samples", default=4, type=click.IntRange(min=1), show_default=True, help="Copies that are made.")
-@click.option("--seed", default=0, type=click.IntRange(min=0), show_default=True, help="Number of the first copy.")
-@click.option("--param", "parameters", multiple=True, metavar="KEY=VALUE", help="As for `bifurc map`.")
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for tolerance.txt and .png.")
+@click.option(
+    "--error", default=1e-4, show_default=True, help="Standard deviation of the errors."
+)
+@click.option(
+    "--samples",
+    default=4,
+    type=click.IntRange(min=1),
+    show_default=True,
+    help="Copies that are made.",
+)
+@click.option(
+    "--seed",
+    default=0,
+    type=click.IntRange(min=0),
+    show_default=True,
+    help="Number of the first copy.",
+)
+@click.option(
+    "--param",
+    "parameters",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="As for `bifurc map`.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Folder for tolerance.txt and .png.",
+)
 def tolerance_command(
-    linkage: str, error: float, samples: int, seed: int, parameters: tuple[str, ...], out: Path | None
+    linkage: str,
+    error: float,
+    samples: int,
+    seed: int,
+    parameters: tuple[str, ...],
+    out: Path | None,
 ) -> None:
     """Show what manufacturing errors make of the forms and bifurcations of a linkage.
 
@@ -45,5 +74,7 @@ def tolerance_command(
         out.mkdir(parents=True, exist_ok=True)
         with staging(out, []) as stage:
             (stage / "tolerance.txt").write_text(text + "\n", encoding="utf-8")
-            draw_tolerance(atlas, copies[0], ladder).savefig(stage / "tolerance.png", dpi=150)
+            draw_tolerance(atlas, copies[0], ladder).savefig(
+                stage / "tolerance.png", dpi=150
+            )
         click.echo(f"wrote tolerance.txt and tolerance.png to {out}", err=True)

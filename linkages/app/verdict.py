@@ -1,4 +1,5 @@
-"""What a linkage is, by its atlas: mobile, rigid, or without any real configuration; and the exit code for it."""
+"""What a linkage is, by its atlas: mobile, rigid, or without any real configuration;
+and the exit code for it."""
 
 from __future__ import annotations
 
@@ -11,7 +12,9 @@ from linkages.app.status import ExitCode
 __all__ = ["Verdict", "counted", "judge"]
 
 
-NEARLY_CLOSED = 1e-2  # closure gap, over the characteristic length, below which a condition is missed narrowly
+# closure gap, over the characteristic length, below which a condition is missed
+# narrowly
+NEARLY_CLOSED = 1e-2
 
 
 @dataclass(frozen=True)
@@ -23,10 +26,14 @@ class Verdict:
 
 
 def judge(atlas: Atlas) -> Verdict:
-    """What the linkage of an atlas is. An interrupted search is said to be one, whatever it found."""
+    """What the linkage of an atlas is. An interrupted search is said to be one,
+    whatever it found."""
     if atlas.info.get("interrupted"):
         found = f"{counted(len(atlas.forms), 'form')} and {counted(len(atlas.bifurcations), 'bifurcation')}"
-        return Verdict(f"The search was interrupted; {found} were found by then.", ExitCode.INTERRUPTED)
+        return Verdict(
+            f"The search was interrupted; {found} were found by then.",
+            ExitCode.INTERRUPTED,
+        )
     if atlas.forms or atlas.surfaces:
         return Verdict(_mobile(atlas), ExitCode.MAPPED)
     isolated = sum(1 for point in atlas.points if point.kind is Kind.ISOLATED)
@@ -37,7 +44,9 @@ def judge(atlas: Atlas) -> Verdict:
     elif len(atlas.rigid) or isolated:
         sentence = f"The linkage is rigid. {rigid}"
     else:
-        sentence = f"The linkage has no real configuration: its loop stays open by {gap}."
+        sentence = (
+            f"The linkage has no real configuration: its loop stays open by {gap}."
+        )
     return Verdict(sentence.strip(), ExitCode.DOES_NOT_MOVE)
 
 

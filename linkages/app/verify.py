@@ -1,4 +1,5 @@
-"""Verification of linkages: conditions, exact closure, mobility, closed form against traced curve, misprints."""
+"""Verification of linkages: conditions, exact closure, mobility, closed form against
+traced curve, misprints."""
 
 from __future__ import annotations
 
@@ -17,7 +18,15 @@ from linkages.errata.misprints import HOLDS, errata_of
 from linkages.loop import GeometryError
 from linkages.mobility import survey
 
-__all__ = ["ClosedFormCheck", "ErratumCheck", "MemberCheck", "Verification", "describe", "verify", "verify_all"]
+__all__ = [
+    "ClosedFormCheck",
+    "ErratumCheck",
+    "MemberCheck",
+    "Verification",
+    "describe",
+    "verify",
+    "verify_all",
+]
 
 CLOSURE = 1e-12  # largest residual allowed along a traced form
 DISTANCE = 1e-10  # rad, largest distance of a closed form from the traced curve
@@ -26,7 +35,8 @@ SAMPLES = 2000
 
 @dataclass(frozen=True)
 class ClosedFormCheck:
-    """Exact closure of one closed form: proved at ``points`` points; ``doubt`` as in `linkages.closed_forms.proof.Proof`."""
+    """Exact closure of one closed form: proved at ``points`` points; ``doubt`` as in
+    `linkages.closed_forms.proof.Proof`."""
 
     form: str
     source: str
@@ -37,10 +47,12 @@ class ClosedFormCheck:
 
 @dataclass(frozen=True)
 class MemberCheck:
-    """One member of a family: its parameters, or why the constructor ``refused`` them; what tracing found.
+    """One member of a family: its parameters, or why the constructor ``refused`` them;
+    what tracing found.
 
-    ``corank`` is n less the rank at the start, ``closure`` the largest residual along the traced forms,
-    ``distance`` that of the closed form (rad; nan without one), ``certain`` the same away from singular points.
+    ``corank`` is n less the rank at the start, ``closure`` the largest residual along
+    the traced forms, ``distance`` that of the closed form (rad; nan without one),
+    ``certain`` the same away from singular points.
     """
 
     parameters: Mapping[str, float]
@@ -86,15 +98,29 @@ class Verification:
     @property
     def failures(self) -> tuple[str, ...]:
         """What does not hold, in words; empty when all is well."""
-        out = [f"{check.form}: not proved" for check in self.closed_forms if not check.proved]
-        out += [f"erratum {check.equation}: not reproduced" for check in self.errata if not check.reproduced]
+        out = [
+            f"{check.form}: not proved"
+            for check in self.closed_forms
+            if not check.proved
+        ]
+        out += [
+            f"erratum {check.equation}: not reproduced"
+            for check in self.errata
+            if not check.reproduced
+        ]
         for i, member in enumerate(m for m in self.members if m.real):
             if member.mobility != self.expected:
-                out.append(f"member {i + 1}: mobility {member.mobility}, not {self.expected}")
+                out.append(
+                    f"member {i + 1}: mobility {member.mobility}, not {self.expected}"
+                )
             if member.closure > CLOSURE:
-                out.append(f"member {i + 1}: closure {member.closure:.1e} along the curve")
+                out.append(
+                    f"member {i + 1}: closure {member.closure:.1e} along the curve"
+                )
             if member.certain > DISTANCE:
-                out.append(f"member {i + 1}: closed form {member.certain:.1e} rad away from the curve")
+                out.append(
+                    f"member {i + 1}: closed form {member.certain:.1e} rad away from the curve"
+                )
         if not any(member.real for member in self.members):
             out.append("no member with a real configuration")
         return tuple(out)
@@ -114,27 +140,36 @@ def _plain(value: Any) -> Any:
 
 
 def verify(name: str, members: int = 1, points: int = 6, seed: int = 0) -> Verification:
-    """Verify the default member and ``members`` - 1 random ones; raises `UnknownLinkageError`."""
+    """Verify the default member and ``members`` - 1 random ones; raises
+    `UnknownLinkageError`."""
     from linkages.closed_forms.all_forms import closed_forms
     from linkages.closed_forms.proof import prove
 
     found, rng = entry(name), np.random.default_rng(seed)
     proofs = [(form, prove(form, points, seed)) for form in closed_forms(name)]
-    checks = tuple(ClosedFormCheck(f.form, f.source, p.proved, p.points, p.doubt) for f, p in proofs)
+    checks = tuple(
+        ClosedFormCheck(f.form, f.source, p.proved, p.points, p.doubt)
+        for f, p in proofs
+    )
     drawn = [found.defaults, *(found.draw(rng) for _ in range(members - 1))]
     errata = tuple(ErratumCheck(e.equation, *e.measure()) for e in errata_of(name))
     verified = tuple(check_member(found, values, seed) for values in drawn)
-    return Verification(name, found.conditions, checks, verified, errata, found.facts.get("mobility", 1))
+    return Verification(
+        name, found.conditions, checks, verified, errata, found.facts.get("mobility", 1)
+    )
 
 
-def verify_all(members: int = 1, points: int = 6, seed: int = 0) -> Iterator[Verification]:
+def verify_all(
+    members: int = 1, points: int = 6, seed: int = 0
+) -> Iterator[Verification]:
     """Verify every linkage of the catalogue, one after the other."""
     for name in catalogue():
         yield verify(name, members, points, seed)
 
 
 def check_member(found: Entry, values: Mapping[str, float], seed: int) -> MemberCheck:
-    """Build a member, trace its forms from the closed form or from a survey, and compare."""
+    """Build a member, trace its forms from the closed form or from a survey, and
+    compare."""
     from linkages.closed_forms.all_forms import closed_forms
     from linkages.closed_forms.comparison import compare
 
@@ -148,22 +183,39 @@ def check_member(found: Entry, values: Mapping[str, float], seed: int) -> Member
     if not len(starts):
         seen = survey(loop, seed=seed)
         surfaces = bool(seen.atlas.surfaces)
-        starts = np.array([form.branch(0.0) for form in seen.atlas.forms]).reshape(-1, loop.n)
+        starts = np.array([form.branch(0.0) for form in seen.atlas.forms]).reshape(
+            -1, loop.n
+        )
     if not len(starts):
         return MemberCheck(values, mobility=2 if surfaces else 0)
     branches = [trace_branch(problem, start) for start in starts]
-    closure = max(float(np.linalg.norm(problem.residuals(b.sample(SAMPLES)), axis=1).max()) for b in branches)
+    closure = max(
+        float(np.linalg.norm(problem.residuals(b.sample(SAMPLES)), axis=1).max())
+        for b in branches
+    )
     compared = [compare(forms, values, problem, b) for b in branches] if forms else []
-    corank = min(int(np.count_nonzero(row < 1e-9)) for row in singular_values(problem, starts))
+    corank = min(
+        int(np.count_nonzero(row < 1e-9)) for row in singular_values(problem, starts)
+    )
     return MemberCheck(
-        values, "", corank, 2 if surfaces else min(corank, 1) if min(b.length for b in branches) > 0.1 else 0,
-        tuple(b.outcome.name for b in branches), closure,
+        values,
+        "",
+        corank,
+        2
+        if surfaces
+        else min(corank, 1)
+        if min(b.length for b in branches) > 0.1
+        else 0,
+        tuple(b.outcome.name for b in branches),
+        closure,
         max((c.everywhere for c in compared), default=float("nan")),
         max((c.certain for c in compared), default=float("nan")),
-    )  # fmt: skip
+    )
 
 
-def _starts(forms: Sequence[Any], values: Mapping[str, float], rng: np.random.Generator) -> np.ndarray:
+def _starts(
+    forms: Sequence[Any], values: Mapping[str, float], rng: np.random.Generator
+) -> np.ndarray:
     """A configuration of each closed form and root, where it is real."""
     inputs, out = rng.uniform(-3.0, 3.0, 40), []
     for form in forms:
@@ -177,25 +229,42 @@ def describe(checked: Verification) -> str:
     """The verification as a paragraph for the screen."""
     lines = [checked.name, *(f"  condition     {text}" for text in checked.conditions)]
     for form in checked.closed_forms:
-        proved = f"proved exactly at {form.points} points" if form.proved else "NOT PROVED"
-        lines.append(f"  closed form   {form.form}: {proved} (doubt {form.doubt:.0e}); {form.source}")
+        proved = (
+            f"proved exactly at {form.points} points" if form.proved else "NOT PROVED"
+        )
+        lines.append(
+            f"  closed form   {form.form}: {proved} (doubt {form.doubt:.0e}); {form.source}"
+        )
     if not checked.closed_forms:
         lines.append("  closed form   none in the sources")
     real = [member for member in checked.members if member.real]
     refused = sum(bool(member.refused) for member in checked.members)
     unreal = len(checked.members) - refused - len(real)
-    lines.append(f"  members       {len(real)} traced, {refused} refused, {unreal} without real configuration")
+    lines.append(
+        f"  members       {len(real)} traced, {refused} refused, {unreal} without real configuration"
+    )
     if real:
         ranks = sorted({member.corank for member in real})
         kinds = sorted({member.mobility for member in real})
         curves = sum(len(member.outcomes) for member in real)
-        lines.append(f"  mobility      {_list(ranks)} by rank, {_list(kinds)} by tracing ({curves} curves)")
-        lines.append(f"  closure       {max(member.closure for member in real):.1e} at most along the curves")
+        lines.append(
+            f"  mobility      {_list(ranks)} by rank, {_list(kinds)} by tracing ({curves} curves)"
+        )
+        lines.append(
+            f"  closure       {max(member.closure for member in real):.1e} at most along the curves"
+        )
     if checked.closed_forms and real:
-        far = max(member.distance for member in real), max(member.certain for member in real)
-        lines.append(f"  distance      {far[0]:.1e} rad at most from the closed form, {far[1]:.1e} off singular points")
+        far = (
+            max(member.distance for member in real),
+            max(member.certain for member in real),
+        )
+        lines.append(
+            f"  distance      {far[0]:.1e} rad at most from the closed form, {far[1]:.1e} off singular points"
+        )
     for found in checked.errata:
-        amounts = f"printed fails by {found.printed:.1e}, corrected by {found.corrected:.1e}"
+        amounts = (
+            f"printed fails by {found.printed:.1e}, corrected by {found.corrected:.1e}"
+        )
         lines.append(f"  erratum       {found.equation}: {amounts}")
     lines += [f"  FAILED        {text}" for text in checked.failures]
     return "\n".join(lines)

@@ -1,4 +1,5 @@
-"""Every closed form, by the name of its linkage. Imports sympy when the first one is asked for."""
+"""Every closed form, by the name of its linkage. Imports sympy when the first one is
+asked for."""
 
 from __future__ import annotations
 
@@ -26,5 +27,6 @@ def all_closed_forms() -> tuple[ClosedForm, ...]:
 
 
 def closed_forms(name: str) -> tuple[ClosedForm, ...]:
-    """The closed forms of the linkage called ``name``; none for a linkage whose sources give none."""
+    """The closed forms of the linkage called ``name``; none for a linkage whose sources
+    give none."""
     return tuple(found for found in all_closed_forms() if found.linkage == name)

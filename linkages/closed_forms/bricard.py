@@ -1,9 +1,11 @@
-"""Closed forms of the line-symmetric Bricard linkages, of the reconfigurable ones, and of Wohlhart's symmetric 6R.
+"""Closed forms of the line-symmetric Bricard linkages, of the reconfigurable ones, and
+of Wohlhart's symmetric 6R.
 
-Line-symmetric: Song (2013), equations (4.2.14)-(4.2.24), with H2 and L2 of (4.2.15) as in `linkages.families.bricard_forms`,
-and (4.3.3)-(4.3.8) for opposite angles. The discriminants of theta2 and theta3 are the same, so that the root of one is
-that of the other, with the opposite sign. Reconfigurable: equations (5.3.13), (5.3.15). Wohlhart's: Racila and Dahan
-(2010), equation (15).
+Line-symmetric: Song (2013), equations (4.2.14)-(4.2.24), with H2 and L2 of (4.2.15) as
+in `linkages.families.bricard_forms`, and (4.3.3)-(4.3.8) for opposite angles. The
+discriminants of theta2 and theta3 are the same, so that the root of one is that of the
+other, with the opposite sign. Reconfigurable: equations (5.3.13), (5.3.15). Wohlhart's:
+Racila and Dahan (2010), equation (15).
 """
 
 from __future__ import annotations
@@ -28,7 +30,11 @@ from linkages.families.bricard_forms import original_equations, revised_equation
 __all__ = ["FORMS"]
 
 FIRST, SECOND = joint(1), joint(2)
-LENGTHS, TWISTS, OFFSETS = ("a12", "a23", "a34"), ("alpha12", "alpha23", "alpha34"), ("R1", "R2", "R3")
+LENGTHS, TWISTS, OFFSETS = (
+    ("a12", "a23", "a34"),
+    ("alpha12", "alpha23", "alpha34"),
+    ("R1", "R2", "R3"),
+)
 LETTERS = "ABCDEFGHL"
 
 
@@ -43,8 +49,11 @@ def sine(u: Any) -> Any:
 
 
 def _terms(joint_number: int) -> tuple[Any, Any, Any]:
-    """Aterm, Bterm, Cterm of equations (4.2.18), (4.2.21): the quadratic in tan(theta/2) of joint 2 or 3."""
-    a, b, c, d, e, f, g, h, free = (constant(f"{letter}_{joint_number}") for letter in LETTERS)
+    """Aterm, Bterm, Cterm of equations (4.2.18), (4.2.21): the quadratic in
+    tan(theta/2) of joint 2 or 3."""
+    a, b, c, d, e, f, g, h, free = (
+        constant(f"{letter}_{joint_number}") for letter in LETTERS
+    )
     s1, c1 = FIRST
     sin1, cos1, one = 2 * s1 * c1, c1**2 - s1**2, s1**2 + c1**2
     rest = a * sin1 + b * cos1 + free * one
@@ -58,8 +67,14 @@ def _third() -> tuple[Pair, ...]:
     a3, b3, c3 = _terms(3)
     s, c = SECOND
     out: list[Pair] = []
-    for top, bottom in ((2 * a2 * s + b2 * c, c), (-2 * c2 * c - b2 * s, s)):  # the square root, as a quotient
-        out += [(-b3 * bottom - top, 2 * a3 * bottom), (2 * c3 * bottom, top - b3 * bottom)]
+    for top, bottom in (
+        (2 * a2 * s + b2 * c, c),
+        (-2 * c2 * c - b2 * s, s),
+    ):  # the square root, as a quotient
+        out += [
+            (-b3 * bottom - top, 2 * a3 * bottom),
+            (2 * c3 * bottom, top - b3 * bottom),
+        ]
     return tuple(out)
 
 
@@ -74,7 +89,10 @@ def _line_symmetric(
     """``sign`` +1 where opposite joints turn alike, -1 where oppositely."""
     equations = original_equations if sign > 0 else revised_equations
     values = [
-        tuple(constant(name) if name in (*lengths, *offsets) else sp.Integer(0) for name in names)
+        tuple(
+            constant(name) if name in (*lengths, *offsets) else sp.Integer(0)
+            for name in names
+        )
         for names in (LENGTHS, OFFSETS)
     ]
     u = [tangent(name) for name in TWISTS]
@@ -87,22 +105,43 @@ def _line_symmetric(
     a, b, c = _terms(2)
     s, co = SECOND
     half: tuple[tuple[Pair, ...], ...] = ((FIRST,), (SECOND,), _third())
-    other = half if sign > 0 else tuple(tuple(negative(pair) for pair in pairs) for pairs in half)
+    other = (
+        half
+        if sign > 0
+        else tuple(tuple(negative(pair) for pair in pairs) for pairs in half)
+    )
     return ClosedForm(
-        linkage, form, source, TWISTS, (*half, *other), constants, (*lengths, *offsets),
-        relation=a * s**2 + b * s * co + c * co**2, second=2,
-    )  # fmt: skip
+        linkage,
+        form,
+        source,
+        TWISTS,
+        (*half, *other),
+        constants,
+        (*lengths, *offsets),
+        relation=a * s**2 + b * s * co + c * co**2,
+        second=2,
+    )
 
 
 def _reconfigurable(linkage: str, sign: int, equation: str) -> ClosedForm:
-    """The Bennett form, ``sign`` +1 for the line-symmetric set-up: third sides of the triangles, links 34 and 61.
+    """The Bennett form, ``sign`` +1 for the line-symmetric set-up: third sides of the
+    triangles, links 34 and 61.
 
-    The angles of that Bennett loop are theta1 + first, theta3 + third, where first and third are the angles of the
-    spatial triangle at the joints 1 and 3.
+    The angles of that Bennett loop are theta1 + first, theta3 + third, where first and
+    third are the angles of the spatial triangle at the joints 1 and 3.
     """
     u_a, u_b, u_g, u_k = (tangent(name) for name in ("alpha", "beta", "gamma", "kink"))
-    s_a, c_a, s_b, c_b, s_k, c_k = sine(u_a), cosine(u_a), sine(u_b), cosine(u_b), sine(u_k), cosine(u_k)
-    x_1, y_1, x_3, y_3, sin_d, u_d, m = map(constant, ("x_1", "y_1", "x_3", "y_3", "sin_delta", "u_delta", "m"))
+    s_a, c_a, s_b, c_b, s_k, c_k = (
+        sine(u_a),
+        cosine(u_a),
+        sine(u_b),
+        cosine(u_b),
+        sine(u_k),
+        cosine(u_k),
+    )
+    x_1, y_1, x_3, y_3, sin_d, u_d, m = map(
+        constant, ("x_1", "y_1", "x_3", "y_3", "sin_delta", "u_delta", "m")
+    )
     constants = {
         "k": u_k,
         "x_1": c_k * s_b * c_a + c_b * s_a,
@@ -119,13 +158,23 @@ def _reconfigurable(linkage: str, sign: int, equation: str) -> ClosedForm:
     opposite = (turned, other) if sign > 0 else (negative(turned), negative(other))
     kink = (constant("k"), sp.Integer(1))
     return ClosedForm(
-        linkage, "Bennett 4R form", f"Song 2013, eq. {equation}", ("alpha", "beta", "kink", "gamma"),
+        linkage,
+        "Bennett 4R form",
+        f"Song 2013, eq. {equation}",
+        ("alpha", "beta", "kink", "gamma"),
         tuple(
             (pair,)
-            for pair in (FIRST, kink, minus(other, third), minus(opposite[0], first), kink, minus(opposite[1], third))
+            for pair in (
+                FIRST,
+                kink,
+                minus(other, third),
+                minus(opposite[0], first),
+                kink,
+                minus(opposite[1], third),
+            )
         ),
         constants,
-    )  # fmt: skip
+    )
 
 
 def _symmetric() -> ClosedForm:
@@ -138,9 +187,15 @@ def _symmetric() -> ClosedForm:
     relation = relation - 2 * c * sin1 * sin2 + c**2 * one1 * one2
     u = tangent("alpha")
     return ClosedForm(
-        "wohlhart-symmetric", "threefold form", "Racila and Dahan 2010, eq. (15)", ("alpha",),
-        ((FIRST,), (SECOND,)) * 3, {"c": cosine(u), "s": sine(u)}, relation=sp.expand(relation), second=2,
-    )  # fmt: skip
+        "wohlhart-symmetric",
+        "threefold form",
+        "Racila and Dahan 2010, eq. (15)",
+        ("alpha",),
+        ((FIRST,), (SECOND,)) * 3,
+        {"c": cosine(u), "s": sine(u)},
+        relation=sp.expand(relation),
+        second=2,
+    )
 
 
 ORIGINAL = "Song 2013, eqs (4.2.14)-(4.2.24), H2 and L2 of (4.2.15) completed"
@@ -148,9 +203,19 @@ REVISED = "Song 2013, eqs (4.3.3)-(4.3.8), (4.3.8) being missing in the text"
 
 FORMS: tuple[ClosedForm, ...] = (
     _line_symmetric("bricard-line-symmetric", "Forms I and II", +1, ORIGINAL),
-    _line_symmetric("bricard-line-symmetric-zero-offset", "Forms I and II", +1, ORIGINAL, offsets=()),
-    _line_symmetric("bricard-line-symmetric-zero-offset", "Forms I' and II'", -1, REVISED, offsets=()),
-    _line_symmetric("bricard-octahedral-line-symmetric", "Forms I and II", +1, ORIGINAL, lengths=()),
+    _line_symmetric(
+        "bricard-line-symmetric-zero-offset", "Forms I and II", +1, ORIGINAL, offsets=()
+    ),
+    _line_symmetric(
+        "bricard-line-symmetric-zero-offset",
+        "Forms I' and II'",
+        -1,
+        REVISED,
+        offsets=(),
+    ),
+    _line_symmetric(
+        "bricard-octahedral-line-symmetric", "Forms I and II", +1, ORIGINAL, lengths=()
+    ),
     _line_symmetric("bricard-line-symmetric-revised", "Forms I' and II'", -1, REVISED),
     _reconfigurable("reconfigurable-bricard-1", -1, "(5.3.13)"),
     _reconfigurable("reconfigurable-bricard-2", +1, "(5.3.15)"),

@@ -1,8 +1,9 @@
 """Closed forms of the Bennett linkages and of the Goldberg 5R linkages.
 
-Set-ups of Bennett's linkage: Song (2013), equations (2.2.3), (2.2.4), (2.2.14). Goldberg 5R: equation (3.2.2),
-equation (2.2) of Song and Chen (2012). Subtractive Goldberg 5R: equations (3.2.4) and (2.4), where the factor of
-tan(theta3/2) is printed inverted.
+Set-ups of Bennett's linkage: Song (2013), equations (2.2.3), (2.2.4), (2.2.14).
+Goldberg 5R: equation (3.2.2), equation (2.2) of Song and Chen (2012). Subtractive
+Goldberg 5R: equations (3.2.4) and (2.4), where the factor of tan(theta3/2) is printed
+inverted.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ SONG = "Song 2013, eq. "
 
 
 def _bennett(linkage: str, opposite: int, product: Any, equations: str) -> ClosedForm:
-    """``opposite`` +1 where opposite joints turn alike, -1 where oppositely; ``product`` is t1 t2."""
+    """``opposite`` +1 where opposite joints turn alike, -1 where oppositely;
+    ``product`` is t1 t2."""
     second = reciprocal(INPUT, constant("m"))
     turned = (lambda pair: pair) if opposite > 0 else negative
     return ClosedForm(
@@ -43,18 +45,37 @@ def _bennett(linkage: str, opposite: int, product: Any, equations: str) -> Close
     )
 
 
-def _goldberg(linkage: str, sign: int, alpha: Any, beta: Any, gamma: Any, angles: Any, constants: Any) -> ClosedForm:
+def _goldberg(
+    linkage: str,
+    sign: int,
+    alpha: Any,
+    beta: Any,
+    gamma: Any,
+    angles: Any,
+    constants: Any,
+) -> ClosedForm:
     """Links b, a + sign c, b, c, a of the half tangents alpha, beta, gamma."""
     second = reciprocal(INPUT, constant("m_a"))
-    third: Pair = (constant("m_c") * INPUT[0], INPUT[1]) if sign > 0 else (INPUT[0], constant("m_c") * INPUT[1])
+    third: Pair = (
+        (constant("m_c") * INPUT[0], INPUT[1])
+        if sign > 0
+        else (INPUT[0], constant("m_c") * INPUT[1])
+    )
     rest = HALF_TURN if sign > 0 else (0, 1)
     fourth, fifth = minus(rest, INPUT), minus(rest, plus(second, third))
-    factors = {"m_a": (alpha + beta) / (alpha - beta), "m_c": (gamma + beta) / (gamma - beta)}
+    factors = {
+        "m_a": (alpha + beta) / (alpha - beta),
+        "m_c": (gamma + beta) / (gamma - beta),
+    }
     source = "(3.2.2)" if sign > 0 else "(3.2.4), the factor of tan(theta3/2) inverted"
     return ClosedForm(
-        linkage, "Goldberg form" if sign > 0 else "subtractive Goldberg form", SONG + source, angles,
-        ((INPUT,), (second,), (third,), (fourth,), (fifth,)), {**constants, **factors},
-    )  # fmt: skip
+        linkage,
+        "Goldberg form" if sign > 0 else "subtractive Goldberg form",
+        SONG + source,
+        angles,
+        ((INPUT,), (second,), (third,), (fourth,), (fifth,)),
+        {**constants, **factors},
+    )
 
 
 A, B, G = tangent("alpha"), tangent("beta"), tangent("gamma")

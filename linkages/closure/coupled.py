@@ -1,7 +1,9 @@
-"""Loops whose joint angles are coupled: locked joints, gears between joints, motions kept symmetric.
+"""Loops whose joint angles are coupled: locked joints, gears between joints, motions
+kept symmetric.
 
-The n joint angles are an affine function of fewer unknowns, theta = M v + c. A loop of n > 7 joints moves with n - 6
-degrees of freedom at least; with k = 7 unknowns curves are left, as of a 7R loop.
+The n joint angles are an affine function of fewer unknowns, theta = M v + c. A loop of
+n > 7 joints moves with n - 6 degrees of freedom at least; with k = 7 unknowns curves
+are left, as of a 7R loop.
 """
 
 from __future__ import annotations
@@ -25,15 +27,19 @@ LARGEST_DENOMINATOR = 1000  # of a gear ratio whose angles come back to where th
 class CoupledClosure(Problem):
     """The closure equations of a loop in k unknowns v (rad) with theta = M v + c.
 
-    ``matrix`` M (n, k) is constant and its columns are independent: a row of zeros locks a joint at its entry of
-    ``offset`` c (n,), rad; two rows in proportion are a pair of gears. Arclength is that of v. An unknown is periodic
-    where its column is rational. k may be any number from 1 to n, as the mobility of a loop may be anything. Raises
-    `linkages.loop.GeometryError` for wrong shapes, values that are not finite and dependent columns.
+    ``matrix`` M (n, k) is constant and its columns are independent: a row of zeros
+    locks a joint at its entry of ``offset`` c (n,), rad; two rows in proportion are a
+    pair of gears. Arclength is that of v. An unknown is periodic where its column is
+    rational. k may be any number from 1 to n, as the mobility of a loop may be
+    anything. Raises `linkages.loop.GeometryError` for wrong shapes, values that are not
+    finite and dependent columns.
     """
 
     curvature_residual = LoopClosure.curvature_residual
 
-    def __init__(self, loop: Loop, matrix: np.ndarray, offset: np.ndarray | None = None):
+    def __init__(
+        self, loop: Loop, matrix: np.ndarray, offset: np.ndarray | None = None
+    ):
         self.loop = loop
         self.matrix, self.offset = _checked(loop.n, matrix, offset)
         count = self.matrix.shape[1]
@@ -61,26 +67,45 @@ class CoupledClosure(Problem):
         return self.matrix.T @ self._closure.hessian(self.angles(point)) @ self.matrix
 
     def curvature_bound(self) -> float:
-        """That of the loop times |M|^2: once for the distance, once for the chain rule."""
-        return self._closure.curvature_bound() * float(np.linalg.norm(self.matrix, 2)) ** 2
+        """That of the loop times |M|^2: once for the distance, once for the chain
+        rule."""
+        return (
+            self._closure.curvature_bound() * float(np.linalg.norm(self.matrix, 2)) ** 2
+        )
 
     def march(
-        self, start: np.ndarray, tangent: np.ndarray, order: int, tolerance: float, shortest: float,
-        longest: float, count: int,
-    ) -> March:  # fmt: skip
-        """Up to ``count`` Taylor pieces of the motion from ``start`` along ``tangent``."""
+        self,
+        start: np.ndarray,
+        tangent: np.ndarray,
+        order: int,
+        tolerance: float,
+        shortest: float,
+        longest: float,
+        count: int,
+    ) -> March:
+        """Up to ``count`` Taylor pieces of the motion from ``start`` along
+        ``tangent``."""
         status, pieces, steps, radii, residuals, _ = kernels.march(
-            np.ascontiguousarray(start), np.ascontiguousarray(tangent), self._closure._geometry, order, tolerance,
-            shortest, longest, count, self._coupling,
-        )  # fmt: skip
+            np.ascontiguousarray(start),
+            np.ascontiguousarray(tangent),
+            self._closure._geometry,
+            order,
+            tolerance,
+            shortest,
+            longest,
+            count,
+            self._coupling,
+        )
         return March(status, pieces, steps, radii, residuals)
 
 
-def locked_joints(joints: int, angles: Mapping[int, float]) -> tuple[np.ndarray, np.ndarray]:
+def locked_joints(
+    joints: int, angles: Mapping[int, float]
+) -> tuple[np.ndarray, np.ndarray]:
     """M (n, n - locked) and c (n,) of a loop of n ``joints`` of which some are locked.
 
-    ``angles`` (rad) are those of the locked joints, counted from 1. Raises `linkages.loop.GeometryError` for a joint
-    that the loop does not have.
+    ``angles`` (rad) are those of the locked joints, counted from 1. Raises
+    `linkages.loop.GeometryError` for a joint that the loop does not have.
     """
     offset = np.zeros(joints)
     for joint, angle in angles.items():
@@ -90,11 +115,18 @@ def locked_joints(joints: int, angles: Mapping[int, float]) -> tuple[np.ndarray,
     return np.delete(np.eye(joints), [joint - 1 for joint in angles], axis=1), offset
 
 
-def _checked(n: int, matrix: np.ndarray, offset: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+def _checked(
+    n: int, matrix: np.ndarray, offset: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
     """M and c as float arrays."""
-    m, c = np.array(matrix, dtype=float), np.zeros(n) if offset is None else np.array(offset, dtype=float)
+    m, c = (
+        np.array(matrix, dtype=float),
+        np.zeros(n) if offset is None else np.array(offset, dtype=float),
+    )
     if m.ndim != 2 or m.shape[0] != n or not 1 <= m.shape[1] <= n:
-        raise GeometryError("shape of the coupling matrix", m.shape, f"({n}, k) with k from 1 to {n}")
+        raise GeometryError(
+            "shape of the coupling matrix", m.shape, f"({n}, k) with k from 1 to {n}"
+        )
     if c.shape != (n,):
         raise GeometryError("shape of the coupling offset", c.shape, f"({n},)")
     for what, values in (("coupling matrix", m), ("coupling offset", c)):
@@ -102,14 +134,26 @@ def _checked(n: int, matrix: np.ndarray, offset: np.ndarray | None) -> tuple[np.
             raise GeometryError(what, values[~np.isfinite(values)][0], "finite numbers")
     rank = int(np.linalg.matrix_rank(m))
     if rank < m.shape[1]:
-        raise GeometryError("rank of the coupling matrix", rank, f"{m.shape[1]}, the number of its columns")
+        raise GeometryError(
+            "rank of the coupling matrix",
+            rank,
+            f"{m.shape[1]}, the number of its columns",
+        )
     return m, c
 
 
 def _period(ratios: np.ndarray) -> float:
-    """The smallest turn (rad) of an unknown that brings all joints it turns round, inf where none is short."""
+    """The smallest turn (rad) of an unknown that brings all joints it turns round, inf
+    where none is short."""
     found = [Fraction(float(r)).limit_denominator(LARGEST_DENOMINATOR) for r in ratios]
-    if any(abs(float(f) - r) > 1e-12 * abs(r) for f, r in zip(found, ratios, strict=True)):
+    if any(
+        abs(float(f) - r) > 1e-12 * abs(r) for f, r in zip(found, ratios, strict=True)
+    ):
         return math.inf
     turning = [f for f in found if f]
-    return 2 * math.pi * math.lcm(*(f.denominator for f in turning)) / math.gcd(*(f.numerator for f in turning))
+    return (
+        2
+        * math.pi
+        * math.lcm(*(f.denominator for f in turning))
+        / math.gcd(*(f.numerator for f in turning))
+    )

@@ -1,15 +1,18 @@
-"""Compiled kernels for the closure of a loop of revolute joints. Everything here is data in, data out.
+"""Compiled kernels for the closure of a loop of revolute joints. Everything here is
+data in, data out.
 
-``geometry`` is a (6, n) array: length and offset over the characteristic length, cosine and sine of the
-twist, cosine and sine of half the twist. All kernels live in one file because numba's disk cache does
-not notice an edit in another one.
+``geometry`` is a (6, n) array: length and offset over the characteristic length, cosine
+and sine of the twist, cosine and sine of half the twist. All kernels live in one file
+because numba's disk cache does not notice an edit in another one.
 
-The closure residual of a configuration is (2 sign(q_0) q_v, p): the vector part of the unit quaternion of
-the loop product and its translation over the characteristic length. The vector part vanishes for the
-identity alone; the skew part of the rotation matrix, used in the sources, also vanishes at half turns.
+The closure residual of a configuration is (2 sign(q_0) q_v, p): the vector part of the
+unit quaternion of the loop product and its translation over the characteristic length.
+The vector part vanishes for the identity alone; the skew part of the rotation matrix,
+used in the sources, also vanishes at half turns.
 
-``coupling`` is None where the unknowns are the n angles themselves, or an (n, k + 1) array [M c] where there are k
-of them: theta = M v + c. numba compiles one variant for each, and a plain loop does not pay for the other.
+``coupling`` is None where the unknowns are the n angles themselves, or an (n, k + 1)
+array [M c] where there are k of them: theta = M v + c. numba compiles one variant for
+each, and a plain loop does not pay for the other.
 """
 
 from __future__ import annotations
@@ -23,7 +26,8 @@ __all__ = ["hessians", "jacobians", "march", "project", "residuals"]
 
 @register_jitable
 def _forward(theta, geometry, screws, quaternion, translation):
-    """Fill joint screws (6, n), quaternion (4,) and translation (3,) of the loop product."""
+    """Fill joint screws (6, n), quaternion (4,) and translation (3,) of the loop
+    product."""
     xx, xy, xz = 1.0, 0.0, 0.0  # columns of the rotation so far
     yx, yy, yz = 0.0, 1.0, 0.0
     zx, zy, zz = 0.0, 0.0, 1.0
@@ -35,7 +39,12 @@ def _forward(theta, geometry, screws, quaternion, translation):
         screws[4, i] = pz * zx - px * zz
         screws[5, i] = px * zy - py * zx
         c, s = np.cos(theta[i]), np.sin(theta[i])
-        length, offset, ca, sa = geometry[0, i], geometry[1, i], geometry[2, i], geometry[3, i]
+        length, offset, ca, sa = (
+            geometry[0, i],
+            geometry[1, i],
+            geometry[2, i],
+            geometry[3, i],
+        )
         ux, uy, uz = c * xx + s * yx, c * xy + s * yy, c * xz + s * yz
         wx, wy, wz = c * yx - s * xx, c * yy - s * xy, c * yz - s * xz
         px += offset * zx + length * ux
@@ -45,17 +54,33 @@ def _forward(theta, geometry, screws, quaternion, translation):
         yx, yy, yz = ca * wx + sa * zx, ca * wy + sa * zy, ca * wz + sa * zz
         zx, zy, zz = ca * zx - sa * wx, ca * zy - sa * wy, ca * zz - sa * wz
         ch, sh = np.cos(0.5 * theta[i]), np.sin(0.5 * theta[i])
-        r0, r1, r2, r3 = q0 * ch - q3 * sh, q1 * ch + q2 * sh, q2 * ch - q1 * sh, q3 * ch + q0 * sh
+        r0, r1, r2, r3 = (
+            q0 * ch - q3 * sh,
+            q1 * ch + q2 * sh,
+            q2 * ch - q1 * sh,
+            q3 * ch + q0 * sh,
+        )
         ch, sh = geometry[4, i], geometry[5, i]
-        q0, q1, q2, q3 = r0 * ch - r1 * sh, r1 * ch + r0 * sh, r2 * ch + r3 * sh, r3 * ch - r2 * sh
+        q0, q1, q2, q3 = (
+            r0 * ch - r1 * sh,
+            r1 * ch + r0 * sh,
+            r2 * ch + r3 * sh,
+            r3 * ch - r2 * sh,
+        )
     sign = 1.0 if q0 >= 0.0 else -1.0  # both signs are the same rotation
-    quaternion[0], quaternion[1], quaternion[2], quaternion[3] = sign * q0, sign * q1, sign * q2, sign * q3
+    quaternion[0], quaternion[1], quaternion[2], quaternion[3] = (
+        sign * q0,
+        sign * q1,
+        sign * q2,
+        sign * q3,
+    )
     translation[0], translation[1], translation[2] = px, py, pz
 
 
 @register_jitable
 def _residual_jacobian(theta, geometry, residual, jacobian):
-    """Fill the residual (6,) and its exact derivative (6, n), also where the loop is not closed."""
+    """Fill the residual (6,) and its exact derivative (6, n), also where the loop is
+    not closed."""
     quaternion, p = np.empty(4), np.empty(3)
     _forward(theta, geometry, jacobian, quaternion, p)
     q0, q1, q2, q3 = quaternion
@@ -96,8 +121,9 @@ def jacobians(thetas, geometry):
 def hessians(theta, geometry):
     """Second derivative (6, n, n) of the closure residual at one configuration (n,).
 
-    For i <= j, with screws (w, v): d2q = w_i w_j q / 4 (quaternion products), d2p = w_i x (v_j + w_j x p). On
-    a closed configuration this is the symmetric part of the Lie bracket of the joint screws.
+    For i <= j, with screws (w, v): d2q = w_i w_j q / 4 (quaternion products), d2p = w_i
+    x (v_j + w_j x p). On a closed configuration this is the symmetric part of the Lie
+    bracket of the joint screws.
     """
     n = theta.shape[0]
     out, screws, q, p = np.empty((6, n, n)), np.empty((6, n)), np.empty(4), np.empty(3)
@@ -130,7 +156,8 @@ def hessians(theta, geometry):
 
 @register_jitable
 def _factor(matrix, scale):
-    """Householder QR of ``matrix`` in place; the smallest |diagonal| of R comes back."""
+    """Householder QR of ``matrix`` in place; the smallest |diagonal| of R comes
+    back."""
     rows, columns = matrix.shape
     smallest = np.inf
     for k in range(min(rows, columns)):
@@ -161,8 +188,8 @@ def _factor(matrix, scale):
 
 @register_jitable
 def _solve(matrix, scale, right, solution):
-    """Least-squares solution for one right-hand side (overwritten) from `_factor`; with more columns than rows the
-    last unknowns are 0."""
+    """Least-squares solution for one right-hand side (overwritten) from `_factor`; with
+    more columns than rows the last unknowns are 0."""
     rows, columns = matrix.shape
     solution[:] = 0.0
     columns = min(rows, columns)
@@ -183,9 +210,11 @@ def _solve(matrix, scale, right, solution):
 
 @register_jitable
 def _solve_by_rank(matrix, right, order, solution):
-    """Least-squares solution of a system of any rank and shape, both overwritten, by QR with column pivoting.
+    """Least-squares solution of a system of any rank and shape, both overwritten, by QR
+    with column pivoting.
 
-    Pivots below 1e-13 of the first count as zero, and so do the unknowns (by ``order``) that they belong to.
+    Pivots below 1e-13 of the first count as zero, and so do the unknowns (by ``order``)
+    that they belong to.
     """
     rows, columns = matrix.shape
     solution[:] = 0.0
@@ -212,7 +241,9 @@ def _solve_by_rank(matrix, right, order, solution):
         for j in range(k + 1, columns + 1):  # the last one is the right-hand side
             dot = matrix[k, j] if j < columns else right[k]
             for i in range(k + 1, rows):
-                dot += matrix[i, k] / pivot * (matrix[i, j] if j < columns else right[i])
+                dot += (
+                    matrix[i, k] / pivot * (matrix[i, j] if j < columns else right[i])
+                )
             dot *= -pivot / diagonal
             for i in range(k, rows):
                 share = dot if i == k else dot * matrix[i, k] / pivot
@@ -265,15 +296,22 @@ def _closure(unknowns, geometry, coupling, residual, jacobian):
 
 @register_jitable
 def _settle(theta, tangent, geometry, coupling, matrix, scale, noise):
-    """Correct ``theta`` onto the curve across ``tangent`` and turn ``tangent`` into the curve's, in place.
+    """Correct ``theta`` onto the curve across ``tangent`` and turn ``tangent`` into the
+    curve's, in place.
 
-    One Gauss-Newton iteration solves min |[J; t] d + [F; 0]| by QR. Below ``noise`` the residual is
-    rounding, which a small singular value would only amplify: then nothing is moved. Leaves the
-    factored [J; t] in ``matrix`` and returns the length of the correction, the residual norm at its end and
-    the smallest diagonal entry of R, a free estimate of the smallest regular singular value.
+    One Gauss-Newton iteration solves min |[J; t] d + [F; 0]| by QR. Below ``noise`` the
+    residual is rounding, which a small singular value would only amplify: then nothing
+    is moved. Leaves the factored [J; t] in ``matrix`` and returns the length of the
+    correction, the residual norm at its end and the smallest diagonal entry of R, a
+    free estimate of the smallest regular singular value.
     """
     n = theta.shape[0]
-    residual, jacobian, right, step = np.empty(6), np.empty((6, n)), np.empty(7), np.empty(n)
+    residual, jacobian, right, step = (
+        np.empty(6),
+        np.empty((6, n)),
+        np.empty(7),
+        np.empty(n),
+    )
     moved, norm = 0.0, np.inf
     for iteration in range(7):
         _closure(theta, geometry, coupling, residual, jacobian)
@@ -307,11 +345,13 @@ def _bracket_accumulate(a, b, out):
 
 @register_jitable
 def _series(unknowns, tangent, geometry, coupling, matrix, scale, order, coefficients):
-    """Fill Taylor coefficients (order + 1, k) of v(s), s the arclength, from the factored [J; t].
+    """Fill Taylor coefficients (order + 1, k) of v(s), s the arclength, from the
+    factored [J; t].
 
-    With S_i(s) the screw of joint i and V_i(s) the twist of the joints before it, dS_i/ds = [V_i, S_i] and
-    sum_i S_i dtheta_i/ds = 0, |dv/ds| = 1: order by order one product of series and one solve. ``rates`` are those of
-    the angles, ``own`` those of the unknowns.
+    With S_i(s) the screw of joint i and V_i(s) the twist of the joints before it,
+    dS_i/ds = [V_i, S_i] and sum_i S_i dtheta_i/ds = 0, |dv/ds| = 1: order by order one
+    product of series and one solve. ``rates`` are those of the angles, ``own`` those of
+    the unknowns.
     """
     theta = _angles(unknowns, coupling)
     n, count = theta.shape[0], unknowns.shape[0]
@@ -381,7 +421,17 @@ def _trusted_radius(coefficients, tolerance, longest):
 
 
 @register_jitable
-def _largest_residual(coefficients, radius, geometry, coupling, place, heading, screws, quaternion, translation):
+def _largest_residual(
+    coefficients,
+    radius,
+    geometry,
+    coupling,
+    place,
+    heading,
+    screws,
+    quaternion,
+    translation,
+):
     """Largest closure residual of the piece over six points of its trusted interval."""
     worst = 0.0
     for fraction in (-1.0, -0.8, -0.45, 0.45, 0.8, 1.0):
@@ -395,16 +445,40 @@ def _largest_residual(coefficients, radius, geometry, coupling, place, heading, 
 
 
 @register_jitable
-def _expand(theta, tangent, geometry, coupling, matrix, scale, order, tolerance, longest, coefficients):
-    """Fill the series at a settled point; its trusted radius (0 for none) and largest residual come back."""
+def _expand(
+    theta,
+    tangent,
+    geometry,
+    coupling,
+    matrix,
+    scale,
+    order,
+    tolerance,
+    longest,
+    coefficients,
+):
+    """Fill the series at a settled point; its trusted radius (0 for none) and largest
+    residual come back."""
     n = theta.shape[0]
     place, heading = np.empty(n), np.empty(n)
-    screws, quaternion, translation = np.empty((6, geometry.shape[1])), np.empty(4), np.empty(3)
+    screws, quaternion, translation = (
+        np.empty((6, geometry.shape[1])),
+        np.empty(4),
+        np.empty(3),
+    )
     _series(theta, tangent, geometry, coupling, matrix, scale, order, coefficients)
     radius = _trusted_radius(coefficients, tolerance, longest)
     for _ in range(20):
         worst = _largest_residual(
-            coefficients, radius, geometry, coupling, place, heading, screws, quaternion, translation
+            coefficients,
+            radius,
+            geometry,
+            coupling,
+            place,
+            heading,
+            screws,
+            quaternion,
+            translation,
         )
         if worst <= 3.0 * tolerance + 4e-15:
             return radius, worst
@@ -414,7 +488,8 @@ def _expand(theta, tangent, geometry, coupling, matrix, scale, order, tolerance,
 
 @register_jitable
 def _meet(left, right, at, guess, place, heading, other, slope):
-    """Where on the series ``right`` the point ``left(at)`` lies, near ``guess``; and the distance left over."""
+    """Where on the series ``right`` the point ``left(at)`` lies, near ``guess``; and
+    the distance left over."""
     n = place.shape[0]
     _evaluate(left, at, place, heading)
     x, distance = guess, 0.0
@@ -434,34 +509,60 @@ RAN, STALLED, OPEN = 0, 1, 2
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def march(theta, tangent, geometry, order, tolerance, shortest, longest, count, coupling=None):
-    """Up to ``count`` consecutive Taylor pieces of the motion from ``theta`` along ``tangent``.
+def march(
+    theta, tangent, geometry, order, tolerance, shortest, longest, count, coupling=None
+):
+    """Up to ``count`` consecutive Taylor pieces of the motion from ``theta`` along
+    ``tangent``.
 
-    Returns (status, pieces (k, order + 1, n), steps (k,), radii (k,), residuals (k,), sigmas (k,)). Piece i is
-    the series of theta(s) about a point of the curve that lies ``steps[i]`` of arclength beyond the
-    centre of piece i - 1 (0 for the first), in the variable (s - centre) / radii[i], trusted from -1 to 1;
-    neighbouring pieces overlap. ``sigmas`` estimate the smallest regular singular value at the centres. Status
-    RAN: all pieces made; STALLED: no trusted step of ``shortest`` is left; OPEN: the loop does not close,
-    ``residuals[-1]`` is the gap. With a ``coupling`` all of this is in its unknowns: theta stands for v.
+    Returns (status, pieces (k, order + 1, n), steps (k,), radii (k,), residuals (k,),
+    sigmas (k,)). Piece i is the series of theta(s) about a point of the curve that lies
+    ``steps[i]`` of arclength beyond the centre of piece i - 1 (0 for the first), in the
+    variable (s - centre) / radii[i], trusted from -1 to 1; neighbouring pieces overlap.
+    ``sigmas`` estimate the smallest regular singular value at the centres. Status RAN:
+    all pieces made; STALLED: no trusted step of ``shortest`` is left; OPEN: the loop
+    does not close, ``residuals[-1]`` is the gap. With a ``coupling`` all of this is in
+    its unknowns: theta stands for v.
 
-    A piece is trusted on both sides of its centre, so the next centre lies almost two radii on. Near a
-    bifurcation at distance d the radius is about d and somewhat more: a centre on either side covers the
-    crossing, and a centre that would land too near it is refused because its piece does not reach back.
+    A piece is trusted on both sides of its centre, so the next centre lies almost two
+    radii on. Near a bifurcation at distance d the radius is about d and somewhat more:
+    a centre on either side covers the crossing, and a centre that would land too near
+    it is refused because its piece does not reach back.
     """
     n = theta.shape[0]
-    pieces, steps, radii = np.empty((count, order + 1, n)), np.zeros(count), np.empty(count)
+    pieces, steps, radii = (
+        np.empty((count, order + 1, n)),
+        np.zeros(count),
+        np.empty(count),
+    )
     residuals, sigmas = np.empty(count), np.empty(count)
     matrix, scale = np.empty((7, n)), np.empty(n)
-    point, heading, other, slope = theta.copy(), tangent.copy(), np.empty(n), np.empty(n)
+    point, heading, other, slope = (
+        theta.copy(),
+        tangent.copy(),
+        np.empty(n),
+        np.empty(n),
+    )
     place, direction = np.empty(n), np.empty(n)
     noise = 1e-15
     limit = 20.0 * tolerance + 1e-13
-    _, gap, sigmas[0] = _settle(point, heading, geometry, coupling, matrix, scale, noise)
+    _, gap, sigmas[0] = _settle(
+        point, heading, geometry, coupling, matrix, scale, noise
+    )
     residuals[0] = gap
     if gap > limit:
         return OPEN, pieces[:0], steps[:0], radii[:0], residuals[:1], sigmas[:0]
     radii[0], residuals[0] = _expand(
-        point, heading, geometry, coupling, matrix, scale, order, tolerance, longest, pieces[0]
+        point,
+        heading,
+        geometry,
+        coupling,
+        matrix,
+        scale,
+        order,
+        tolerance,
+        longest,
+        pieces[0],
     )
     if radii[0] < shortest:
         return STALLED, pieces[:0], steps[:0], radii[:0], residuals[:0], sigmas[:0]
@@ -474,18 +575,37 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count, 
             hop = (1.0 + beyond) * radius
             _evaluate(pieces[made - 1], hop, point, heading)
             heading /= np.sqrt(np.sum(heading * heading))
-            moved, gap, sigmas[made] = _settle(point, heading, geometry, coupling, matrix, scale, noise)
+            moved, gap, sigmas[made] = _settle(
+                point, heading, geometry, coupling, matrix, scale, noise
+            )
             if moved > 1e-2 * radius or gap > limit:
                 continue
             radii[made], residuals[made] = _expand(
-                point, heading, geometry, coupling, matrix, scale, order, tolerance, longest, pieces[made]
+                point,
+                heading,
+                geometry,
+                coupling,
+                matrix,
+                scale,
+                order,
+                tolerance,
+                longest,
+                pieces[made],
             )
             if radii[made] <= beyond * radius:
                 continue
             back, apart = _meet(
-                pieces[made - 1], pieces[made], radius, -beyond * radius, place, direction, other, slope
+                pieces[made - 1],
+                pieces[made],
+                radius,
+                -beyond * radius,
+                place,
+                direction,
+                other,
+                slope,
             )
-            # a point of the curve is known to rounding over the smallest singular value, no better
+            # a point of the curve is known to rounding over the smallest singular
+            # value, no better
             if apart <= 100.0 * tolerance + 4.0 * noise / sigmas[made]:
                 steps[made] = radius - back
                 status = RAN
@@ -496,7 +616,14 @@ def march(theta, tangent, geometry, order, tolerance, shortest, longest, count, 
         for k in range(order + 1):
             pieces[i, k] *= power
             power *= radii[i]
-    return status, pieces[:made], steps[:made], radii[:made], residuals[:made], sigmas[:made]
+    return (
+        status,
+        pieces[:made],
+        steps[:made],
+        radii[:made],
+        residuals[:made],
+        sigmas[:made],
+    )
 
 
 # --- many starts at once ------------------------------------------------------------------------------
@@ -539,9 +666,9 @@ def _damped_step(jacobian, residual, damping, step):
 def project(starts, geometry, noise, iterations):
     """Levenberg-Marquardt from every start (k, n) onto the closed configurations.
 
-    The damping is the residual's norm, for which convergence is quadratic to solution sets that are not isolated
-    points as well (Fan and Yuan 2005). Returns points (k, n) and residual norms (k,); a start that does not
-    close keeps its gap.
+    The damping is the residual's norm, for which convergence is quadratic to solution
+    sets that are not isolated points as well (Fan and Yuan 2005). Returns points (k, n)
+    and residual norms (k,); a start that does not close keeps its gap.
     """
     k, n = starts.shape
     points, gaps = starts.copy(), np.empty(k)
@@ -555,7 +682,8 @@ def project(starts, geometry, noise, iterations):
         for _ in range(iterations):
             if gap <= noise:
                 break
-            # without a floor the step along the null space would be rounding over rounding, next to a solution
+            # without a floor the step along the null space would be rounding over
+            # rounding, next to a solution
             _damped_step(jacobian, residual, max(factor * gap, 1e-14), step)
             for i in range(n):
                 trial[i] = theta[i] + step[i]
@@ -569,7 +697,9 @@ def project(starts, geometry, noise, iterations):
             else:
                 factor *= 8.0
                 failures += 1
-                if failures > 12 or gap <= 10.0 * noise:  # so near a solution it is rounding that does not fall
+                if (
+                    failures > 12 or gap <= 10.0 * noise
+                ):  # so near a solution it is rounding that does not fall
                     break
         gaps[start] = gap
     return points, gaps
@@ -577,11 +707,13 @@ def project(starts, geometry, noise, iterations):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def project_to_sphere(starts, center, radius, geometry, iterations):
-    """Gauss-Newton from every start (k, n) onto closed configurations at distance ``radius`` from ``center``.
+    """Gauss-Newton from every start (k, n) onto closed configurations at distance
+    ``radius`` from ``center``.
 
-    Next to a singular point the equations differ in size by the radius; undamped Gauss-Newton does not see that,
-    a merit function would. Steps are cut to a third of the radius. Returns points (k, n), residual norms (k,)
-    and lengths of the last step (k,).
+    Next to a singular point the equations differ in size by the radius; undamped
+    Gauss-Newton does not see that, a merit function would. Steps are cut to a third of
+    the radius. Returns points (k, n), residual norms (k,) and lengths of the last step
+    (k,).
     """
     k, n = starts.shape
     points, gaps, last = starts.copy(), np.empty(k), np.empty(k)

@@ -1,9 +1,10 @@
 """Construction methods: new overconstrained loops from old ones.
 
-Every method of the sources is made of two steps. Two loops are laid on each other along links that they
-share, and the shared links are removed (`superpose`); this needs the shared joints, if any, to turn
-alike in both loops. Then a joint that has become free is locked at a kink angle, and its two links are
-replaced by the one link between the outer axes (`lock`, by the spatial triangle of `composite_link`).
+Every method of the sources is made of two steps. Two loops are laid on each other along
+links that they share, and the shared links are removed (`superpose`); this needs the
+shared joints, if any, to turn alike in both loops. Then a joint that has become free is
+locked at a kink angle, and its two links are replaced by the one link between the outer
+axes (`lock`, by the spatial triangle of `composite_link`).
 
 summation and subtraction: `superpose` along one link, `lock` straight or folded
 common link-pair: `superpose` along two links
@@ -12,7 +13,8 @@ kink angle: `lock` at any angle
 isomerization: `isomerize`
 hybrid on a common joint axis: `share_joint`
 
-Sources: Goldberg (1943); Waldron (1968); Wohlhart (1991a, 1991b); Baker (1993a); Song and Chen (2012).
+Sources: Goldberg (1943); Waldron (1968); Wohlhart (1991a, 1991b); Baker (1993a); Song
+and Chen (2012).
 """
 
 from __future__ import annotations
@@ -46,7 +48,8 @@ EQUAL = 1e-9  # relative difference up to which two links count as the same one
 
 
 def lock(loop: Loop, joint: int, kink: Any = Kink.STRAIGHT) -> Loop:
-    """``loop`` with ``joint`` (1 to n) locked at ``kink``: one joint fewer, the pair of links now one.
+    """``loop`` with ``joint`` (1 to n) locked at ``kink``: one joint fewer, the pair of
+    links now one.
 
     The new loop keeps the order of the other joints; joint 1 is the first that is left.
     """
@@ -61,7 +64,8 @@ def lock(loop: Loop, joint: int, kink: Any = Kink.STRAIGHT) -> Loop:
 
 
 def locked_angles(loop: Loop, joint: int, kink: Any, theta: np.ndarray) -> np.ndarray:
-    """Joint angles (..., n - 1) of ``lock(loop, joint, kink)`` for configurations ``theta`` (..., n), rad.
+    """Joint angles (..., n - 1) of ``lock(loop, joint, kink)`` for configurations
+    ``theta`` (..., n), rad.
 
     The entry of the locked joint is not read.
     """
@@ -74,26 +78,38 @@ def locked_angles(loop: Loop, joint: int, kink: Any, theta: np.ndarray) -> np.nd
 
 
 def ending_with(loop: Loop, *links: Link) -> Loop:
-    """``loop`` relabelled, and read the other way round if need be, so that its last links are these.
+    """``loop`` relabelled, and read the other way round if need be, so that its last
+    links are these.
 
     Raises `GeometryError` when they do not follow each other in the loop.
     """
-    for read in (r.relabelled(k) for r in (loop, loop.reversed()) for k in range(loop.n)):
-        if all(_is_same(x, y) for x, y in zip(_links(read)[-len(links) :], links, strict=True)):
+    for read in (
+        r.relabelled(k) for r in (loop, loop.reversed()) for k in range(loop.n)
+    ):
+        if all(
+            _is_same(x, y)
+            for x, y in zip(_links(read)[-len(links) :], links, strict=True)
+        ):
             return read
     wanted = ", ".join(f"{link.length}/{link.twist}" for link in links)
-    raise GeometryError("shared links", wanted, "neighbouring links of the loop, in this order or reversed")
+    raise GeometryError(
+        "shared links",
+        wanted,
+        "neighbouring links of the loop, in this order or reversed",
+    )
 
 
 def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
-    """The loop left of two loops that lie on each other with their last ``shared`` links, removed.
+    """The loop left of two loops that lie on each other with their last ``shared``
+    links, removed.
 
-    Relabel the loops so that the common links are the last ones of both, in the same order. The result
-    follows ``first`` from its joint 1, and comes back along ``second``; it has n + m - 2 shared joints,
-    the first and the last common axis being joints 1 and n - shared + 1. With one common link it has two
-    degrees of freedom until one of these is locked; with more, the common inner joints must turn alike.
-    `ending_with` reads a loop so that given links come last.
-    Raises `GeometryError` when the common links or the offsets of their inner joints differ.
+    Relabel the loops so that the common links are the last ones of both, in the same
+    order. The result follows ``first`` from its joint 1, and comes back along
+    ``second``; it has n + m - 2 shared joints, the first and the last common axis being
+    joints 1 and n - shared + 1. With one common link it has two degrees of freedom
+    until one of these is locked; with more, the common inner joints must turn alike.
+    `ending_with` reads a loop so that given links come last. Raises `GeometryError`
+    when the common links or the offsets of their inner joints differ.
     """
     a, b = _links(first), _links(second)
     n, m = first.n - shared, second.n - shared
@@ -101,46 +117,61 @@ def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
         _refuse_different(a[-k], b[-k], f"shared link {n + shared + 1 - k}")
     for k in range(1, shared):
         gap = first.offsets[-k] - second.offsets[-k]
-        _refuse_offset(gap, f"offset of shared joint {first.n + 1 - k}, difference", first)
+        _refuse_offset(
+            gap, f"offset of shared joint {first.n + 1 - k}, difference", first
+        )
     offsets = [first.offsets[0] - second.offsets[0], *first.offsets[1:n]]
-    offsets += [first.offsets[n] - second.offsets[m], *(-r for r in second.offsets[m - 1 : 0 : -1])]
+    offsets += [
+        first.offsets[n] - second.offsets[m],
+        *(-r for r in second.offsets[m - 1 : 0 : -1]),
+    ]
     return _loop([*a[:n], *b[:m][::-1]], offsets)
 
 
 def superpose_across_bennett(first: Loop, second: Loop) -> Loop:
-    """The loop left when the last two links of ``first`` and of ``second`` form a Bennett loop, removed.
+    """The loop left when the last two links of ``first`` and of ``second`` form a
+    Bennett loop, removed.
 
-    The common Bennett-linkage method. The pairs a/alpha, c/gamma are opposite in the Bennett loop a, c, a, c,
-    so the last link of one loop equals the last but one of the other. Raises `GeometryError` for links
-    that differ, and as `isomerize`. Source: Song and Chen (2011).
+    The common Bennett-linkage method. The pairs a/alpha, c/gamma are opposite in the
+    Bennett loop a, c, a, c, so the last link of one loop equals the last but one of the
+    other. Raises `GeometryError` for links that differ, and as `isomerize`. Source:
+    Song and Chen (2011).
     """
     return superpose(first, isomerize(second, second.n), shared=2)
 
 
-def superposed_angles(first: np.ndarray, second: np.ndarray, shared: int = 1) -> np.ndarray:
-    """Joint angles (..., n + m - 2 shared), rad, of the superposed loop from those of the two loops."""
+def superposed_angles(
+    first: np.ndarray, second: np.ndarray, shared: int = 1
+) -> np.ndarray:
+    """Joint angles (..., n + m - 2 shared), rad, of the superposed loop from those of
+    the two loops."""
     first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
     last, other = first.shape[-1] - shared, second.shape[-1] - shared
     start = first[..., :1] - second[..., :1] + np.pi
     end = first[..., last : last + 1] - second[..., other : other + 1] + np.pi
-    return np.concatenate([start, first[..., 1:last], end, -second[..., other - 1 : 0 : -1]], axis=-1)
+    return np.concatenate(
+        [start, first[..., 1:last], end, -second[..., other - 1 : 0 : -1]], axis=-1
+    )
 
 
 def summate(first: Loop, second: Loop) -> Loop:
-    """Two loops on their common last link; the neighbours at joint n of ``first`` become one link."""
+    """Two loops on their common last link; the neighbours at joint n of ``first``
+    become one link."""
     return lock(superpose(first, second), first.n)
 
 
 def subtract(first: Loop, second: Loop) -> Loop:
-    """As `summate`, with the neighbours folded upon each other: the difference of the two links."""
+    """As `summate`, with the neighbours folded upon each other: the difference of the
+    two links."""
     return lock(superpose(first, second), first.n, Kink.FOLDED)
 
 
 def isomerize(loop: Loop, joint: int) -> Loop:
-    """``loop`` with the two links at ``joint`` exchanged: the opposite pair of their Bennett loop.
+    """``loop`` with the two links at ``joint`` exchanged: the opposite pair of their
+    Bennett loop.
 
-    Raises `GeometryError` when the links have different Bennett ratios or the joint an offset. Source:
-    Wohlhart (1991b).
+    Raises `GeometryError` when the links have different Bennett ratios or the joint an
+    offset. Source: Wohlhart (1991b).
     """
     _refuse_no_bennett(loop, joint)
     links, i = _links(loop), _index(loop, joint)
@@ -149,7 +180,8 @@ def isomerize(loop: Loop, joint: int) -> Loop:
 
 
 def isomerized_angles(loop: Loop, joint: int, theta: np.ndarray) -> np.ndarray:
-    """Joint angles (..., n), rad, of ``isomerize(loop, joint)`` for configurations ``theta`` (..., n).
+    """Joint angles (..., n), rad, of ``isomerize(loop, joint)`` for configurations
+    ``theta`` (..., n).
 
     ``joint`` keeps its angle; its neighbours turn against each other.
     """
@@ -158,26 +190,38 @@ def isomerized_angles(loop: Loop, joint: int, theta: np.ndarray) -> np.ndarray:
     first, second = float(links[i - 1].twist), float(links[i].twist)
     c1, s1, c2, s2 = np.cos(first), np.sin(first), np.cos(second), np.sin(second)
     ck, sk = np.cos(out[..., i]), np.sin(out[..., i])
-    turn = np.arctan2(s2 * sk, ck * s2 * c1 + c2 * s1) - np.arctan2(s1 * sk, ck * s1 * c2 + c1 * s2)
+    turn = np.arctan2(s2 * sk, ck * s2 * c1 + c2 * s1) - np.arctan2(
+        s1 * sk, ck * s1 * c2 + c1 * s2
+    )
     out[..., i - 1] += turn
     out[..., (i + 1) % loop.n] -= turn
     return out
 
 
-def share_joint(first: Loop, second: Loop, kink_1: Any, kink_2: Any, shift: Any = 0) -> Loop:
+def share_joint(
+    first: Loop, second: Loop, kink_1: Any, kink_2: Any, shift: Any = 0
+) -> Loop:
     """The hybrid of two loops with a common axis, joint 1 of both: n + m - 2 joints.
 
-    The last link of ``first`` and the first of ``second`` are locked at ``kink_1`` (rad, or a `Kink`), the
-    last of ``second`` and the first of ``first`` at ``kink_2``; ``shift`` leads along the axis from the last
-    link of ``first`` to the first link of ``second``. The result starts with joint 2 of ``first``. On a
-    configuration the angles of the two joints 1 add up to the sum of the kinks. Source: Waldron (1968).
+    The last link of ``first`` and the first of ``second`` are locked at ``kink_1``
+    (rad, or a `Kink`), the last of ``second`` and the first of ``first`` at ``kink_2``;
+    ``shift`` leads along the axis from the last link of ``first`` to the first link of
+    ``second``. The result starts with joint 2 of ``first``. On a configuration the
+    angles of the two joints 1 add up to the sum of the kinks. Source: Waldron (1968).
     """
     a, b = _links(first), _links(second)
     n = first.n
     forth = composite_link(a[-1], b[0], kink_1, shift)
-    back = composite_link(b[-1], a[0], kink_2, first.offsets[0] + second.offsets[0] - shift)
+    back = composite_link(
+        b[-1], a[0], kink_2, first.offsets[0] + second.offsets[0] - shift
+    )
     offsets = [*first.offsets[1:], *second.offsets[1:]]
-    for end, gain in ((n - 2, forth.before), (n - 1, forth.after), (-1, back.before), (0, back.after)):
+    for end, gain in (
+        (n - 2, forth.before),
+        (n - 1, forth.after),
+        (-1, back.before),
+        (0, back.after),
+    ):
         offsets[end] += gain[0]
     return _loop([*a[1:-1], forth.link, *b[1:-1], back.link], offsets)
 
@@ -187,7 +231,11 @@ def _links(loop: Loop) -> list[Link]:
 
 
 def _loop(links: list[Link], offsets: list[Any]) -> Loop:
-    return Loop(tuple(link.length for link in links), tuple(link.twist for link in links), tuple(offsets))
+    return Loop(
+        tuple(link.length for link in links),
+        tuple(link.twist for link in links),
+        tuple(offsets),
+    )
 
 
 def _index(loop: Loop, joint: int) -> int:
@@ -205,7 +253,9 @@ def _is_same(one: Link, other: Link) -> bool:
 
 
 def _refuse_different(one: Link, other: Link, name: str) -> None:
-    require_equal(f"length of {name}", other.length, one.length, "its length in the other loop")
+    require_equal(
+        f"length of {name}", other.length, one.length, "its length in the other loop"
+    )
     gap = decided(sin((one.twist - other.twist) / 2))
     if gap is not None and abs(gap) > EQUAL:
         raise GeometryError(f"twist of {name}, difference", f"{2 * gap:.6g} rad", "0")

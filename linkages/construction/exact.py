@@ -1,8 +1,9 @@
-"""Exact numbers: rational numbers with one square root, and angles known by the tangent of their half.
+"""Exact numbers: rational numbers with one square root, and angles known by the tangent
+of their half.
 
-An angle whose half has a rational tangent has rational sine, cosine and tangent. The constructors of the catalogue
-and the closed forms run on these types as they are, and a closure computed with them is an identity between
-rational numbers, free of rounding.
+An angle whose half has a rational tangent has rational sine, cosine and tangent. The
+constructors of the catalogue and the closed forms run on these types as they are, and a
+closure computed with them is an identity between rational numbers, free of rounding.
 """
 
 from __future__ import annotations
@@ -12,7 +13,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-__all__ = ["Angle", "HalfAngle", "Quadratic", "acos", "asin", "atan", "atan2", "cos", "pi", "sin", "sqrt", "tan"]
+__all__ = [
+    "Angle",
+    "HalfAngle",
+    "Quadratic",
+    "acos",
+    "asin",
+    "atan",
+    "atan2",
+    "cos",
+    "pi",
+    "sin",
+    "sqrt",
+    "tan",
+]
 
 
 def rational_sqrt(x: Fraction) -> Fraction | None:
@@ -20,15 +34,20 @@ def rational_sqrt(x: Fraction) -> Fraction | None:
     if x < 0:
         return None
     top, bottom = math.isqrt(x.numerator), math.isqrt(x.denominator)
-    return Fraction(top, bottom) if top * top == x.numerator and bottom * bottom == x.denominator else None
+    return (
+        Fraction(top, bottom)
+        if top * top == x.numerator and bottom * bottom == x.denominator
+        else None
+    )
 
 
 @dataclass(frozen=True)
 class Quadratic:
-    """The number a + b sqrt(d) with rational a, b, d; d is no square, and may be negative.
+    """The number a + b sqrt(d) with rational a, b, d; d is no square, and may be
+    negative.
 
-    Sums and products of two such numbers stay in one field, or raise `ArithmeticError`; results without a root
-    are plain fractions.
+    Sums and products of two such numbers stay in one field, or raise `ArithmeticError`;
+    results without a root are plain fractions.
     """
 
     a: Fraction
@@ -36,7 +55,8 @@ class Quadratic:
     d: Fraction
 
     def _alike(self, other: Any) -> tuple[Fraction, Fraction] | None:
-        """``other`` as (a, b) over the root of this number; None for a type that is not exact."""
+        """``other`` as (a, b) over the root of this number; None for a type that is not
+        exact."""
         if isinstance(other, int | Fraction):
             return Fraction(other), Fraction(0)
         if not isinstance(other, Quadratic):
@@ -45,7 +65,9 @@ class Quadratic:
             return other.a, other.b
         root = rational_sqrt(other.d / self.d)
         if root is None:
-            raise ArithmeticError(f"sqrt({self.d}) and sqrt({other.d}) lie in different fields")
+            raise ArithmeticError(
+                f"sqrt({self.d}) and sqrt({other.d}) lie in different fields"
+            )
         return other.a, other.b * root
 
     def _make(self, a: Fraction, b: Fraction) -> Any:
@@ -53,7 +75,11 @@ class Quadratic:
 
     def __add__(self, other: Any) -> Any:
         pair = self._alike(other)
-        return NotImplemented if pair is None else self._make(self.a + pair[0], self.b + pair[1])
+        return (
+            NotImplemented
+            if pair is None
+            else self._make(self.a + pair[0], self.b + pair[1])
+        )
 
     __radd__ = __add__
 
@@ -70,7 +96,10 @@ class Quadratic:
         pair = self._alike(other)
         if pair is None:
             return NotImplemented
-        return self._make(self.a * pair[0] + self.d * self.b * pair[1], self.a * pair[1] + self.b * pair[0])
+        return self._make(
+            self.a * pair[0] + self.d * self.b * pair[1],
+            self.a * pair[1] + self.b * pair[0],
+        )
 
     __rmul__ = __mul__
 
@@ -80,7 +109,9 @@ class Quadratic:
         return Quadratic(self.a / norm, -self.b / norm, self.d)
 
     def __truediv__(self, other: Any) -> Any:
-        return self * (other.inverse() if isinstance(other, Quadratic) else 1 / Fraction(other))
+        return self * (
+            other.inverse() if isinstance(other, Quadratic) else 1 / Fraction(other)
+        )
 
     def __rtruediv__(self, other: Any) -> Any:
         return self.inverse() * other
@@ -109,7 +140,8 @@ class HalfAngle:
 
 @dataclass(frozen=True)
 class Angle:
-    """The angle whose half has the tangent ``s / c``; kept as (s/c, 1), or (1, 0) for a half turn."""
+    """The angle whose half has the tangent ``s / c``; kept as (s/c, 1), or (1, 0) for a
+    half turn."""
 
     s: Any
     c: Any = Fraction(1)
@@ -127,7 +159,9 @@ class Angle:
     def __add__(self, other: Any) -> Angle:
         if not isinstance(other, Angle):
             return NotImplemented
-        return Angle(self.s * other.c + self.c * other.s, self.c * other.c - self.s * other.s)
+        return Angle(
+            self.s * other.c + self.c * other.s, self.c * other.c - self.s * other.s
+        )
 
     def __neg__(self) -> Angle:
         return Angle(-self.s, self.c)
@@ -169,7 +203,8 @@ def tan(x: Angle | HalfAngle) -> Any:
 
 
 def atan(x: Any) -> HalfAngle:
-    """Half the angle whose half has the tangent ``x``; twice the result is an `Angle`."""
+    """Half the angle whose half has the tangent ``x``; twice the result is an
+    `Angle`."""
     return HalfAngle(x)
 
 
@@ -182,7 +217,8 @@ def sqrt(x: Any) -> Any:
 
 
 def atan2(y: Any, x: Any) -> Angle:
-    """Angle of the point (x, y), whose distance from the origin must lie in the field."""
+    """Angle of the point (x, y), whose distance from the origin must lie in the
+    field."""
     if y == 0:
         return Angle(Fraction(0)) if float(x) > 0 else pi
     return Angle(y, sqrt(x * x + y * y) + x)

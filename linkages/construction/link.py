@@ -1,7 +1,8 @@
-"""A link of a Bennett-based linkage, and the little arithmetic that the sources do with links.
+"""A link of a Bennett-based linkage, and the little arithmetic that the sources do with
+links.
 
-The sources write a link as a/alpha and join links collinearly, a+c/alpha+gamma, or lay them back on each
-other, a-c/alpha-gamma. Here ``a + c`` and ``a - c`` mean just that.
+The sources write a link as a/alpha and join links collinearly, a+c/alpha+gamma, or lay
+them back on each other, a-c/alpha-gamma. Here ``a + c`` and ``a - c`` mean just that.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Link:
-    """A binary link: ``length`` and ``twist`` (rad) of the common normal of its two joint axes."""
+    """A binary link: ``length`` and ``twist`` (rad) of the common normal of its two
+    joint axes."""
 
     length: Any
     twist: Any
@@ -43,13 +45,19 @@ class Link:
 def bennett_links(a: Any, alpha: Any, **others: tuple[Any, Any]) -> tuple[Link, ...]:
     """The link a/alpha and links of the same Bennett ratio, in the order given.
 
-    Each of ``others`` is a name with (twist, length): the length follows from the ratio where it is None, and
-    is checked where it is given. Twists in rad. Raises `GeometryError` for a ratio that differs, and for a
-    length that is not positive.
+    Each of ``others`` is a name with (twist, length): the length follows from the ratio
+    where it is None, and is checked where it is given. Twists in rad. Raises
+    `GeometryError` for a ratio that differs, and for a length that is not positive.
     """
     require_positive("length a", a)
-    lengths = {k: bennett_length(k, twist, given, a, alpha) for k, (twist, given) in others.items()}
-    return (Link(a, alpha), *(Link(lengths[k], twist) for k, (twist, _) in others.items()))
+    lengths = {
+        k: bennett_length(k, twist, given, a, alpha)
+        for k, (twist, given) in others.items()
+    }
+    return (
+        Link(a, alpha),
+        *(Link(lengths[k], twist) for k, (twist, _) in others.items()),
+    )
 
 
 def closed_chain(*links: Link, offsets: Sequence[Any] | None = None) -> Loop:
@@ -62,16 +70,18 @@ def closed_chain(*links: Link, offsets: Sequence[Any] | None = None) -> Loop:
 
 
 def half_angle_ratio(x: Any, y: Any) -> Any:
-    """sin((x + y)/2) / sin((x - y)/2), the factor of every Bennett closure equation; twists in rad."""
+    """sin((x + y)/2) / sin((x - y)/2), the factor of every Bennett closure equation;
+    twists in rad."""
     p, q = tan(x / 2), tan(y / 2)
     return (p + q) / (p - q)
 
 
 def syncopated_link(base: Link, product: Any) -> Link:
-    """The second link of the primary Bennett loop, with sides ``base`` and this one, of a syncopation.
+    """The second link of the primary Bennett loop, with sides ``base`` and this one, of
+    a syncopation.
 
-    Its twist x solves ``half_angle_ratio(x, base.twist) = product``; its length has the Bennett ratio of
-    ``base``.
+    Its twist x solves ``half_angle_ratio(x, base.twist) = product``; its length has the
+    Bennett ratio of ``base``.
     """
     twist = 2 * atan((product + 1) / (product - 1) * tan(base.twist / 2))
     return Link(base.length * sin(twist) / sin(base.twist), twist)

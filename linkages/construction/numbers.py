@@ -1,7 +1,9 @@
-"""Elementary functions that follow the type of their argument: float, mpmath, sympy or exact number.
+"""Elementary functions that follow the type of their argument: float, mpmath, sympy or
+exact number.
 
-Constructors of the catalogue use these, so that one piece of code gives a linkage in doubles, at 50 digits
-or exactly (`linkages.construction.exact`: fractions, and angles known by the tangent of their half).
+Constructors of the catalogue use these, so that one piece of code gives a linkage in
+doubles, at 50 digits or exactly (`linkages.construction.exact`: fractions, and angles
+known by the tangent of their half).
 """
 
 from __future__ import annotations
@@ -13,7 +15,8 @@ __all__ = ["acos", "asin", "atan", "atan2", "cos", "pi_like", "sin", "sqrt", "ta
 
 
 def _library(*values: Any) -> Any:
-    """The module whose functions fit the widest type among ``values``: sympy, mpmath, exact numbers, math."""
+    """The module whose functions fit the widest type among ``values``: sympy, mpmath,
+    exact numbers, math."""
     roots = {type(v).__module__.split(".")[0] for v in values}
     if "sympy" in roots:
         import sympy
@@ -23,7 +26,9 @@ def _library(*values: Any) -> Any:
         import mpmath
 
         return mpmath
-    if roots & {"linkages", "fractions"} and not any(isinstance(v, float) for v in values):
+    if roots & {"linkages", "fractions"} and not any(
+        isinstance(v, float) for v in values
+    ):
         from linkages.construction import exact
 
         return exact

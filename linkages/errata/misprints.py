@@ -1,11 +1,14 @@
-"""Misprints of the sources, each with a measure of by how much the printed equation fails and the corrected one holds.
+"""Misprints of the sources, each with a measure of by how much the printed equation
+fails and the corrected one holds.
 
-For closed forms the measure is the closure defect max |T_1 ... T_n - I|: the median over input angles for the print,
-the largest for the correction. For conditions it is the smallest singular value at the rigid assemblies of the loop
-built by them, or the smallest closure residual with joint 1 held; 0 if the loop moves. Equations between numbers and
-matrices are evaluated as they stand. Where the root of a form changes, the measure is the gap in its angles there. Of
-formulas lost in the copy the amount is for what stands in their place. Misprints that are not equations (numbers of
-figures, words), and conditions that are only stricter than needed, are not listed.
+For closed forms the measure is the closure defect max |T_1 ... T_n - I|: the median
+over input angles for the print, the largest for the correction. For conditions it is
+the smallest singular value at the rigid assemblies of the loop built by them, or the
+smallest closure residual with joint 1 held; 0 if the loop moves. Equations between
+numbers and matrices are evaluated as they stand. Where the root of a form changes, the
+measure is the gap in its angles there. Of formulas lost in the copy the amount is for
+what stands in their place. Misprints that are not equations (numbers of figures,
+words), and conditions that are only stricter than needed, are not listed.
 """
 
 from __future__ import annotations
@@ -43,7 +46,8 @@ HOLDS = 1e-11  # what a correct equation may leave in doubles
 
 @dataclass(frozen=True)
 class Erratum:
-    """One misprint; ``measure`` returns the amounts by which the printed and the corrected equation fail."""
+    """One misprint; ``measure`` returns the amounts by which the printed and the
+    corrected equation fail."""
 
     source: str
     equation: str
@@ -96,7 +100,9 @@ CLOSED: tuple[Erratum, ...] = (
             "goldberg-5r",
             0,
             lambda f: with_constant(
-                f, m_a="-(u_gamma + u_alpha)/(u_gamma - u_alpha)", m_c="(u_beta + u_gamma)/(u_beta - u_gamma)"
+                f,
+                m_a="-(u_gamma + u_alpha)/(u_gamma - u_alpha)",
+                m_c="(u_beta + u_gamma)/(u_beta - u_gamma)",
             ),
         ),
     ),
@@ -106,7 +112,9 @@ CLOSED: tuple[Erratum, ...] = (
         "mixed-double-goldberg-type-i",
         "t2 = -m2/(m6 x), t4 = -m2/Q, t5 = m4 x, H = (m2 - m6 x^2)/((m2 + m6) x)",
         "t2 = m1/(m6 x), t4 = -m4/Q, t5 = -m3 Q, H = (m1 + m6 x^2)/((m1 - m6) x)",
-        partial(compare_closed_forms, "mixed-double-goldberg-type-i", 0, printed_type_one),
+        partial(
+            compare_closed_forms, "mixed-double-goldberg-type-i", 0, printed_type_one
+        ),
     ),
     Erratum(
         T13 + "; " + P12,
@@ -114,7 +122,12 @@ CLOSED: tuple[Erratum, ...] = (
         "mixed-double-goldberg-type-iii",
         "tan(theta4/2) = -m3 tan(theta1/2)",
         "tan(theta4/2) = m3 tan(theta1/2)",
-        partial(compare_closed_forms, "mixed-double-goldberg-type-iii", 0, lambda f: with_joints(f, j4=(-M3 * S1, C1))),
+        partial(
+            compare_closed_forms,
+            "mixed-double-goldberg-type-iii",
+            0,
+            lambda f: with_joints(f, j4=(-M3 * S1, C1)),
+        ),
     ),
     Erratum(
         T13,
@@ -122,7 +135,9 @@ CLOSED: tuple[Erratum, ...] = (
         "wohlhart-double-goldberg",
         "(1 - m1 m2) + sqrt(...)",
         "(1 - m1 m6) + sqrt(...)",
-        partial(compare_closed_forms, "wohlhart-double-goldberg", 0, printed_discriminant),
+        partial(
+            compare_closed_forms, "wohlhart-double-goldberg", 0, printed_discriminant
+        ),
     ),
     Erratum(
         T13,
@@ -130,7 +145,9 @@ CLOSED: tuple[Erratum, ...] = (
         "wohlhart-double-goldberg",
         "denominator 2 m2 Q",
         "denominator 2 m6 Q",
-        partial(compare_closed_forms, "wohlhart-double-goldberg", 0, printed_denominator),
+        partial(
+            compare_closed_forms, "wohlhart-double-goldberg", 0, printed_denominator
+        ),
     ),
     Erratum(
         "Song and Chen 2012 (special)",
@@ -138,7 +155,12 @@ CLOSED: tuple[Erratum, ...] = (
         "special-wohlhart-double-goldberg",
         "Form II: P = m1/m2",
         "Form II: P = m2/tan(theta1/2)",
-        partial(compare_closed_forms, "special-wohlhart-double-goldberg", 1, printed_second_form),
+        partial(
+            compare_closed_forms,
+            "special-wohlhart-double-goldberg",
+            1,
+            printed_second_form,
+        ),
     ),
     Erratum(
         T13,
@@ -184,9 +206,15 @@ CLOSED: tuple[Erratum, ...] = (
 
 ERRATA: tuple[Erratum, ...] = (
     *(
-        Erratum(*row[:5], partial(lambda x, y: (immobility(x()), immobility(y())), row[5], row[6]))
+        Erratum(
+            *row[:5],
+            partial(lambda x, y: (immobility(x()), immobility(y())), row[5], row[6]),
+        )
         for row in CONDITIONS
     ),
     *CLOSED,
-    *(Erratum(*row) for row in (*MATRIX_ROWS, *SWITCHING_ROWS, *SYMMETRIC_ROWS, *TORI_ROWS)),
+    *(
+        Erratum(*row)
+        for row in (*MATRIX_ROWS, *SWITCHING_ROWS, *SYMMETRIC_ROWS, *TORI_ROWS)
+    ),
 )

@@ -1,4 +1,5 @@
-"""Misprints in the closed forms of the line-symmetric Bricard linkages and in the appendix on their bifurcations."""
+"""Misprints in the closed forms of the line-symmetric Bricard linkages and in the
+appendix on their bifurcations."""
 
 from __future__ import annotations
 
@@ -9,7 +10,14 @@ from typing import Any
 import numpy as np
 
 from linkages.catalogue import entry
-from linkages.closed_forms.bricard import LENGTHS, LETTERS, OFFSETS, TWISTS, cosine, sine
+from linkages.closed_forms.bricard import (
+    LENGTHS,
+    LETTERS,
+    OFFSETS,
+    TWISTS,
+    cosine,
+    sine,
+)
 from linkages.closed_forms.closed_form import ClosedForm, constant, tangent
 from linkages.construction.link import Link
 from linkages.construction.spatial_triangle import composite_link
@@ -21,8 +29,11 @@ __all__ = ["SYMMETRIC_ROWS"]
 Row = tuple[str, str, str, str, str, Callable[[], tuple[float, float]]]
 
 
-def _symbols() -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]:
-    """Lengths, cosines, sines and offsets of a closed form of the line-symmetric linkages."""
+def _symbols() -> tuple[
+    tuple[Any, ...], tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]
+]:
+    """Lengths, cosines, sines and offsets of a closed form of the line-symmetric
+    linkages."""
     u = [tangent(name) for name in TWISTS]
     lengths, offsets = tuple(map(constant, LENGTHS)), tuple(map(constant, OFFSETS))
     return lengths, tuple(map(cosine, u)), tuple(map(sine, u)), offsets
@@ -50,35 +61,55 @@ def _no_such_length(form: ClosedForm) -> ClosedForm:
 def _unprimed(form: ClosedForm) -> ClosedForm:
     """The coefficients (4.2.22) in the place of the missing (4.3.8)."""
     third = original_equations(*_symbols())[1]
-    return with_constant(form, **{f"{letter}_3": value for letter, value in zip(LETTERS, third, strict=True)})
+    return with_constant(
+        form,
+        **{f"{letter}_3": value for letter, value in zip(LETTERS, third, strict=True)},
+    )
 
 
 # --- Appendix C
 
 
 def _bifurcations() -> tuple[dict[str, float], float, list[float]]:
-    """Coefficients (C6), the kink theta2', and theta1 of both bifurcations of the first reconfigurable linkage."""
+    """Coefficients (C6), the kink theta2', and theta1 of both bifurcations of the first
+    reconfigurable linkage."""
     found = entry("reconfigurable-bricard-1")
     values, loop = found.defaults, found.build()
     triangle = composite_link(
-        Link(values["a"], values["alpha"]), Link(values["b"], values["beta"]), values["kink"], values["r2"]
+        Link(values["a"], values["alpha"]),
+        Link(values["b"], values["beta"]),
+        values["kink"],
+        values["r2"],
     )
     a, alpha, offsets = (v[:3] for v in loop.arrays)
-    second = original_equations(tuple(a), tuple(np.cos(alpha)), tuple(np.sin(alpha)), tuple(offsets))[0]
+    second = original_equations(
+        tuple(a), tuple(np.cos(alpha)), tuple(np.sin(alpha)), tuple(offsets)
+    )[0]
     theta_1 = -float(triangle.before[1])
-    return dict(zip(LETTERS, map(float, second), strict=True)), values["kink"], [theta_1, theta_1 + np.pi]
+    return (
+        dict(zip(LETTERS, map(float, second), strict=True)),
+        values["kink"],
+        [theta_1, theta_1 + np.pi],
+    )
 
 
 def _left(t: float, first: int, third: int) -> float:
-    """What (C7) leaves at the bifurcations with tan(theta2/2) = ``t``; signs of the terms in (C8)."""
+    """What (C7) leaves at the bifurcations with tan(theta2/2) = ``t``; signs of the
+    terms in (C8)."""
     k, _, inputs = _bifurcations()
     pairs = [("A", "F", "E"), ("B", "H", "G"), ("L", "D", "C")]
-    abc = [(k[x] + first * k[y]) * t * t + 2 * k[z] * t + k[x] + third * k[y] for x, y, z in pairs]
-    return max(float(abs(abc[0] * np.sin(x) + abc[1] * np.cos(x) + abc[2])) for x in inputs)
+    abc = [
+        (k[x] + first * k[y]) * t * t + 2 * k[z] * t + k[x] + third * k[y]
+        for x, y, z in pairs
+    ]
+    return max(
+        float(abs(abc[0] * np.sin(x) + abc[1] * np.cos(x) + abc[2])) for x in inputs
+    )
 
 
 def _equal_angles() -> tuple[float, float]:
-    """Equation (C3): theta2 of the bifurcations by tan(theta2/2) = tan(theta2'), or theta2 = theta2'."""
+    """Equation (C3): theta2 of the bifurcations by tan(theta2/2) = tan(theta2'), or
+    theta2 = theta2'."""
     _, kink, _ = _bifurcations()
     return _left(np.tan(kink), -1, 1), _left(np.tan(kink / 2), -1, 1)
 
@@ -89,13 +120,20 @@ def _third_terms() -> tuple[float, float]:
 
 
 def _asymmetric_ratio() -> tuple[float, float]:
-    """Equation (5.3.18): sin(alpha34)/a34 beside the fraction, by the angle theta1' of the triangle."""
+    """Equation (5.3.18): sin(alpha34)/a34 beside the fraction, by the angle theta1' of
+    the triangle."""
     found = entry("reconfigurable-bricard-1")
     v, (a, alpha, offsets) = found.defaults, found.build().arrays
-    made = composite_link(Link(v["a"], v["alpha"]), Link(v["b"], v["beta"]), v["kink"], v["r2"])
+    made = composite_link(
+        Link(v["a"], v["alpha"]), Link(v["b"], v["beta"]), v["kink"], v["r2"]
+    )
     x, kink = np.pi - made.before[1], v["kink"]
     (c12, c23), (s12, s23) = np.cos(alpha[:2]), np.sin(alpha[:2])
-    top = s23 * np.sin(kink) * np.sin(x) - c23 * s12 * np.cos(x) - c12 * np.cos(kink) * s23 * np.cos(x)
+    top = (
+        s23 * np.sin(kink) * np.sin(x)
+        - c23 * s12 * np.cos(x)
+        - c12 * np.cos(kink) * s23 * np.cos(x)
+    )
     bottom = a[1] * (c12 * np.sin(x) * np.sin(kink) - np.cos(x) * np.cos(kink))
     bottom = bottom - a[0] * np.cos(x) - offsets[1] * s12 * np.sin(x)
     ratio = np.sin(alpha[2]) / a[2]
@@ -137,7 +175,14 @@ SYMMETRIC_ROWS: tuple[Row, ...] = (
         "G2 = a23 cos(alpha12) sin(alpha34) + a34 sin(alpha23)",
         partial(compare_closed_forms, LINE, 0, _other_length),
     ),
-    (SONG, "(C3), (C4), (C8)", FIRST, "tan(theta2') = tan(theta2/2)", "theta2' = theta2", _equal_angles),
+    (
+        SONG,
+        "(C3), (C4), (C8)",
+        FIRST,
+        "tan(theta2') = tan(theta2/2)",
+        "theta2' = theta2",
+        _equal_angles,
+    ),
     (
         SONG,
         "(C8)",

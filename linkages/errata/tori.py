@@ -1,4 +1,5 @@
-"""Misprints of the paper on tori: each equation as printed and as corrected, against its equation (2.2)."""
+"""Misprints of the paper on tori: each equation as printed and as corrected, against
+its equation (2.2)."""
 
 from __future__ import annotations
 
@@ -24,11 +25,17 @@ def _about(axis: int, angle: float) -> np.ndarray:
 
 
 def _point(phi: float) -> np.ndarray:
-    """Equation (2.2): the point of the torus at ``phi``, at the fixed angles and radii above."""
+    """Equation (2.2): the point of the torus at ``phi``, at the fixed angles and radii
+    above."""
     along = S * cos(phi) * cos(THETA) + R
     across = S * sin(phi) * cos(CHI) + S * cos(phi) * sin(THETA) * sin(CHI)
-    x, y = along * cos(SIGMA) - across * sin(SIGMA), along * sin(SIGMA) + across * cos(SIGMA)
-    return np.array([x, y, S * sin(phi) * sin(CHI) - S * cos(phi) * sin(THETA) * cos(CHI)])
+    x, y = (
+        along * cos(SIGMA) - across * sin(SIGMA),
+        along * sin(SIGMA) + across * cos(SIGMA),
+    )
+    return np.array(
+        [x, y, S * sin(phi) * sin(CHI) - S * cos(phi) * sin(THETA) * cos(CHI)]
+    )
 
 
 def _centre() -> np.ndarray:
@@ -51,13 +58,17 @@ def _surface() -> tuple[float, float]:
     for phi in PHIS:
         turned = theta @ _about(2, phi) @ np.array([S, 0, 0])
         printed = max(printed, _gap(sigma @ chi @ turned + [R, 0, 0], _point(phi)))
-        corrected = max(corrected, _gap(sigma @ (chi @ turned + [R, 0, 0]), _point(phi)))
+        corrected = max(
+            corrected, _gap(sigma @ (chi @ turned + [R, 0, 0]), _point(phi))
+        )
     return printed, corrected
 
 
 def _axis_of_chi() -> tuple[float, float]:
     sigma, end = _about(2, SIGMA), _about(1, THETA) @ [0, 0, 1]
-    return _off_axis(sigma @ _about(1, CHI) @ end), _off_axis(sigma @ _about(0, CHI) @ end)
+    return _off_axis(sigma @ _about(1, CHI) @ end), _off_axis(
+        sigma @ _about(0, CHI) @ end
+    )
 
 
 def _centres() -> tuple[float, float]:
@@ -69,14 +80,18 @@ def _axis_of_circle() -> tuple[float, float]:
     phi = PHIS[0]
     long = cos(THETA) * cos(phi)
     cross = cos(CHI) * sin(phi) - sin(CHI) * sin(THETA) * cos(phi)
-    x, y = long * cos(SIGMA) + cross * sin(SIGMA), long * sin(SIGMA) - cross * cos(SIGMA)
+    x, y = (
+        long * cos(SIGMA) + cross * sin(SIGMA),
+        long * sin(SIGMA) - cross * cos(SIGMA),
+    )
     printed = np.array([x, y, -sin(CHI) * sin(phi) - cos(CHI) * sin(THETA) * cos(phi)])
     local = np.array([sin(THETA), -sin(CHI) * cos(THETA), cos(CHI) * cos(THETA)])
     return _off_axis(printed), _off_axis(_about(2, SIGMA) @ local)
 
 
 def _carried_centre() -> tuple[float, float]:
-    """Equation (3.2), R1 = Q4: the origin of torus 4 is the centre of the circle of torus 1."""
+    """Equation (3.2), R1 = Q4: the origin of torus 4 is the centre of the circle of
+    torus 1."""
     shift = np.array([R, 0, 0])
     return _gap(shift, _centre()), _gap(_about(2, SIGMA) @ shift, _centre())
 
@@ -91,8 +106,22 @@ TORI_ROWS: tuple[Row, ...] = (
         "turned by chi about X",
         _axis_of_chi,
     ),
-    (TORI, "(2.1)", "torus-4r", "Rz(sigma) Rx(chi) {...} + (r, 0, 0)", "Rz(sigma) {Rx(chi) ... + (r, 0, 0)}", _surface),
-    (TORI, "(2.5)", "torus-4r", "R = (cos(sigma), sin(sigma), 0)", "R = r (cos(sigma), sin(sigma), 0)", _centres),
+    (
+        TORI,
+        "(2.1)",
+        "torus-4r",
+        "Rz(sigma) Rx(chi) {...} + (r, 0, 0)",
+        "Rz(sigma) {Rx(chi) ... + (r, 0, 0)}",
+        _surface,
+    ),
+    (
+        TORI,
+        "(2.5)",
+        "torus-4r",
+        "R = (cos(sigma), sin(sigma), 0)",
+        "R = r (cos(sigma), sin(sigma), 0)",
+        _centres,
+    ),
     (
         TORI,
         "(2.6)",

@@ -1,8 +1,9 @@
 """The Bennett linkage, 4R, in its four set-ups.
 
-Opposite links are alike, all offsets vanish, and sin(twist)/length of the two links agree up to sign: with
-the same sign opposite joints turn oppositely (asymmetric set-up), with opposite signs they turn alike
-(line-symmetric set-up). Turning joint axes round changes one set-up into another of the same shape.
+Opposite links are alike, all offsets vanish, and sin(twist)/length of the two links
+agree up to sign: with the same sign opposite joints turn oppositely (asymmetric
+set-up), with opposite signs they turn alike (line-symmetric set-up). Turning joint axes
+round changes one set-up into another of the same shape.
 """
 
 from __future__ import annotations
@@ -12,12 +13,22 @@ from typing import Any
 
 import numpy as np
 
-from linkages.construction.conditions import bennett_length, require_positive, require_within
+from linkages.construction.conditions import (
+    bennett_length,
+    require_positive,
+    require_within,
+)
 from linkages.construction.numbers import pi_like
 from linkages.entry import Entry, FormPattern, Parameter
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "bennett", "bennett_ab_2", "bennett_lb_2", "bennett_line_symmetric"]
+__all__ = [
+    "ENTRIES",
+    "bennett",
+    "bennett_ab_2",
+    "bennett_lb_2",
+    "bennett_line_symmetric",
+]
 
 SOURCE = "Bennett 1903; set-ups: Song 2013, Kinematic study of overconstrained linkages, eqs (2.2.1)-(2.2.19)"
 
@@ -34,17 +45,20 @@ def _check(a: Any, alpha: Any, beta: Any, b: Any) -> Any:
 
 
 def bennett(a: Any, alpha: Any, beta: Any, b: Any = None) -> Loop:
-    """The asymmetric Bennett linkage AB-1: links a/alpha and b/beta in turn, b = a sin(beta)/sin(alpha).
+    """The asymmetric Bennett linkage AB-1: links a/alpha and b/beta in turn, b = a
+    sin(beta)/sin(alpha).
 
-    Twists in rad, between 0 and pi. A given ``b`` is checked. Raises `GeometryError` when it does not have
-    the Bennett ratio of the first link. Closed form: theta3 = -theta1, theta4 = -theta2 and tan(theta1/2)
-    tan(theta2/2) = sin((beta + alpha)/2) / sin((beta - alpha)/2) (Song 2013, eqs 2.2.2-2.2.4).
+    Twists in rad, between 0 and pi. A given ``b`` is checked. Raises `GeometryError`
+    when it does not have the Bennett ratio of the first link. Closed form: theta3 =
+    -theta1, theta4 = -theta2 and tan(theta1/2) tan(theta2/2) = sin((beta + alpha)/2) /
+    sin((beta - alpha)/2) (Song 2013, eqs 2.2.2-2.2.4).
     """
     return _loop(a, alpha, _check(a, alpha, beta, b), beta)
 
 
 def bennett_ab_2(a: Any, alpha: Any, beta: Any, b: Any = None) -> Loop:
-    """The asymmetric Bennett linkage AB-2, whose second twist is pi - beta (Song 2013, eq. 2.2.18).
+    """The asymmetric Bennett linkage AB-2, whose second twist is pi - beta (Song 2013,
+    eq. 2.2.18).
 
     Parameters, closed form (with pi - beta for beta) and errors as in `bennett`.
     """
@@ -52,16 +66,19 @@ def bennett_ab_2(a: Any, alpha: Any, beta: Any, b: Any = None) -> Loop:
 
 
 def bennett_line_symmetric(a: Any, alpha: Any, beta: Any, b: Any = None) -> Loop:
-    """The line-symmetric Bennett linkage LB-1, whose second twist is -beta (Song 2013, eqs 2.2.13, 2.2.17).
+    """The line-symmetric Bennett linkage LB-1, whose second twist is -beta (Song 2013,
+    eqs 2.2.13, 2.2.17).
 
-    Parameters and errors as in `bennett`. Closed form: theta3 = theta1, theta4 = theta2 and
-    tan(theta1/2) tan(theta2/2) = cos((alpha23 + alpha)/2) / cos((alpha23 - alpha)/2) (eq. 2.2.14).
+    Parameters and errors as in `bennett`. Closed form: theta3 = theta1, theta4 = theta2
+    and tan(theta1/2) tan(theta2/2) = cos((alpha23 + alpha)/2) / cos((alpha23 -
+    alpha)/2) (eq. 2.2.14).
     """
     return _loop(a, alpha, _check(a, alpha, beta, b), -beta)
 
 
 def bennett_lb_2(a: Any, alpha: Any, beta: Any, b: Any = None) -> Loop:
-    """The line-symmetric Bennett linkage LB-2, whose second twist is beta - pi (Song 2013, eq. 2.2.17).
+    """The line-symmetric Bennett linkage LB-2, whose second twist is beta - pi (Song
+    2013, eq. 2.2.17).
 
     Parameters, closed form (eq. 2.2.14) and errors as in `bennett_line_symmetric`.
     """
@@ -69,11 +86,16 @@ def bennett_lb_2(a: Any, alpha: Any, beta: Any, b: Any = None) -> Loop:
 
 
 def _patterns(sign: int, second_twist: Any) -> Any:
-    """Patterns of a set-up: opposite joints turn alike (``sign`` +1) or oppositely (-1)."""
+    """Patterns of a set-up: opposite joints turn alike (``sign`` +1) or oppositely
+    (-1)."""
 
     def patterns(a: float, alpha: float, beta: float) -> tuple[FormPattern, ...]:
         x, y = alpha / 2, second_twist(beta) / 2
-        product, over = (math.cos(x + y), math.cos(y - x)) if sign > 0 else (math.sin(x + y), math.sin(y - x))
+        product, over = (
+            (math.cos(x + y), math.cos(y - x))
+            if sign > 0
+            else (math.sin(x + y), math.sin(y - x))
+        )
 
         def residual(theta: np.ndarray) -> np.ndarray:
             h = np.asarray(theta) / 2
@@ -94,7 +116,14 @@ def _patterns(sign: int, second_twist: Any) -> Any:
 
 PARAMETERS = (
     Parameter("a", 1.0, "length", "length of links 12 and 34", 0.3, 3.0),
-    Parameter("alpha", math.radians(100), "angle", "twist of links 12 and 34", 0.15, math.pi - 0.15),
+    Parameter(
+        "alpha",
+        math.radians(100),
+        "angle",
+        "twist of links 12 and 34",
+        0.15,
+        math.pi - 0.15,
+    ),
     Parameter(
         "beta",
         math.radians(40),
@@ -106,7 +135,9 @@ PARAMETERS = (
 )
 
 
-def _entry(name: str, title: str, construct: Any, sign: int, second_twist: Any, twist: str) -> Entry:
+def _entry(
+    name: str, title: str, construct: Any, sign: int, second_twist: Any, twist: str
+) -> Entry:
     return Entry(
         name=name,
         title=title,
@@ -128,7 +159,14 @@ def _entry(name: str, title: str, construct: Any, sign: int, second_twist: Any, 
 
 
 ENTRIES: tuple[Entry, ...] = (
-    _entry("bennett", "Bennett linkage, asymmetric set-up", bennett, -1, lambda beta: beta, "beta"),
+    _entry(
+        "bennett",
+        "Bennett linkage, asymmetric set-up",
+        bennett,
+        -1,
+        lambda beta: beta,
+        "beta",
+    ),
     _entry(
         "bennett-ab-2",
         "Bennett linkage, asymmetric set-up with supplementary twist",

@@ -1,4 +1,5 @@
-"""Bricard's trihedral and revised line-symmetric 6R, and the linkages of Altmann and Wohlhart near them."""
+"""Bricard's trihedral and revised line-symmetric 6R, and the linkages of Altmann and
+Wohlhart near them."""
 
 from __future__ import annotations
 
@@ -12,7 +13,13 @@ from linkages.construction.numbers import pi_like, sqrt
 from linkages.entry import Entry, Parameter
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "altmann", "revised_line_symmetric", "trihedral", "wohlhart_hybrid"]
+__all__ = [
+    "ENTRIES",
+    "altmann",
+    "revised_line_symmetric",
+    "trihedral",
+    "wohlhart_hybrid",
+]
 
 
 def revised_line_symmetric(
@@ -26,22 +33,31 @@ def revised_line_symmetric(
     R2: Any,
     R3: Any,
 ) -> Loop:
-    """Revised general line-symmetric Bricard 6R: opposite links equal, opposite offsets negative.
+    """Revised general line-symmetric Bricard 6R: opposite links equal, opposite offsets
+    negative.
 
-    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995); equation (2.4.19) in
-    Song (2013).
+    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995);
+    equation (2.4.19) in Song (2013).
     """
     half = Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34)
     return closed_chain(*half, *half, offsets=(R1, R2, R3, -R1, -R2, -R3))
 
 
 def trihedral(
-    a12: Any, a23: Any, a34: Any, a45: Any, a56: Any, a61: Any = None, alternating: bool = True
+    a12: Any,
+    a23: Any,
+    a34: Any,
+    a45: Any,
+    a56: Any,
+    a61: Any = None,
+    alternating: bool = True,
 ) -> Loop:
-    """Trihedral Bricard 6R: right-angled links, of ``alternating`` sign or all +pi/2, without offsets.
+    """Trihedral Bricard 6R: right-angled links, of ``alternating`` sign or all +pi/2,
+    without offsets.
 
-    ``a61`` follows from a12^2 + a34^2 + a56^2 = a23^2 + a45^2 + a61^2 and is checked if given. Raises
-    `GeometryError`. Source: Bricard (1927); equation (2.4.15) in Song (2013) for alternating twists.
+    ``a61`` follows from a12^2 + a34^2 + a56^2 = a23^2 + a45^2 + a61^2 and is checked if
+    given. Raises `GeometryError`. Source: Bricard (1927); equation (2.4.15) in Song
+    (2013) for alternating twists.
     """
     square = a12**2 + a34**2 + a56**2 - a23**2 - a45**2
     require_positive("a12^2 + a34^2 + a56^2 - a23^2 - a45^2", square)
@@ -51,17 +67,22 @@ def trihedral(
     right = pi_like(a12, a23, a34, a45, a56) / 2
     other = -right if alternating else right
     lengths = (a12, a23, a34, a45, a56, a61)
-    return closed_chain(*(Link(a, right if i % 2 == 0 else other) for i, a in enumerate(lengths)))
+    return closed_chain(
+        *(Link(a, right if i % 2 == 0 else other) for i, a in enumerate(lengths))
+    )
 
 
 def altmann(a12: Any, a34: Any) -> Loop:
-    """Altmann's 6R: a line-symmetric Bricard linkage with right angles and a23 = a56 = 0.
+    """Altmann's 6R: a line-symmetric Bricard linkage with right angles and a23 = a56 =
+    0.
 
     Source: Altmann (1954), Baker (1993b); equation (2.4.21) in Song (2013).
     """
     right = pi_like(a12, a34) / 2
     twists = (right, right, right, -right, right, -right)
-    return closed_chain(*(Link(a, t) for a, t in zip((a12, 0, a34) * 2, twists, strict=True)))
+    return closed_chain(
+        *(Link(a, t) for a, t in zip((a12, 0, a34) * 2, twists, strict=True))
+    )
 
 
 def wohlhart_hybrid(
@@ -75,11 +96,12 @@ def wohlhart_hybrid(
     R4: Any,
     R6: Any = None,
 ) -> Loop:
-    """Wohlhart's hybrid 6R: three plane-symmetric link pairs 61-12, 23-34, 45-56 with a common transversal.
+    """Wohlhart's hybrid 6R: three plane-symmetric link pairs 61-12, 23-34, 45-56 with a
+    common transversal.
 
-    Lengths and offsets in one unit, twists in rad; R6 = -R2 - R4 is checked if given. Raises
-    `GeometryError`. Source: Wohlhart (1987); equation (2.4.22) in Song (2013) has the pairs 12-23, 34-45,
-    56-61, which does not go with its offsets.
+    Lengths and offsets in one unit, twists in rad; R6 = -R2 - R4 is checked if given.
+    Raises `GeometryError`. Source: Wohlhart (1987); equation (2.4.22) in Song (2013)
+    has the pairs 12-23, 34-45, 56-61, which does not go with its offsets.
     """
     if R6 is not None:
         require_equal("R6", R6, -R2 - R4, "-(R2 + R4)")
@@ -90,7 +112,9 @@ def wohlhart_hybrid(
 
 
 def _lengths(**values: float) -> tuple[Parameter, ...]:
-    return tuple(Parameter(k, v, "length", f"length {k}", 0.5, 1.6) for k, v in values.items())
+    return tuple(
+        Parameter(k, v, "length", f"length {k}", 0.5, 1.6) for k, v in values.items()
+    )
 
 
 def _twists(**degrees: float) -> tuple[Parameter, ...]:
@@ -108,7 +132,9 @@ def _twists(**degrees: float) -> tuple[Parameter, ...]:
 
 
 def _offsets(**values: float) -> tuple[Parameter, ...]:
-    return tuple(Parameter(k, v, "length", f"offset {k}", -0.5, 0.5) for k, v in values.items())
+    return tuple(
+        Parameter(k, v, "length", f"offset {k}", -0.5, 0.5) for k, v in values.items()
+    )
 
 
 _TRIHEDRAL = tuple(
@@ -147,7 +173,11 @@ ENTRIES = (
         "Bricard (1927); Baker (1980); Song (2013), eq. 2.4.15",
         trihedral,
         _TRIHEDRAL,
-        (_SQUARES, "alpha12 = alpha34 = alpha56 = pi/2, alpha23 = alpha45 = alpha61 = -pi/2", "R = 0"),
+        (
+            _SQUARES,
+            "alpha12 = alpha34 = alpha56 = pi/2, alpha23 = alpha45 = alpha61 = -pi/2",
+            "R = 0",
+        ),
         facts=_FACTS,
     ),
     Entry(

@@ -11,16 +11,30 @@ from linkages.construction.numbers import acos, cos, pi_like, sin
 from linkages.entry import Entry, Parameter
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["ENTRIES", "plane_symmetric", "plane_symmetric_octahedral", "revised_plane_symmetric"]
+__all__ = [
+    "ENTRIES",
+    "plane_symmetric",
+    "plane_symmetric_octahedral",
+    "revised_plane_symmetric",
+]
 
 
 def plane_symmetric(
-    a12: Any, a23: Any, a34: Any, alpha12: Any, alpha23: Any, alpha34: Any, R2: Any, R3: Any
+    a12: Any,
+    a23: Any,
+    a34: Any,
+    alpha12: Any,
+    alpha23: Any,
+    alpha34: Any,
+    R2: Any,
+    R3: Any,
 ) -> Loop:
-    """General plane-symmetric Bricard 6R; lengths and offsets in one unit, twists in rad.
+    """General plane-symmetric Bricard 6R; lengths and offsets in one unit, twists in
+    rad.
 
-    alpha12 + alpha61 = alpha34 + alpha45 = pi, alpha23 + alpha56 = 0, R2 = R6, R3 = R5. Source: Bricard
-    (1927); equation (2.4.14) in Song (2013) has alpha23 + alpha56 = pi, which with these offsets is rigid.
+    alpha12 + alpha61 = alpha34 + alpha45 = pi, alpha23 + alpha56 = 0, R2 = R6, R3 = R5.
+    Source: Bricard (1927); equation (2.4.14) in Song (2013) has alpha23 + alpha56 = pi,
+    which with these offsets is rigid.
     """
     pi = pi_like(alpha12, alpha23, alpha34)
     ahead = Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34)
@@ -29,12 +43,20 @@ def plane_symmetric(
 
 
 def revised_plane_symmetric(
-    a12: Any, a23: Any, a34: Any, alpha12: Any, alpha23: Any, alpha34: Any, R2: Any, R3: Any
+    a12: Any,
+    a23: Any,
+    a34: Any,
+    alpha12: Any,
+    alpha23: Any,
+    alpha34: Any,
+    R2: Any,
+    R3: Any,
 ) -> Loop:
     """Revised general plane-symmetric Bricard 6R: opposite twists, R2 = -R6, R3 = -R5.
 
-    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995); equation (2.4.20) in
-    Song (2013). It is `plane_symmetric` with the axes 2 and 6 reversed on one side.
+    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995);
+    equation (2.4.20) in Song (2013). It is `plane_symmetric` with the axes 2 and 6
+    reversed on one side.
     """
     ahead = Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34)
     behind = (Link(link.length, -link.twist) for link in reversed(ahead))
@@ -42,13 +64,21 @@ def revised_plane_symmetric(
 
 
 def plane_symmetric_octahedral(
-    alpha12: Any, alpha23: Any, alpha34: Any, alpha45: Any, alpha61: Any, R1: Any, alpha56: Any = None
+    alpha12: Any,
+    alpha23: Any,
+    alpha34: Any,
+    alpha45: Any,
+    alpha61: Any,
+    R1: Any,
+    alpha56: Any = None,
 ) -> Loop:
-    """Plane-symmetric octahedral Bricard 6R: all lengths zero, offsets from ``R1`` and the twists (rad).
+    """Plane-symmetric octahedral Bricard 6R: all lengths zero, offsets from ``R1`` and
+    the twists (rad).
 
-    ``alpha56`` follows from R2^2 + R3^2 + 2 R2 R3 cos(alpha23) = R5^2 + R6^2 + 2 R5 R6 cos(alpha56) and is
-    checked if given. Raises `GeometryError`. Source: Bricard (1927); equation (2.4.17) in Song (2013) lacks
-    that condition and is rigid without it.
+    ``alpha56`` follows from R2^2 + R3^2 + 2 R2 R3 cos(alpha23) = R5^2 + R6^2 + 2 R5 R6
+    cos(alpha56) and is checked if given. Raises `GeometryError`. Source: Bricard
+    (1927); equation (2.4.17) in Song (2013) lacks that condition and is rigid without
+    it.
     """
     ahead, behind = sin(alpha12 + alpha34), sin(alpha45 + alpha61)
     R2, R3 = -R1 * sin(alpha34) / ahead, R1 * sin(alpha12) / ahead
@@ -57,25 +87,51 @@ def plane_symmetric_octahedral(
     cosine = (base - R5**2 - R6**2) / (2 * R5 * R6)
     value = decided(cosine)
     if value is not None and abs(value) > 1:
-        raise GeometryError("cos(alpha56)", value, "between -1 and 1; these twists do not close")
+        raise GeometryError(
+            "cos(alpha56)", value, "between -1 and 1; these twists do not close"
+        )
     needed = acos(cosine)
     if alpha56 is not None:
         require_equal("cos(alpha56)", cos(alpha56), cosine, "for the other twists")
-    twists = (alpha12, alpha23, alpha34, alpha45, needed if alpha56 is None else alpha56, alpha61)
-    return closed_chain(*(Link(0, twist) for twist in twists), offsets=(R1, R2, R3, -R1, R5, R6))
+    twists = (
+        alpha12,
+        alpha23,
+        alpha34,
+        alpha45,
+        needed if alpha56 is None else alpha56,
+        alpha61,
+    )
+    return closed_chain(
+        *(Link(0, twist) for twist in twists), offsets=(R1, R2, R3, -R1, R5, R6)
+    )
 
 
 def _length(name: str, value: float, low: float = 0.3, high: float = 2.0) -> Parameter:
-    return Parameter(name, value, "length", f"{'offset' if name[0] == 'R' else 'length'} {name}", low, high)
+    return Parameter(
+        name,
+        value,
+        "length",
+        f"{'offset' if name[0] == 'R' else 'length'} {name}",
+        low,
+        high,
+    )
 
 
 def _twist(name: str, value: float, low: float = 15, high: float = 165) -> Parameter:
-    return Parameter(name, value, "angle", f"twist of link {name[5:]}", radians(low), radians(high))
+    return Parameter(
+        name, value, "angle", f"twist of link {name[5:]}", radians(low), radians(high)
+    )
 
 
 _HALF = (
-    *(_length(name, value) for name, value in (("a12", 1.0), ("a23", 0.8), ("a34", 1.25))),
-    *(_twist(f"alpha{k}", radians(value)) for k, value in ((12, 50), (23, 77), (34, 110))),
+    *(
+        _length(name, value)
+        for name, value in (("a12", 1.0), ("a23", 0.8), ("a34", 1.25))
+    ),
+    *(
+        _twist(f"alpha{k}", radians(value))
+        for k, value in ((12, 50), (23, 77), (34, 110))
+    ),
     _length("R2", -0.45, -0.5, 0.5),
     _length("R3", 0.6, -0.5, 0.5),
 )
@@ -128,7 +184,9 @@ ENTRIES = (
             "R5 = R1 sin(alpha61)/sin(alpha45+alpha61), R6 = -R1 sin(alpha45)/sin(alpha45+alpha61)",
             "R2^2 + R3^2 + 2 R2 R3 cos(alpha23) = R5^2 + R6^2 + 2 R5 R6 cos(alpha56)",
         ),
-        errata=("the condition on alpha23 and alpha56 is missing in print; without it the loop is rigid",),
+        errata=(
+            "the condition on alpha23 and alpha56 is missing in print; without it the loop is rigid",
+        ),
         facts=_FACTS,
     ),
 )

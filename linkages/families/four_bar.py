@@ -1,7 +1,7 @@
 """Planar four-bars: general, parallelogram, rhombus and kite.
 
-All twists and offsets vanish; theta_i is the exterior angle at joint i, and the four add up to a multiple of
-a full turn.
+All twists and offsets vanish; theta_i is the exterior angle at joint i, and the four
+add up to a multiple of a full turn.
 """
 
 from __future__ import annotations
@@ -21,9 +21,11 @@ NAMES = ("12", "23", "34", "41")
 
 
 def four_bar(a: Any, b: Any, c: Any, d: Any) -> Loop:
-    """The planar four-bar with links 12, 23, 34, 41 of lengths ``a``, ``b``, ``c``, ``d``.
+    """The planar four-bar with links 12, 23, 34, 41 of lengths ``a``, ``b``, ``c``,
+    ``d``.
 
-    Raises `GeometryError` for a length that is not positive, or a longest link that the others cannot span.
+    Raises `GeometryError` for a length that is not positive, or a longest link that the
+    others cannot span.
     """
     lengths = (a, b, c, d)
     for name, value in zip(NAMES, lengths, strict=True):
@@ -42,7 +44,8 @@ def four_bar(a: Any, b: Any, c: Any, d: Any) -> Loop:
 
 
 def parallelogram(a: Any, b: Any) -> Loop:
-    """The planar four-bar with opposite links alike: 12 and 34 of length ``a``, 23 and 41 of length ``b``."""
+    """The planar four-bar with opposite links alike: 12 and 34 of length ``a``, 23 and
+    41 of length ``b``."""
     return four_bar(a, b, a, b)
 
 
@@ -52,16 +55,21 @@ def rhombus(a: Any) -> Loop:
 
 
 def kite(a: Any, b: Any) -> Loop:
-    """The planar four-bar with links 12 and 41 of length ``a``, 23 and 34 of length ``b``."""
+    """The planar four-bar with links 12 and 41 of length ``a``, 23 and 34 of length
+    ``b``."""
     return four_bar(a, b, b, a)
 
 
 def _pairs(sign: int, *extra: Any) -> Any:
-    """Residual of theta3 = sign theta1, theta4 = sign theta2, and ``extra`` functions of half angles."""
+    """Residual of theta3 = sign theta1, theta4 = sign theta2, and ``extra`` functions
+    of half angles."""
 
     def residual(theta: np.ndarray) -> np.ndarray:
         h = np.asarray(theta) / 2
-        rows = [np.sin(h[..., 2] - sign * h[..., 0]), np.sin(h[..., 3] - sign * h[..., 1])]
+        rows = [
+            np.sin(h[..., 2] - sign * h[..., 0]),
+            np.sin(h[..., 3] - sign * h[..., 1]),
+        ]
         return np.stack(rows + [f(h) for f in extra], axis=-1)
 
     return residual
@@ -72,23 +80,33 @@ def _proper(name: str) -> FormPattern:
 
 
 def _folded(first: int) -> FormPattern:
-    """Two pairs of links stay folded onto each other at joints ``first`` and ``first + 2`` (from 1)."""
-    residual = _pairs(-1, lambda h: np.cos(h[..., first - 1]), lambda h: np.cos(h[..., first + 1]))
+    """Two pairs of links stay folded onto each other at joints ``first`` and ``first +
+    2`` (from 1)."""
+    residual = _pairs(
+        -1, lambda h: np.cos(h[..., first - 1]), lambda h: np.cos(h[..., first + 1])
+    )
     return FormPattern(f"folded form (joints {first},{first + 2} inactive)", residual)
 
 
 def _kite(axis: int) -> FormPattern:
-    """The angles beside the axis of symmetry, which runs through joint ``axis`` (from 1), are alike."""
+    """The angles beside the axis of symmetry, which runs through joint ``axis`` (from
+    1), are alike."""
     i, j = axis % 4, (axis + 2) % 4
-    return FormPattern("kite form", lambda theta: np.sin((theta[..., i] - theta[..., j]) / 2)[..., None])
+    return FormPattern(
+        "kite form",
+        lambda theta: np.sin((theta[..., i] - theta[..., j]) / 2)[..., None],
+    )
 
 
 def form_patterns(a: float, b: float, c: float, d: float) -> tuple[FormPattern, ...]:
-    """The forms of the planar four-bar with links 12, 23, 34, 41 of lengths that are alike in pairs."""
+    """The forms of the planar four-bar with links 12, 23, 34, 41 of lengths that are
+    alike in pairs."""
     if a == b == c == d:
         return _proper("rhombus form"), _folded(1), _folded(2)
     if a == c and b == d:
-        return _proper("parallelogram form"), FormPattern("antiparallelogram form", _pairs(-1))
+        return _proper("parallelogram form"), FormPattern(
+            "antiparallelogram form", _pairs(-1)
+        )
     if a == d and b == c:
         return _folded(1), _kite(1)
     if a == b and c == d:
@@ -112,7 +130,10 @@ ENTRIES: tuple[Entry, ...] = (
             _length("c", 2.0, "length of link 34"),
             _length("d", 2.7, "length of link 41"),
         ),
-        conditions=("all twists and offsets 0", "no link as long as the other three together"),
+        conditions=(
+            "all twists and offsets 0",
+            "no link as long as the other three together",
+        ),
         facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 0},
     ),
     Entry(
@@ -120,7 +141,10 @@ ENTRIES: tuple[Entry, ...] = (
         "Parallelogram four-bar",
         SOURCE,
         parallelogram,
-        (_length("a", 1.0, "length of links 12 and 34"), _length("b", 2.0, "length of links 23 and 41")),
+        (
+            _length("a", 1.0, "length of links 12 and 34"),
+            _length("b", 2.0, "length of links 23 and 41"),
+        ),
         conditions=("a12 = a34, a23 = a41", "all twists and offsets 0"),
         patterns=lambda a, b: form_patterns(a, b, a, b),
         facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},
@@ -140,7 +164,10 @@ ENTRIES: tuple[Entry, ...] = (
         "Kite four-bar",
         SOURCE,
         kite,
-        (_length("a", 1.0, "length of links 12 and 41"), _length("b", 2.0, "length of links 23 and 34")),
+        (
+            _length("a", 1.0, "length of links 12 and 41"),
+            _length("b", 2.0, "length of links 23 and 34"),
+        ),
         conditions=("a12 = a41, a23 = a34", "all twists and offsets 0"),
         patterns=lambda a, b: form_patterns(a, b, b, a),
         facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},

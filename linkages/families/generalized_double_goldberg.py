@@ -1,8 +1,10 @@
-"""Two generalized Goldberg 5R linkages on their common link pair: Wohlhart's double-Goldberg 6R with kink angles.
+"""Two generalized Goldberg 5R linkages on their common link pair: Wohlhart's
+double-Goldberg 6R with kink angles.
 
-The pair a, c turns alike in both, so that its ends may be bridged at any kink angle on either side. Kinks 0, 0
-give Wohlhart's linkage without offsets, pi, pi the double-subtractive one, pi, 0 the mixed Type I; equal kinks
-give a linkage of Mavroidis and Roth with R2 = R3 = -R5 = -R6.
+The pair a, c turns alike in both, so that its ends may be bridged at any kink angle on
+either side. Kinks 0, 0 give Wohlhart's linkage without offsets, pi, pi the
+double-subtractive one, pi, 0 the mixed Type I; equal kinks give a linkage of Mavroidis
+and Roth with R2 = R3 = -R5 = -R6.
 """
 
 from __future__ import annotations
@@ -30,10 +32,11 @@ def generalized_double_goldberg(
     c: Any = None,
     d: Any = None,
 ) -> Loop:
-    """Links b, [a c], b, d, [a c], d, the pair a, c locked at ``kink_1`` and at ``kink_2`` (rad, or a `Kink`).
+    """Links b, [a c], b, d, [a c], d, the pair a, c locked at ``kink_1`` and at
+    ``kink_2`` (rad, or a `Kink`).
 
-    Twists in rad; the lengths b, c, d follow from the Bennett ratio and are checked if given. Raises
-    `GeometryError`. Source: Wohlhart (1991a), for equal kinks.
+    Twists in rad; the lengths b, c, d follow from the Bennett ratio and are checked if
+    given. Raises `GeometryError`. Source: Wohlhart (1991a), for equal kinks.
     """
     first = generalized_goldberg(a, alpha, beta, gamma, kink_1, b, c)
     second = generalized_goldberg(a, alpha, delta, gamma, kink_2, d, c)
@@ -47,9 +50,18 @@ ENTRIES = (
         "Wohlhart (1991a)",
         generalized_double_goldberg,
         (
-            Parameter("a", 1.7 * sin(radians(66)), "length", "length of link a", 0.3, 3.0),
+            Parameter(
+                "a", 1.7 * sin(radians(66)), "length", "length of link a", 0.3, 3.0
+            ),
             *(
-                Parameter(name, radians(value), "angle", f"twist of link {link}", radians(15), radians(110))
+                Parameter(
+                    name,
+                    radians(value),
+                    "angle",
+                    f"twist of link {link}",
+                    radians(15),
+                    radians(110),
+                )
                 for name, value, link in (
                     ("alpha", 66, "a"),
                     ("beta", 50, "b"),

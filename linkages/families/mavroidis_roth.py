@@ -1,4 +1,5 @@
-"""Mavroidis and Roth's 6R: four links of one Bennett ratio, and two equal links that are free."""
+"""Mavroidis and Roth's 6R: four links of one Bennett ratio, and two equal links that
+are free."""
 
 from __future__ import annotations
 
@@ -34,12 +35,14 @@ def mavroidis_roth(
     exchanged: bool = False,
     c: Any = None,
 ) -> Loop:
-    """Mavroidis and Roth's 6R: links a, l, a, c, l, c, or a, l, c, a, l, c when ``exchanged``.
+    """Mavroidis and Roth's 6R: links a, l, a, c, l, c, or a, l, c, a, l, c when
+    ``exchanged``.
 
-    ``alpha``, ``gamma`` are the twists (rad) of a and c; the length of c follows and is checked if given;
-    ``length`` and ``twist`` are those of the free link l. Raises `GeometryError`. Source: Mavroidis and
-    Roth (1995), equation (2.4.11) in Song (2013); the pattern R2 = -R5, R3 = -R6 moves as well:
-    two generalized Goldberg 5R of one kink angle on their common link pair have it.
+    ``alpha``, ``gamma`` are the twists (rad) of a and c; the length of c follows and is
+    checked if given; ``length`` and ``twist`` are those of the free link l. Raises
+    `GeometryError`. Source: Mavroidis and Roth (1995), equation (2.4.11) in Song
+    (2013); the pattern R2 = -R5, R3 = -R6 moves as well: two generalized Goldberg 5R of
+    one kink angle on their common link pair have it.
     """
     a, c = bennett_links(a, alpha, c=(gamma, c))
     free = Link(length, twist)
@@ -54,22 +57,41 @@ def mavroidis_roth(
 
 _PARAMETERS = (
     Parameter("a", 1.7 * sin(radians(35)), "length", "length of link a", 0.3, 3.0),
-    Parameter("alpha", radians(35), "angle", "twist of link a", radians(15), radians(110)),
-    Parameter("gamma", radians(81), "angle", "twist of link c", radians(15), radians(110)),
+    Parameter(
+        "alpha", radians(35), "angle", "twist of link a", radians(15), radians(110)
+    ),
+    Parameter(
+        "gamma", radians(81), "angle", "twist of link c", radians(15), radians(110)
+    ),
     Parameter("length", 1.13, "length", "length of the free links 23 and 56", 0.3, 2.0),
-    Parameter("twist", radians(73), "angle", "twist of the free links 23 and 56", radians(15), radians(165)),
+    Parameter(
+        "twist",
+        radians(73),
+        "angle",
+        "twist of the free links 23 and 56",
+        radians(15),
+        radians(165),
+    ),
     Parameter("R2", 0.31, "length", "offset R2", -0.5, 0.5),
     Parameter("R3", -0.47, "length", "offset R3", -0.5, 0.5),
 )
 
 
 def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
-    links = "a12 = a45, a23 = a56, a34 = a61" if exchanged else "a12 = a34, a23 = a56, a45 = a61"
+    links = (
+        "a12 = a45, a23 = a56, a34 = a61"
+        if exchanged
+        else "a12 = a34, a23 = a56, a45 = a61"
+    )
     order = "exchanged-" if exchanged else ""
     source = "Mavroidis and Roth (1995); Song (2013), eq. 2.4.11"
     if pattern is OffsetPattern.NEGATIVE:
         source = "found by closure"
-        source += "" if exchanged else "; the kinked double-Goldberg 6R of Wohlhart (1991a) is a case of it"
+        source += (
+            ""
+            if exchanged
+            else "; the kinked double-Goldberg 6R of Wohlhart (1991a) is a case of it"
+        )
     return Entry(
         f"{order}mavroidis-roth-{pattern.name.lower()}",
         f"Mavroidis and Roth's 6R, {'exchanged, ' if exchanged else ''}{pattern.value}",
@@ -85,4 +107,8 @@ def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
     )
 
 
-ENTRIES = tuple(_entry(pattern, exchanged) for exchanged in (False, True) for pattern in OffsetPattern)
+ENTRIES = tuple(
+    _entry(pattern, exchanged)
+    for exchanged in (False, True)
+    for pattern in OffsetPattern
+)

@@ -1,4 +1,5 @@
-"""Waldron's hybrid 6R: two Bennett loops, of any ratios, with a joint axis in common."""
+"""Waldron's hybrid 6R: two Bennett loops, of any ratios, with a joint axis in
+common."""
 
 from __future__ import annotations
 
@@ -27,29 +28,51 @@ def waldron_hybrid(
     b: Any = None,
     d: Any = None,
 ) -> Loop:
-    """Waldron's hybrid 6R of the Bennett loops a, b and c, d: links b, a, [b d], c, d, [c a].
+    """Waldron's hybrid 6R of the Bennett loops a, b and c, d: links b, a, [b d], c, d,
+    [c a].
 
-    Twists in rad; the lengths b and d follow from the two Bennett ratios, and are checked if given; the
-    links b, d are locked at ``kink_1`` and c, a at ``kink_2`` (rad, or a `Kink`); ``shift`` is the distance
-    of the loops along the common axis. Source: Waldron (1968); Baker (1993a) for the geometry.
+    Twists in rad; the lengths b and d follow from the two Bennett ratios, and are
+    checked if given; the links b, d are locked at ``kink_1`` and c, a at ``kink_2``
+    (rad, or a `Kink`); ``shift`` is the distance of the loops along the common axis.
+    Source: Waldron (1968); Baker (1993a) for the geometry.
     """
     a, b = bennett_links(a, alpha, b=(beta, b))
     c, d = bennett_links(c, gamma, d=(delta, d))
-    return share_joint(closed_chain(a, b, a, b), closed_chain(d, c, d, c), kink_1, kink_2, shift)
+    return share_joint(
+        closed_chain(a, b, a, b), closed_chain(d, c, d, c), kink_1, kink_2, shift
+    )
 
 
 def waldron_collinear(
-    a: Any, alpha: Any, beta: Any, c: Any, gamma: Any, delta: Any, b: Any = None, d: Any = None
+    a: Any,
+    alpha: Any,
+    beta: Any,
+    c: Any,
+    gamma: Any,
+    delta: Any,
+    b: Any = None,
+    d: Any = None,
 ) -> Loop:
-    """Waldron's hybrid 6R without offsets: b and d folded upon each other, a and c in line.
+    """Waldron's hybrid 6R without offsets: b and d folded upon each other, a and c in
+    line.
 
-    Links b, a, b - d, c, d, a + c. Source: Yu and Baker (1981); section 2.4.6 in Song (2013).
+    Links b, a, b - d, c, d, a + c. Source: Yu and Baker (1981); section 2.4.6 in Song
+    (2013).
     """
-    return waldron_hybrid(a, alpha, beta, c, gamma, delta, Kink.FOLDED, Kink.STRAIGHT, 0, b, d)
+    return waldron_hybrid(
+        a, alpha, beta, c, gamma, delta, Kink.FOLDED, Kink.STRAIGHT, 0, b, d
+    )
 
 
 def _twist(name: str, degrees: float, link: str) -> Parameter:
-    return Parameter(name, radians(degrees), "angle", f"twist of link {link}", radians(15), radians(110))
+    return Parameter(
+        name,
+        radians(degrees),
+        "angle",
+        f"twist of link {link}",
+        radians(15),
+        radians(110),
+    )
 
 
 _LOOPS = (
@@ -70,11 +93,31 @@ ENTRIES = (
         waldron_hybrid,
         (
             *_LOOPS,
-            Parameter("kink_1", radians(25), "angle", "angle between b and d", radians(-120), radians(120)),
-            Parameter("kink_2", radians(-70), "angle", "angle between c and a", radians(-120), radians(120)),
-            Parameter("shift", 0.37, "length", "distance along the common axis", -1.0, 1.0),
+            Parameter(
+                "kink_1",
+                radians(25),
+                "angle",
+                "angle between b and d",
+                radians(-120),
+                radians(120),
+            ),
+            Parameter(
+                "kink_2",
+                radians(-70),
+                "angle",
+                "angle between c and a",
+                radians(-120),
+                radians(120),
+            ),
+            Parameter(
+                "shift", 0.37, "length", "distance along the common axis", -1.0, 1.0
+            ),
         ),
-        (_RATIOS, "links 34 and 61 and the offsets R1, R3, R4, R6 from the spatial triangles", "R2 = R5 = 0"),
+        (
+            _RATIOS,
+            "links 34 and 61 and the offsets R1, R3, R4, R6 from the spatial triangles",
+            "R2 = R5 = 0",
+        ),
         facts={"joints": 6, "mobility": 1},
     ),
     Entry(

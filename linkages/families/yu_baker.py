@@ -1,11 +1,18 @@
-"""Yu and Baker's syncopated 6R: a collinear Waldron hybrid taken from a primary Bennett loop."""
+"""Yu and Baker's syncopated 6R: a collinear Waldron hybrid taken from a primary Bennett
+loop."""
 
 from __future__ import annotations
 
 from math import radians, sin
 from typing import Any
 
-from linkages.construction.link import Link, bennett_links, closed_chain, half_angle_ratio, syncopated_link
+from linkages.construction.link import (
+    Link,
+    bennett_links,
+    closed_chain,
+    half_angle_ratio,
+    syncopated_link,
+)
 from linkages.entry import Entry, Parameter
 from linkages.loop import Loop
 
@@ -13,23 +20,41 @@ __all__ = ["ENTRIES", "yu_baker", "yu_baker_two_ratios"]
 
 
 def yu_baker(
-    a: Any, alpha: Any, beta: Any, gamma: Any, delta: Any, b: Any = None, c: Any = None, d: Any = None
+    a: Any,
+    alpha: Any,
+    beta: Any,
+    gamma: Any,
+    delta: Any,
+    b: Any = None,
+    c: Any = None,
+    d: Any = None,
 ) -> Loop:
-    """Yu and Baker's syncopated 6R of one Bennett ratio: links e - b, a + c, e - d, c, b - d, a.
+    """Yu and Baker's syncopated 6R of one Bennett ratio: links e - b, a + c, e - d, c,
+    b - d, a.
 
-    Twists in rad; the lengths b, c, d follow and are checked if given; e/epsilon follows. Raises
-    `GeometryError`. Source: Yu and Baker (1981); equation (2.4.10) in Song (2013).
+    Twists in rad; the lengths b, c, d follow and are checked if given; e/epsilon
+    follows. Raises `GeometryError`. Source: Yu and Baker (1981); equation (2.4.10) in
+    Song (2013).
     """
     a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
     return _syncopated(a, b, c, d)
 
 
 def yu_baker_two_ratios(
-    a: Any, alpha: Any, beta: Any, c: Any, gamma: Any, delta: Any, b: Any = None, d: Any = None
+    a: Any,
+    alpha: Any,
+    beta: Any,
+    c: Any,
+    gamma: Any,
+    delta: Any,
+    b: Any = None,
+    d: Any = None,
 ) -> Loop:
-    """Yu and Baker's syncopated 6R with one Bennett ratio for a, b and another for c, d.
+    """Yu and Baker's syncopated 6R with one Bennett ratio for a, b and another for c,
+    d.
 
-    Source: as `yu_baker`; equation (2.4.10) in Song (2013) asks for one ratio, which is not needed.
+    Source: as `yu_baker`; equation (2.4.10) in Song (2013) asks for one ratio, which is
+    not needed.
     """
     a, b = bennett_links(a, alpha, b=(beta, b))
     c, d = bennett_links(c, gamma, d=(delta, d))
@@ -45,8 +70,20 @@ def _syncopated(a: Link, b: Link, c: Link, d: Link) -> Loop:
 _A = Parameter("a", 1.7 * sin(radians(35)), "length", "length of link a", 0.3, 3.0)
 _C = Parameter("c", 1.25 * sin(radians(81)), "length", "length of link c", 0.3, 3.0)
 _TWISTS = tuple(
-    Parameter(name, radians(value), "angle", f"twist of link {link}", radians(15), radians(110))
-    for name, value, link in (("alpha", 35, "a"), ("beta", 62, "b"), ("gamma", 81, "c"), ("delta", 48, "d"))
+    Parameter(
+        name,
+        radians(value),
+        "angle",
+        f"twist of link {link}",
+        radians(15),
+        radians(110),
+    )
+    for name, value, link in (
+        ("alpha", 35, "a"),
+        ("beta", 62, "b"),
+        ("gamma", 81, "c"),
+        ("delta", 48, "d"),
+    )
 )
 _CONDITIONS = (
     "links e-b, a+c, e-d, c, b-d, a, twists likewise, R = 0",

@@ -1,4 +1,5 @@
-"""The plane hexagons into which a table of the doubly collapsible octahedron may fold."""
+"""The plane hexagons into which a table of the doubly collapsible octahedron may
+fold."""
 
 from __future__ import annotations
 
@@ -13,18 +14,24 @@ LOOSE = 0.05  # of the perimeter: a hexagon that misses itself by more is not on
 
 
 def collapsible_hexagons(form: np.ndarray) -> Iterator[dict[str, float]]:
-    """Corners and radii for `linkages.families.bricard_collapsible`, from a table (3, 6) in normal form without lengths.
+    """Corners and radii for `linkages.families.bricard_collapsible`, from a table (3,
+    6) in normal form without lengths.
 
-    The offsets are the sides of the hexagon C' A B C A' B', the twists its turns, modulo pi and in either sense; of all
-    choices those are laid out that close. The centre of the circles lies on a bisector of the sides that meet at A and
-    one of those that meet at A'.
+    The offsets are the sides of the hexagon C' A B C A' B', the twists its turns,
+    modulo pi and in either sense; of all choices those are laid out that close. The
+    centre of the circles lies on a bisector of the sides that meet at A and one of
+    those that meet at A'.
     """
     lengths, twists, sides = form
     sides = np.abs(sides)
     if lengths.max() > 1e-3 * sides.max() or sides.min() == 0:
         return
-    choices = np.array(list(itertools.product(*([t, t - np.pi, -t, np.pi - t] for t in twists[:5]))))
-    heading = np.concatenate([np.zeros((len(choices), 1)), np.cumsum(choices, axis=1)], axis=1)
+    choices = np.array(
+        list(itertools.product(*([t, t - np.pi, -t, np.pi - t] for t in twists[:5])))
+    )
+    heading = np.concatenate(
+        [np.zeros((len(choices), 1)), np.cumsum(choices, axis=1)], axis=1
+    )
     steps = sides * np.exp(1j * heading)
     gaps = np.abs(steps.sum(axis=1)) / sides.sum()
     nearest = np.argsort(gaps)[:8]
@@ -47,9 +54,13 @@ def _circles(corners: np.ndarray) -> Iterator[dict[str, float]]:
         for mirror in (1, -1):
             p, q = a - centre, a_opposite - centre
             yield {
-                "x1": float(p.real), "y1": mirror * float(p.imag), "x2": float(q.real), "y2": mirror * float(q.imag),
-                "radius_1": radii[0], "radius_2": radii[1],
-            }  # fmt: skip
+                "x1": float(p.real),
+                "y1": mirror * float(p.imag),
+                "x2": float(q.real),
+                "y2": mirror * float(q.imag),
+                "radius_1": radii[0],
+                "radius_2": radii[1],
+            }
 
 
 def _bisector(u: complex, v: complex) -> complex:

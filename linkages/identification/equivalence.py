@@ -1,8 +1,9 @@
 """When two Denavit-Hartenberg tables are one linkage.
 
-A table is an array (3, n): lengths, twists (rad), offsets. The same linkage, or its mirror image, has many:
-it can be read from another joint or the other way round (`Reading`), every joint axis and every link can be
-reversed (`Signs`), and a half turn about x turns the sign of all offsets, which is the reversal of all axes:
+A table is an array (3, n): lengths, twists (rad), offsets. The same linkage, or its
+mirror image, has many: it can be read from another joint or the other way round
+(`Reading`), every joint axis and every link can be reversed (`Signs`), and a half turn
+about x turns the sign of all offsets, which is the reversal of all axes:
 
     axis i reversed   R_i -> -R_i, alpha_{i-1,i} -> alpha_{i-1,i} + pi, alpha_{i,i+1} -> alpha_{i,i+1} + pi
     link i reversed   a_{i,i+1} -> -a_{i,i+1}, alpha_{i,i+1} -> -alpha_{i,i+1}
@@ -17,7 +18,17 @@ import numpy as np
 
 from linkages.loop import Loop
 
-__all__ = ["Comparison", "Reading", "Signs", "as_loop", "compare", "find_signs", "normal_form", "readings", "table"]
+__all__ = [
+    "Comparison",
+    "Reading",
+    "Signs",
+    "as_loop",
+    "compare",
+    "find_signs",
+    "normal_form",
+    "readings",
+    "table",
+]
 
 
 def table(loop: Loop) -> np.ndarray:
@@ -33,7 +44,8 @@ def as_loop(values: np.ndarray, name: str = "") -> Loop:
 
 @dataclass(frozen=True)
 class Reading:
-    """A way to read a table: mirrored or not, forwards or backwards, from joint 1 + ``shift``."""
+    """A way to read a table: mirrored or not, forwards or backwards, from joint 1 +
+    ``shift``."""
 
     shift: int
     is_reversed: bool
@@ -41,16 +53,24 @@ class Reading:
 
     def of(self, values: np.ndarray) -> np.ndarray:
         """The table (3, n) as it reads this way."""
-        out = np.roll(_reversed(values) if self.is_reversed else values, -self.shift, axis=1)
+        out = np.roll(
+            _reversed(values) if self.is_reversed else values, -self.shift, axis=1
+        )
         return _mirrored(out) if self.is_mirrored else out
 
     def undone(self, values: np.ndarray) -> np.ndarray:
         """The table whose reading is ``values`` (3, n)."""
-        out = np.roll(_mirrored(values) if self.is_mirrored else values, self.shift, axis=1)
+        out = np.roll(
+            _mirrored(values) if self.is_mirrored else values, self.shift, axis=1
+        )
         return _reversed(out) if self.is_reversed else out
 
     def __str__(self) -> str:
-        start = f"from joint {self.shift + 1}" if not self.is_reversed else f"backwards, shift {self.shift}"
+        start = (
+            f"from joint {self.shift + 1}"
+            if not self.is_reversed
+            else f"backwards, shift {self.shift}"
+        )
         return start + (", mirrored" if self.is_mirrored else "")
 
 
@@ -66,13 +86,20 @@ def _reversed(values: np.ndarray) -> np.ndarray:
 
 def readings(n: int) -> tuple[Reading, ...]:
     """The 4 n ways to read a table of n joints."""
-    return tuple(Reading(k, back, mirror) for mirror in (False, True) for back in (False, True) for k in range(n))
+    return tuple(
+        Reading(k, back, mirror)
+        for mirror in (False, True)
+        for back in (False, True)
+        for k in range(n)
+    )
 
 
 def normal_form(values: np.ndarray) -> np.ndarray:
-    """The table with no negative length and every twist in [0, pi), axes and links being reversed as needed.
+    """The table with no negative length and every twist in [0, pi), axes and links
+    being reversed as needed.
 
-    Offsets keep their size only. The parity of the axis reversals is lost: use it to read off parameters.
+    Offsets keep their size only. The parity of the axis reversals is lost: use it to
+    read off parameters.
     """
     lengths, twists, offsets = values
     turned = np.mod(np.where(lengths < 0, -twists, twists), np.pi)
@@ -90,15 +117,23 @@ class Signs:
     def of(self, values: np.ndarray) -> np.ndarray:
         """The table (3, n) with these links and axes reversed."""
         turns = np.where(self.axes * np.roll(self.axes, -1) < 0, np.pi, 0.0)
-        return np.array([self.links * values[0], self.links * values[1] + turns, self.axes * values[2]])
+        return np.array(
+            [
+                self.links * values[0],
+                self.links * values[1] + turns,
+                self.axes * values[2],
+            ]
+        )
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Distances of candidates from a target, each the root of a sum of squares, lengths in its unit, angles in rad.
+    """Distances of candidates from a target, each the root of a sum of squares, lengths
+    in its unit, angles in rad.
 
-    ``exact`` (k,) allows reversed links and axes; ``blind`` (k,), never larger, takes every twist modulo pi and every
-    offset without its sign as well. ``axes`` (k,) is the number of the best pattern of reversed axes.
+    ``exact`` (k,) allows reversed links and axes; ``blind`` (k,), never larger, takes
+    every twist modulo pi and every offset without its sign as well. ``axes`` (k,) is
+    the number of the best pattern of reversed axes.
     """
 
     blind: np.ndarray
@@ -108,24 +143,33 @@ class Comparison:
 
 @cache
 def _patterns(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Axis signs (2^n, n), and one-hot matrices (2 n, 2^n) that choose from costs of twists and of offsets."""
+    """Axis signs (2^n, n), and one-hot matrices (2 n, 2^n) that choose from costs of
+    twists and of offsets."""
     flips = (np.arange(2**n)[:, None] >> np.arange(n)) & 1
     turns = flips ^ np.roll(flips, -1, axis=1)
-    choose = [np.stack([1 - which, which], axis=-1).reshape(2**n, 2 * n).T.astype(float) for which in (turns, flips)]
+    choose = [
+        np.stack([1 - which, which], axis=-1).reshape(2**n, 2 * n).T.astype(float)
+        for which in (turns, flips)
+    ]
     return 1.0 - 2.0 * flips, choose[0], choose[1]
 
 
 def compare(target: np.ndarray, candidates: np.ndarray, unit: float) -> Comparison:
-    """How far ``candidates`` (k, 3, n) are from ``target`` (3, n) or (k, 3, n), up to reversed links and axes.
+    """How far ``candidates`` (k, 3, n) are from ``target`` (3, n) or (k, 3, n), up to
+    reversed links and axes.
 
     Lengths and offsets are measured in ``unit``.
     """
     k, _, n = candidates.shape
     links, _ = _link_costs(target, candidates, unit)
     wanted, offsets = np.atleast_2d(target[..., 2, :]), candidates[:, 2]
-    joints = np.stack([(wanted - offsets) ** 2, (wanted + offsets) ** 2], axis=-1) / unit**2  # (k, n, 2)
+    joints = (
+        np.stack([(wanted - offsets) ** 2, (wanted + offsets) ** 2], axis=-1) / unit**2
+    )  # (k, n, 2)
     _, of_twists, of_offsets = _patterns(n)
-    total = links.reshape(k, 2 * n) @ of_twists + joints.reshape(k, 2 * n) @ of_offsets  # (k, 2^n)
+    total = (
+        links.reshape(k, 2 * n) @ of_twists + joints.reshape(k, 2 * n) @ of_offsets
+    )  # (k, 2^n)
     best = total.argmin(axis=1)
     blind = links.min(axis=2).sum(axis=1) + joints.min(axis=2).sum(axis=1)
     exact = total[np.arange(k), best]
@@ -133,7 +177,8 @@ def compare(target: np.ndarray, candidates: np.ndarray, unit: float) -> Comparis
 
 
 def find_signs(target: np.ndarray, candidate: np.ndarray, unit: float) -> Signs:
-    """The reversals that bring ``candidate`` (3, n) as near to ``target`` (3, n) as they can."""
+    """The reversals that bring ``candidate`` (3, n) as near to ``target`` (3, n) as
+    they can."""
     found = compare(target, candidate[None], unit)
     n = candidate.shape[1]
     axes = _patterns(n)[0][found.axes[0]]
@@ -142,8 +187,11 @@ def find_signs(target: np.ndarray, candidate: np.ndarray, unit: float) -> Signs:
     return Signs(np.where(reverse[0, np.arange(n), turns], -1.0, 1.0), axes)
 
 
-def _link_costs(target: np.ndarray, candidates: np.ndarray, unit: float) -> tuple[np.ndarray, np.ndarray]:
-    """Squared distances (k, n, 2) of links without and with pi added to the twist, and whether reversed."""
+def _link_costs(
+    target: np.ndarray, candidates: np.ndarray, unit: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Squared distances (k, n, 2) of links without and with pi added to the twist, and
+    whether reversed."""
     costs = []
     for sign in (1.0, -1.0):
         length = (target[..., 0, :] - sign * candidates[:, 0]) / unit

@@ -1,9 +1,11 @@
 """Which linkages of the catalogue a Denavit-Hartenberg table is a case of.
 
-The geometry of an entry follows from its free parameters by its constructor. So for every entry and every way to read
-the table, the parameters are read off (`linkages.identification.recovery`), the member is built and compared, and the best is fitted
-by Gauss-Newton with the reversals of axes and links held. The table is a case of the entry when the member so found is
-the same table up to `linkages.identification.equivalence`, within a tolerance.
+The geometry of an entry follows from its free parameters by its constructor. So for
+every entry and every way to read the table, the parameters are read off
+(`linkages.identification.recovery`), the member is built and compared, and the best is
+fitted by Gauss-Newton with the reversals of axes and links held. The table is a case of
+the entry when the member so found is the same table up to
+`linkages.identification.equivalence`, within a tolerance.
 """
 
 from __future__ import annotations
@@ -27,18 +29,22 @@ from linkages.loop import MIN_JOINTS, GeometryError, Loop
 __all__ = ["Identification", "LockedJoint", "Match", "identify"]
 
 TOLERANCE = 1e-8
-ALIKE = 3.0  # of fits that miss by amounts within this factor, the most special one counts as the nearest
+# of fits that miss by amounts within this factor, the most special one counts as the
+# nearest
+ALIKE = 3.0
 
 
 @dataclass(frozen=True)
 class Match:
     """A member of an entry that a table is, or nearly is.
 
-    ``parameters`` has lengths in the unit of the table, angles in rad; ``member`` is the table (3, n) of that member,
-    read and signed as the given one; ``residuals`` (3, n) are given less member, lengths and offsets relative to the
-    characteristic length, twists in rad; ``distance`` is their norm. ``freedom`` says how many parameters matter at
-    this member, scale included; it is 0 for a guess too far off to be fitted. ``conditions`` pairs each condition of
-    the entry with how far the given table is from it, see `linkages.identification.condition_residuals`.
+    ``parameters`` has lengths in the unit of the table, angles in rad; ``member`` is
+    the table (3, n) of that member, read and signed as the given one; ``residuals`` (3,
+    n) are given less member, lengths and offsets relative to the characteristic length,
+    twists in rad; ``distance`` is their norm. ``freedom`` says how many parameters
+    matter at this member, scale included; it is 0 for a guess too far off to be fitted.
+    ``conditions`` pairs each condition of the entry with how far the given table is
+    from it, see `linkages.identification.condition_residuals`.
     """
 
     entry: Entry
@@ -53,7 +59,8 @@ class Match:
 
 @dataclass(frozen=True)
 class LockedJoint:
-    """A joint (from 1) that, locked at ``angle`` (0 or pi, rad), leaves a known linkage of one joint fewer."""
+    """A joint (from 1) that, locked at ``angle`` (0 or pi, rad), leaves a known linkage
+    of one joint fewer."""
 
     joint: int
     angle: float
@@ -62,7 +69,8 @@ class LockedJoint:
 
 @dataclass(frozen=True)
 class Identification:
-    """What a loop is: ``matches``, the most special first, ``nearest`` others by distance, and ``locked`` joints."""
+    """What a loop is: ``matches``, the most special first, ``nearest`` others by
+    distance, and ``locked`` joints."""
 
     loop: Loop
     tolerance: float
@@ -77,11 +85,16 @@ class Identification:
 
 
 def identify(
-    loop: Loop, tolerance: float = TOLERANCE, entries: Iterable[Entry] | None = None, locking: bool = True
+    loop: Loop,
+    tolerance: float = TOLERANCE,
+    entries: Iterable[Entry] | None = None,
+    locking: bool = True,
 ) -> Identification:
-    """The linkages of the catalogue that ``loop`` is a case of, up to relabelling, reversals, mirror image and scale.
+    """The linkages of the catalogue that ``loop`` is a case of, up to relabelling,
+    reversals, mirror image and scale.
 
-    ``tolerance`` bounds `Match.distance`; ``entries`` restricts the search; ``locking`` also locks each joint in turn.
+    ``tolerance`` bounds `Match.distance`; ``entries`` restricts the search; ``locking``
+    also locks each joint in turn.
     """
     given, unit = table(loop), loop.characteristic_length
     views, found = views_of(given), []
@@ -89,7 +102,10 @@ def identify(
         member = best_member(entry, views, unit) if joints_of(entry) == loop.n else None
         if member is not None:
             found.append(_match(member, entry, given, unit))
-    matches = sorted((m for m in found if m.distance <= tolerance), key=lambda m: (m.freedom, len(m.parameters)))
+    matches = sorted(
+        (m for m in found if m.distance <= tolerance),
+        key=lambda m: (m.freedom, len(m.parameters)),
+    )
     others = _nearest_first([m for m in found if m.distance > tolerance])
     locked = _locked(loop, tolerance) if locking else ()
     return Identification(loop, tolerance, tuple(matches), others, locked)
@@ -101,22 +117,38 @@ def _match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> Matc
     residuals[1] = np.mod(residuals[1] + np.pi, 2 * np.pi) - np.pi
     kinds = {p.name: p.kind for p in entry.parameters}
     parameters = {
-        name: float(np.mod(value + np.pi, 2 * np.pi) - np.pi) if kinds[name] == "angle" else value
+        name: float(np.mod(value + np.pi, 2 * np.pi) - np.pi)
+        if kinds[name] == "angle"
+        else value
         for name, value in member.parameters.items()
     }
     expected = given - residuals * [[unit], [1.0], [unit]]
-    labelled = member.signs.of(member.view.values) / [[unit], [1.0], [unit]]  # reversing twice is not reversing
-    conditions = tuple((text, condition_residual(text, labelled)) for text in entry.conditions)
+    labelled = member.signs.of(member.view.values) / [
+        [unit],
+        [1.0],
+        [unit],
+    ]  # reversing twice is not reversing
+    conditions = tuple(
+        (text, condition_residual(text, labelled)) for text in entry.conditions
+    )
     return Match(
-        entry, parameters, member.view.reading, expected, residuals, member.distance, member.freedom, conditions
+        entry,
+        parameters,
+        member.view.reading,
+        expected,
+        residuals,
+        member.distance,
+        member.freedom,
+        conditions,
     )
 
 
 def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:
-    """By distance; those that miss by amounts alike come in the order of their freedom, the most special first.
+    """By distance; those that miss by amounts alike come in the order of their freedom,
+    the most special first.
 
-    A distance is divided by the root of the number of conditions, so that a family with more parameters does not win
-    by them.
+    A distance is divided by the root of the number of conditions, so that a family with
+    more parameters does not win by them.
     """
     left = sorted(matches, key=_spread)
     out: list[Match] = []
@@ -128,14 +160,18 @@ def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:
 
 
 def _spread(match: Match) -> float:
-    """The distance per condition, of which there are as many as numbers in the table less the freedom."""
+    """The distance per condition, of which there are as many as numbers in the table
+    less the freedom."""
     return match.distance / max(match.residuals.size - match.freedom, 1) ** 0.5
 
 
 @cache
 def _for_locking() -> tuple[Entry, ...]:
-    """The catalogue without the linkages of tori, which are Bennett and generalized Goldberg linkages."""
-    return tuple(entry for entry in catalogue().values() if not entry.name.startswith("torus"))
+    """The catalogue without the linkages of tori, which are Bennett and generalized
+    Goldberg linkages."""
+    return tuple(
+        entry for entry in catalogue().values() if not entry.name.startswith("torus")
+    )
 
 
 def _locked(loop: Loop, tolerance: float) -> tuple[LockedJoint, ...]:
@@ -149,7 +185,11 @@ def _locked(loop: Loop, tolerance: float) -> tuple[LockedJoint, ...]:
                 smaller = lock(loop, joint, kink)
             except GeometryError:
                 continue
-            matches = identify(smaller, tolerance, _for_locking(), locking=False).matches
+            matches = identify(
+                smaller, tolerance, _for_locking(), locking=False
+            ).matches
             if matches:
-                out.append(LockedJoint(joint, np.pi if kink is Kink.FOLDED else 0.0, matches))
+                out.append(
+                    LockedJoint(joint, np.pi if kink is Kink.FOLDED else 0.0, matches)
+                )
     return tuple(out)

@@ -1,7 +1,8 @@
-"""Parameters of the 5R of two pairs of tori, read off the table of a generalized Goldberg 5R.
+"""Parameters of the 5R of two pairs of tori, read off the table of a generalized
+Goldberg 5R.
 
-The shift along the axis of S is a redundant parameter: it is chosen so that the ratio s/r lies on the side of 1 that
-the variant asks for.
+The shift along the axis of S is a redundant parameter: it is chosen so that the ratio
+s/r lies on the side of 1 that the variant asks for.
 """
 
 from __future__ import annotations
@@ -24,7 +25,9 @@ SHIFTS = (0.0, 0.3, 0.6, 1.0, 1.7, 3.0)  # in units of the first length, either 
 MARGIN, LOOSE = 1.01, 0.05
 
 
-def torus_hint(variant: Mapping[str, Any]) -> Callable[[np.ndarray], Iterator[dict[str, float]]]:
+def torus_hint(
+    variant: Mapping[str, Any],
+) -> Callable[[np.ndarray], Iterator[dict[str, float]]]:
     """The hint for `linkages.families.tori.torus_5r` with the keywords ``variant``."""
     return partial(_hint, variant)
 
@@ -35,7 +38,9 @@ def _hint(variant: Mapping[str, Any], form: np.ndarray) -> Iterator[dict[str, fl
     for shift, supplement in itertools.product(SHIFTS, (False, True)):
         found = False
         for sign in (1, -1) if shift else (1,):
-            for parameters in _at_shift(variant, form, sign * shift * form[0, 0], supplement):
+            for parameters in _at_shift(
+                variant, form, sign * shift * form[0, 0], supplement
+            ):
                 found = True
                 yield parameters
         if found and supplement:
@@ -43,10 +48,15 @@ def _hint(variant: Mapping[str, Any], form: np.ndarray) -> Iterator[dict[str, fl
 
 
 def _is_goldberg_like(form: np.ndarray) -> bool:
-    """Whether links 12 and 45 are alike, link 23 has their Bennett ratio, and joints 2, 3, 4 no offset, nearly."""
+    """Whether links 12 and 45 are alike, link 23 has their Bennett ratio, and joints 2,
+    3, 4 no offset, nearly."""
     (a, t, offsets), unit = form, form[0].mean()
     gaps = (a[0] - a[3], a[1] * sin(t[0]) - a[0] * sin(t[1]), *offsets[1:4])
-    return bool(min(a[:4]) > 0 and max(map(abs, gaps)) < LOOSE * unit and abs(sin(t[0] - t[3])) < LOOSE)
+    return bool(
+        min(a[:4]) > 0
+        and max(map(abs, gaps)) < LOOSE * unit
+        and abs(sin(t[0] - t[3])) < LOOSE
+    )
 
 
 def _at_shift(
@@ -61,21 +71,33 @@ def _at_shift(
     if (ratio > 1 / MARGIN) if variant["second"] == 3 else (ratio < MARGIN):
         return
     parameters = {
-        "r1": radius, "s1": hypot(a[side], pin * sin(t[side])), "chi1": atan2(length * sin(twist), radius * cos(twist)),
-        "theta1": float(np.arcsin(shift * sin(twist) ** 2 / radius)), "ratio": ratio,
-    }  # fmt: skip
+        "r1": radius,
+        "s1": hypot(a[side], pin * sin(t[side])),
+        "chi1": atan2(length * sin(twist), radius * cos(twist)),
+        "theta1": float(np.arcsin(shift * sin(twist) ** 2 / radius)),
+        "ratio": ratio,
+    }
     try:
         zero, sense = _kink_without_turn(parameters, **variant)
     except (GeometryError, ArithmeticError):
         return
     for kink, turn in itertools.product(kinks(t[2], t[1], t[4]), (0.0, pi)):
-        yield {**parameters, "delta": (sense * (kink + turn - zero) + pi) % (2 * pi) - pi}
+        yield {
+            **parameters,
+            "delta": (sense * (kink + turn - zero) + pi) % (2 * pi) - pi,
+        }
 
 
 def _kink_without_turn(
-    parameters: Mapping[str, float], first: int, second: int, z_sign: int, u_sign: int, mirrored: bool
+    parameters: Mapping[str, float],
+    first: int,
+    second: int,
+    z_sign: int,
+    u_sign: int,
+    mirrored: bool,
 ) -> tuple[float, int]:
-    """The kink (rad) that `torus_5r` gives to its composite link at delta = 0, and its derivative by delta."""
+    """The kink (rad) that `torus_5r` gives to its composite link at delta = 0, and its
+    derivative by delta."""
     torus = torus_link(parameters["r1"], parameters["chi1"], parameters["theta1"])
     pin, other, other_pin = companion(torus, parameters["s1"])
     if first == 2:

@@ -1,20 +1,24 @@
-"""Complete slices: every real configuration of a closed 4R, 5R or 6R loop with one joint angle given.
+"""Complete slices: every real configuration of a closed 4R, 5R or 6R loop with one
+joint angle given.
 
-The elimination. With joint k held, n - 1 joints remain, with fixed links G between their axes (one of them
-is the pair of links at joint k). In unit dual quaternions the closure reads ``Z_1 G_1 ... Z_m G_m = +-1``,
-Z = cos(theta/2) + k sin(theta/2), m = n - 1. Split it as
+The elimination. With joint k held, n - 1 joints remain, with fixed links G between
+their axes (one of them is the pair of links at joint k). In unit dual quaternions the
+closure reads ``Z_1 G_1 ... Z_m G_m = +-1``, Z = cos(theta/2) + k sin(theta/2), m = n -
+1. Split it as
 
     Z_a G_a Z_b  =  +- conj(G_v) conj(Z_v) [conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b)]
 
-Either side runs through a space of only four dimensions (of eight): with G = G' + G'', the parts that
-commute and anticommute with k, ``Z_a G Z_b = exp(k (a + b)/2) G' + exp(k (a - b)/2) G''`` is
-``x G' + y G''`` with complex x, y (k the imaginary unit) and |x| = |y|. Projecting the right side on what
-the left one cannot reach leaves ``(cos(v/2) M_0 + sin(v/2) M_1) y = 0``, a 4 x 4 eigenvalue problem for the
-joint v: at most four values, real or complex. Its null vectors with |x| = |y| on both sides are all
-configurations of the slice. That is the dialytic elimination of Raghavan and Roth (1993) with the
-linear spaces of 2R chains of Husty, Pfurner and Schrocker (2007) in place of the 14 equations. There are
-five choices of v: a symmetric geometry makes some of them singular for every slice, so the most regular
-one is taken. A 5R loop needs no v, a 4R loop has a single joint on the right.
+Either side runs through a space of only four dimensions (of eight): with G = G' + G'',
+the parts that commute and anticommute with k, ``Z_a G Z_b = exp(k (a + b)/2) G' + exp(k
+(a - b)/2) G''`` is ``x G' + y G''`` with complex x, y (k the imaginary unit) and |x| =
+|y|. Projecting the right side on what the left one cannot reach leaves ``(cos(v/2) M_0
++ sin(v/2) M_1) y = 0``, a 4 x 4 eigenvalue problem for the joint v: at most four
+values, real or complex. Its null vectors with |x| = |y| on both sides are all
+configurations of the slice. That is the dialytic elimination of Raghavan and Roth
+(1993) with the linear spaces of 2R chains of Husty, Pfurner and Schrocker (2007) in
+place of the 14 equations. There are five choices of v: a symmetric geometry makes some
+of them singular for every slice, so the most regular one is taken. A 5R loop needs no
+v, a 4R loop has a single joint on the right.
 """
 
 from __future__ import annotations
@@ -29,11 +33,16 @@ from linkages.loop import GeometryError, Loop
 
 __all__ = ["Slice", "slice_configurations"]
 
-CLOSURE = 1e-13  # a configuration closes: largest entry of T_1 ... T_n - I, lengths in characteristic lengths
+# a configuration closes: largest entry of T_1 ... T_n - I, lengths in characteristic
+# lengths
+CLOSURE = 1e-13
 SINGULAR = 1e-10  # below this the pencil of an elimination is singular
-INFINITE = 1e-4  # exp(i theta) below this, or above its inverse: a complex solution at infinity
+# exp(i theta) below this, or above its inverse: a complex solution at infinity
+INFINITE = 1e-4
 EQUAL = 1e-6  # rad: two configurations that agree to this are one
-ROOM = 40  # configurations kept of one slice: four are possible, more only where a continuum is sampled
+# configurations kept of one slice: four are possible, more only where a continuum is
+# sampled
+ROOM = 40
 CANDIDATES = 64  # of one slice: twelve, more only where a continuum is sampled
 STARTS = 48  # starts of Gauss-Newton in a slice that the elimination cannot decide
 COMPLETE, CONTINUUM, UNDECIDED = 0, 1, 2
@@ -46,13 +55,16 @@ REASONS = {
 
 @dataclass(frozen=True)
 class Slice:
-    """Configurations of a loop in which joint ``joint`` (from 1) has one of the ``angles`` (m,), rad.
+    """Configurations of a loop in which joint ``joint`` (from 1) has one of the
+    ``angles`` (m,), rad.
 
-    ``configurations`` (p, n) rad in (-pi, pi]; ``index`` (p,): the entry of ``angles`` each belongs to;
-    ``closure`` (p,): largest entry of T_1 ... T_n - I, lengths in characteristic lengths; ``n_complex``
-    (m,): number of finite configurations, real or complex, or -1 where ``degenerate`` (m,): there the
-    list is not complete, and ``reason`` says why (empty if there is none). ``nonreal`` (q, n), complex, are the
-    finite configurations that are not real, conjugates included, ``nonreal_index`` (q,) their entries of ``angles``.
+    ``configurations`` (p, n) rad in (-pi, pi]; ``index`` (p,): the entry of ``angles``
+    each belongs to; ``closure`` (p,): largest entry of T_1 ... T_n - I, lengths in
+    characteristic lengths; ``n_complex`` (m,): number of finite configurations, real or
+    complex, or -1 where ``degenerate`` (m,): there the list is not complete, and
+    ``reason`` says why (empty if there is none). ``nonreal`` (q, n), complex, are the
+    finite configurations that are not real, conjugates included, ``nonreal_index`` (q,)
+    their entries of ``angles``.
     """
 
     joint: int
@@ -68,7 +80,8 @@ class Slice:
 
     @property
     def is_complete(self) -> bool:
-        """True when no slice is degenerate: no configuration with these angles is missing."""
+        """True when no slice is degenerate: no configuration with these angles is
+        missing."""
         return not np.any(self.degenerate)
 
     def at(self, i: int) -> np.ndarray:
@@ -77,10 +90,11 @@ class Slice:
 
 
 def slice_configurations(loop: Loop, joint: int, angles: np.ndarray) -> Slice:
-    """All real configurations of ``loop`` with joint ``joint`` (from 1) at each of ``angles`` (m,), rad.
+    """All real configurations of ``loop`` with joint ``joint`` (from 1) at each of
+    ``angles`` (m,), rad.
 
-    Raises `GeometryError` for a loop of more than six joints, a joint that it does not have, and angles
-    that are not a list of finite numbers.
+    Raises `GeometryError` for a loop of more than six joints, a joint that it does not
+    have, and angles that are not a list of finite numbers.
     """
     angles = np.atleast_1d(np.asarray(angles, dtype=float))
     if not 4 <= loop.n <= 6:
@@ -98,16 +112,30 @@ def slice_configurations(loop: Loop, joint: int, angles: np.ndarray) -> Slice:
     index, configurations = np.repeat(each, count), found[kept]
     gap = loop.frames(configurations)[:, -1] - np.eye(4)
     gap[:, :3, 3] /= scale
-    reasons = [f"{np.sum(status == s)} of {len(angles)} slices: {text}" for s, text in REASONS.items() if s in status]
+    reasons = [
+        f"{np.sum(status == s)} of {len(angles)} slices: {text}"
+        for s, text in REASONS.items()
+        if s in status
+    ]
     return Slice(
-        joint, angles, configurations, index, np.abs(gap).max(axis=(1, 2)),
-        np.where(status == COMPLETE, count + n_others, -1), status != COMPLETE, "; ".join(reasons),
-        others[hidden], np.repeat(each, n_others),
-    )  # fmt: skip
+        joint,
+        angles,
+        configurations,
+        index,
+        np.abs(gap).max(axis=(1, 2)),
+        np.where(status == COMPLETE, count + n_others, -1),
+        status != COMPLETE,
+        "; ".join(reasons),
+        others[hidden],
+        np.repeat(each, n_others),
+    )
 
 
-def _link_quaternions(lengths: np.ndarray, twists: np.ndarray, offsets: np.ndarray) -> np.ndarray:
-    """Unit dual quaternions (n, 8), real part first, of the links Tz(R) Tx(a) Rx(alpha)."""
+def _link_quaternions(
+    lengths: np.ndarray, twists: np.ndarray, offsets: np.ndarray
+) -> np.ndarray:
+    """Unit dual quaternions (n, 8), real part first, of the links Tz(R) Tx(a)
+    Rx(alpha)."""
     c, s = np.cos(twists / 2), np.sin(twists / 2)
     zero = np.zeros_like(c)
     dual = 0.5 * np.array([-lengths * s, lengths * c, offsets * s, offsets * c])
@@ -119,7 +147,8 @@ def _link_quaternions(lengths: np.ndarray, twists: np.ndarray, offsets: np.ndarr
 
 @register_jitable
 def _copy(target, source):
-    """Fill ``target`` (k,); a loop, because numba takes a second to compile an assignment of rows."""
+    """Fill ``target`` (k,); a loop, because numba takes a second to compile an
+    assignment of rows."""
     for i in range(len(target)):
         target[i] = source[i]
 
@@ -154,7 +183,12 @@ def _conjugate(q):
 @register_jitable
 def _turned(angle, q):
     """(cos(angle/2) + k sin(angle/2)) q."""
-    c, s, out, side = np.cos(angle / 2), np.sin(angle / 2), np.empty_like(q), _turn_by_left(q)
+    c, s, out, side = (
+        np.cos(angle / 2),
+        np.sin(angle / 2),
+        np.empty_like(q),
+        _turn_by_left(q),
+    )
     for i in range(8):
         out[i] = c * q[i] + s * side[i]
     return out
@@ -165,7 +199,12 @@ def _turn_by_left(q):
     """k q."""
     out = np.empty_like(q)
     for i in (0, 4):
-        out[i], out[i + 1], out[i + 2], out[i + 3] = -q[i + 3], -q[i + 2], q[i + 1], q[i]
+        out[i], out[i + 1], out[i + 2], out[i + 3] = (
+            -q[i + 3],
+            -q[i + 2],
+            q[i + 1],
+            q[i],
+        )
     return out
 
 
@@ -174,11 +213,14 @@ def _turn_by_left(q):
 
 @register_jitable
 def _pair_space(link):
-    """Orthonormal rows (4, 8) of span(G', k G', G'', k G''), (4, 8) of its complement, and the norms (2,) of
-    G' and G''. A norm of zero (then with zero rows) means that the two axes are one line."""
+    """Orthonormal rows (4, 8) of span(G', k G', G'', k G''), (4, 8) of its complement,
+    and the norms (2,) of G' and G''. A norm of zero (then with zero rows) means that
+    the two axes are one line."""
     rows, complement, norms = np.zeros((4, 8)), np.zeros((4, 8)), np.zeros(2)
     for part in range(2):
-        i, j = (0, 3) if part == 0 else (1, 2)  # w + z k commutes with k, (x + y k) i anticommutes
+        i, j = (
+            (0, 3) if part == 0 else (1, 2)
+        )  # w + z k commutes with k, (x + y k) i anticommutes
         g0, g1, h0, h1 = link[i], link[j], link[i + 4], link[j + 4]
         norm = np.sqrt(g0 * g0 + g1 * g1 + h0 * h0 + h1 * h1)
         norms[part] = norm
@@ -187,8 +229,18 @@ def _pair_space(link):
         g0, g1, h0, h1 = g0 / norm, g1 / norm, h0 / norm, h1 / norm
         r = 2 * part
         rows[r, i], rows[r, j], rows[r, i + 4], rows[r, j + 4] = g0, g1, h0, h1
-        rows[r + 1, i], rows[r + 1, j], rows[r + 1, i + 4], rows[r + 1, j + 4] = -g1, g0, -h1, h0
-        complement[r, i], complement[r, j], complement[r, i + 4], complement[r, j + 4] = -h0, h1, g0, -g1
+        rows[r + 1, i], rows[r + 1, j], rows[r + 1, i + 4], rows[r + 1, j + 4] = (
+            -g1,
+            g0,
+            -h1,
+            h0,
+        )
+        (
+            complement[r, i],
+            complement[r, j],
+            complement[r, i + 4],
+            complement[r, j + 4],
+        ) = -h0, h1, g0, -g1
         complement[r + 1, i], complement[r + 1, j] = -h1, -h0
         complement[r + 1, i + 4], complement[r + 1, j + 4] = g1, g0
     return rows, complement, norms
@@ -196,7 +248,8 @@ def _pair_space(link):
 
 @register_jitable
 def _modulus_defect(p, q, norms):
-    """Bilinear form of |x|^2 - |y|^2 for coordinates p = q in the rows of `_pair_space`."""
+    """Bilinear form of |x|^2 - |y|^2 for coordinates p = q in the rows of
+    `_pair_space`."""
     total = norms[0] ** 2 + norms[1] ** 2
     first, second = norms[1] ** 2 / total, norms[0] ** 2 / total
     return first * (p[0] * q[0] + p[1] * q[1]) - second * (p[2] * q[2] + p[3] * q[3])
@@ -204,10 +257,13 @@ def _modulus_defect(p, q, norms):
 
 @register_jitable
 def _pair_turns(p, norms):
-    """exp(i theta_a), exp(i theta_b) of Z_a G Z_b with coordinates p; zeros where tan(theta/2) = +-i."""
+    """exp(i theta_a), exp(i theta_b) of Z_a G Z_b with coordinates p; zeros where
+    tan(theta/2) = +-i."""
     x_plus, x_minus = (p[0] + 1j * p[1]) * norms[1], (p[0] - 1j * p[1]) * norms[1]
     y_plus, y_minus = (p[2] + 1j * p[3]) * norms[0], (p[2] - 1j * p[3]) * norms[0]
-    size = np.sqrt(abs(x_plus) ** 2 + abs(x_minus) ** 2 + abs(y_plus) ** 2 + abs(y_minus) ** 2)
+    size = np.sqrt(
+        abs(x_plus) ** 2 + abs(x_minus) ** 2 + abs(y_plus) ** 2 + abs(y_minus) ** 2
+    )
     if min(abs(x_minus), abs(x_plus), abs(y_plus), abs(y_minus)) <= INFINITE * size:
         return 0j, 0j
     return y_plus / x_minus, y_minus / x_minus
@@ -215,7 +271,8 @@ def _pair_turns(p, norms):
 
 @register_jitable
 def _right_space(after_b, after_c, after_d):
-    """Rows (4, 8) spanning conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b), and the norms of the pair."""
+    """Rows (4, 8) spanning conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b), and the
+    norms of the pair."""
     rows, _, norms = _pair_space(_conjugate(after_c))
     left, right = _conjugate(after_d), _conjugate(after_b)
     for i in range(4):
@@ -248,7 +305,8 @@ def _size(p):
 
 @register_jitable
 def _left_coordinates(y, rows, left):
-    """Coordinates (4,) on the left side of the element with coordinates y on the right."""
+    """Coordinates (4,) on the left side of the element with coordinates y on the
+    right."""
     x = np.zeros(4, np.complex128)
     for k in range(8):
         entry = 0j
@@ -261,7 +319,8 @@ def _left_coordinates(y, rows, left):
 
 @register_jitable
 def _record(y, rows, left, left_norms, right_norms, turns, defects, count):
-    """Append the joints (a, b, c, d) of the null vector y to ``turns``; their number afterwards."""
+    """Append the joints (a, b, c, d) of the null vector y to ``turns``; their number
+    afterwards."""
     if count >= len(turns):
         return count
     x = _left_coordinates(y, rows, left)
@@ -281,7 +340,8 @@ def _record(y, rows, left, left_norms, right_norms, turns, defects, count):
 
 @register_jitable
 def _line_forms(p, q, rows, left, left_norms, right_norms):
-    """Coefficients (2, 3) of the modulus defects of s p + t q, left and right, in s s, s t, t t."""
+    """Coefficients (2, 3) of the modulus defects of s p + t q, left and right, in s s,
+    s t, t t."""
     out = np.zeros((2, 3), np.complex128)
     x, z = _left_coordinates(p, rows, left), _left_coordinates(q, rows, left)
     for side in range(2 if len(rows) == 4 else 1):
@@ -294,8 +354,9 @@ def _line_forms(p, q, rows, left, left_norms, right_norms):
 
 @register_jitable
 def _record_line(p, q, rows, left, left_norms, right_norms, turns, defects, count):
-    """Append the points of the line through p and q on the quadrics |x| = |y|; their number afterwards, and
-    the largest coefficient of the quadrics: both contain the line when it vanishes."""
+    """Append the points of the line through p and q on the quadrics |x| = |y|; their
+    number afterwards, and the largest coefficient of the quadrics: both contain the
+    line when it vanishes."""
     forms = _line_forms(p, q, rows, left, left_norms, right_norms)
     sizes = _size(forms[0]), _size(forms[1])
     a, b, c = forms[1] if sizes[1] > sizes[0] else forms[0]
@@ -306,7 +367,9 @@ def _record_line(p, q, rows, left, left_norms, right_norms, turns, defects, coun
         size = np.sqrt(abs(s) ** 2 + abs(t) ** 2)
         if size > 1e-12:
             y = _combined(s / size, p, t / size, q)
-            count = _record(y, rows, left, left_norms, right_norms, turns, defects, count)
+            count = _record(
+                y, rows, left, left_norms, right_norms, turns, defects, count
+            )
     return count, max(sizes[0], sizes[1])
 
 
@@ -331,7 +394,8 @@ def _combined(s, p, t, q):
 
 @register_jitable
 def _eliminate(matrix, reduced, order, steps):
-    """Largest entry left after ``steps`` steps of Gauss-Jordan with complete pivoting on ``matrix`` (4, q).
+    """Largest entry left after ``steps`` steps of Gauss-Jordan with complete pivoting
+    on ``matrix`` (4, q).
 
     ``reduced`` takes the result, ``order`` its order of columns.
     """
@@ -363,8 +427,8 @@ def _eliminate(matrix, reduced, order, steps):
 
 @register_jitable
 def _null_vectors(matrix, dimension):
-    """Orthonormal rows (dimension, q) of the null space that ``matrix`` (4, q) has but for what is left after
-    q - dimension pivots, and the size of that rest."""
+    """Orthonormal rows (dimension, q) of the null space that ``matrix`` (4, q) has but
+    for what is left after q - dimension pivots, and the size of that rest."""
     q = matrix.shape[1]
     reduced, order = np.empty((4, q), np.complex128), np.empty(q, np.int64)
     rank = q - dimension
@@ -388,22 +452,30 @@ def _null_vectors(matrix, dimension):
 
 
 @register_jitable
-def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defects, count):
-    """Append the candidates in the null space of ``matrix`` (4, q); ``rows`` (q, 8) span the right side.
+def _record_null_space(
+    matrix, rows, left, left_norms, right_norms, turns, defects, count
+):
+    """Append the candidates in the null space of ``matrix`` (4, q); ``rows`` (q, 8)
+    span the right side.
 
-    Returns their number, how many of them sample a continuum, and whether the null space has dimensions that
-    are not resolved. One of dimension two is a line that meets the two quadrics |x| = |y| in at
-    most two points, unless it lies in both: a continuum. In one of dimension three (a Bennett loop within
-    the linkage) the quadrics may share a conic, a continuum too.
+    Returns their number, how many of them sample a continuum, and whether the null
+    space has dimensions that are not resolved. One of dimension two is a line that
+    meets the two quadrics |x| = |y| in at most two points, unless it lies in both: a
+    continuum. In one of dimension three (a Bennett loop within the linkage) the
+    quadrics may share a conic, a continuum too.
     """
     q = matrix.shape[1]
     single, _ = _null_vectors(matrix, 1)
-    count = _record(single[0], rows, left, left_norms, right_norms, turns, defects, count)
+    count = _record(
+        single[0], rows, left, left_norms, right_norms, turns, defects, count
+    )
     line, rest = _null_vectors(matrix, 2)
     if rest > 1e-3:
         return count, 0, False
     p, other = line[0], line[1]
-    count, form = _record_line(p, other, rows, left, left_norms, right_norms, turns, defects, count)
+    count, form = _record_line(
+        p, other, rows, left, left_norms, right_norms, turns, defects, count
+    )
     if rest > 1e-6:
         return count, 0, False
     if q > 2:
@@ -412,8 +484,20 @@ def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defec
             before = count
             for i in range(8):
                 angle = 0.2 + i * np.pi / 8
-                y = _combined(np.cos(angle) + 0j, plane[0], np.sin(angle) + 0j, plane[1])
-                count, _ = _record_line(y, plane[2], rows, left, left_norms, right_norms, turns, defects, count)
+                y = _combined(
+                    np.cos(angle) + 0j, plane[0], np.sin(angle) + 0j, plane[1]
+                )
+                count, _ = _record_line(
+                    y,
+                    plane[2],
+                    rows,
+                    left,
+                    left_norms,
+                    right_norms,
+                    turns,
+                    defects,
+                    count,
+                )
             shared = count > before
             for i in range(before, count):
                 shared = shared and defects[i] < 1e-6
@@ -432,20 +516,29 @@ def _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defec
 
 @register_jitable
 def _solve_three(fixed, turns, defects):
-    """Candidates of a chain of three joints with links ``fixed`` (3, 8): (count, sampled, crowded)."""
+    """Candidates of a chain of three joints with links ``fixed`` (3, 8): (count,
+    sampled, crowded)."""
     best, value = 0, -1.0
     for a in range(3):
         norms = _pair_space(fixed[a])[2]
         smallest = min(norms[0], norms[1])
         if smallest > value:
             best, value = a, smallest
-    after_b, after_c = _conjugate(fixed[(best + 1) % 3]), _conjugate(fixed[(best + 2) % 3])
+    after_b, after_c = (
+        _conjugate(fixed[(best + 1) % 3]),
+        _conjugate(fixed[(best + 2) % 3]),
+    )
     left, complement, norms = _pair_space(fixed[best])
     rows = np.empty((2, 8))
     _copy(rows[0], _product(after_c, after_b))
     _copy(rows[1], _product(_conjugate(_turn_by_left(fixed[(best + 2) % 3])), after_b))
-    matrix, mixed = _projected(complement, rows).astype(np.complex128), rows.astype(np.complex128)
-    count, sampled, _ = _record_null_space(matrix, mixed, left, norms, norms, turns, defects, 0)
+    matrix, mixed = (
+        _projected(complement, rows).astype(np.complex128),
+        rows.astype(np.complex128),
+    )
+    count, sampled, _ = _record_null_space(
+        matrix, mixed, left, norms, norms, turns, defects, 0
+    )
     _reorder(turns, count, 3, best)
     return count, sampled, value < 1e-10
 
@@ -457,8 +550,13 @@ def _solve_four(fixed, turns, defects):
     for a in range(2):
         left, complement, left_norms = _pair_space(fixed[a])
         rows, right_norms = _right_space(fixed[a + 1], fixed[a + 2], fixed[(a + 3) % 4])
-        matrix, mixed = _projected(complement, rows).astype(np.complex128), rows.astype(np.complex128)
-        count, sampled, crowded = _record_null_space(matrix, mixed, left, left_norms, right_norms, turns, defects, 0)
+        matrix, mixed = (
+            _projected(complement, rows).astype(np.complex128),
+            rows.astype(np.complex128),
+        )
+        count, sampled, crowded = _record_null_space(
+            matrix, mixed, left, left_norms, right_norms, turns, defects, 0
+        )
         if not crowded:
             _reorder(turns, count, 4, a)
             break
@@ -467,7 +565,8 @@ def _solve_four(fixed, turns, defects):
 
 @register_jitable
 def _pencil(fixed, v):
-    """M_0, M_1 (4, 4) of the elimination that keeps joint v, with the rows (4, 8) they project."""
+    """M_0, M_1 (4, 4) of the elimination that keeps joint v, with the rows (4, 8) they
+    project."""
     complement = _pair_space(fixed[(v + 1) % 5])[1]
     rows, _ = _right_space(fixed[(v + 2) % 5], fixed[(v + 3) % 5], fixed[(v + 4) % 5])
     cosine, sine = np.empty((4, 8)), np.empty((4, 8))
@@ -480,8 +579,8 @@ def _pencil(fixed, v):
 
 @register_jitable
 def _inverse(c, m0, s, m1):
-    """Inverse (4, 4) of c m0 + s m1, with complete pivoting, and 1 / its Frobenius norm, which is at most the
-    smallest singular value; 0 for a singular matrix."""
+    """Inverse (4, 4) of c m0 + s m1, with complete pivoting, and 1 / its Frobenius
+    norm, which is at most the smallest singular value; 0 for a singular matrix."""
     a = np.zeros((4, 8))
     order, out, total = np.empty(4, np.int64), np.empty((4, 4)), 0.0
     for i in range(4):
@@ -515,7 +614,8 @@ def _inverse(c, m0, s, m1):
 
 @register_jitable
 def _most_regular(fixed, excluded):
-    """(kept joint v, half angle, regularity) of the elimination and origin with the best conditioned M."""
+    """(kept joint v, half angle, regularity) of the elimination and origin with the
+    best conditioned M."""
     best, kept, origin = 0.0, -1, 0.0
     for v in range(5):
         if excluded[v]:
@@ -552,7 +652,9 @@ def _solve_pencil(fixed, v, origin, turns, defects):
             continue
         before = count
         matrix, rows = _mixed(c, m0, s, m1), _mixed(c, cosine, s, sine)
-        count, more, full = _record_null_space(matrix, rows, left, left_norms, right_norms, turns, defects, before)
+        count, more, full = _record_null_space(
+            matrix, rows, left, left_norms, right_norms, turns, defects, before
+        )
         kept = (c + 1j * s) / (c - 1j * s)
         for i in range(before, count):
             turns[i, 4] = kept
@@ -564,7 +666,8 @@ def _solve_pencil(fixed, v, origin, turns, defects):
 
 @register_jitable
 def _reorder(turns, count, m, first):
-    """Columns 0, 1, ... of ``turns`` belong to joints first, first + 1, ... of a chain of m: sort them."""
+    """Columns 0, 1, ... of ``turns`` belong to joints first, first + 1, ... of a chain
+    of m: sort them."""
     row = np.empty(m, np.complex128)
     for i in range(count):
         for j in range(m):
@@ -578,9 +681,11 @@ def _reorder(turns, count, m, first):
 
 @register_jitable
 def _closure(links, theta, jacobian):
-    """Closure error (6,): rotation vector and translation, to first order; its derivative into (6, m).
+    """Closure error (6,): rotation vector and translation, to first order; its
+    derivative into (6, m).
 
-    The vector part of a quaternion vanishes for the identity only, so half turns are no ghosts.
+    The vector part of a quaternion vanishes for the identity only, so half turns are no
+    ghosts.
     """
     m = len(theta)
     after = np.zeros((m + 1, 8), np.complex128)
@@ -591,7 +696,10 @@ def _closure(links, theta, jacobian):
     before[0] = 1.0 if total[0].real >= 0 else -1.0
     error = np.empty(6, np.complex128)
     for r in range(3):
-        error[r], error[r + 3] = 2 * before[0] * total[r + 1], 2 * before[0] * total[r + 5]
+        error[r], error[r + 3] = (
+            2 * before[0] * total[r + 1],
+            2 * before[0] * total[r + 5],
+        )
     turn = np.zeros(8, np.complex128)
     for i in range(m):
         derivative = _product(before, _turn_by_left(after[i]))
@@ -612,12 +720,17 @@ def _largest(p):
 
 @register_jitable
 def _least_squares(a, b):
-    """The x (m,) of least |a x - b|: Gram-Schmidt with pivots, directions below 1e-9 get no part.
+    """The x (m,) of least |a x - b|: Gram-Schmidt with pivots, directions below 1e-9
+    get no part.
 
     Overwrites a and b.
     """
     rows, m = a.shape
-    order, r, x = np.empty(m, np.int64), np.zeros((m, m), np.complex128), np.zeros(m, np.complex128)
+    order, r, x = (
+        np.empty(m, np.int64),
+        np.zeros((m, m), np.complex128),
+        np.zeros(m, np.complex128),
+    )
     rank, first, out = m, 0.0, np.zeros(m, np.complex128)
     for k in range(m):
         order[k] = k
@@ -694,10 +807,11 @@ def _distance(p, q):
 
 @register_jitable
 def _add_new(links, theta, found, count):
-    """Number of configurations in ``found`` after adding ``theta``, unless it is among them.
+    """Number of configurations in ``found`` after adding ``theta``, unless it is among
+    them.
 
-    At a singular configuration Gauss-Newton stops at different points that all close: two points whose
-    middle closes too are one.
+    At a singular configuration Gauss-Newton stops at different points that all close:
+    two points whose middle closes too are one.
     """
     jacobian, middle = np.empty((6, len(theta)), np.complex128), np.empty_like(theta)
     for i in range(count):
@@ -719,7 +833,8 @@ def _add_new(links, theta, found, count):
 
 @register_jitable
 def _collect(links, turns, defects, candidates, found, others):
-    """(real configurations, complex ones, number of real candidates that close where they are)."""
+    """(real configurations, complex ones, number of real candidates that close where
+    they are)."""
     m = len(links)
     start, theta = np.empty(m, np.complex128), np.empty(m, np.complex128)
     count, n_others, held = 0, 0, 0
@@ -742,7 +857,9 @@ def _collect(links, turns, defects, candidates, found, others):
         error, imaginary, growth = _polish(links, theta), 0.0, 1.0
         for j in range(m):
             imaginary = max(imaginary, abs(theta[j].imag))
-            growth *= np.exp(abs(theta[j].imag))  # of the entries, and of the rounding with them
+            growth *= np.exp(
+                abs(theta[j].imag)
+            )  # of the entries, and of the rounding with them
         if 1e-7 < imaginary < -np.log(INFINITE) and error < CLOSURE * growth:
             n_others = _add_new(links, theta, others, n_others)
     return count, n_others, held
@@ -750,12 +867,15 @@ def _collect(links, turns, defects, candidates, found, others):
 
 @register_jitable
 def _sample(links, found, count):
-    """Number of configurations in ``found`` after Gauss-Newton from fixed, well spread starts."""
+    """Number of configurations in ``found`` after Gauss-Newton from fixed, well spread
+    starts."""
     m = len(links)
     theta = np.empty(m, np.complex128)
     for i in range(STARTS):
         for j in range(m):  # the Weyl sequence of square roots of primes
-            theta[j] = 2 * np.pi * ((i + 1) * np.sqrt((2.0, 3.0, 5.0, 7.0, 11.0)[j]) % 1.0)
+            theta[j] = (
+                2 * np.pi * ((i + 1) * np.sqrt((2.0, 3.0, 5.0, 7.0, 11.0)[j]) % 1.0)
+            )
         if _polish(links, theta) < CLOSURE / 2:
             count = _add_new(links, theta, found, count)
     return count
@@ -766,7 +886,8 @@ def _sample(links, found, count):
 
 @register_jitable
 def _chain(links, joint, angle):
-    """Fixed links (n - 1, 8) between the other joints, in order after ``joint`` (from 0), which is at ``angle``."""
+    """Fixed links (n - 1, 8) between the other joints, in order after ``joint`` (from
+    0), which is at ``angle``."""
     n = len(links)
     fixed = np.empty((n - 1, 8))
     for i in range(n - 1):
@@ -779,14 +900,18 @@ def _chain(links, joint, angle):
 def _candidates_4r(links, joint, angles, turns, defects, outcome):
     for k in range(len(angles)):
         fixed = _chain(links, joint, angles[k])
-        outcome[k, 0], outcome[k, 1], outcome[k, 2] = _solve_three(fixed, turns[k], defects[k])
+        outcome[k, 0], outcome[k, 1], outcome[k, 2] = _solve_three(
+            fixed, turns[k], defects[k]
+        )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _candidates_5r(links, joint, angles, turns, defects, outcome):
     for k in range(len(angles)):
         fixed = _chain(links, joint, angles[k])
-        outcome[k, 0], outcome[k, 1], outcome[k, 2] = _solve_four(fixed, turns[k], defects[k])
+        outcome[k, 0], outcome[k, 1], outcome[k, 2] = _solve_four(
+            fixed, turns[k], defects[k]
+        )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -799,7 +924,9 @@ def _candidates_6r(links, joint, angles, turns, defects, outcome):
             v, origin, regularity = _most_regular(fixed, excluded)
             if regularity < SINGULAR:
                 break
-            count, sampled, crowded = _solve_pencil(fixed, v, origin, turns[k], defects[k])
+            count, sampled, crowded = _solve_pencil(
+                fixed, v, origin, turns[k], defects[k]
+            )
             if not crowded:
                 outcome[k, 0], outcome[k, 1], outcome[k, 2] = count, sampled, 0
                 break
@@ -808,16 +935,22 @@ def _candidates_6r(links, joint, angles, turns, defects, outcome):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _configurations(links, joint, angles, turns, defects, outcome):
-    """Configurations (m, ROOM, n) and their numbers (m,), those that are not real, too, and status (m,)."""
+    """Configurations (m, ROOM, n) and their numbers (m,), those that are not real, too,
+    and status (m,)."""
     m, n = len(angles), len(links)
     found, count = np.zeros((m, ROOM, n)), np.zeros(m, np.int64)
     others, n_others = np.zeros((m, ROOM, n), np.complex128), np.zeros(m, np.int64)
     status = np.zeros(m, np.int64)
-    chain, hidden = np.empty((ROOM, n - 1), np.complex128), np.empty((ROOM, n - 1), np.complex128)
+    chain, hidden = (
+        np.empty((ROOM, n - 1), np.complex128),
+        np.empty((ROOM, n - 1), np.complex128),
+    )
     for k in range(m):
         fixed = _chain(links, joint, angles[k]).astype(np.complex128)
         candidates, sampled, crowded = outcome[k, 0], outcome[k, 1], outcome[k, 2]
-        count[k], n_others[k], held = _collect(fixed, turns[k], defects[k], candidates, chain, hidden)
+        count[k], n_others[k], held = _collect(
+            fixed, turns[k], defects[k], candidates, chain, hidden
+        )
         if crowded:
             status[k] = UNDECIDED
             count[k] = _sample(fixed, chain, count[k])
@@ -835,10 +968,16 @@ def _configurations(links, joint, angles, turns, defects, outcome):
 
 
 def _solve_slices(links, joint, angles):
-    """What `_configurations` returns, from the candidates of the right number of joints."""
+    """What `_configurations` returns, from the candidates of the right number of
+    joints."""
     m, n = len(angles), len(links)
-    turns, defects = np.ones((m, CANDIDATES, max(n - 1, 4)), np.complex128), np.zeros((m, CANDIDATES))
-    outcome = np.zeros((m, 3), np.int64)  # number of candidates, of those that sample a continuum, undecided
+    turns, defects = (
+        np.ones((m, CANDIDATES, max(n - 1, 4)), np.complex128),
+        np.zeros((m, CANDIDATES)),
+    )
+    outcome = np.zeros(
+        (m, 3), np.int64
+    )  # number of candidates, of those that sample a continuum, undecided
     candidates = {4: _candidates_4r, 5: _candidates_5r, 6: _candidates_6r}[n]
     candidates(links, joint, angles, turns, defects, outcome)
     return _configurations(links, joint, angles, turns, defects, outcome)

@@ -1,23 +1,27 @@
-"""Non-real configurations followed from slice to slice, with a proof at every step that they stay non-real.
+"""Non-real configurations followed from slice to slice, with a proof at every step that
+they stay non-real.
 
-In: configurations of a loop with one joint angle given, that are not real, and the angles to follow them to. Out:
-which of them get there without becoming real, and where the others come to a halt.
+In: configurations of a loop with one joint angle given, that are not real, and the
+angles to follow them to. Out: which of them get there without becoming real, and where
+the others come to a halt.
 
-At a closed configuration z the closure is ``F(z + d) = 2 vec(exp(d_1 s_1 / 2) ... exp(d_n s_n / 2))`` with the joint
-screws s_i at z as dual quaternions, for complex angles as for real ones. Its first derivatives are the screws, its
-second ones half their brackets, and at a distance of at most r its second derivatives differ from those at z by at most
-``2 m_i m_j (exp(m r) - 1)``, where m_i bounds the multiplication by s_i / 2 and m is the norm of the m_i. Let a be a
-row that singles out one solution for every value t of a.d, and P what the first six columns of the pseudo-inverse of
-[F'; a] are. All that bounds the second derivative of P F by a number w. In the ball of radius rho, w rho <= 1/2, there
-is at most one solution for every t, and it stays within ``w |d|^2 / 2`` of the tangent, in a norm that weighs the
-joints (the theorem of Newton and Kantorovich for an implicit function: Ortega and Rheinboldt 1970, 12.6; Deuflhard
-2004, 4.4).
-With the angle of the given joint as t, no configuration on the way is real where the imaginary part of one joint is
-larger than that.
+At a closed configuration z the closure is ``F(z + d) = 2 vec(exp(d_1 s_1 / 2) ...
+exp(d_n s_n / 2))`` with the joint screws s_i at z as dual quaternions, for complex
+angles as for real ones. Its first derivatives are the screws, its second ones half
+their brackets, and at a distance of at most r its second derivatives differ from those
+at z by at most ``2 m_i m_j (exp(m r) - 1)``, where m_i bounds the multiplication by s_i
+/ 2 and m is the norm of the m_i. Let a be a row that singles out one solution for every
+value t of a.d, and P what the first six columns of the pseudo-inverse of [F'; a] are.
+All that bounds the second derivative of P F by a number w. In the ball of radius rho, w
+rho <= 1/2, there is at most one solution for every t, and it stays within ``w |d|^2 /
+2`` of the tangent, in a norm that weighs the joints (the theorem of Newton and
+Kantorovich for an implicit function: Ortega and Rheinboldt 1970, 12.6; Deuflhard 2004,
+4.4). With the angle of the given joint as t, no configuration on the way is real where
+the imaginary part of one joint is larger than that.
 
-A pair of conjugate configurations becomes real at a fold, where the joint has a dead point. Around a fold that is known
-the complex solutions in a ball are one curve, t along its tangent, on which one pair meets: a sheet that comes so close
-is of that pair.
+A pair of conjugate configurations becomes real at a fold, where the joint has a dead
+point. Around a fold that is known the complex solutions in a ball are one curve, t
+along its tangent, on which one pair meets: a sheet that comes so close is of that pair.
 """
 
 from __future__ import annotations
@@ -34,21 +38,27 @@ from linkages.loop import Loop
 
 __all__ = ["Fold", "find_fold", "follow_sheets"]
 
-SHORTEST = 1e-9  # rad: a sheet that advances by less than this in a step has come to a halt
-SLOW = 1e-5  # rad: where steps in the angle of the joint are shorter, the sheet is followed along its curve
+SHORTEST = (
+    1e-9  # rad: a sheet that advances by less than this in a step has come to a halt
+)
+# rad: where steps in the angle of the joint are shorter, the sheet is followed along
+# its curve
+SLOW = 1e-5
 MOST_STEPS = 10_000  # in the angle of the joint
 MOST_ALONG = 500  # along the curve
-SMALLEST = 1e-9  # rad: what is proved around a fold must reach farther than the rounding of its angle
+# rad: what is proved around a fold must reach farther than the rounding of its angle
+SMALLEST = 1e-9
 COEFFICIENTS = 32  # of the angle as a power series about a fold
 
 
 @dataclass(frozen=True)
 class Fold:
-    """A dead point of a joint on a known motion, and the neighbourhood in which only its own pair of sheets meets.
+    """A dead point of a joint on a known motion, and the neighbourhood in which only
+    its own pair of sheets meets.
 
-    A configuration that is less than ``along`` from it in the direction of ``tangent`` (n,), less than ``away`` in
-    all, each joint divided by its ``weight`` (n,), and less than ``across`` in the angle of the joint is one of the
-    pair.
+    A configuration that is less than ``along`` from it in the direction of ``tangent``
+    (n,), less than ``away`` in all, each joint divided by its ``weight`` (n,), and less
+    than ``across`` in the angle of the joint is one of the pair.
     """
 
     configuration: np.ndarray
@@ -60,18 +70,26 @@ class Fold:
 
 
 def follow_sheets(
-    loop: Loop, joint: int, starts: np.ndarray, ends: np.ndarray, folds: Sequence[Sequence[Fold]],
+    loop: Loop,
+    joint: int,
+    starts: np.ndarray,
+    ends: np.ndarray,
+    folds: Sequence[Sequence[Fold]],
     seconds: float = np.inf,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Follow the closed configurations ``starts`` (k, n), complex, as joint ``joint`` (from 0) turns to ``ends`` (k,).
+) -> tuple[np.ndarray, np.ndarray]:
+    """Follow the closed configurations ``starts`` (k, n), complex, as joint ``joint``
+    (from 0) turns to ``ends`` (k,).
 
-    The joint's own angle is real. A sheet ends well where it gets to its end without becoming real or joins one
-    of its ``folds``. Returns which do (k,), and where each one stopped (k, n): all do when the ``seconds`` are over.
+    The joint's own angle is real. A sheet ends well where it gets to its end without
+    becoming real or joins one of its ``folds``. Returns which do (k,), and where each
+    one stopped (k, n): all do when the ``seconds`` are over.
     """
     deadline, geometry = Deadline(seconds), _geometry(loop)
     z, cleared = np.array(starts, dtype=complex), np.zeros(len(starts), dtype=bool)
     for i, near in enumerate(folds):
-        at = np.array([[f.configuration, f.tangent, f.weight] for f in near]).reshape(-1, 3, loop.n)
+        at = np.array([[f.configuration, f.tangent, f.weight] for f in near]).reshape(
+            -1, 3, loop.n
+        )
         limits = np.array([[f.away, f.along, f.across] for f in near]).reshape(-1, 3)
         for _ in range(MOST_ALONG):
             if deadline.passed:
@@ -83,42 +101,68 @@ def follow_sheets(
 
 
 def find_fold(loop: Loop, joint: int, configuration: np.ndarray) -> Fold | None:
-    """The neighbourhood of a dead point (n,) of joint ``joint`` (from 0); None where none can be proved.
+    """The neighbourhood of a dead point (n,) of joint ``joint`` (from 0); None where
+    none can be proved.
 
-    Where the second term of the series of the angle exceeds the rest by m on a circle, every angle nearer than m to
-    that of the dead point is taken twice within (Rouche).
+    Where the second term of the series of the angle exceeds the rest by m on a circle,
+    every angle nearer than m to that of the dead point is taken twice within (Rouche).
     """
-    curve = _curve_through(_geometry(loop), joint, np.array(configuration, dtype=complex))
+    curve = _curve_through(
+        _geometry(loop), joint, np.array(configuration, dtype=complex)
+    )
     if curve is None:
         return None
     t, margin = curve.margin(2)
     best = int(np.argmax(margin))
     if not margin[best] > SMALLEST:
         return None
-    return Fold(curve.at.real, curve.tangent.real, curve.weight, curve.radius, float(t[best]), float(margin[best]))
+    return Fold(
+        curve.at.real,
+        curve.tangent.real,
+        curve.weight,
+        curve.radius,
+        float(t[best]),
+        float(margin[best]),
+    )
 
 
 def _advance_along(geometry: np.ndarray, joint: int, z: np.ndarray, end: float) -> bool:
-    """Move a sheet ``z`` (n,) towards ``end`` in place by one step along its curve; False where none can be proved.
+    """Move a sheet ``z`` (n,) towards ``end`` in place by one step along its curve;
+    False where none can be proved.
 
-    Near a fold the steps in the angle of the joint get short. The coordinate along the tangent does not mind: where the
-    first term of the series exceeds the rest by m on a circle, every angle nearer than m is taken once within.
+    Near a fold the steps in the angle of the joint get short. The coordinate along the
+    tangent does not mind: where the first term of the series exceeds the rest by m on a
+    circle, every angle nearer than m is taken once within.
     """
     curve = _curve_through(geometry, joint, z)
     if curve is None:
         return False
     t, margin = curve.margin(1)
-    strayed = 0.5 * curve.bound * (4.0 / 3.0 * t * np.linalg.norm(curve.tangent / curve.weight)) ** 2
-    least = np.abs(z.imag)[:, None] - np.abs(curve.tangent)[:, None] * t - curve.weight[:, None] * strayed
+    strayed = (
+        0.5
+        * curve.bound
+        * (4.0 / 3.0 * t * np.linalg.norm(curve.tangent / curve.weight)) ** 2
+    )
+    least = (
+        np.abs(z.imag)[:, None]
+        - np.abs(curve.tangent)[:, None] * t
+        - curve.weight[:, None] * strayed
+    )
     margin = np.where(np.any(least > 0, axis=0), margin, -np.inf)
     best, left = int(np.argmax(margin)), end - z[joint].real
     size = min(0.9 * float(margin[best]), abs(left))
     if not size >= min(SHORTEST, abs(left)):
         return False
     step = np.copysign(size, left)
-    after, row = z + step / curve.slope * curve.tangent, np.eye(len(z), dtype=complex)[joint]
+    after, row = (
+        z + step / curve.slope * curve.tangent,
+        np.eye(len(z), dtype=complex)[joint],
+    )
     after[joint] = z[joint].real + step
-    if not _correct(geometry, after, row) or abs(np.conj(curve.tangent) @ (after - z)) >= t[best]:
+    if (
+        not _correct(geometry, after, row)
+        or abs(np.conj(curve.tangent) @ (after - z)) >= t[best]
+    ):
         return False
     z[:] = after
     return True
@@ -126,10 +170,12 @@ def _advance_along(geometry: np.ndarray, joint: int, z: np.ndarray, end: float) 
 
 @dataclass(frozen=True)
 class _Curve:
-    """The complex curve of solutions through ``at`` (n,), t the coordinate along its unit ``tangent`` (n,).
+    """The complex curve of solutions through ``at`` (n,), t the coordinate along its
+    unit ``tangent`` (n,).
 
-    It is the only one in a ball of the ``radius``, each joint divided by its ``weight`` (n,), in which ``bound``
-    bounds the second derivative; |t| < ``reach`` lies in it. The joint turns by g_1 t + g_2 t^2 + ..., ``terms``
+    It is the only one in a ball of the ``radius``, each joint divided by its ``weight``
+    (n,), in which ``bound`` bounds the second derivative; |t| < ``reach`` lies in it.
+    The joint turns by g_1 t + g_2 t^2 + ..., ``terms``
     |g_k| (q,), at most ``largest`` in all; ``slope`` is g_1.
     """
 
@@ -144,7 +190,8 @@ class _Curve:
     largest: float
 
     def margin(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """Radii t of circles, and by how much term k exceeds the rest on each: Cauchy bounds what follows the last."""
+        """Radii t of circles, and by how much term k exceeds the rest on each: Cauchy
+        bounds what follows the last."""
         t = self.reach * np.geomspace(1e-3, 0.5, 60)
         powers = np.arange(len(self.terms))
         size = self.terms[:, None] * t ** powers[:, None]
@@ -154,7 +201,8 @@ class _Curve:
 
 
 def _curve_through(geometry: np.ndarray, joint: int, at: np.ndarray) -> _Curve | None:
-    """The curve through a configuration (n,), its series from values on a circle; None where no ball is proved."""
+    """The curve through a configuration (n,), its series from values on a circle; None
+    where no ball is proved."""
     screws = np.zeros((6, len(at)), dtype=complex)
     _screws_and_error(at, geometry, screws, np.zeros(6, dtype=complex))
     tangent = np.linalg.svd(screws)[2][-1].conj()
@@ -165,21 +213,36 @@ def _curve_through(geometry: np.ndarray, joint: int, at: np.ndarray) -> _Curve |
         return None
     reach = 0.75 * radius / float(np.linalg.norm(tangent / weight))
     powers = np.arange(COEFFICIENTS)
-    around = at + 0.5 * reach * np.exp(2j * np.pi * powers / COEFFICIENTS)[:, None] * tangent
+    around = (
+        at + 0.5 * reach * np.exp(2j * np.pi * powers / COEFFICIENTS)[:, None] * tangent
+    )
     converged = [_correct(geometry, point, tangent.conj()) for point in around]
     if not all(converged):
         return None
     if not np.linalg.norm((around - at) / weight, axis=1).max() <= radius:
         return None
-    terms = np.fft.fft(around[:, joint] - at[joint]) / COEFFICIENTS / (0.5 * reach) ** powers
+    terms = (
+        np.fft.fft(around[:, joint] - at[joint])
+        / COEFFICIENTS
+        / (0.5 * reach) ** powers
+    )
     largest = reach * abs(tangent[joint]) + weight[joint] * 0.5 * bound * radius**2
     return _Curve(
-        at.copy(), tangent, weight, float(radius), float(bound), reach, np.abs(terms), complex(terms[1]), float(largest)
+        at.copy(),
+        tangent,
+        weight,
+        float(radius),
+        float(bound),
+        reach,
+        np.abs(terms),
+        complex(terms[1]),
+        float(largest),
     )
 
 
 def _geometry(loop: Loop) -> np.ndarray:
-    """Lengths and offsets over the characteristic length, cosines and sines of the twists: (4, n)."""
+    """Lengths and offsets over the characteristic length, cosines and sines of the
+    twists: (4, n)."""
     lengths, twists, offsets = loop.arrays
     size = loop.characteristic_length
     return np.array([lengths / size, offsets / size, np.cos(twists), np.sin(twists)])
@@ -190,7 +253,8 @@ def _geometry(loop: Loop) -> np.ndarray:
 
 @njit(cache=True, error_model="numpy")
 def _screws_and_error(z, geometry, screws, error):
-    """Fill joint screws (6, n) in the base frame, direction over moment, and the closure error (6,) of ``z`` (n,)."""
+    """Fill joint screws (6, n) in the base frame, direction over moment, and the
+    closure error (6,) of ``z`` (n,)."""
     frame = np.zeros((3, 4), np.complex128)  # columns: three axes, origin
     for r in range(3):
         frame[r, r] = 1.0
@@ -200,11 +264,20 @@ def _screws_and_error(z, geometry, screws, error):
             screws[r, i] = frame[r, 2]
             screws[r + 3, i] = frame[u, 3] * frame[v, 2] - frame[v, 3] * frame[u, 2]
         c, s = np.cos(z[i]), np.sin(z[i])
-        length, offset, ca, sa = geometry[0, i], geometry[1, i], geometry[2, i], geometry[3, i]
+        length, offset, ca, sa = (
+            geometry[0, i],
+            geometry[1, i],
+            geometry[2, i],
+            geometry[3, i],
+        )
         for r in range(3):
             x, y = c * frame[r, 0] + s * frame[r, 1], c * frame[r, 1] - s * frame[r, 0]
             frame[r, 3] += offset * frame[r, 2] + length * x
-            frame[r, 0], frame[r, 1], frame[r, 2] = x, ca * y + sa * frame[r, 2], ca * frame[r, 2] - sa * y
+            frame[r, 0], frame[r, 1], frame[r, 2] = (
+                x,
+                ca * y + sa * frame[r, 2],
+                ca * frame[r, 2] - sa * y,
+            )
     for r in range(3):
         u, v = (r + 1) % 3, (r + 2) % 3
         error[r], error[r + 3] = 0.5 * (frame[v, u] - frame[u, v]), frame[r, 3]
@@ -212,7 +285,8 @@ def _screws_and_error(z, geometry, screws, error):
 
 @register_jitable
 def _pseudo_inverse(screws, along, inverse):
-    """Fill the pseudo-inverse (n, 7) of the screws (6, n) over the row ``along`` (n,): Gram-Schmidt, twice."""
+    """Fill the pseudo-inverse (n, 7) of the screws (6, n) over the row ``along`` (n,):
+    Gram-Schmidt, twice."""
     n = screws.shape[1]
     q, r = np.empty((7, n), np.complex128), np.zeros((n, n), np.complex128)
     for j in range(n):
@@ -244,18 +318,23 @@ def _pseudo_inverse(screws, along, inverse):
 
 @register_jitable
 def _second(screws, inverse, second):
-    """Fill the second derivatives (n, n, n) of P F: P of half the brackets of earlier joints with later ones."""
+    """Fill the second derivatives (n, n, n) of P F: P of half the brackets of earlier
+    joints with later ones."""
     n = screws.shape[1]
     bracket = np.empty(6, np.complex128)
     for i in range(n):
         for j in range(i + 1, n):
             for r in range(3):
                 u, v = (r + 1) % 3, (r + 2) % 3
-                bracket[r] = 0.5 * (screws[u, i] * screws[v, j] - screws[v, i] * screws[u, j])
+                bracket[r] = 0.5 * (
+                    screws[u, i] * screws[v, j] - screws[v, i] * screws[u, j]
+                )
                 bracket[r + 3] = 0.5 * (
-                    screws[u, i] * screws[v + 3, j] - screws[v, i] * screws[u + 3, j]
-                    + screws[u + 3, i] * screws[v, j] - screws[v + 3, i] * screws[u, j]
-                )  # fmt: skip
+                    screws[u, i] * screws[v + 3, j]
+                    - screws[v, i] * screws[u + 3, j]
+                    + screws[u + 3, i] * screws[v, j]
+                    - screws[v + 3, i] * screws[u, j]
+                )
             for a in range(n):
                 value = 0j
                 for k in range(6):
@@ -265,7 +344,8 @@ def _second(screws, inverse, second):
 
 @register_jitable
 def _ball(screws, inverse, second, weight):
-    """Fill the weights (n,) of the joints in the norm; the radius rho and the bound w of the ball around."""
+    """Fill the weights (n,) of the joints in the norm; the radius rho and the bound w
+    of the ball around."""
     n = screws.shape[1]
     total = 0.0
     for i in range(n):
@@ -277,7 +357,9 @@ def _ball(screws, inverse, second, weight):
                 real += entry.real**2
                 imaginary += entry.imag**2
             m += 0.5 * (np.sqrt(real) + np.sqrt(imaginary))
-        weight[i] = 1.0 / np.sqrt(m)  # a joint with a large screw may move less; the root takes the fewest steps
+        weight[i] = 1.0 / np.sqrt(
+            m
+        )  # a joint with a large screw may move less; the root takes the fewest steps
         total += m
     size = 0.0
     for i in range(n):
@@ -288,7 +370,11 @@ def _ball(screws, inverse, second, weight):
         for b in range(n):
             for i in range(n):
                 for j in range(n):
-                    gram[a, b] += second[a, i, j] * np.conj(second[b, i, j]) * (weight[i] * weight[j]) ** 2
+                    gram[a, b] += (
+                        second[a, i, j]
+                        * np.conj(second[b, i, j])
+                        * (weight[i] * weight[j]) ** 2
+                    )
             gram[a, b] /= weight[a] * weight[b]
     trace, rows = 0.0, 0.0  # either bounds the largest eigenvalue
     for a in range(n):
@@ -296,7 +382,11 @@ def _ball(screws, inverse, second, weight):
         for b in range(n):
             row += abs(gram[a, b])
         trace, rows = trace + gram[a, a].real, max(rows, row)
-    center, growth, rate = np.sqrt(min(trace, rows)), 2.0 * np.sqrt(size) * total, np.sqrt(total)
+    center, growth, rate = (
+        np.sqrt(min(trace, rows)),
+        2.0 * np.sqrt(size) * total,
+        np.sqrt(total),
+    )
     radius = min(0.5 / center, 1.0)
     bound = center + growth * np.expm1(rate * radius)
     while bound * radius > 0.5:  # w grows with the radius
@@ -307,7 +397,8 @@ def _ball(screws, inverse, second, weight):
 
 @njit(cache=True, error_model="numpy")
 def _ball_around(geometry, z, along):
-    """Weights (n,), radius and bound of the ball around ``z`` (n,) for the coordinate ``along`` (n,)."""
+    """Weights (n,), radius and bound of the ball around ``z`` (n,) for the coordinate
+    ``along`` (n,)."""
     n = len(z)
     screws, error = np.empty((6, n), np.complex128), np.empty(6, np.complex128)
     inverse = np.empty((n, 7), np.complex128)
@@ -321,7 +412,8 @@ def _ball_around(geometry, z, along):
 
 @njit(cache=True, error_model="numpy")
 def _correct(geometry, z, along):
-    """Newton's method on ``z`` (n,) in place, at right angles to ``along`` (n,); False where it does not converge."""
+    """Newton's method on ``z`` (n,) in place, at right angles to ``along`` (n,); False
+    where it does not converge."""
     n = len(z)
     screws, error = np.empty((6, n), np.complex128), np.empty(6, np.complex128)
     inverse = np.empty((n, 7), np.complex128)
@@ -344,8 +436,8 @@ def _correct(geometry, z, along):
 
 @njit(cache=True, error_model="numpy")
 def _follow(geometry, joint, z, end, folds, limits):
-    """Whether a sheet ``z`` (n,), moved in place, gets to ``end`` or into the neighbourhood of a fold without short
-    steps."""
+    """Whether a sheet ``z`` (n,), moved in place, gets to ``end`` or into the
+    neighbourhood of a fold without short steps."""
     n = len(z)
     along = np.zeros(n, np.complex128)
     along[joint] = 1.0
@@ -374,7 +466,9 @@ def _follow(geometry, joint, z, end, folds, limits):
                     bend[a] -= second[a, i, j] * slope[i] * slope[j]
         speed = np.sqrt(speed)
         step = min(0.75 * radius / speed, abs(left)) * np.sign(left)
-        while not _stays_away(z, slope, weight, step, 0.5 * bound * (4.0 / 3.0 * speed * step) ** 2):
+        while not _stays_away(
+            z, slope, weight, step, 0.5 * bound * (4.0 / 3.0 * speed * step) ** 2
+        ):
             step *= 0.5
             if not abs(step) >= SLOW:  # nor not a number
                 return False
@@ -397,7 +491,8 @@ def _follow(geometry, joint, z, end, folds, limits):
 
 @register_jitable
 def _stays_away(z, slope, weight, step, strayed):
-    """Whether the imaginary part of some joint keeps its sign on a step that strays from its tangent by ``strayed``."""
+    """Whether the imaginary part of some joint keeps its sign on a step that strays
+    from its tangent by ``strayed``."""
     for i in range(len(z)):
         here, there = z[i].imag / weight[i], (z[i] + slope[i] * step).imag / weight[i]
         if here * there > 0 and min(abs(here), abs(there)) > strayed:
@@ -407,7 +502,8 @@ def _stays_away(z, slope, weight, step, strayed):
 
 @register_jitable
 def _has_joined(z, joint, fold, limits):
-    """Whether a sheet is so near a fold, (3, n) for configuration, tangent and weight, that it is one of its pair."""
+    """Whether a sheet is so near a fold, (3, n) for configuration, tangent and weight,
+    that it is one of its pair."""
     away, along = 0.0, 0j
     for i in range(len(z)):
         apart = z[i] - fold[0, i]

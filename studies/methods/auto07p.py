@@ -1,7 +1,8 @@
-"""AUTO-07p (Doedel and others), where its object files and a Fortran compiler are installed.
+"""AUTO-07p (Doedel and others), where its object files and a Fortran compiler are
+installed.
 
-The equations stand in auto07p.f90, with derivatives; they are compiled once, linked with AUTO's objects as its own
-makefile does, and run in a folder of their own.
+The equations stand in auto07p.f90, with derivatives; they are compiled once, linked
+with AUTO's objects as its own makefile does, and run in a folder of their own.
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ DS={ds}, DSMIN=1e-9, DSMAX={longest}, IADS=1
 
 
 def has_auto() -> bool:
-    """Whether AUTO's object files (below AUTO_DIR, or where Debian puts them) and gfortran are there."""
+    """Whether AUTO's object files (below AUTO_DIR, or where Debian puts them) and
+    gfortran are there."""
     return bool(_objects()) and shutil.which("gfortran") is not None
 
 
@@ -46,27 +48,42 @@ def _objects() -> list[Path]:
 
 @cache
 def _program() -> tuple[Path, TemporaryDirectory[str]]:
-    """AUTO with the equations, and the folder it is in, which is removed with the process."""
+    """AUTO with the equations, and the folder it is in, which is removed with the
+    process."""
     folder = TemporaryDirectory(prefix="auto07p-")
     program = Path(folder.name) / "follow"
     source = Path(__file__).with_suffix(".f90")
     subprocess.run(
-        ["gfortran", "-O2", "-fopenmp", "-J", folder.name, "-o", program, source, *_objects()],
-        check=True, capture_output=True,
-    )  # fmt: skip
+        [
+            "gfortran",
+            "-O2",
+            "-fopenmp",
+            "-J",
+            folder.name,
+            "-o",
+            program,
+            source,
+            *_objects(),
+        ],
+        check=True,
+        capture_output=True,
+    )
     return program, folder
 
 
 def auto_07p(case: Case, tolerance: float) -> Curve:
-    """Continuation of an algebraic system (IPS = 0) by AUTO, without detection, and a cubic spline through its points.
+    """Continuation of an algebraic system (IPS = 0) by AUTO, without detection, and a
+    cubic spline through its points.
 
-    It takes square systems alone: redundant equations are mixed as for pycont-lite. Its parameter is the unknown that
-    changes fastest at the start. AUTO adapts its step to the number of corrections alone: the longest step is that of
-    the other methods, and it shortens steps that need more than two corrections. As a correction is about the square
-    of the one before, a limit for the last one above the tolerance is enough.
+    It takes square systems alone: redundant equations are mixed as for pycont-lite. Its
+    parameter is the unknown that changes fastest at the start. AUTO adapts its step to
+    the number of corrections alone: the longest step is that of the other methods, and
+    it shortens steps that need more than two corrections. As a correction is about the
+    square of the one before, a limit for the last one above the tolerance is enough.
 
-    ``seconds`` is the processor time of AUTO as it takes it itself, from reading the problem to the last point: without
-    compiling, starting the program and reading the points, which are written in full precision and not as decimals.
+    ``seconds`` is the processor time of AUTO as it takes it itself, from reading the
+    problem to the last point: without compiling, starting the program and reading the
+    points, which are written in full precision and not as decimals.
     """
     program, _ = _program()
     problem, n = case.problem, case.problem.n
@@ -74,17 +91,28 @@ def auto_07p(case: Case, tolerance: float) -> Curve:
     h = LONGEST * turn_per_step(tolerance) * problem.scale
     enough = max(0.1 * tolerance, 1e-13)
     constants = CONSTANTS.format(
-        ndim=n - 1, most=int(50 * case.length / h) + 1000, longest=h,
-        enough=max(enough, 1e-3 * np.sqrt(enough)), ds=0.1 * h * np.sign(case.tangent[parameter]),
-    )  # fmt: skip
+        ndim=n - 1,
+        most=int(50 * case.length / h) + 1000,
+        longest=h,
+        enough=max(enough, 1e-3 * np.sqrt(enough)),
+        ds=0.1 * h * np.sign(case.tangent[parameter]),
+    )
     with TemporaryDirectory(prefix="auto07p-") as folder:
-        Path(folder, "problem.dat").write_text(_problem_data(case, parameter), encoding="ascii")
+        Path(folder, "problem.dat").write_text(
+            _problem_data(case, parameter), encoding="ascii"
+        )
         ended = subprocess.run(
-            [program], cwd=folder, input=constants.encode(), capture_output=True, check=False,
+            [program],
+            cwd=folder,
+            input=constants.encode(),
+            capture_output=True,
+            check=False,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
-        )  # fmt: skip
+        )
         if not Path(folder, "points.bin").exists():
-            raise RuntimeError(f"AUTO-07p does not begin: {ended.stdout.decode()[-500:]}")
+            raise RuntimeError(
+                f"AUTO-07p does not begin: {ended.stdout.decode()[-500:]}"
+            )
         written = np.fromfile(Path(folder, "points.bin"))
     if len(written) % n != 1:  # the time comes last
         raise MethodFailure("it stops before the end of the curve")
@@ -96,7 +124,9 @@ def _problem_data(case: Case, parameter: int) -> str:
     """What auto07p.f90 reads: numbers with 17 digits."""
     problem, n = case.problem, case.problem.n
     rows = len(problem.residuals(case.start[None])[0])
-    kind = KINDS["loop" if isinstance(problem, LoopClosure) else case.name.partition("-")[0]]
+    kind = KINDS[
+        "loop" if isinstance(problem, LoopClosure) else case.name.partition("-")[0]
+    ]
     mixed = mixtures(rows, n - 1) if rows != n - 1 else np.empty((0, rows))
     lines = [np.array([case.length]), case.start, *mixed]
     if isinstance(problem, LoopClosure):

@@ -1,4 +1,5 @@
-"""The curves of the work-precision study: linkages of four to seven joints, and generic problems."""
+"""The curves of the work-precision study: linkages of four to seven joints, and generic
+problems."""
 
 from __future__ import annotations
 
@@ -29,11 +30,12 @@ DENSE = 200  # unknowns up to which a Jacobian is a dense matrix
 
 @dataclass(frozen=True)
 class Case:
-    """A curve to follow from ``start`` along ``tangent``, and the same system in mpmath numbers.
+    """A curve to follow from ``start`` along ``tangent``, and the same system in mpmath
+    numbers.
 
-    ``exact_residual`` maps a list of unknowns to the list of residuals, in the order of the problem's. ``settings``
-    are those of the reference curve; methods are not asked for less than ``tightest``,
-    and given ``patience`` times the usual time.
+    ``exact_residual`` maps a list of unknowns to the list of residuals, in the order of
+    the problem's. ``settings`` are those of the reference curve; methods are not asked
+    for less than ``tightest``, and given ``patience`` times the usual time.
     """
 
     name: str
@@ -48,12 +50,14 @@ class Case:
 
     @cached_property
     def sparse(self) -> bool:
-        """Whether the Jacobian is sparse, so that dense matrices of its size are out of the question."""
+        """Whether the Jacobian is sparse, so that dense matrices of its size are out of
+        the question."""
         return issparse(self.problem.jacobian(self.start))
 
     @cached_property
     def reference(self) -> Branch:
-        """The whole curve by this project, mostly at order 20 and tolerance 1e-14, its error measured by `.exact`."""
+        """The whole curve by this project, mostly at order 20 and tolerance 1e-14, its
+        error measured by `.exact`."""
         return trace_branch(self.problem, self.start, self.tangent, self.settings)
 
     @property
@@ -63,10 +67,15 @@ class Case:
 
     @cached_property
     def parameter(self) -> tuple[int | None, float]:
-        """The unknown without dead points that travels farthest, and how far it goes; None where there is none."""
+        """The unknown without dead points that travels farthest, and how far it goes;
+        None where there is none."""
         branch = self.reference
         travel = branch._ends[1] - branch._ends[0]
-        still = [i for i, roots in enumerate(dead_points(branch)) if not len(roots) and abs(travel[i]) > 0.1]
+        still = [
+            i
+            for i, roots in enumerate(dead_points(branch))
+            if not len(roots) and abs(travel[i]) > 0.1
+        ]
         if not still:
             return None, 0.0
         best = max(still, key=lambda i: abs(travel[i]))
@@ -82,25 +91,52 @@ def all_cases() -> list[Case]:
 
 
 def linkage_cases() -> list[Case]:
-    """Loops of 4 to 7 joints; two of them pass close to singular points, two through them."""
+    """Loops of 4 to 7 joints; two of them pass close to singular points, two through
+    them."""
     return [
         _named("bennett", "Bennett 4R", "bennett"),
         _named("goldberg-5r", "Goldberg 5R", "goldberg-5r"),
-        _named("general-6r", "Double-subtractive-Goldberg 6R", "double-subtractive-goldberg"),
-        _named("special-6r", "Special double-subtractive-Goldberg 6R", "special-double-subtractive-goldberg"),
+        _named(
+            "general-6r",
+            "Double-subtractive-Goldberg 6R",
+            "double-subtractive-goldberg",
+        ),
+        _named(
+            "special-6r",
+            "Special double-subtractive-Goldberg 6R",
+            "special-double-subtractive-goldberg",
+        ),
         _named("bricard", "Line-symmetric Bricard 6R", "bricard-line-symmetric"),
-        _named("near-parallelogram", "Four-bar, almost a parallelogram", "four-bar", a=2, b=1, c="2.001", d="1.0001"),
-        _named("near-zero-offset", "Line-symmetric Bricard 6R, offsets 1e-3", "bricard-line-symmetric",
-               R1="0.001", R2="0.001", R3="0.001"),
+        _named(
+            "near-parallelogram",
+            "Four-bar, almost a parallelogram",
+            "four-bar",
+            a=2,
+            b=1,
+            c="2.001",
+            d="1.0001",
+        ),
+        _named(
+            "near-zero-offset",
+            "Line-symmetric Bricard 6R, offsets 1e-3",
+            "bricard-line-symmetric",
+            R1="0.001",
+            R2="0.001",
+            R3="0.001",
+        ),
         _seven(),
-    ]  # fmt: skip
+    ]
 
 
 def _named(name: str, title: str, family: str, **changed: Any) -> Case:
-    """The longest closed form of a member of the catalogue, from a regular point of it."""
+    """The longest closed form of a member of the catalogue, from a regular point of
+    it."""
     found = entry(family)
     with mpmath.workdps(DIGITS):
-        values = {key: mpmath.mpf(value) for key, value in {**found.defaults, **changed}.items()}
+        values = {
+            key: mpmath.mpf(value)
+            for key, value in {**found.defaults, **changed}.items()
+        }
         exact = found.build(**values)
     return _loop_case(name, title, exact)
 
@@ -113,11 +149,15 @@ def _seven() -> Case:
             tuple(mpmath.mpf(float(x)) for x in rng.uniform(low, high, 7))
             for low, high in ((0.5, 1.5), (0.6, 2.5), (0.0, 0.4))
         )
-        return _loop_case("general-7r", "General 7R", Loop(lengths, twists, offsets, "general 7R"))
+        return _loop_case(
+            "general-7r", "General 7R", Loop(lengths, twists, offsets, "general 7R")
+        )
 
 
 def _loop_case(name: str, title: str, exact: Loop) -> Case:
-    lengths, twists, offsets = (tuple(map(float, v)) for v in (exact.lengths, exact.twists, exact.offsets))
+    lengths, twists, offsets = (
+        tuple(map(float, v)) for v in (exact.lengths, exact.twists, exact.offsets)
+    )
     loop = Loop(lengths, twists, offsets, exact.name)
     problem = LoopClosure(loop)
     seeds = problem.seeds(np.random.default_rng(0), 30).points
@@ -129,18 +169,42 @@ def _loop_case(name: str, title: str, exact: Loop) -> Case:
             break
     chosen = max((b for b in branches if b.closed), key=lambda b: round(b.length, 6))
     s = 0.1234 * chosen.length  # not at a symmetric configuration
-    return Case(name, title, problem, chosen(s), chosen(s, 1), lambda theta: loop_residual(exact, theta))
+    return Case(
+        name,
+        title,
+        problem,
+        chosen(s),
+        chosen(s, 1),
+        lambda theta: loop_residual(exact, theta),
+    )
 
 
 def loop_residual(loop: Loop, theta: Sequence[Any]) -> list[Any]:
-    """Closure of a loop in mpmath numbers, in the order of `LoopClosure`: exact to first order next to closure."""
+    """Closure of a loop in mpmath numbers, in the order of `LoopClosure`: exact to
+    first order next to closure."""
     total = mpmath.eye(4)
-    for angle, length, twist, offset in zip(theta, loop.lengths, loop.twists, loop.offsets, strict=True):
-        c, s, ca, sa = mpmath.cos(angle), mpmath.sin(angle), mpmath.cos(twist), mpmath.sin(twist)
-        total *= mpmath.matrix(
-            [[c, -s * ca, s * sa, length * c], [s, c * ca, -c * sa, length * s], [0, sa, ca, offset], [0, 0, 0, 1]]
+    for angle, length, twist, offset in zip(
+        theta, loop.lengths, loop.twists, loop.offsets, strict=True
+    ):
+        c, s, ca, sa = (
+            mpmath.cos(angle),
+            mpmath.sin(angle),
+            mpmath.cos(twist),
+            mpmath.sin(twist),
         )
-    half = [(total[2, 1] - total[1, 2]) / 2, (total[0, 2] - total[2, 0]) / 2, (total[1, 0] - total[0, 1]) / 2]
+        total *= mpmath.matrix(
+            [
+                [c, -s * ca, s * sa, length * c],
+                [s, c * ca, -c * sa, length * s],
+                [0, sa, ca, offset],
+                [0, 0, 0, 1],
+            ]
+        )
+    half = [
+        (total[2, 1] - total[1, 2]) / 2,
+        (total[0, 2] - total[2, 0]) / 2,
+        (total[1, 0] - total[0, 1]) / 2,
+    ]
     return half + [total[i, 3] / loop.characteristic_length for i in range(3)]
 
 
@@ -150,31 +214,48 @@ def loop_residual(loop: Loop, theta: Sequence[Any]) -> list[Any]:
 def circle() -> Case:
     """The unit circle."""
     problem = FunctionProblem(
-        lambda u: np.array([u[0] * u[0] + u[1] * u[1] - 1.0]), [(-2, 2), (-2, 2)],
+        lambda u: np.array([u[0] * u[0] + u[1] * u[1] - 1.0]),
+        [(-2, 2), (-2, 2)],
         jacobian=lambda u: np.array([[2 * u[0], 2 * u[1]]]),
-    )  # fmt: skip
+    )
     start = np.array([0.6, 0.8])
-    return Case("circle", "Circle", problem, start, np.array([-0.8, 0.6]), lambda u: [u[0] ** 2 + u[1] ** 2 - 1])
+    return Case(
+        "circle",
+        "Circle",
+        problem,
+        start,
+        np.array([-0.8, 0.6]),
+        lambda u: [u[0] ** 2 + u[1] ** 2 - 1],
+    )
 
 
 def pitchfork() -> Case:
-    """The bent branch of the pitchfork x^3 = p x, through the bifurcation at the origin."""
+    """The bent branch of the pitchfork x^3 = p x, through the bifurcation at the
+    origin."""
     problem = FunctionProblem(
-        lambda u: np.array([u[0] ** 3 - u[1] * u[0]]), [(-1.5, 1.5), (-1.0, 2.0)],
+        lambda u: np.array([u[0] ** 3 - u[1] * u[0]]),
+        [(-1.5, 1.5), (-1.0, 2.0)],
         jacobian=lambda u: np.array([[3 * u[0] ** 2 - u[1], -u[0]]]),
-    )  # fmt: skip
+    )
     start = np.array([-np.sqrt(2.0), 2.0])
     tangent = np.array([1.0, 2 * start[0]])
     return Case(
-        "pitchfork", "Pitchfork", problem, start, tangent / np.linalg.norm(tangent), lambda u: [u[0] ** 3 - u[1] * u[0]]
+        "pitchfork",
+        "Pitchfork",
+        problem,
+        start,
+        tangent / np.linalg.norm(tangent),
+        lambda u: [u[0] ** 3 - u[1] * u[0]],
     )
 
 
 def bratu(n: int) -> Case:
-    """u'' + p exp(u) = 0 with n inner points: around the fold, from u = 0 up to p = 0.5 on the upper branch.
+    """u'' + p exp(u) = 0 with n inner points: around the fold, from u = 0 up to p = 0.5
+    on the upper branch.
 
-    Beyond `DENSE` unknowns with a sparse Jacobian. Its least singular value is about (pi / n)^2: with 1000 unknowns
-    rounding moves the curve by some 1e-9, and tolerances below 1e-7 are not asked for.
+    Beyond `DENSE` unknowns with a sparse Jacobian. Its least singular value is about
+    (pi / n)^2: with 1000 unknowns rounding moves the curve by some 1e-9, and tolerances
+    below 1e-7 are not asked for.
     """
     h2 = 1.0 / (n + 1) ** 2
 
@@ -188,16 +269,31 @@ def bratu(n: int) -> Case:
     def exact(x: list[Any]) -> list[Any]:
         u = [mpmath.mpf(0), *x[:-1], mpmath.mpf(0)]
         step = mpmath.mpf(1) / (n + 1) ** 2
-        return [u[i - 1] - 2 * u[i] + u[i + 1] + step * x[-1] * mpmath.exp(u[i]) for i in range(1, n + 1)]
+        return [
+            u[i - 1] - 2 * u[i] + u[i + 1] + step * x[-1] * mpmath.exp(u[i])
+            for i in range(1, n + 1)
+        ]
 
     bounds = [(-1.0, 20.0)] * n + [(0.0, 5.0)]
-    problem = FunctionProblem(residual, bounds, jacobian=_bratu_dense(n) if n <= DENSE else _bratu_sparse(n))
+    problem = FunctionProblem(
+        residual, bounds, jacobian=_bratu_dense(n) if n <= DENSE else _bratu_sparse(n)
+    )
     start = np.zeros(n + 1)
     tangent = null_vector(problem, start, np.eye(n + 1)[-1])
     name, title = f"bratu-{n}", f"Bratu, {n} unknowns"
     if n <= DENSE:
         return Case(name, title, problem, start, tangent, exact)
-    return Case(name, title, problem, start, tangent, exact, TraceSettings(order=20, tolerance=1e-8), 1e-7, 4.0)
+    return Case(
+        name,
+        title,
+        problem,
+        start,
+        tangent,
+        exact,
+        TraceSettings(order=20, tolerance=1e-8),
+        1e-7,
+        4.0,
+    )
 
 
 def _bratu_dense(n: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -217,7 +313,14 @@ def _bratu_dense(n: int) -> Callable[[np.ndarray], np.ndarray]:
 def _bratu_sparse(n: int) -> Callable[[np.ndarray], csc_array]:
     h2 = 1.0 / (n + 1) ** 2
     ones = np.ones(n)
-    pattern = csc_array(hstack([diags_array([ones[1:], 5 * ones, ones[1:]], offsets=[-1, 0, 1]), 7 * ones[:, None]]))
+    pattern = csc_array(
+        hstack(
+            [
+                diags_array([ones[1:], 5 * ones, ones[1:]], offsets=[-1, 0, 1]),
+                7 * ones[:, None],
+            ]
+        )
+    )
     diagonal, last = pattern.data == 5, pattern.data == 7
 
     def jacobian(x: np.ndarray) -> csc_array:

@@ -11,20 +11,34 @@ from studies.methods.curve import MethodFailure
 
 __all__ = ["Counted"]
 
-A_PIECE = 10  # evaluations of F and F' that a compiled Taylor piece costs: corrections, checks, and the series itself
+# evaluations of F and F' that a compiled Taylor piece costs: corrections, checks, and
+# the series itself
+A_PIECE = 10
 
 
 class Counted(Problem):
-    """``problem`` with the number of ``evaluations`` so far: points at which F or F' was asked for, one each.
+    """``problem`` with the number of ``evaluations`` so far: points at which F or F'
+    was asked for, one each.
 
     Raises `MethodFailure` beyond ``budget`` evaluations.
     """
 
     def __init__(self, problem: Problem, budget: int = 100_000):
         self._problem, self.evaluations, self.budget = problem, 0, budget
-        for name in ("names", "units", "periods", "bounds", "magnitude", "scale", "derivatives", "curvature_residual"):
+        for name in (
+            "names",
+            "units",
+            "periods",
+            "bounds",
+            "magnitude",
+            "scale",
+            "derivatives",
+            "curvature_residual",
+        ):
             setattr(self, name, getattr(problem, name))
-        if type(problem).march is Problem.march:  # by collocation, through the evaluations below
+        if (
+            type(problem).march is Problem.march
+        ):  # by collocation, through the evaluations below
             self._compiled = False
         else:
             self._compiled = True
@@ -53,7 +67,8 @@ class Counted(Problem):
         return self._problem.curvature_bound()
 
     def march(self, *arguments: Any) -> March:
-        """Pieces of the curve; compiled ones are taken to cost `A_PIECE` evaluations each."""
+        """Pieces of the curve; compiled ones are taken to cost `A_PIECE` evaluations
+        each."""
         if not self._compiled:
             return super().march(*arguments)
         made = self._problem.march(*arguments)

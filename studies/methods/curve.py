@@ -1,4 +1,5 @@
-"""What every method returns: a curve that can be evaluated anywhere, and why there is none."""
+"""What every method returns: a curve that can be evaluated anywhere, and why there is
+none."""
 
 from __future__ import annotations
 
@@ -17,9 +18,11 @@ class MethodFailure(RuntimeError):
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve over a parameter from 0 to ``end``; ``points`` is the number of points or pieces it was made of.
+    """A curve over a parameter from 0 to ``end``; ``points`` is the number of points or
+    pieces it was made of.
 
-    ``seconds`` is the processor time it took where that is spent in a program of its own, else None.
+    ``seconds`` is the processor time it took where that is spent in a program of its
+    own, else None.
     """
 
     evaluate: Callable[[np.ndarray], np.ndarray]
@@ -32,18 +35,30 @@ class Curve:
         return self.evaluate(np.linspace(0.0, self.end, count))
 
 
-def through_points_and_tangents(points: list[np.ndarray], tangents: list[np.ndarray], length: float) -> Curve:
-    """Cubic Hermite pieces through points and unit tangents, cut off at arclength ``length``.
+def through_points_and_tangents(
+    points: list[np.ndarray], tangents: list[np.ndarray], length: float
+) -> Curve:
+    """Cubic Hermite pieces through points and unit tangents, cut off at arclength
+    ``length``.
 
     The arclength of a piece is its chord, times 1 + angle^2 / 24 for the arc above it.
     """
     u, t = np.array(points), np.array(tangents)
     turned = np.linalg.norm(np.diff(t, axis=0), axis=1)
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(u, axis=0), axis=1) * (1 + turned**2 / 24))])
+    s = np.concatenate(
+        [
+            [0.0],
+            np.cumsum(
+                np.linalg.norm(np.diff(u, axis=0), axis=1) * (1 + turned**2 / 24)
+            ),
+        ]
+    )
     return Curve(CubicHermiteSpline(s, u, t), min(length, s[-1]), len(u))
 
 
-def through_points(points: list[np.ndarray], length: float, seconds: float | None = None) -> Curve:
+def through_points(
+    points: list[np.ndarray], length: float, seconds: float | None = None
+) -> Curve:
     """A cubic spline through points over their chord length, cut off at ``length``."""
     u = np.array(points)
     s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(u, axis=0), axis=1))])

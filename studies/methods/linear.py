@@ -20,7 +20,8 @@ def evaluate(problem: Problem, u: np.ndarray) -> tuple[np.ndarray, Any]:
 
 
 def solve_bordered(jacobian: Any, tangent: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """x (n, k) that solves [F'; t] x = right (m + 1, k): by LU where it is square, else in the least-squares sense."""
+    """x (n, k) that solves [F'; t] x = right (m + 1, k): by LU where it is square, else
+    in the least-squares sense."""
     m, n = jacobian.shape
     if issparse(jacobian):
         return sparse_bordered(jacobian, tangent)(right)
@@ -32,8 +33,10 @@ def solve_bordered(jacobian: Any, tangent: np.ndarray, right: np.ndarray) -> np.
 
 
 def mixtures(rows: int, wanted: int) -> np.ndarray:
-    """A fixed random matrix (wanted, rows) with orthonormal rows that makes ``rows`` redundant equations ``wanted``.
+    """A fixed random matrix (wanted, rows) with orthonormal rows that makes ``rows``
+    redundant equations ``wanted``.
 
-    Wherever they have the rank ``wanted`` so has, for almost every such matrix, their mixture.
+    Wherever they have the rank ``wanted`` so has, for almost every such matrix, their
+    mixture.
     """
     return np.linalg.qr(np.random.default_rng(0).normal(size=(rows, rows)))[0][:wanted]

@@ -1,4 +1,5 @@
-"""Natural-parameter stepping: one unknown is set, `scipy.optimize` solves for the others."""
+"""Natural-parameter stepping: one unknown is set, `scipy.optimize` solves for the
+others."""
 
 from __future__ import annotations
 
@@ -14,12 +15,18 @@ __all__ = ["natural_parameter"]
 
 
 def natural_parameter(
-    problem: Problem, start: np.ndarray, travel: float, parameter: int | None, tolerance: float
+    problem: Problem,
+    start: np.ndarray,
+    travel: float,
+    parameter: int | None,
+    tolerance: float,
 ) -> Curve:
-    """Equal steps of the unknown ``parameter`` over ``travel``, each solved from the cubic through the points before.
+    """Equal steps of the unknown ``parameter`` over ``travel``, each solved from the
+    cubic through the points before.
 
-    `scipy.optimize.root` (hybrid method) where the rest is square, `least_squares` (Levenberg-Marquardt) where there
-    are more equations. There has to be an unknown without dead points. A cubic spline joins the points.
+    `scipy.optimize.root` (hybrid method) where the rest is square, `least_squares`
+    (Levenberg-Marquardt) where there are more equations. There has to be an unknown
+    without dead points. A cubic spline joins the points.
     """
     if parameter is None:
         raise MethodFailure("every unknown has a dead point")
@@ -34,7 +41,9 @@ def natural_parameter(
     return Curve(_along(values, np.array(solved)), 1.0, count + 1)
 
 
-def _solve(problem: Problem, guess: np.ndarray, others: np.ndarray, tolerance: float) -> np.ndarray:
+def _solve(
+    problem: Problem, guess: np.ndarray, others: np.ndarray, tolerance: float
+) -> np.ndarray:
     def residual(x: np.ndarray) -> np.ndarray:
         guess[others] = x
         return problem.residuals(guess[None])[0]
@@ -47,7 +56,15 @@ def _solve(problem: Problem, guess: np.ndarray, others: np.ndarray, tolerance: f
     if len(residual(x)) == len(others):
         x = root(residual, x, jac=jacobian, tol=enough).x
     else:
-        x = least_squares(residual, x, jac=jacobian, method="lm", xtol=enough, ftol=enough, gtol=enough).x
+        x = least_squares(
+            residual,
+            x,
+            jac=jacobian,
+            method="lm",
+            xtol=enough,
+            ftol=enough,
+            gtol=enough,
+        ).x
     if np.linalg.norm(residual(x)) > 1e3 * tolerance * problem.magnitude + 1e-11:
         raise MethodFailure("the solver does not converge")
     guess[others] = x
@@ -56,7 +73,9 @@ def _solve(problem: Problem, guess: np.ndarray, others: np.ndarray, tolerance: f
 
 def _extrapolate(solved: list[np.ndarray]) -> np.ndarray:
     """The next of equally spaced points by the polynomial through the last four."""
-    weights = {1: (1,), 2: (-1, 2), 3: (1, -3, 3), 4: (-1, 4, -6, 4)}[min(len(solved), 4)]
+    weights = {1: (1,), 2: (-1, 2), 3: (1, -3, 3), 4: (-1, 4, -6, 4)}[
+        min(len(solved), 4)
+    ]
     return np.array(weights, dtype=float) @ np.array(solved[-len(weights) :])
 
 

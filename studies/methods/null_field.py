@@ -1,4 +1,5 @@
-"""Integrating the field of null vectors, du/ds = t(u), with the solvers of `scipy.integrate`."""
+"""Integrating the field of null vectors, du/ds = t(u), with the solvers of
+`scipy.integrate`."""
 
 from __future__ import annotations
 
@@ -14,18 +15,30 @@ from studies.methods.linear import evaluate, solve_bordered
 
 __all__ = ["SOLVERS", "integrate_null_field"]
 
-SOLVERS: dict[str, Callable[..., OdeSolver]] = {"RK45": RK45, "DOP853": DOP853, "LSODA": LSODA}
+SOLVERS: dict[str, Callable[..., OdeSolver]] = {
+    "RK45": RK45,
+    "DOP853": DOP853,
+    "LSODA": LSODA,
+}
 
 
 def integrate_null_field(
-    problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, tolerance: float,
-    solver: str, projected: bool, longest: float = np.inf,
-) -> Curve:  # fmt: skip
-    """The curve as the solver's own dense output, with relative and absolute tolerance ``tolerance``.
+    problem: Problem,
+    start: np.ndarray,
+    tangent: np.ndarray,
+    length: float,
+    tolerance: float,
+    solver: str,
+    projected: bool,
+    longest: float = np.inf,
+) -> Curve:
+    """The curve as the solver's own dense output, with relative and absolute tolerance
+    ``tolerance``.
 
-    ``projected``: after every step the point is put back on the curve by Newton's method, and the step ends there.
-    The null vector comes from the bordered system with the last one as border: one factorisation a stage, less than an
-    SVD, and the sign is right by itself.
+    ``projected``: after every step the point is put back on the curve by Newton's
+    method, and the step ends there. The null vector comes from the bordered system with
+    the last one as border: one factorisation a stage, less than an SVD, and the sign is
+    right by itself.
     """
     last = tangent.copy()
 
@@ -39,7 +52,15 @@ def integrate_null_field(
         return t
 
     allowed = max(tolerance, 1e-13)
-    ode: Any = SOLVERS[solver](field, 0.0, start, length, rtol=max(allowed, 3e-14), atol=allowed, max_step=longest)
+    ode: Any = SOLVERS[solver](
+        field,
+        0.0,
+        start,
+        length,
+        rtol=max(allowed, 3e-14),
+        atol=allowed,
+        max_step=longest,
+    )
     times, pieces = [0.0], []
     while ode.status == "running":
         message = ode.step()
@@ -58,11 +79,15 @@ def _piece(ode: OdeSolver) -> DenseOutput:
     return ode.dense_output()
 
 
-def _project(problem: Problem, u: np.ndarray, tangent: np.ndarray, tolerance: float) -> np.ndarray:
+def _project(
+    problem: Problem, u: np.ndarray, tangent: np.ndarray, tolerance: float
+) -> np.ndarray:
     """Newton's method across ``tangent``."""
     for _ in range(3):
         residual, jacobian = evaluate(problem, u)
-        step = solve_bordered(jacobian, tangent, np.append(-residual, 0.0)[:, None])[:, 0]
+        step = solve_bordered(jacobian, tangent, np.append(-residual, 0.0)[:, None])[
+            :, 0
+        ]
         u = u + step
         if np.linalg.norm(step) < np.sqrt(tolerance) * 1e-2:
             break

@@ -15,16 +15,24 @@ SHORTEST = 3e-4
 
 
 def trace(
-    problem: Problem, start: np.ndarray, tangent: np.ndarray, length: float, order: int, tolerance: float
+    problem: Problem,
+    start: np.ndarray,
+    tangent: np.ndarray,
+    length: float,
+    order: int,
+    tolerance: float,
 ) -> Curve:
     """`bifurc.curves.continuation.trace_branch` at one order and tolerance.
 
-    An open curve is followed both ways, from bound to bound: more than the other methods are asked for. The trusted
-    radius of a low order is about ``tolerance ** (1 / (order - 1))``: below `SHORTEST` it is not worth a try.
+    An open curve is followed both ways, from bound to bound: more than the other
+    methods are asked for. The trusted radius of a low order is about ``tolerance ** (1
+    / (order - 1))``: below `SHORTEST` it is not worth a try.
     """
     if tolerance ** (1 / (order - 1)) < SHORTEST:
         raise MethodFailure("the steps of this order are too short")
-    settings = TraceSettings(order=order, tolerance=tolerance, max_length=10 * length / problem.scale)
+    settings = TraceSettings(
+        order=order, tolerance=tolerance, max_length=10 * length / problem.scale
+    )
     branch: Branch = trace_branch(problem, start, tangent, settings)
     if branch.length < 0.999 * length:
         raise MethodFailure(branch.outcome.value)

@@ -12,7 +12,9 @@ from linkages.closure.loop_closure import LoopClosure
 
 def line_symmetric():
     problem = LoopClosure(entry("bricard-line-symmetric").build())
-    return problem, trace_branch(problem, problem.seeds(np.random.default_rng(0), 1).points[0])
+    return problem, trace_branch(
+        problem, problem.seeds(np.random.default_rng(0), 1).points[0]
+    )
 
 
 @pytest.fixture(scope="module")
@@ -22,21 +24,31 @@ def traced():
 
 @pytest.fixture(scope="module")
 def circle():
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1.0]), [(-2, 2)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1.0]), [(-2, 2)] * 2
+    )
     return trace_branch(problem, np.array([1.0, 0.0]), np.array([0.0, 1.0]))
 
 
 @pytest.fixture(scope="module")
 def parabola():
-    problem = FunctionProblem(lambda u: np.array([u[1] - u[0] ** 2]), [(-1, 2), (-5, 5)])
+    problem = FunctionProblem(
+        lambda u: np.array([u[1] - u[0] ** 2]), [(-1, 2), (-5, 5)]
+    )
     return trace_branch(problem, np.array([0.0, 0.0]), np.array([1.0, 0.0]))
 
 
 def test_the_circle_is_cosine_and_sine_of_the_arclength_with_all_derivatives(circle):
     s = np.linspace(0.0, 2 * np.pi, 201)
-    for derivative, bound in ((0, 1e-12), (1, 1e-11), (2, 1e-9)):  # every derivative costs a factor order / radius
+    for derivative, bound in (
+        (0, 1e-12),
+        (1, 1e-11),
+        (2, 1e-9),
+    ):  # every derivative costs a factor order / radius
         phase = s + derivative * np.pi / 2
-        assert circle(s, derivative) == pytest.approx(np.stack([np.cos(phase), np.sin(phase)], axis=1), abs=bound)
+        assert circle(s, derivative) == pytest.approx(
+            np.stack([np.cos(phase), np.sin(phase)], axis=1), abs=bound
+        )
     assert circle.length == pytest.approx(2 * np.pi, abs=1e-12)
 
 
@@ -44,15 +56,23 @@ def test_derivatives_agree_with_differences_along_the_curve(traced):
     _, branch = traced
     s = np.linspace(0.0, branch.length, 50)
     for derivative, step, bound in ((1, 1e-3, 1e-4), (2, 1e-3, 1e-3)):
-        slope = (branch(s + step, derivative - 1) - branch(s - step, derivative - 1)) / (2 * step)
+        slope = (
+            branch(s + step, derivative - 1) - branch(s - step, derivative - 1)
+        ) / (2 * step)
         assert branch(s, derivative) == pytest.approx(slope, abs=bound)
 
 
 def test_the_parameter_is_the_arclength(traced):
     _, branch = traced
-    assert np.linalg.norm(branch(branch.arclengths(5000), 1), axis=1) == pytest.approx(1.0, abs=1e-10)
-    chords = np.linalg.norm(np.diff(branch(np.linspace(0, branch.length, 20001)), axis=0), axis=1)
-    assert chords.sum() == pytest.approx(branch.length, rel=1e-7)  # a chord is short by h^2 kappa^2 / 24
+    assert np.linalg.norm(branch(branch.arclengths(5000), 1), axis=1) == pytest.approx(
+        1.0, abs=1e-10
+    )
+    chords = np.linalg.norm(
+        np.diff(branch(np.linspace(0, branch.length, 20001)), axis=0), axis=1
+    )
+    assert chords.sum() == pytest.approx(
+        branch.length, rel=1e-7
+    )  # a chord is short by h^2 kappa^2 / 24
 
 
 def test_evaluation_agrees_with_solving_again(traced):
@@ -66,7 +86,8 @@ def test_evaluation_agrees_with_solving_again(traced):
 def test_pieces_hand_over_without_a_step(traced):
     _, branch = traced
     inner = branch.breaks[1:-1]
-    # two pieces of tolerance 1e-13, over the smallest singular value of this form, 0.02 to 0.1
+    # two pieces of tolerance 1e-13, over the smallest singular value of this form, 0.02
+    # to 0.1
     assert branch(inner - 1e-12) == pytest.approx(branch(inner + 1e-12), abs=1e-11)
 
 
@@ -74,8 +95,12 @@ def test_a_closed_curve_goes_on_after_its_length_and_winds(traced):
     _, branch = traced
     s = np.linspace(0.0, branch.length, 20)
     turned = branch(s + 2 * branch.length) - branch(s)
-    assert turned == pytest.approx(np.tile(4 * np.pi * branch.winding, (20, 1)), abs=1e-10)
-    assert branch(s - branch.length) - branch(s) == pytest.approx(np.tile(-2 * np.pi * branch.winding, (20, 1)), abs=1e-10)
+    assert turned == pytest.approx(
+        np.tile(4 * np.pi * branch.winding, (20, 1)), abs=1e-10
+    )
+    assert branch(s - branch.length) - branch(s) == pytest.approx(
+        np.tile(-2 * np.pi * branch.winding, (20, 1)), abs=1e-10
+    )
 
 
 def test_a_joint_that_turns_twice_before_the_curve_closes_has_winding_two():
@@ -83,18 +108,29 @@ def test_a_joint_that_turns_twice_before_the_curve_closes_has_winding_two():
     branch = trace_branch(problem, problem.seeds(np.random.default_rng(0), 1).points[0])
     assert branch.closed
     assert np.array_equal(np.abs(branch.winding), [1, 1, 0, 1, 1, 2])
-    # counted independently: wrapped samples, solved again, unwrapped from neighbour to neighbour
+    # counted independently: wrapped samples, solved again, unwrapped from neighbour to
+    # neighbour
     wrapped = np.angle(np.exp(1j * problem.project(branch.sample(2000))[0]))
-    turns = np.diff(np.unwrap(np.vstack([wrapped, wrapped[:1]]), axis=0)[[0, -1]], axis=0)[0] / (2 * np.pi)
+    turns = np.diff(
+        np.unwrap(np.vstack([wrapped, wrapped[:1]]), axis=0)[[0, -1]], axis=0
+    )[0] / (2 * np.pi)
     assert turns == pytest.approx(branch.winding, abs=1e-9)
-    # half way, where the last joint has turned once, the others are not where they began
-    assert np.linalg.norm(problem.difference(branch(0.5 * branch.length), branch(0.0))) > 0.1
+    # half way, where the last joint has turned once, the others are not where they
+    # began
+    assert (
+        np.linalg.norm(problem.difference(branch(0.5 * branch.length), branch(0.0)))
+        > 0.1
+    )
 
 
 def test_the_nearest_point_of_a_curve_is_its_foot(circle):
-    points = np.array([[2.0, 0.0], [0.0, 0.5], [-0.3, -0.4], [np.cos(3.0), np.sin(3.0)]])
+    points = np.array(
+        [[2.0, 0.0], [0.0, 0.5], [-0.3, -0.4], [np.cos(3.0), np.sin(3.0)]]
+    )
     distance, s = circle.nearest(points)
-    assert distance == pytest.approx([1.0, 0.5, 0.5, 0.0], abs=1e-2)  # far from the curve the nearest sample is enough
+    assert distance == pytest.approx(
+        [1.0, 0.5, 0.5, 0.0], abs=1e-2
+    )  # far from the curve the nearest sample is enough
     assert distance[3] < 1e-13
     assert s[3] == pytest.approx(3.0, abs=1e-12)
 
@@ -105,14 +141,24 @@ def test_the_nearest_point_is_found_modulo_the_periods(traced):
     turns = 2 * np.pi * np.random.default_rng(0).integers(-2, 3, (200, branch.n))
     distance, found = branch.nearest(branch(s) + turns)
     assert distance.max() < 1e-11
-    assert np.abs((found - s + 0.5 * branch.length) % branch.length - 0.5 * branch.length).max() < 1e-9
+    assert (
+        np.abs(
+            (found - s + 0.5 * branch.length) % branch.length - 0.5 * branch.length
+        ).max()
+        < 1e-9
+    )
 
 
 @pytest.mark.parametrize("within", [1e-6, 0.05, 0.5, 2.0])
-def test_within_a_distance_the_nearest_point_is_the_same_and_beyond_it_said_to_be_beyond(traced, within):
+def test_within_a_distance_the_nearest_point_is_the_same_and_beyond_it_said_to_be_beyond(
+    traced, within
+):
     _, branch = traced
     rng = np.random.default_rng(1)
-    points = branch(rng.uniform(0.0, branch.length, 300)) + rng.normal(size=(300, branch.n)) * np.geomspace(1e-9, 1.0, 300)[:, None]
+    points = (
+        branch(rng.uniform(0.0, branch.length, 300))
+        + rng.normal(size=(300, branch.n)) * np.geomspace(1e-9, 1.0, 300)[:, None]
+    )
     distance, s = branch.nearest(points)
     limited, at = branch.nearest(points, within=within)
     near = distance <= within
@@ -124,14 +170,25 @@ def test_within_a_distance_the_nearest_point_is_the_same_and_beyond_it_said_to_b
 
 def test_a_point_beside_a_crossing_is_found_on_its_own_pass():
     # figure of eight: all the nearest samples of a point may lie on the other pass
-    problem = FunctionProblem(lambda u: np.array([(u[0] ** 2 + u[1] ** 2) ** 2 - u[0] ** 2 + u[1] ** 2]), [(-2, 2)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([(u[0] ** 2 + u[1] ** 2) ** 2 - u[0] ** 2 + u[1] ** 2]),
+        [(-2, 2)] * 2,
+    )
     branch = trace_branch(problem, np.array([1.0, 0.0]))
-    for s in np.concatenate([branch.passes(np.zeros(2), 1e-6) + d for d in (-0.05, -0.01, -1e-3, 1e-3, 0.01, 0.05)]):
+    for s in np.concatenate(
+        [
+            branch.passes(np.zeros(2), 1e-6) + d
+            for d in (-0.05, -0.01, -1e-3, 1e-3, 0.01, 0.05)
+        ]
+    ):
         assert branch.nearest(branch(s))[0][0] < 1e-12
 
 
 def test_all_passes_through_a_crossing_are_found():
-    problem = FunctionProblem(lambda u: np.array([(u[0] ** 2 + u[1] ** 2) ** 2 - u[0] ** 2 + u[1] ** 2]), [(-2, 2)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([(u[0] ** 2 + u[1] ** 2) ** 2 - u[0] ** 2 + u[1] ** 2]),
+        [(-2, 2)] * 2,
+    )
     branch = trace_branch(problem, np.array([1.0, 0.0]))
     passes = branch.passes(np.zeros(2), 1e-6)
     assert passes == pytest.approx([branch.length / 4, 3 * branch.length / 4], abs=1e-9)
@@ -145,14 +202,22 @@ def test_a_reversed_curve_is_the_same_curve(traced):
     assert back(s) == pytest.approx(branch(branch.length - s), abs=1e-12)
     assert back(s, 1) == pytest.approx(-branch(branch.length - s, 1), abs=1e-10)
     assert np.array_equal(back.winding, -branch.winding)
-    assert (back.length, back.outcome, back.max_residual) == (branch.length, branch.outcome, branch.max_residual)
+    assert (back.length, back.outcome, back.max_residual) == (
+        branch.length,
+        branch.outcome,
+        branch.max_residual,
+    )
 
 
 def test_an_open_curve_ends_on_the_bounds(parabola):
     assert parabola.outcome is Outcome.LEFT_REGION
     assert not parabola.closed
-    assert sorted(parabola(np.array([0.0, parabola.length]))[:, 0]) == pytest.approx([-1.0, 2.0], abs=1e-12)
-    exact = sum(0.5 * x * np.hypot(1, 2 * x) + 0.25 * np.arcsinh(2 * x) for x in (1.0, 2.0))
+    assert sorted(parabola(np.array([0.0, parabola.length]))[:, 0]) == pytest.approx(
+        [-1.0, 2.0], abs=1e-12
+    )
+    exact = sum(
+        0.5 * x * np.hypot(1, 2 * x) + 0.25 * np.arcsinh(2 * x) for x in (1.0, 2.0)
+    )
     assert parabola.length == pytest.approx(exact, abs=1e-11)
     assert np.array_equal(parabola.winding, [0, 0])
     assert len(parabola.sample(11)) == 11

@@ -108,6 +108,12 @@ for delay in (0.001, 0.01, 0.03, 0.1):
 
 
 def test_a_search_interrupted_inside_a_compiled_kernel_ends_in_order():
-    result = subprocess.run([sys.executable, "-c", SEARCH], capture_output=True, text=True, timeout=300, check=False)
+    result = subprocess.run(
+        [sys.executable, "-c", SEARCH],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
     assert result.returncode == 0, result.stderr
     assert result.stdout.count("forms") == 4

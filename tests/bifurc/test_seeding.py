@@ -8,11 +8,17 @@ from bifurc.seeding import missed_probability, random_seeds
 
 
 def circle(periods=None):
-    return FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1.0]), [(-2, 2)] * 2, periods=periods)
+    return FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1.0]),
+        [(-2, 2)] * 2,
+        periods=periods,
+    )
 
 
 def test_seeds_solve_the_equations_and_the_same_generator_gives_the_same():
-    one, other = (random_seeds(circle(), np.random.default_rng(3), 30) for _ in range(2))
+    one, other = (
+        random_seeds(circle(), np.random.default_rng(3), 30) for _ in range(2)
+    )
     assert np.array_equal(one.points, other.points)
     assert np.abs(np.linalg.norm(one.points, axis=1) - 1).max() < 1e-11
     assert one.random.all()
@@ -20,7 +26,9 @@ def test_seeds_solve_the_equations_and_the_same_generator_gives_the_same():
 
 
 def test_seeds_outside_the_bounds_are_dropped():
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1.0]), [(0, 2), (-2, 0.5)])
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1.0]), [(0, 2), (-2, 0.5)]
+    )
     seeds = random_seeds(problem, np.random.default_rng(0), 100)
     assert len(seeds.points)
     assert seeds.points[:, 0].min() >= 0
@@ -28,7 +36,9 @@ def test_seeds_outside_the_bounds_are_dropped():
 
 
 def test_starts_that_reach_nothing_keep_their_gaps():
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 0.5]), [(-2, 2)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 0.5]), [(-2, 2)] * 2
+    )
     seeds = random_seeds(problem, np.random.default_rng(0), 10)
     assert len(seeds.points) == 0
     assert seeds.gaps * problem.magnitude == pytest.approx(0.5, abs=1e-8)
@@ -38,24 +48,35 @@ def test_starts_that_reach_nothing_keep_their_gaps():
 @pytest.mark.parametrize(
     ("hits", "expected"),
     [
-        ([50, 50], 2.9957 / 100),  # nothing seen just once: the rule of three, -ln 0.05 / N
-        ([99, 1], 4.7439 / 100),  # Garwood 1936: upper 95 % limit of a Poisson mean after one event
+        (
+            [50, 50],
+            2.9957 / 100,
+        ),  # nothing seen just once: the rule of three, -ln 0.05 / N
+        (
+            [99, 1],
+            4.7439 / 100,
+        ),  # Garwood 1936: upper 95 % limit of a Poisson mean after one event
         ([98, 1, 1], 6.2958 / 100),  # and after two
         ([], 1.0),
         ([0], 1.0),
         ([1], 1.0),
     ],
 )
-def test_the_chance_of_something_unseen_has_its_upper_limit_after_good_and_garwood(hits, expected):
+def test_the_chance_of_something_unseen_has_its_upper_limit_after_good_and_garwood(
+    hits, expected
+):
     assert missed_probability(hits) == pytest.approx(expected, abs=1e-6)
 
 
 def test_the_limit_holds_as_often_as_it_says():
-    # 12 things of unequal share, 100 starts: the true unseen share exceeds the limit in about 5 % of all draws
+    # 12 things of unequal share, 100 starts: the true unseen share exceeds the limit in
+    # about 5 % of all draws
     rng = np.random.default_rng(1)
     share = rng.dirichlet(np.full(12, 0.3))
     failed = 0
     for _ in range(400):
         hits = np.bincount(rng.choice(12, 100, p=share), minlength=12)
         failed += share[hits == 0].sum() > missed_probability(hits)
-    assert failed / 400 < 0.1  # 5 % and two standard errors, with room for Good-Turing being a mean
+    assert (
+        failed / 400 < 0.1
+    )  # 5 % and two standard errors, with room for Good-Turing being a mean

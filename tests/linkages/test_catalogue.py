@@ -14,7 +14,11 @@ OWN_NAMES = {
     *("goldberg-5r", "subtractive-goldberg-5r"),
     *("wohlhart-double-goldberg", "special-wohlhart-double-goldberg"),
     *("double-subtractive-goldberg", "special-double-subtractive-goldberg"),
-    *("bricard-line-symmetric", "bricard-line-symmetric-zero-offset", "bricard-octahedral-line-symmetric"),
+    *(
+        "bricard-line-symmetric",
+        "bricard-line-symmetric-zero-offset",
+        "bricard-octahedral-line-symmetric",
+    ),
     *("reconfigurable-bricard-1", "reconfigurable-bricard-2", "wohlhart-symmetric"),
 }
 
@@ -30,7 +34,9 @@ def test_every_linkage_with_reference_cases_is_covered(reference_cases):
 
 
 def test_an_unknown_name_is_refused_with_the_nearest_names():
-    with pytest.raises(UnknownLinkageError, match="special-wohlhart-double-goldberg") as caught:
+    with pytest.raises(
+        UnknownLinkageError, match="special-wohlhart-double-goldberg"
+    ) as caught:
         entry("Special Wolhart double goldberg")
     assert "special-wohlhart-double-goldberg" in caught.value.nearest
     assert isinstance(caught.value, KeyError)
@@ -51,7 +57,10 @@ def test_importing_the_catalogue_loads_neither_sympy_nor_mpmath():
 def test_every_default_lies_in_its_range():
     for name in sorted(OWN_NAMES):
         for parameter in entry(name).parameters:
-            assert parameter.low <= parameter.default <= parameter.high, (name, parameter.name)
+            assert parameter.low <= parameter.default <= parameter.high, (
+                name,
+                parameter.name,
+            )
 
 
 def test_an_unknown_parameter_is_refused_with_the_known_ones():
@@ -63,7 +72,9 @@ def test_every_reference_configuration_closes(reference_cases, closure_gap):
     for case in reference_cases:
         loop = entry(case["linkage"]).build(**case["parameters"])
         for form in case["forms"]:
-            assert closure_gap(loop, form["theta"]) < 2e-14 * max(1.0, loop.characteristic_length), case["linkage"]
+            assert closure_gap(loop, form["theta"]) < 2e-14 * max(
+                1.0, loop.characteristic_length
+            ), case["linkage"]
 
 
 def test_the_joint_screws_leave_one_degree_of_freedom(reference_cases):
@@ -71,27 +82,38 @@ def test_the_joint_screws_leave_one_degree_of_freedom(reference_cases):
         found = entry(case["linkage"])
         loop = found.build(**case["parameters"])
         for form in case["forms"]:
-            sigma = np.linalg.svd(loop.joint_screws(np.array(form["theta"])), compute_uv=False)
+            sigma = np.linalg.svd(
+                loop.joint_screws(np.array(form["theta"])), compute_uv=False
+            )
             rank = int(np.count_nonzero(sigma > 1e-9 * sigma[0]))
-            assert loop.n - rank == found.facts["mobility"], (case["linkage"], form["name"], sigma)
+            assert loop.n - rank == found.facts["mobility"], (
+                case["linkage"],
+                form["name"],
+                sigma,
+            )
             assert rank == found.facts["rank"]
 
 
 def test_a_broken_length_leaves_the_loop_open_and_rigid(reference_cases):
-    """Lengths off by 1e-3: the same angles no longer close, so that closure does test the geometry."""
+    """Lengths off by 1e-3: the same angles no longer close, so that closure does test
+    the geometry."""
     for case in reference_cases:
         loop = entry(case["linkage"]).build(**case["parameters"])
         lengths = (loop.lengths[0] + 1e-3, *loop.lengths[1:])
         broken = Loop(lengths, loop.twists, loop.offsets)
         theta = np.array(case["forms"][0]["theta"])
-        assert np.abs(broken.frames(theta)[-1] - np.eye(4)).max() > 1e-5, case["linkage"]
+        assert np.abs(broken.frames(theta)[-1] - np.eye(4)).max() > 1e-5, case[
+            "linkage"
+        ]
 
 
 def test_constructors_agree_with_themselves_at_fifty_digits():
     with mpmath.workdps(50):
         for name in sorted(OWN_NAMES):
             found = entry(name)
-            exact = found.construct(**{key: mpmath.mpf(value) for key, value in found.defaults.items()})
+            exact = found.construct(
+                **{key: mpmath.mpf(value) for key, value in found.defaults.items()}
+            )
             for fine, coarse in zip(exact.arrays, found.build().arrays, strict=True):
                 np.testing.assert_allclose(fine, coarse, rtol=0, atol=4e-15)
 

@@ -1,4 +1,5 @@
-"""The reference cases: every entry reproduces its case, the case closes, and it has the stated mobility."""
+"""The reference cases: every entry reproduces its case, the case closes, and it has the
+stated mobility."""
 
 import json
 from pathlib import Path
@@ -9,11 +10,14 @@ import pytest
 from linkages.catalogue import catalogue
 from linkages.loop import Loop
 
-CASES = json.loads((Path(__file__).parents[2] / "data" / "catalogue_cases.json").read_text())
+CASES = json.loads(
+    (Path(__file__).parents[2] / "data" / "catalogue_cases.json").read_text()
+)
 
 
 def build(case: dict) -> Loop:
-    """The loop of a case; some are an entry read the other way round and from another joint."""
+    """The loop of a case; some are an entry read the other way round and from another
+    joint."""
     loop = catalogue()[case["entry"]].build(**case["parameters"])
     loop = loop.reversed() if case.get("reversed") else loop
     return loop.relabelled(case.get("shift", 0))
@@ -26,7 +30,9 @@ def test_all_cases_are_there():
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["case"])
 def test_entry_reproduces_its_case(case):
     for array, key in zip(build(case).arrays, ("a", "alpha", "R"), strict=True):
-        assert np.abs(array - case[key]).max() <= 1e-12  # the cases stand there as doubles
+        assert (
+            np.abs(array - case[key]).max() <= 1e-12
+        )  # the cases stand there as doubles
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["case"])

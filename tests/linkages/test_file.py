@@ -37,10 +37,15 @@ def test_a_table_in_degrees_becomes_a_loop_in_radians(write):
 
 
 def test_a_loop_without_a_name_is_called_after_the_file(write):
-    assert read_linkage(write(TABLE.replace('name = "my linkage"', "")))[0].name == "linkage"
+    assert (
+        read_linkage(write(TABLE.replace('name = "my linkage"', "")))[0].name
+        == "linkage"
+    )
 
 
-def test_radians_stand_as_they_are_and_degrees_in_their_place_give_a_warning(write, caplog):
+def test_radians_stand_as_they_are_and_degrees_in_their_place_give_a_warning(
+    write, caplog
+):
     text = 'angles = "rad"' + LISTS
     with caplog.at_level(logging.WARNING, logger="linkages"):
         loop, _ = read_linkage(write(text))
@@ -56,7 +61,9 @@ def test_axes_in_one_configuration_give_the_loop_and_its_angles(write):
     known = entry("bennett").build()
     closed = np.array([1.0, 0.0, -1.0, 0.0])
     alpha, beta = known.arrays[1][:2]
-    half = np.sin((beta + alpha) / 2) / np.sin((beta - alpha) / 2) / np.tan(closed[0] / 2)
+    half = (
+        np.sin((beta + alpha) / 2) / np.sin((beta - alpha) / 2) / np.tan(closed[0] / 2)
+    )
     closed[1] = 2 * np.arctan(half)
     closed[3] = -closed[1]
     frames = known.frames(closed)[:-1]
@@ -73,10 +80,19 @@ def test_axes_that_meet_in_a_point_have_lengths_and_offsets_of_exactly_zero(writ
 
 
 BAD = {
-    "is missing": ("lengths = [1, 1, 1, 1]\noffsets = [0, 0, 0, 0]", "twists: a missing list"),
-    "is of another length": (TABLE.replace("[100, 40, 100, 40]", "[100, 40, 100, 40, 1]"), "number of twists: 5"),
+    "is missing": (
+        "lengths = [1, 1, 1, 1]\noffsets = [0, 0, 0, 0]",
+        "twists: a missing list",
+    ),
+    "is of another length": (
+        TABLE.replace("[100, 40, 100, 40]", "[100, 40, 100, 40, 1]"),
+        "number of twists: 5",
+    ),
     "is nan": (TABLE.replace("0.65", "nan"), "lengths[2]: nan"),
-    "is infinite": (TABLE.replace("[0, 0, 0, 0]", "[0, 0, -inf, 0]"), "offsets[3]: -inf"),
+    "is infinite": (
+        TABLE.replace("[0, 0, 0, 0]", "[0, 0, -inf, 0]"),
+        "offsets[3]: -inf",
+    ),
     "has three joints": (
         'angles = "deg"\nlengths = [1, 1, 1]\ntwists = [1, 1, 1]\noffsets = [0, 0, 0]',
         "number of lengths: 3",
@@ -85,15 +101,30 @@ BAD = {
         f'angles = "deg"\nlengths = {[1] * 13}\ntwists = {[1] * 13}\noffsets = {[1] * 13}',
         "number of lengths: 13",
     ),
-    "has an unknown key": (TABLE.replace("twists", "twist"), "'twist' (the nearest is 'twists')"),
+    "has an unknown key": (
+        TABLE.replace("twists", "twist"),
+        "'twist' (the nearest is 'twists')",
+    ),
     "has text for a list": (TABLE.replace("[0, 0, 0, 0]", '"none"'), 'offsets: "none"'),
-    "has text for a number": (TABLE.replace("[0, 0, 0, 0]", '[0, "0", 0, 0]'), 'offsets[2]: "0"'),
-    "has a truth value for a number": (TABLE.replace("[0, 0, 0, 0]", "[0, true, 0, 0]"), "offsets[2]: True"),
+    "has text for a number": (
+        TABLE.replace("[0, 0, 0, 0]", '[0, "0", 0, 0]'),
+        'offsets[2]: "0"',
+    ),
+    "has a truth value for a number": (
+        TABLE.replace("[0, 0, 0, 0]", "[0, true, 0, 0]"),
+        "offsets[2]: True",
+    ),
     "has a number for a name": (TABLE.replace('"my linkage"', "7"), "name: 7"),
-    "has no unit of angle": (LISTS, 'angles: a missing key is not allowed; it must be "deg" or "rad"'),
+    "has no unit of angle": (
+        LISTS,
+        'angles: a missing key is not allowed; it must be "deg" or "rad"',
+    ),
     "has another unit of angle": (TABLE.replace('"deg"', '"grad"'), 'angles: "grad"'),
     "has both formats": (TABLE + "points = [[0, 0, 0]]", "keys: lengths with points"),
-    "has points alone": ("points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]", "directions: a missing list"),
+    "has points alone": (
+        "points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]",
+        "directions: a missing list",
+    ),
     "has a flat point": (
         "points = [[0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\ndirections = [[0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 1]]",
         "points[1]: [0, 0]",

@@ -13,7 +13,11 @@ def _loop_and_patterns(case):
 
 
 def _case(reference_cases, linkage, parameters=0):
-    return next(c for c in reference_cases if c["linkage"] == linkage and len(c["parameters"]) == parameters)
+    return next(
+        c
+        for c in reference_cases
+        if c["linkage"] == linkage and len(c["parameters"]) == parameters
+    )
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +26,14 @@ def traced(reference_cases, trace_form):
     out = []
     for case in reference_cases:
         loop, patterns = _loop_and_patterns(case)
-        out.append((case, loop, patterns, [trace_form(loop, form["theta"]) for form in case["forms"]]))
+        out.append(
+            (
+                case,
+                loop,
+                patterns,
+                [trace_form(loop, form["theta"]) for form in case["forms"]],
+            )
+        )
     return out
 
 
@@ -38,9 +49,13 @@ def test_names_do_not_depend_on_start_direction_wrapping_or_order(traced):
     for case, loop, patterns, forms in traced:
         changed = []
         for samples in forms:
-            turned = np.roll(samples[:-1], rng.integers(len(samples)), axis=0)[:: rng.choice([-1, 1])]
+            turned = np.roll(samples[:-1], rng.integers(len(samples)), axis=0)[
+                :: rng.choice([-1, 1])
+            ]
             changed.append(np.arctan2(np.sin(turned), np.cos(turned)))
-        names = [identity.name for identity in name_forms(changed[::-1], loop, patterns)]
+        names = [
+            identity.name for identity in name_forms(changed[::-1], loop, patterns)
+        ]
         assert names == [form["name"] for form in case["forms"]][::-1], case["linkage"]
 
 
@@ -48,12 +63,22 @@ def test_inactive_joints_come_with_their_angles(traced):
     for case, loop, patterns, forms in traced:
         for form, samples in zip(case["forms"], forms, strict=True):
             identity = identify_form(samples, loop, patterns)
-            if case["linkage"] == "special-double-subtractive-goldberg" and "Bennett" in form["name"]:
+            if (
+                case["linkage"] == "special-double-subtractive-goldberg"
+                and "Bennett" in form["name"]
+            ):
                 assert identity.inactive_joints == (3, 6)
-                assert identity.inactive_angles == pytest.approx((np.pi, np.pi), abs=1e-9)
-            if case["linkage"].startswith("reconfigurable") and "Bennett" in form["name"]:
+                assert identity.inactive_angles == pytest.approx(
+                    (np.pi, np.pi), abs=1e-9
+                )
+            if (
+                case["linkage"].startswith("reconfigurable")
+                and "Bennett" in form["name"]
+            ):
                 assert identity.inactive_joints == (2, 5)
-                assert identity.inactive_angles == pytest.approx(np.radians([-70, -70]), abs=1e-9)
+                assert identity.inactive_angles == pytest.approx(
+                    np.radians([-70, -70]), abs=1e-9
+                )
             if "6R" in form["name"] or "original" in form["name"]:
                 assert identity.inactive_joints == ()
 
@@ -96,11 +121,16 @@ def test_relabelled_joints_move_the_inactive_ones(reference_cases, trace_form):
     assert identify_form(samples, loop.relabelled(1)).inactive_joints == (2, 5)
 
 
-def test_forms_of_one_pattern_are_lettered_and_unknown_ones_numbered(reference_cases, trace_form):
+def test_forms_of_one_pattern_are_lettered_and_unknown_ones_numbered(
+    reference_cases, trace_form
+):
     case = _case(reference_cases, "wohlhart-symmetric", 1)
     loop, patterns = _loop_and_patterns(case)
     forms = [trace_form(loop, form["theta"]) for form in case["forms"]]
-    assert {i.name for i in name_forms(forms, loop, patterns)} == {"threefold form a", "threefold form b"}
+    assert {i.name for i in name_forms(forms, loop, patterns)} == {
+        "threefold form a",
+        "threefold form b",
+    }
     assert {i.name for i in name_forms(forms, loop)} == {"Form 1", "Form 2"}
 
 
@@ -108,8 +138,13 @@ def test_a_relabelled_parallelogram_keeps_its_names(reference_cases, trace_form)
     case = _case(reference_cases, "kite")
     loop, _ = _loop_and_patterns(case)
     turned = loop.relabelled(1)
-    forms = [np.roll(trace_form(loop, form["theta"]), -1, axis=1) for form in case["forms"]]
-    assert [i.name for i in name_forms(forms, turned)] == ["folded form (joints 2,4 inactive)", "kite form"]
+    forms = [
+        np.roll(trace_form(loop, form["theta"]), -1, axis=1) for form in case["forms"]
+    ]
+    assert [i.name for i in name_forms(forms, turned)] == [
+        "folded form (joints 2,4 inactive)",
+        "kite form",
+    ]
 
 
 def test_a_single_configuration_is_a_rigid_assembly(reference_cases):

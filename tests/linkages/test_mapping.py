@@ -13,15 +13,23 @@ def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
     bennett = atlas.forms[atlas.form("Form II (Bennett 4R)")]
     assert bennett.labels["inactive_joints"] == [3, 6]
     assert np.abs(bennett.labels["inactive_angles"]) == pytest.approx(np.pi)
-    assert sorted(form.name.split(" (")[0] for form in atlas.forms) == ["Form I", "Form II", "Form III", "Form IV"]
+    assert sorted(form.name.split(" (")[0] for form in atlas.forms) == [
+        "Form I",
+        "Form II",
+        "Form III",
+        "Form IV",
+    ]
 
 
 def test_every_form_says_how_well_it_closes_and_the_atlas_what_was_mapped():
     atlas = map_by_name("parallelogram", b=3.0)
     assert all(0 < form.labels["max_residual"] < 1e-12 for form in atlas.forms)
     assert atlas.info["linkage"] == {
-        "name": "parallelogram", "lengths": [1.0, 3.0, 1.0, 3.0], "twists": [0.0] * 4, "offsets": [0.0] * 4,
-    }  # fmt: skip
+        "name": "parallelogram",
+        "lengths": [1.0, 3.0, 1.0, 3.0],
+        "twists": [0.0] * 4,
+        "offsets": [0.0] * 4,
+    }
 
 
 def test_a_loop_without_a_source_is_mapped_too():

@@ -27,16 +27,27 @@ def is_case(loop, name, tolerance=1e-8):
 
 
 def of_kind(*kinds, tori=True):
-    chosen = [r for r in RELATIONS if r.kind in kinds and (tori or not r.first.startswith("torus"))]
-    return pytest.mark.parametrize("relation", chosen, ids=[f"{r.first}-{r.second}" for r in chosen])
+    chosen = [
+        r
+        for r in RELATIONS
+        if r.kind in kinds and (tori or not r.first.startswith("torus"))
+    ]
+    return pytest.mark.parametrize(
+        "relation", chosen, ids=[f"{r.first}-{r.second}" for r in chosen]
+    )
 
 
 @of_kind(RelationKind.SPECIAL_CASE, RelationKind.SAME)
 def test_members_of_the_special_linkage_are_members_of_the_general_one(relation):
-    assert all(is_case(loop, relation.second) for loop in members(relation.first, np.random.default_rng(11)))
+    assert all(
+        is_case(loop, relation.second)
+        for loop in members(relation.first, np.random.default_rng(11))
+    )
 
 
-@of_kind(RelationKind.SPECIAL_CASE, tori=False)  # each of their variants has members of most shapes
+@of_kind(
+    RelationKind.SPECIAL_CASE, tori=False
+)  # each of their variants has members of most shapes
 def test_not_every_member_of_the_general_linkage_is_a_special_one(relation):
     (loop,) = members(relation.second, np.random.default_rng(12), 1)
     assert not is_case(loop, relation.first)
@@ -44,7 +55,10 @@ def test_not_every_member_of_the_general_linkage_is_a_special_one(relation):
 
 @of_kind(RelationKind.SAME)
 def test_linkages_that_are_the_same_are_so_both_ways(relation):
-    assert all(is_case(loop, relation.first) for loop in members(relation.second, np.random.default_rng(13)))
+    assert all(
+        is_case(loop, relation.first)
+        for loop in members(relation.second, np.random.default_rng(13))
+    )
 
 
 @of_kind(RelationKind.ISOMER)
@@ -57,14 +71,20 @@ def test_exchanging_the_links_at_the_joint_gives_the_isomer(relation):
 def test_without_the_vanishing_link_the_smaller_linkage_is_left(relation):
     loop = entry(relation.first).build(**{relation.vanishing: 1e-7})
     k = int(np.argmin(loop.lengths))
-    lengths, twists, offsets = (v[:k] + v[k + 1 :] for v in (loop.lengths, loop.twists, loop.offsets))
+    lengths, twists, offsets = (
+        v[:k] + v[k + 1 :] for v in (loop.lengths, loop.twists, loop.offsets)
+    )
     assert loop.lengths[k] < 1e-6
     assert is_case(Loop(lengths, twists, offsets), relation.second, 1e-6)
 
 
 def test_the_special_cases_make_no_circle():
     graph = relation_graph()
-    kept = [(u, v) for u, v, data in graph.edges(data=True) if data["kind"] is RelationKind.SPECIAL_CASE]
+    kept = [
+        (u, v)
+        for u, v, data in graph.edges(data=True)
+        if data["kind"] is RelationKind.SPECIAL_CASE
+    ]
     assert nx.is_directed_acyclic_graph(nx.DiGraph(kept))
 
 
@@ -76,5 +96,7 @@ def test_the_graph_has_every_linkage_and_nothing_else():
 
 
 def test_a_linkage_knows_what_it_is_a_case_of():
-    kinds = {(r.kind, r.second) for r in relations_of("special-double-subtractive-goldberg")}
+    kinds = {
+        (r.kind, r.second) for r in relations_of("special-double-subtractive-goldberg")
+    }
     assert (RelationKind.SPECIAL_CASE, "double-subtractive-goldberg") in kinds

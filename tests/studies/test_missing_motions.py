@@ -14,12 +14,18 @@ def test_every_second_linkage_has_a_small_motion_beside_a_large_one():
     names, loops = zip(*(next(drawn) for _ in range(6)), strict=True)
     assert names[1::2] == ("beside a birth",) * 3
     for loop in loops[1::2]:
-        small, large = sorted(form.branch.length for form in explore(LoopClosure(loop), starts=20, prove=True).forms)
+        small, large = sorted(
+            form.branch.length
+            for form in explore(LoopClosure(loop), starts=20, prove=True).forms
+        )
         assert small < 1.0 < 5.0 < large
 
 
 def test_a_motion_that_is_missing_is_noticed():
-    one, other = (explore(LoopClosure(entry(name).build()), starts=20) for name in ("bennett", "parallelogram"))
+    one, other = (
+        explore(LoopClosure(entry(name).build()), starts=20)
+        for name in ("bennett", "parallelogram")
+    )
     assert same_motions(one, one)
     assert not same_motions(one, other)
 

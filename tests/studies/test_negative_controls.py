@@ -1,4 +1,5 @@
-"""Negative controls: a linkage changed by a thousandth stops moving, unless the change keeps every condition."""
+"""Negative controls: a linkage changed by a thousandth stops moving, unless the change
+keeps every condition."""
 
 from pathlib import Path
 
@@ -12,7 +13,10 @@ from studies.negative_controls import break_conditions, controls
 PAGE = Path(__file__).parents[2] / "docs" / "negative_controls.md"
 
 
-@pytest.mark.parametrize("name", ["bennett", "bennett-line-symmetric", "goldberg-5r", "myard-plane-symmetric-5r"])
+@pytest.mark.parametrize(
+    "name",
+    ["bennett", "bennett-line-symmetric", "goldberg-5r", "myard-plane-symmetric-5r"],
+)
 def test_every_change_of_an_entry_stops_the_linkage(name):
     checked = controls(entry(name).build())
     assert [control.changed for control in checked if control.mobility] == []
@@ -20,7 +24,9 @@ def test_every_change_of_an_entry_stops_the_linkage(name):
 
 def test_line_symmetric_linkage_moves_only_after_changes_that_keep_its_symmetry():
     checked = controls(entry("bricard-line-symmetric").build())
-    assert all(("together" in control.changed) == bool(control.mobility) for control in checked)
+    assert all(
+        ("together" in control.changed) == bool(control.mobility) for control in checked
+    )
 
 
 def test_length_of_the_repeated_composite_link_is_no_condition_of_the_double_goldberg_linkage():
@@ -45,5 +51,9 @@ def test_held_gap_is_zero_for_a_linkage_and_not_for_a_broken_one():
 
 
 def test_page_of_the_docs_has_a_row_for_every_linkage():
-    rows = [line.split(" | ")[0][2:] for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| ")]
+    rows = [
+        line.split(" | ")[0][2:]
+        for line in PAGE.read_text(encoding="utf-8").splitlines()
+        if line.startswith("| ")
+    ]
     assert rows[1:] == list(catalogue())

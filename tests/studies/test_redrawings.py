@@ -1,4 +1,5 @@
-"""The studies that draw published figures anew: what the sources say holds, and the figures are written."""
+"""The studies that draw published figures anew: what the sources say holds, and the
+figures are written."""
 
 from importlib import import_module
 

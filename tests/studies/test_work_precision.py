@@ -1,4 +1,5 @@
-"""The methods of comparison follow simple curves, and the study reads its runs right."""
+"""The methods of comparison follow simple curves, and the study reads its runs
+right."""
 
 import numpy as np
 import pytest
@@ -31,7 +32,8 @@ def bennett():
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda m: m.name)
 def test_every_method_follows_a_bennett_linkage_once_around(bennett, method):
-    # a tolerance is met up to the factor by which errors of steps add up along the curve
+    # a tolerance is met up to the factor by which errors of steps add up along the
+    # curve
     loose_only = method.name in ("pycont-lite", "order 2")  # slow at tighter tolerances
     for tolerance, bound in ((1e-3, 1e-1), (1e-5, 1e-2))[: 1 if loose_only else 2]:
         curve = method.follow(bennett, tolerance)
@@ -39,10 +41,21 @@ def test_every_method_follows_a_bennett_linkage_once_around(bennett, method):
 
 
 @pytest.mark.skipif(not has_auto(), reason="AUTO-07p or gfortran is not installed")
-@pytest.mark.parametrize("name", ["circle", "pitchfork", "bratu", "bennett", "general-7r"])
+@pytest.mark.parametrize(
+    "name", ["circle", "pitchfork", "bratu", "bennett", "general-7r"]
+)
 def test_auto_follows_every_kind_of_problem_and_says_how_long_it_took(name):
-    cases = {case.name: case for case in linkage_cases()} if name in ("bennett", "general-7r") else {}
-    case = cases.get(name) or {"circle": circle, "pitchfork": pitchfork, "bratu": lambda: bratu(10)}[name]()
+    cases = (
+        {case.name: case for case in linkage_cases()}
+        if name in ("bennett", "general-7r")
+        else {}
+    )
+    case = (
+        cases.get(name)
+        or {"circle": circle, "pitchfork": pitchfork, "bratu": lambda: bratu(10)}[
+            name
+        ]()
+    )
     curve = auto_07p(case, 1e-6)
     assert largest_distance(case, curve.sample(2000)) < 1e-5
     assert 0.0 < curve.seconds < 10.0
@@ -53,7 +66,9 @@ def test_the_first_run_of_a_method_is_not_measured():
 
     def follow(case, tolerance):
         calls.append(tolerance)
-        return Curve(case.reference, case.length, 1, seconds=99.0 if len(calls) == 1 else 1.0)  # it compiles at first
+        return Curve(
+            case.reference, case.length, 1, seconds=99.0 if len(calls) == 1 else 1.0
+        )  # it compiles at first
 
     runs, _ = measure_case(case, [Method("slow to begin", follow)], 1.0)
     assert runs
@@ -71,7 +86,10 @@ def test_a_method_that_takes_long_to_fail_is_given_up():
 
 def test_a_method_that_runs_elsewhere_states_its_own_time():
     case = circle()
-    elsewhere = Method("elsewhere", lambda case, tolerance: Curve(case.reference, case.length, 1, seconds=42.0))
+    elsewhere = Method(
+        "elsewhere",
+        lambda case, tolerance: Curve(case.reference, case.length, 1, seconds=42.0),
+    )
     assert measure(case, elsewhere, 1e-4, 1e-16, 0.0).seconds == 42.0
 
 
@@ -97,14 +115,18 @@ def test_natural_parameters_cannot_go_around_a_circle():
 
 def test_a_distance_far_below_rounding_is_measured():
     case = circle()
-    point = np.array([0.6, 0.8])  # the two decimals are not exact in binary: some 1e-17 from the circle
+    point = np.array(
+        [0.6, 0.8]
+    )  # the two decimals are not exact in binary: some 1e-17 from the circle
     assert 1e-18 < distance_in_digits(case, point) < 1e-16
     assert distance_in_digits(case, point * (1 + 1e-9)) == pytest.approx(1e-9, rel=1e-6)
 
 
 def test_what_lies_beyond_the_ends_of_an_open_curve_is_not_compared():
     case = pitchfork()
-    beyond = case.reference(case.length) + np.outer(np.linspace(0.0, 0.1, 50), case.reference(case.length, 1))
+    beyond = case.reference(case.length) + np.outer(
+        np.linspace(0.0, 0.1, 50), case.reference(case.length, 1)
+    )
     whole = case.reference(np.linspace(0, case.length, 2000))
     assert largest_distance(case, np.concatenate([whole, beyond])) < 1e-13
 
@@ -117,11 +139,16 @@ def test_half_a_curve_has_an_infinite_error():
 
 
 def runs_of(method, order, seconds, errors):
-    return [Run("c", method, order, 10.0**-k, t, e, 1) for k, (t, e) in enumerate(zip(seconds, errors, strict=True), 3)]
+    return [
+        Run("c", method, order, 10.0**-k, t, e, 1)
+        for k, (t, e) in enumerate(zip(seconds, errors, strict=True), 3)
+    ]
 
 
 def test_ratios_compare_the_fastest_runs_within_an_error():
-    runs = runs_of("order 16", 16, (1.0, 2.0), (1e-5, 1e-12)) + runs_of("slow", 0, (3.0, 8.0), (1e-4, 1e-9))
+    runs = runs_of("order 16", 16, (1.0, 2.0), (1e-5, 1e-12)) + runs_of(
+        "slow", 0, (3.0, 8.0), (1e-4, 1e-9)
+    )
     (row,) = ratios(runs)
     assert (row["1e-04"], row["1e-06"], row["1e-08"]) == (3.0, 4.0, 4.0)
     assert np.isnan(row["1e-10"])
@@ -129,7 +156,9 @@ def test_ratios_compare_the_fastest_runs_within_an_error():
 
 
 def test_the_recommended_tolerance_is_the_loosest_that_is_tight_enough():
-    runs = runs_of("order 8", 8, (1.0, 2.0, 4.0), (1e-8, 1e-12, 1e-13)) + runs_of("order 4", 4, (8.0,), (1e-13,))
+    runs = runs_of("order 8", 8, (1.0, 2.0, 4.0), (1e-8, 1e-12, 1e-13)) + runs_of(
+        "order 4", 4, (8.0,), (1e-13,)
+    )
     assert recommend(runs) == {4: (4.0, 1e-3), 8: (1.0, 1e-4)}
 
 
@@ -148,7 +177,10 @@ def test_points_of_usual_steps_are_counted_in_our_time():
 def test_a_sparse_problem_is_left_to_methods_with_sparse_matrices():
     case = bratu(300)
     assert case.sparse
-    assert np.allclose(case.problem.jacobians(case.start[None] + 0.1)[0], bratu_by_differences(case, case.start + 0.1))
+    assert np.allclose(
+        case.problem.jacobians(case.start[None] + 0.1)[0],
+        bratu_by_differences(case, case.start + 0.1),
+    )
     few = [METHODS[4], *(m for m in METHODS if m.small)]
     assert few[0].name == "order 16"
     runs, floor = measure_case(case, few, 0.0)
@@ -161,12 +193,16 @@ def test_a_sparse_problem_is_left_to_methods_with_sparse_matrices():
 
 def bratu_by_differences(case, x):
     step = 1e-6 * np.eye(len(x))
-    return ((case.problem.residuals(x + step) - case.problem.residuals(x - step)) / 2e-6).T
+    return (
+        (case.problem.residuals(x + step) - case.problem.residuals(x - step)) / 2e-6
+    ).T
 
 
 def test_the_default_order_is_kept_where_others_are_faster_by_less_than_noise():
     def runs(seconds):
-        return runs_of("order 16", 16, (seconds,), (1e-13,)) + runs_of("order 24", 24, (1.0,), (1e-13,))
+        return runs_of("order 16", 16, (seconds,), (1e-13,)) + runs_of(
+            "order 24", 24, (1.0,), (1e-13,)
+        )
 
     assert "should be order 16" in summarise(runs(1.02), {})
     assert "should be order 24" in summarise(runs(1.50), {})

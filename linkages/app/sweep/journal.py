@@ -1,4 +1,5 @@
-"""The journal of a sweep: one JSON object a line, appended and forced to disk before anything depends on it."""
+"""The journal of a sweep: one JSON object a line, appended and forced to disk before
+anything depends on it."""
 
 from __future__ import annotations
 
@@ -11,7 +12,9 @@ from typing import Any
 
 try:
     import fcntl
-except ImportError:  # not a Unix system: nothing guards against two sweeps on one journal
+except (
+    ImportError
+):  # not a Unix system: nothing guards against two sweeps on one journal
     fcntl = None  # type: ignore[assignment]
 
 __all__ = ["Journal", "JournalError"]
@@ -26,10 +29,12 @@ class JournalError(ValueError):
 
 
 class Journal:
-    """An append-only file of JSON lines that survives the death of its writer at any moment.
+    """An append-only file of JSON lines that survives the death of its writer at any
+    moment.
 
-    The first line is ``header``; an existing file must begin with the same one. A last line that was cut off is
-    dropped. One writer at a time: a second one raises `JournalError`.
+    The first line is ``header``; an existing file must begin with the same one. A last
+    line that was cut off is dropped. One writer at a time: a second one raises
+    `JournalError`.
     """
 
     def __init__(self, path: Path, header: Mapping[str, Any]):
@@ -42,7 +47,9 @@ class Journal:
             if first is None:
                 self.append(header)
             elif first != json.loads(json.dumps(header)):
-                raise JournalError(path, "belongs to another sweep; choose another --out or delete it")
+                raise JournalError(
+                    path, "belongs to another sweep; choose another --out or delete it"
+                )
         except BaseException:
             os.close(self._file)
             raise
@@ -51,7 +58,10 @@ class Journal:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         os.close(self._file)
 

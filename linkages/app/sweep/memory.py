@@ -1,12 +1,15 @@
-"""What a sweep holds in memory: that of the sweep and of its largest worker, while more and more members are mapped.
+"""What a sweep holds in memory: that of the sweep and of its largest worker, while more
+and more members are mapped.
 
     python -m linkages.app.sweep.memory [--family bennett] [--members 500 --members 2000 ...] [--out DIR]
 
-Every sweep runs in a fresh process, once on the process pool and once on a Dask cluster on this machine, whose
-scheduler lives in the process of the sweep. Resident memory is looked at a hundred times. The growth is the slope of
-the line through the last half of it, so that what is loaded once does not count.
+Every sweep runs in a fresh process, once on the process pool and once on a Dask cluster
+on this machine, whose scheduler lives in the process of the sweep. Resident memory is
+looked at a hundred times. The growth is the slope of the line through the last half of
+it, so that what is loaded once does not count.
 
-Dask's workers keep a profile of every second for an hour, unless DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED=False.
+Dask's workers keep a profile of every second for an hour, unless
+DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED=False.
 """
 
 from __future__ import annotations
@@ -34,7 +37,8 @@ LOOKS = 100
 
 @dataclass
 class Watch:
-    """Resident memory (bytes) of the sweep's own process and of its largest worker, by members finished."""
+    """Resident memory (bytes) of the sweep's own process and of its largest worker, by
+    members finished."""
 
     members: list[int] = field(default_factory=list)
     own: list[int] = field(default_factory=list)
@@ -55,13 +59,15 @@ class Watch:
         self.worker.append(max(sizes))
 
     def growth(self, which: str) -> float:
-        """Bytes a member, of "own" or "worker": slope of the line through the last half."""
+        """Bytes a member, of "own" or "worker": slope of the line through the last
+        half."""
         half = len(self.members) // 2
         return float(np.polyfit(self.members[half:], getattr(self, which)[half:], 1)[0])
 
 
 def watch_sweep(plan: Plan, workers: int, dask: bool) -> Watch:
-    """The memory of this process and of ``workers`` others while a plan is run into a folder that is thrown away."""
+    """The memory of this process and of ``workers`` others while a plan is run into a
+    folder that is thrown away."""
     watch, every = Watch(), max(plan.size // LOOKS, 1)
     done = 0
 
@@ -71,8 +77,17 @@ def watch_sweep(plan: Plan, workers: int, dask: bool) -> Watch:
         if count and done % every == 0:
             watch.look(done)
 
-    with tempfile.TemporaryDirectory() as folder, _scheduler(workers, dask) as scheduler:
-        run_sweep(plan, Path(folder) / "sweep.zarr", workers=workers, scheduler=scheduler, progress=look)
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        _scheduler(workers, dask) as scheduler,
+    ):
+        run_sweep(
+            plan,
+            Path(folder) / "sweep.zarr",
+            workers=workers,
+            scheduler=scheduler,
+            progress=look,
+        )
     return watch
 
 
@@ -84,32 +99,58 @@ def _scheduler(workers: int, dask: bool) -> Iterator[str | None]:
         return
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:
+    with LocalCluster(
+        n_workers=workers,
+        threads_per_worker=1,
+        host="127.0.0.1",
+        dashboard_address=None,
+    ) as cluster:
         yield cluster.scheduler_address
 
 
 @click.command()
 @click.option("--family", default="bennett", show_default=True)
-@click.option("--members", multiple=True, type=click.IntRange(20), default=(500, 2000, 8000), show_default=True)
+@click.option(
+    "--members",
+    multiple=True,
+    type=click.IntRange(20),
+    default=(500, 2000, 8000),
+    show_default=True,
+)
 @click.option("--workers", default=2, show_default=True, type=click.IntRange(1))
-@click.option("--out", default="sweep_memory", show_default=True, type=click.Path(path_type=Path, file_okay=False))
+@click.option(
+    "--out",
+    default="sweep_memory",
+    show_default=True,
+    type=click.Path(path_type=Path, file_okay=False),
+)
 def main(family: str, members: tuple[int, ...], workers: int, out: Path) -> None:
     """Measure the memory of sweeps."""
     out.mkdir(parents=True, exist_ok=True)
-    click.echo("of the sweep, then of its largest worker: MiB at first, at last, at most; growth in bytes a member")
+    click.echo(
+        "of the sweep, then of its largest worker: MiB at first, at last, at most; growth in bytes a member"
+    )
     for executor in ("pool", "dask"):
         for count in members:
             plan = read_plan(family, [], random=count)
-            with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as fresh:
-                watch = fresh.submit(watch_sweep, plan, workers, executor == "dask").result()
-            with (out / f"{family}_{executor}_{count}.csv").open("w", newline="", encoding="utf-8") as file:
+            with ProcessPoolExecutor(
+                1, mp_context=multiprocessing.get_context("spawn")
+            ) as fresh:
+                watch = fresh.submit(
+                    watch_sweep, plan, workers, executor == "dask"
+                ).result()
+            with (out / f"{family}_{executor}_{count}.csv").open(
+                "w", newline="", encoding="utf-8"
+            ) as file:
                 rows = csv.writer(file)
                 rows.writerow(["members", "own", "worker"])
                 rows.writerows(zip(watch.members, watch.own, watch.worker, strict=True))
             columns = []
             for which in ("own", "worker"):
                 sizes = np.array(getattr(watch, which)) / MEBIBYTE
-                columns.append(f"{sizes[0]:6.1f} {sizes[-1]:6.1f} {sizes.max():6.1f} {watch.growth(which):8.0f}")
+                columns.append(
+                    f"{sizes[0]:6.1f} {sizes[-1]:6.1f} {sizes.max():6.1f} {watch.growth(which):8.0f}"
+                )
             click.echo(f"{count:7d}  {executor:8s}  {'   '.join(columns)}")
 
 

@@ -1,4 +1,5 @@
-"""The dataset of a sweep: zarr arrays over the parameter grid, written block by block."""
+"""The dataset of a sweep: zarr arrays over the parameter grid, written block by
+block."""
 
 from __future__ import annotations
 
@@ -19,14 +20,16 @@ __all__ = ["SweepStore", "count_status", "open_sweep"]
 
 
 def open_sweep(path: Path | str) -> xr.Dataset:
-    """The dataset of a sweep: one variable for each of `FIELDS`, over the varied parameters (rad) or the members."""
+    """The dataset of a sweep: one variable for each of `FIELDS`, over the varied
+    parameters (rad) or the members."""
     import xarray as xr
 
     return xr.open_zarr(path, consolidated=False, chunks=None, mask_and_scale=False)
 
 
 class SweepStore:
-    """Zarr arrays for the summaries of all members of a plan; values not yet written are missing."""
+    """Zarr arrays for the summaries of all members of a plan; values not yet written
+    are missing."""
 
     def __init__(self, path: Path, plan: Plan):
         import zarr
@@ -40,11 +43,27 @@ class SweepStore:
     def _create(self) -> None:
         plan, group = self.plan, self._group
         kinds = {p.name: p.kind for p in entry(plan.family).parameters}
-        group.attrs.update({"family": plan.family, "starts": plan.starts, "seed": plan.seed, "fixed": dict(plan.fixed)})
+        group.attrs.update(
+            {
+                "family": plan.family,
+                "starts": plan.starts,
+                "seed": plan.seed,
+                "fixed": dict(plan.fixed),
+            }
+        )
         for name, values in plan.axes.items():
-            self._array(name, np.array(values), (name,), "rad" if kinds[name] == "angle" else "")
+            self._array(
+                name, np.array(values), (name,), "rad" if kinds[name] == "angle" else ""
+            )
         for name in plan.ranges:
-            self._array(name, None, ("member",), "rad" if kinds[name] == "angle" else "", np.nan, "f8")
+            self._array(
+                name,
+                None,
+                ("member",),
+                "rad" if kinds[name] == "angle" else "",
+                np.nan,
+                "f8",
+            )
         self._array("joint", np.arange(1, self.joints + 1), ("joint",), "")
         for name, kind in FIELDS.items():
             dims = (*plan.dims, "joint") if kind.per_joint else plan.dims
@@ -52,20 +71,31 @@ class SweepStore:
             array.attrs["long_name"] = kind.meaning
 
     def _array(
-        self, name: str, values: np.ndarray | None, dims: tuple[str, ...], unit: str,
-        missing: float = 0, dtype: str = "f8",
-    ) -> Any:  # fmt: skip
+        self,
+        name: str,
+        values: np.ndarray | None,
+        dims: tuple[str, ...],
+        unit: str,
+        missing: float = 0,
+        dtype: str = "f8",
+    ) -> Any:
         """A new array: ``values`` whole, or missing values in chunks of a block."""
         plan = self.plan
         if values is not None:
-            array = self._group.create_array(name, shape=values.shape, dtype=values.dtype, dimension_names=dims)
+            array = self._group.create_array(
+                name, shape=values.shape, dtype=values.dtype, dimension_names=dims
+            )
             array[:] = values
         else:
             joint = (self.joints,) if dims[-1] == "joint" else ()
             array = self._group.create_array(
-                name, shape=(*plan.shape, *joint), chunks=(*plan.chunk, *joint), dtype=dtype, fill_value=missing,
+                name,
+                shape=(*plan.shape, *joint),
+                chunks=(*plan.chunk, *joint),
+                dtype=dtype,
+                fill_value=missing,
                 dimension_names=dims,
-            )  # fmt: skip
+            )
         if unit:
             array.attrs["units"] = unit
         return array
@@ -74,7 +104,9 @@ class SweepStore:
         """Write the summaries of all members of a block, by index."""
         shape = tuple(s.stop - s.start for s in block.region)
         for name, kind in FIELDS.items():
-            missing: Any = [kind.missing] * self.joints if kind.per_joint else kind.missing
+            missing: Any = (
+                [kind.missing] * self.joints if kind.per_joint else kind.missing
+            )
             column = [records[i].get(name, missing) for i in block.indices.tolist()]
             values = np.array(column, dtype=kind.dtype)
             self._group[name][block.region] = values.reshape(*shape, *values.shape[1:])

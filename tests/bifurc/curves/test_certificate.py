@@ -17,7 +17,8 @@ from linkages.loop import Loop
 
 
 class Hyperbola(FunctionProblem):
-    """x y = gap in a box; the derivative of (y, x) is a rotation, so that K = 1 exactly."""
+    """x y = gap in a box; the derivative of (y, x) is a rotation, so that K = 1
+    exactly."""
 
     def __init__(self, gap: float):
         super().__init__(lambda u: np.array([u[0] * u[1] - gap]), [[-1, 1], [-1, 1]])
@@ -32,18 +33,34 @@ def straight_branch(problem: FunctionProblem) -> Branch:
     pieces = np.zeros((1, 3, 2))
     pieces[0, 1] = [0.9, 0.0]
     return Branch(
-        pieces, np.array([0.9]), np.array([0.9]), np.array([0.0, 1.8]), np.zeros(1), problem.periods, Outcome.LEFT_REGION
+        pieces,
+        np.array([0.9]),
+        np.array([0.9]),
+        np.array([0.0, 1.8]),
+        np.zeros(1),
+        problem.periods,
+        Outcome.LEFT_REGION,
     )
 
 
 @pytest.mark.parametrize(
-    "name", ["special-double-subtractive-goldberg", "bricard-octahedral-line-symmetric", "goldberg-5r", "bennett"]
+    "name",
+    [
+        "special-double-subtractive-goldberg",
+        "bricard-octahedral-line-symmetric",
+        "goldberg-5r",
+        "bennett",
+    ],
 )
-def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configurations(name):
+def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configurations(
+    name,
+):
     problem = LoopClosure(entry(name).build())
     bound, rng, worst = problem.curvature_bound(), np.random.default_rng(1), 0.0
     for form in explore(problem, starts=20).forms:
-        for theta in form.branch.sample(40) + rng.normal(scale=1e-2, size=(40, problem.n)):
+        for theta in form.branch.sample(40) + rng.normal(
+            scale=1e-2, size=(40, problem.n)
+        ):
             direction = rng.normal(size=problem.n)
             direction /= np.linalg.norm(direction)
             worst = max(worst, np.linalg.norm(problem.hessian(theta) @ direction, 2))
@@ -54,13 +71,20 @@ def test_a_form_without_singular_points_is_certified_all_along():
     problem = LoopClosure(entry("bennett").build())
     (form,) = certify_atlas(problem, explore(problem)).forms
     certificate = form.labels["certificate"]
-    assert (certificate["status"], certificate["gaps"], certificate["reversals"]) == ("certified", [], [])
+    assert (certificate["status"], certificate["gaps"], certificate["reversals"]) == (
+        "certified",
+        [],
+        [],
+    )
 
 
 def test_forms_that_cross_are_certified_up_to_the_crossings():
     problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
     for form in certify_atlas(problem, explore(problem)).forms:
-        assert form.labels["certificate"]["status"] == "certified up to the singular points"
+        assert (
+            form.labels["certificate"]["status"]
+            == "certified up to the singular points"
+        )
 
 
 def test_a_crossing_that_is_not_handed_over_is_named_as_singular_and_raises_the_alarm():
@@ -69,19 +93,24 @@ def test_a_crossing_that_is_not_handed_over_is_named_as_singular_and_raises_the_
     branch = atlas.forms[0].branch
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
     assert certificate.status == "certified up to places singular to rounding"
-    crossings = sorted(s for point in atlas.bifurcations for i, s in point.passes if i == 0)
+    crossings = sorted(
+        s for point in atlas.bifurcations for i, s in point.passes if i == 0
+    )
     assert certificate.blurred.mean(axis=1) == pytest.approx(crossings, abs=1e-6)
     assert np.diff(certificate.blurred).max() < 1e-5
     assert len(certificate.reversals) == 2
 
 
 @pytest.mark.parametrize("gap", [1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
-def test_a_near_miss_is_followed_and_certified_with_points_that_grow_like_the_logarithm_of_the_gap(gap):
+def test_a_near_miss_is_followed_and_certified_with_points_that_grow_like_the_logarithm_of_the_gap(
+    gap,
+):
     problem = Hyperbola(gap)
     branch = trace_branch(problem, np.array([0.9, gap / 0.9]))
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
     assert certificate.status == "certified"
-    # across a hyperbola the integral of ds / sigma is about 2 ln(1 / gap), in steps of SHARE
+    # across a hyperbola the integral of ds / sigma is about 2 ln(1 / gap), in steps of
+    # SHARE
     assert certificate.points < 40 + 12 * np.log(1 / gap)
 
 
@@ -101,18 +130,25 @@ def test_a_curve_glued_from_two_arcs_where_they_are_closest_is_not_certified(gap
     arc = trace_branch(problem, np.array([0.9, gap / 0.9]))
     vertex = 0.5 * arc.length
     assert arc(vertex) == pytest.approx(2 * [np.sqrt(gap)], rel=1e-3)
-    half = int(np.searchsorted(arc.breaks, vertex)) - 1  # the piece with the vertex belongs to both halves
+    half = (
+        int(np.searchsorted(arc.breaks, vertex)) - 1
+    )  # the piece with the vertex belongs to both halves
     other = replace(arc, pieces=-arc.pieces)
     glued = replace(
-        arc, pieces=np.concatenate([arc.pieces[: half + 1], other.pieces[half:]]),
-        centers=np.insert(arc.centers, half, arc.centers[half]), radii=np.insert(arc.radii, half, arc.radii[half]),
-        breaks=np.insert(arc.breaks, half + 1, vertex), residuals=np.insert(arc.residuals, half, 0.0),
-    )  # fmt: skip
+        arc,
+        pieces=np.concatenate([arc.pieces[: half + 1], other.pieces[half:]]),
+        centers=np.insert(arc.centers, half, arc.centers[half]),
+        radii=np.insert(arc.radii, half, arc.radii[half]),
+        breaks=np.insert(arc.breaks, half + 1, vertex),
+        residuals=np.insert(arc.residuals, half, 0.0),
+    )
     certificate = certify_branch(problem, glued, profile_branch(problem, glued))
     assert certificate.status == "not certified"
     # nothing but the jump is refused
     assert np.abs(certificate.gaps - vertex).max() < 1e-3 * np.sqrt(gap)
-    assert certify_branch(problem, arc, profile_branch(problem, arc)).status == "certified"
+    assert (
+        certify_branch(problem, arc, profile_branch(problem, arc)).status == "certified"
+    )
 
 
 def test_a_problem_without_a_bound_on_its_second_derivative_is_not_certified():

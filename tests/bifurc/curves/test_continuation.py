@@ -11,12 +11,19 @@ from linkages.closure.loop_closure import LoopClosure
 
 
 def plane(function, low=-2.0, high=2.0, **more):
-    return FunctionProblem(lambda u: np.array([function(*u)]), [(low, high)] * 2, **more)
+    return FunctionProblem(
+        lambda u: np.array([function(*u)]), [(low, high)] * 2, **more
+    )
 
 
 def torus_line(p, q):
     """Winds p times about one angle and q times about the other before it closes."""
-    return plane(lambda x, y: np.sin(0.5 * (q * x - p * y)), -np.pi, np.pi, periods=[2 * np.pi] * 2)
+    return plane(
+        lambda x, y: np.sin(0.5 * (q * x - p * y)),
+        -np.pi,
+        np.pi,
+        periods=[2 * np.pi] * 2,
+    )
 
 
 def test_a_circle_closes_after_its_length():
@@ -36,9 +43,12 @@ def test_closing_is_recognised_on_the_torus_after_as_many_turns_as_it_takes(p, q
 
 
 def test_a_figure_of_eight_closes_after_both_loops_and_not_at_its_crossing():
-    # the lemniscate of Bernoulli with half-width 1 has the length 2 times the lemniscate constant
+    # the lemniscate of Bernoulli with half-width 1 has the length 2 times the
+    # lemniscate constant
     for start in ([1.0, 0.0], [-1.0, 0.0], [np.sqrt(3 / 8), np.sqrt(1 / 8)]):
-        branch = trace_branch(plane(lambda x, y: (x * x + y * y) ** 2 - x * x + y * y), start)
+        branch = trace_branch(
+            plane(lambda x, y: (x * x + y * y) ** 2 - x * x + y * y), start
+        )
         assert branch.outcome is Outcome.CLOSED
         assert branch.length == pytest.approx(5.244115108584239, abs=1e-11)
 
@@ -62,7 +72,8 @@ def test_a_start_that_is_no_solution_gives_no_curve_and_its_gap():
     branch = trace_branch(problem, [0.5, 0.5])
     assert branch.outcome is Outcome.OPEN
     assert branch.length == 0.0
-    # Gauss-Newton across the tangent does not go below the smallest residual on its line
+    # Gauss-Newton across the tangent does not go below the smallest residual on its
+    # line
     assert branch.gap * problem.magnitude >= 0.5
     assert branch.max_residual == branch.gap
 
@@ -78,11 +89,14 @@ def test_a_curve_longer_than_allowed_says_so():
 
 @pytest.mark.parametrize("coefficient", [1.0, 4.0])
 def test_a_cusp_ends_a_curve_at_the_cusp_and_nowhere_else(coefficient):
-    branch = trace_branch(plane(lambda x, y: y * y - coefficient * x**3), [1.0, np.sqrt(coefficient)])
+    branch = trace_branch(
+        plane(lambda x, y: y * y - coefficient * x**3), [1.0, np.sqrt(coefficient)]
+    )
     assert branch.outcome is not Outcome.CLOSED
     # every point that is returned is a solution, and the cusp is approached
     points = branch.sample(2000)
-    # within 1e-4 of the cusp F is below 1e-10 whatever the direction: there it says no more
+    # within 1e-4 of the cusp F is below 1e-10 whatever the direction: there it says no
+    # more
     assert np.abs(points[:, 1] ** 2 - coefficient * points[:, 0] ** 3).max() < 1e-10
     assert np.linalg.norm(points, axis=1).min() < 1e-2
 
@@ -104,7 +118,10 @@ def test_an_arc_close_to_another_is_not_left(gap):
     assert ends == pytest.approx([gap, 1.0], abs=1e-10)
 
 
-@pytest.mark.parametrize("name", ["serial-goldberg-6r", "double-goldberg-type-iv", "syncopated-l-shape-goldberg-6r"])
+@pytest.mark.parametrize(
+    "name",
+    ["serial-goldberg-6r", "double-goldberg-type-iv", "syncopated-l-shape-goldberg-6r"],
+)
 def test_a_configuration_of_lower_rank_on_a_smooth_branch_is_passed(name):
     problem = LoopClosure(entry(name).build())
     seeds = problem.seeds(np.random.default_rng(1), 1).points
@@ -119,9 +136,17 @@ def test_a_configuration_of_lower_rank_on_a_smooth_branch_is_passed(name):
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("order", 1), ("order", 31), ("tolerance", 1e-15), ("tolerance", 0.1), ("tolerance", np.nan), ("shortest", 0.0),
-     ("longest", 1e-10), ("max_length", 1.0)],
-)  # fmt: skip
+    [
+        ("order", 1),
+        ("order", 31),
+        ("tolerance", 1e-15),
+        ("tolerance", 0.1),
+        ("tolerance", np.nan),
+        ("shortest", 0.0),
+        ("longest", 1e-10),
+        ("max_length", 1.0),
+    ],
+)
 def test_settings_out_of_range_are_refused_by_name_and_value(field, value):
     with pytest.raises(ProblemError) as caught:
         TraceSettings(**{field: value})
@@ -144,6 +169,8 @@ def test_a_direction_of_the_wrong_shape_is_refused():
 def test_every_order_meets_the_tolerance(order):
     problem = LoopClosure(entry("bricard-line-symmetric").build())
     start = problem.seeds(np.random.default_rng(0), 1).points[0]
-    branch = trace_branch(problem, start, None, TraceSettings(order=order, tolerance=1e-10))
+    branch = trace_branch(
+        problem, start, None, TraceSettings(order=order, tolerance=1e-10)
+    )
     assert branch.outcome is Outcome.CLOSED
     assert np.linalg.norm(problem.residuals(branch.sample(3000)), axis=1).max() < 1e-9

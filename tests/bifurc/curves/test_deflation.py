@@ -10,15 +10,23 @@ from bifurc.search.explore import explore
 
 
 def double_circle() -> FunctionProblem:
-    """The unit circle of the plane z = 0 as a double curve: F' has rank 1 of 3 all along it."""
+    """The unit circle of the plane z = 0 as a double curve: F' has rank 1 of 3 all
+    along it."""
     return FunctionProblem(
-        lambda u: np.array([(u[0] ** 2 + u[1] ** 2 - 1) ** 2, u[2] + u[0] * (u[0] ** 2 + u[1] ** 2 - 1)]),
+        lambda u: np.array(
+            [
+                (u[0] ** 2 + u[1] ** 2 - 1) ** 2,
+                u[2] + u[0] * (u[0] ** 2 + u[1] ** 2 - 1),
+            ]
+        ),
         [[-2, 2]] * 3,
     )
 
 
 def test_a_double_circle_is_traced_round_to_full_accuracy():
-    branch = trace_branch(Deflated(double_circle()), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]))
+    branch = trace_branch(
+        Deflated(double_circle()), np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    )
     assert branch.outcome is Outcome.CLOSED
     assert abs(branch.length - 2 * np.pi) < 1e-12
     points = branch.sample(1000)
@@ -46,5 +54,7 @@ def test_a_regular_point_is_no_start_of_a_curve_of_lower_rank():
 
 def test_explore_finds_a_double_circle_once_and_says_its_rank():
     atlas = explore(double_circle(), starts=40)
-    assert [(form.rank, form.branch.outcome) for form in atlas.forms] == [(1, Outcome.CLOSED)]
+    assert [(form.rank, form.branch.outcome) for form in atlas.forms] == [
+        (1, Outcome.CLOSED)
+    ]
     assert atlas.points == ()

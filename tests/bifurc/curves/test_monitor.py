@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.monitor import dead_points, profile_branch, roots_along, singular_value_minima, singular_values
+from bifurc.curves.monitor import (
+    dead_points,
+    profile_branch,
+    roots_along,
+    singular_value_minima,
+    singular_values,
+)
 from bifurc.problem import FunctionProblem
 
 
@@ -17,16 +23,22 @@ def test_singular_values_are_those_of_the_jacobian_over_the_magnitude_padded_to_
     problem, _ = traced(lambda x, y: x * x + y * y - 1, [1.0, 0.0])
     values = singular_values(problem, np.array([[[0.6, 0.8], [1.2, 1.6]]]))
     assert values.shape == (1, 2, 2)
-    assert values[0] * problem.magnitude == pytest.approx(np.array([[2.0, 0.0], [4.0, 0.0]]), abs=1e-14)
+    assert values[0] * problem.magnitude == pytest.approx(
+        np.array([[2.0, 0.0], [4.0, 0.0]]), abs=1e-14
+    )
 
 
 def test_the_rank_along_a_curve_counts_independent_equations_only():
     for repeat in (1, 3):
-        problem, branch = traced(lambda x, y, r=repeat: np.full(r, x * x + y * y - 1), [1.0, 0.0])
+        problem, branch = traced(
+            lambda x, y, r=repeat: np.full(r, x * x + y * y - 1), [1.0, 0.0]
+        )
         profile = profile_branch(problem, branch)
         assert profile.rank == 1
         # a circle about the origin: |F'| = 2 sqrt(repeat) everywhere
-        assert profile.smallest * problem.magnitude == pytest.approx(2 * np.sqrt(repeat), abs=1e-12)
+        assert profile.smallest * problem.magnitude == pytest.approx(
+            2 * np.sqrt(repeat), abs=1e-12
+        )
 
 
 @pytest.mark.parametrize("gap", [1e-1, 1e-2, 1e-4, 1e-6])
@@ -38,7 +50,12 @@ def test_a_near_miss_is_found_with_its_value_and_its_place(gap):
     assert value[k] * problem.magnitude == pytest.approx(np.sqrt(2 * gap), rel=1e-5)
     # a minimum is flat: its place is known to the root of the accuracy of its value
     assert branch(s[k]) == pytest.approx([np.sqrt(gap)] * 2, abs=5e-3 * np.sqrt(gap))
-    assert np.count_nonzero(value < 0.5 * np.median(profile_branch(problem, branch).smallest)) == 1
+    assert (
+        np.count_nonzero(
+            value < 0.5 * np.median(profile_branch(problem, branch).smallest)
+        )
+        == 1
+    )
 
 
 def test_a_crossing_shows_as_a_minimum_of_nearly_zero():
@@ -59,8 +76,12 @@ def test_a_curve_of_constant_singular_value_has_no_near_miss_below_it():
 def test_dead_points_of_a_circle_are_where_a_coordinate_turns_back():
     _, branch = traced(lambda x, y: x * x + y * y - 1, [np.sqrt(0.5), np.sqrt(0.5)])
     first, second = (branch(s) for s in dead_points(branch))
-    assert np.sort(first, axis=0) == pytest.approx(np.array([[-1, 0], [1, 0]]), abs=1e-8)
-    assert np.sort(second, axis=0) == pytest.approx(np.array([[0, -1], [0, 1]]), abs=1e-8)
+    assert np.sort(first, axis=0) == pytest.approx(
+        np.array([[-1, 0], [1, 0]]), abs=1e-8
+    )
+    assert np.sort(second, axis=0) == pytest.approx(
+        np.array([[0, -1], [0, 1]]), abs=1e-8
+    )
 
 
 def test_an_unknown_that_stands_still_has_no_dead_points():
@@ -70,14 +91,23 @@ def test_an_unknown_that_stands_still_has_no_dead_points():
 
 def test_roots_of_test_functions_are_those_of_the_exact_functions():
     _, branch = traced(lambda x, y: x * x + y * y - 1, [1.0, 0.0], [0.0, 1.0])
-    roots = roots_along(branch, lambda s: np.stack([branch(s)[:, 0] - 0.3, np.sin(5 * s + 1), np.ones_like(s)], axis=1))
+    roots = roots_along(
+        branch,
+        lambda s: np.stack(
+            [branch(s)[:, 0] - 0.3, np.sin(5 * s + 1), np.ones_like(s)], axis=1
+        ),
+    )
     angle = np.arccos(0.3)
     assert np.sort(roots[0]) == pytest.approx([angle, 2 * np.pi - angle], abs=1e-10)
-    assert np.sort(roots[1]) == pytest.approx((np.arange(1, 11) * np.pi - 1) / 5, abs=1e-10)
+    assert np.sort(roots[1]) == pytest.approx(
+        (np.arange(1, 11) * np.pi - 1) / 5, abs=1e-10
+    )
     assert len(roots[2]) == 0
 
 
 def test_two_sign_changes_close_to_each_other_are_both_found():
     _, branch = traced(lambda x, y: y, [0.0, 0.0])
-    roots = roots_along(branch, lambda s: ((branch(s)[:, 0] - 0.5) ** 2 - 0.15**2)[:, None])[0]
+    roots = roots_along(
+        branch, lambda s: ((branch(s)[:, 0] - 0.5) ** 2 - 0.15**2)[:, None]
+    )[0]
     assert np.sort(branch(roots)[:, 0]) == pytest.approx([0.35, 0.65], abs=1e-10)

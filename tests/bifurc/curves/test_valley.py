@@ -3,20 +3,28 @@
 import numpy as np
 import pytest
 
-from bifurc.curves.valley import ValleyEnd, correct_to_valley, follow_valley, unfold_crossing
+from bifurc.curves.valley import (
+    ValleyEnd,
+    correct_to_valley,
+    follow_valley,
+    unfold_crossing,
+)
 from bifurc.problem import FunctionProblem
 
 BOX = [[-2.0, 2.0], [-2.0, 2.0]]
 
 
 def contradicting_circles(error):
-    """The unit circle twice, the second time with a square of the radius that is larger by ``error``."""
+    """The unit circle twice, the second time with a square of the radius that is larger
+    by ``error``."""
     return FunctionProblem(lambda u: np.array([u @ u - 1.0, u @ u - 1.0 - error]), BOX)
 
 
 def opened_crossing(error):
     """x y = error, with a second equation that no point solves: 0 = error."""
-    return FunctionProblem(lambda u: np.array([u[0] * u[1] - error, 0.0 * u[0] + error]), BOX)
+    return FunctionProblem(
+        lambda u: np.array([u[0] * u[1] - error, 0.0 * u[0] + error]), BOX
+    )
 
 
 ARMS = 0.5 * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
@@ -26,20 +34,28 @@ ARMS = 0.5 * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]])
 def test_the_valley_lies_between_equations_that_contradict_each_other(error):
     problem = contradicting_circles(error)
     points, gaps = correct_to_valley(problem, np.array([[1.1, 0.0], [0.5, -0.7]]))
-    assert np.linalg.norm(points, axis=1) == pytest.approx(np.sqrt(1.0 + error / 2), abs=1e-12)
+    assert np.linalg.norm(points, axis=1) == pytest.approx(
+        np.sqrt(1.0 + error / 2), abs=1e-12
+    )
     assert gaps * problem.magnitude == pytest.approx(error / np.sqrt(2), rel=1e-6)
 
 
 def test_a_consistent_system_has_the_curve_itself_as_its_valley():
     points, gaps = correct_to_valley(contradicting_circles(0.0), np.array([[1.1, 0.3]]))
-    assert np.linalg.norm(points[0]) == pytest.approx(1.0, abs=1e-14) and gaps[0] < 1e-15
+    assert (
+        np.linalg.norm(points[0]) == pytest.approx(1.0, abs=1e-14) and gaps[0] < 1e-15
+    )
 
 
 def test_a_valley_is_followed_until_the_condition_holds():
     problem = contradicting_circles(1e-3)
-    valley = follow_valley(problem, np.array([1.0, 0.0]), np.array([0.0, 1.0]), lambda u: u[0] < -0.5)
+    valley = follow_valley(
+        problem, np.array([1.0, 0.0]), np.array([0.0, 1.0]), lambda u: u[0] < -0.5
+    )
     assert valley.end is ValleyEnd.DONE
-    assert np.linalg.norm(valley.dense(), axis=1) == pytest.approx(np.sqrt(1.0005), abs=1e-4)
+    assert np.linalg.norm(valley.dense(), axis=1) == pytest.approx(
+        np.sqrt(1.0005), abs=1e-4
+    )
     assert np.all(np.diff(np.arctan2(valley.points[:, 1], valley.points[:, 0])) > 0)
 
 
@@ -49,7 +65,9 @@ def test_a_crossing_opens_into_two_hyperbolas(error, sign):
     found = unfold_crossing(opened_crossing(sign * error), np.zeros(2), ARMS)
     expected = {(0, 2), (1, 3)} if sign > 0 else {(0, 3), (1, 2)}
     assert set(found.pairs) == expected
-    assert found.distance == pytest.approx(2 * np.sqrt(2 * error), rel=0.02)  # between the vertices
+    assert found.distance == pytest.approx(
+        2 * np.sqrt(2 * error), rel=0.02
+    )  # between the vertices
 
 
 def test_the_smallest_singular_value_is_that_of_the_vertex():
@@ -59,5 +77,11 @@ def test_the_smallest_singular_value_is_that_of_the_vertex():
 
 
 def test_the_step_limit_is_said():
-    valley = follow_valley(contradicting_circles(0.0), np.array([1.0, 0.0]), np.array([0.0, 1.0]), lambda u: False, steps=5)
+    valley = follow_valley(
+        contradicting_circles(0.0),
+        np.array([1.0, 0.0]),
+        np.array([0.0, 1.0]),
+        lambda u: False,
+        steps=5,
+    )
     assert valley.end is ValleyEnd.STEP_LIMIT and len(valley.points) == 6

@@ -1,4 +1,5 @@
-"""Figures: lines break only where they leave the frame, names do not overlap, and the same atlas gives the same bytes."""
+"""Figures: lines break only where they leave the frame, names do not overlap, and the
+same atlas gives the same bytes."""
 
 from __future__ import annotations
 
@@ -12,7 +13,14 @@ import pytest
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
-from bifurc.figures.planes import Scale, choose_plane, copies_in_frame, cut_to_frame, place_in_frame, scale_of
+from bifurc.figures.planes import (
+    Scale,
+    choose_plane,
+    copies_in_frame,
+    cut_to_frame,
+    place_in_frame,
+    scale_of,
+)
 from bifurc.figures.plotting import (
     plot_form_graph,
     plot_joint_angles,
@@ -30,22 +38,33 @@ PLAIN = (Scale(1.0, np.inf, "x"), Scale(1.0, np.inf, "y"))
 def pieces_of(rows: np.ndarray) -> list[np.ndarray]:
     """The unbroken stretches of a line."""
     broken = np.flatnonzero(np.isnan(rows[:, 0]))
-    return [part[~np.isnan(part[:, 0])] for part in np.split(rows, broken) if len(part) > 1]
+    return [
+        part[~np.isnan(part[:, 0])] for part in np.split(rows, broken) if len(part) > 1
+    ]
 
 
 @pytest.fixture(scope="module")
 def parallelogram() -> Atlas:
-    """A parallelogram four-bar: x and y turn against each other in one form and together in the other, z is constant."""
+    """A parallelogram four-bar: x and y turn against each other in one form and
+    together in the other, z is constant."""
 
     def closure(u: np.ndarray) -> np.ndarray:
         x, y, z = u
-        turned = np.array([np.cos(x) + 2 * np.cos(x + y), np.sin(x) + 2 * np.sin(x + y)])
+        turned = np.array(
+            [np.cos(x) + 2 * np.cos(x + y), np.sin(x) + 2 * np.sin(x + y)]
+        )
         # the far joint lies at distance 1 from (2, 0)
-        return np.array([(turned[0] - 2) ** 2 + turned[1] ** 2 - 1, np.sin((z - 0.3) / 2)])
+        return np.array(
+            [(turned[0] - 2) ** 2 + turned[1] ** 2 - 1, np.sin((z - 0.3) / 2)]
+        )
 
     names = ("theta1", "theta2", "theta3")
     problem = FunctionProblem(
-        closure, [[-np.inf, np.inf]] * 3, names=names, units=("rad",) * 3, periods=(2 * np.pi,) * 3
+        closure,
+        [[-np.inf, np.inf]] * 3,
+        names=names,
+        units=("rad",) * 3,
+        periods=(2 * np.pi,) * 3,
     )
     return explore(problem, starts=30)
 
@@ -54,7 +73,10 @@ def parallelogram() -> Atlas:
 def circle() -> Atlas:
     """A circle and a line through it, in a plane without periods."""
     problem = FunctionProblem(
-        lambda u: np.array([(u[0] ** 2 + u[1] ** 2 - 1) * u[1]]), [[-2, 2], [-2, 2]], names=("x", "y"), units=("", "m")
+        lambda u: np.array([(u[0] ** 2 + u[1] ** 2 - 1) * u[1]]),
+        [[-2, 2], [-2, 2]],
+        names=("x", "y"),
+        units=("", "m"),
     )
     return explore(problem, starts=30)
 
@@ -62,7 +84,9 @@ def circle() -> Atlas:
 @pytest.fixture(scope="module")
 def nothing() -> Atlas:
     """No solution at all."""
-    return explore(FunctionProblem(lambda u: np.array([u @ u + 1]), [[-1, 1], [-1, 1]]), starts=5)
+    return explore(
+        FunctionProblem(lambda u: np.array([u @ u + 1]), [[-1, 1], [-1, 1]]), starts=5
+    )
 
 
 # --- lines on the torus -------------------------------------------------------------------------------
@@ -74,7 +98,9 @@ def test_a_line_is_broken_where_it_leaves_the_frame_and_nowhere_else() -> None:
     for part in parts:
         assert np.abs(part).max() <= 180 * (1 + 1e-8)
         assert np.linalg.norm(np.diff(part, axis=0), axis=1).max() < 5
-        assert part[0, 0] == pytest.approx(-180) or part[0, 0] == pytest.approx(np.rad2deg(1.0))
+        assert part[0, 0] == pytest.approx(-180) or part[0, 0] == pytest.approx(
+            np.rad2deg(1.0)
+        )
     drawn = sum(np.abs(np.diff(part[:, 0])).sum() for part in parts)
     assert drawn == pytest.approx(720)
 
@@ -94,7 +120,9 @@ def test_a_closed_curve_inside_the_frame_stays_in_one_piece() -> None:
 
 
 def test_a_point_at_pi_is_drawn_at_both_edges_and_a_corner_at_all_four() -> None:
-    spots = place_in_frame(np.array([[3 * np.pi, 0.5], [-np.pi, np.pi], [0.1, -7.0]]), TORUS)
+    spots = place_in_frame(
+        np.array([[3 * np.pi, 0.5], [-np.pi, np.pi], [0.1, -7.0]]), TORUS
+    )
     np.testing.assert_allclose(spots[0], [180, np.rad2deg(0.5)])
     assert [len(copies_in_frame(spot, TORUS)) for spot in spots] == [2, 4, 1]
     np.testing.assert_allclose(spots[2], np.rad2deg([0.1, 2 * np.pi - 7.0]))
@@ -115,8 +143,12 @@ def test_the_plane_tells_forms_apart_that_look_alike_in_others(circle: Atlas) ->
     assert len(atlas.forms) == 2 and 2 in choose_plane(atlas)
 
 
-def test_angles_are_shown_in_degrees_and_other_units_as_they_are(parallelogram: Atlas, circle: Atlas) -> None:
-    assert scale_of(parallelogram, 0).label == "θ₁ (deg)" and scale_of(parallelogram, 0).half == pytest.approx(180)
+def test_angles_are_shown_in_degrees_and_other_units_as_they_are(
+    parallelogram: Atlas, circle: Atlas
+) -> None:
+    assert scale_of(parallelogram, 0).label == "θ₁ (deg)" and scale_of(
+        parallelogram, 0
+    ).half == pytest.approx(180)
     assert scale_of(circle, 1) == Scale(1.0, np.inf, "y (m)")
 
 
@@ -132,7 +164,11 @@ def test_joints_that_are_none_are_refused(parallelogram: Atlas) -> None:
 
 
 def texts_of(figure: Figure) -> list[str]:
-    return [text.get_text() for text in figure.findobj(matplotlib.text.Text) if text.get_text()]
+    return [
+        text.get_text()
+        for text in figure.findobj(matplotlib.text.Text)
+        if text.get_text()
+    ]
 
 
 def test_the_map_names_every_form_and_every_bifurcation(parallelogram: Atlas) -> None:
@@ -143,20 +179,31 @@ def test_the_map_names_every_form_and_every_bifurcation(parallelogram: Atlas) ->
 
 def test_bifurcations_on_one_spot_of_the_plane_share_a_label(circle: Atlas) -> None:
     flat = FunctionProblem(
-        lambda u: np.array([(u[0] ** 2 + u[1] ** 2 - 1) * u[1], u[2]]), [[-2, 2]] * 3, names=("x", "y", "z")
+        lambda u: np.array([(u[0] ** 2 + u[1] ** 2 - 1) * u[1], u[2]]),
+        [[-2, 2]] * 3,
+        names=("x", "y", "z"),
     )
-    assert "B1, B2" in texts_of(plot_transition_map(explore(flat, starts=30), joints=[2, 3]))
+    assert "B1, B2" in texts_of(
+        plot_transition_map(explore(flat, starts=30), joints=[2, 3])
+    )
 
 
 def test_names_and_marks_of_bifurcations_do_not_overlap(parallelogram: Atlas) -> None:
     figure = plot_transition_map(parallelogram)
     figure.draw_without_rendering()
-    boxes = [t.get_window_extent() for t in figure.findobj(matplotlib.text.Annotation) if t.get_text()]
+    boxes = [
+        t.get_window_extent()
+        for t in figure.findobj(matplotlib.text.Annotation)
+        if t.get_text()
+    ]
     assert len(boxes) == 2
     assert not any(a.overlaps(b) for a, b in combinations(boxes, 2))
 
 
-@pytest.mark.parametrize("plot", [plot_transition_map, plot_joint_angles, plot_singular_values, plot_form_graph])
+@pytest.mark.parametrize(
+    "plot",
+    [plot_transition_map, plot_joint_angles, plot_singular_values, plot_form_graph],
+)
 @pytest.mark.parametrize("name", ["parallelogram", "circle", "nothing"])
 def test_no_text_sticks_out_of_the_figure(plot, name: str, request) -> None:
     figure = plot(request.getfixturevalue(name))
@@ -169,12 +216,16 @@ def test_an_atlas_without_forms_says_so(nothing: Atlas) -> None:
     assert any("no form" in text for text in texts_of(plot_transition_map(nothing)))
 
 
-def test_singular_values_have_a_panel_a_form_and_name_where_they_vanish(circle: Atlas) -> None:
+def test_singular_values_have_a_panel_a_form_and_name_where_they_vanish(
+    circle: Atlas,
+) -> None:
     figure = plot_singular_values(circle)
     visible = [axes for axes in figure.axes if axes.get_visible()]
     assert [axes.get_title(loc="left") for axes in visible] == ["Form 1", "Form 2"]
     for axes in visible:
-        assert axes.get_yscale() == "log" and {"B1", "B2"} <= {text.get_text() for text in axes.texts}
+        assert axes.get_yscale() == "log" and {"B1", "B2"} <= {
+            text.get_text() for text in axes.texts
+        }
 
 
 def test_edges_between_the_same_forms_are_drawn_apart(parallelogram: Atlas) -> None:
@@ -184,11 +235,15 @@ def test_edges_between_the_same_forms_are_drawn_apart(parallelogram: Atlas) -> N
     assert np.linalg.norm(first[20] - second[20]) > 0.3
 
 
-def test_files_are_the_same_bytes_every_time_and_nothing_else_is_left(parallelogram: Atlas, tmp_path) -> None:
+def test_files_are_the_same_bytes_every_time_and_nothing_else_is_left(
+    parallelogram: Atlas, tmp_path
+) -> None:
     folders = tmp_path / "a", tmp_path / "b"
     for folder, size in zip(folders, (10.0, 20.0), strict=True):
         folder.mkdir()
-        with matplotlib.rc_context({"font.size": size}):  # the user's settings make no difference
+        with matplotlib.rc_context(
+            {"font.size": size}
+        ):  # the user's settings make no difference
             paths = save_figures(parallelogram, folder)
         assert sorted(paths) == sorted(folder.iterdir()) and len(paths) == 8
     for path in folders[0].iterdir():

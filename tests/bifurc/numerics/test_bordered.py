@@ -15,13 +15,24 @@ def chain(n):
 
 
 @pytest.mark.parametrize("magnitude", [1.0, 1e-6, 1e6])
-def test_sparse_and_dense_factorisations_agree_whatever_the_size_of_the_equations(magnitude):
+def test_sparse_and_dense_factorisations_agree_whatever_the_size_of_the_equations(
+    magnitude,
+):
     rng = np.random.default_rng(0)
-    matrix, tangent, residual = chain(60) * magnitude, rng.normal(size=61), magnitude * rng.normal(size=60)
+    matrix, tangent, residual = (
+        chain(60) * magnitude,
+        rng.normal(size=61),
+        magnitude * rng.normal(size=60),
+    )
     dense = Bordered(matrix.toarray(), tangent)
-    for factored in (Bordered(matrix, tangent), Bordered(np.vstack([matrix.toarray()] * 2), tangent)):
+    for factored in (
+        Bordered(matrix, tangent),
+        Bordered(np.vstack([matrix.toarray()] * 2), tangent),
+    ):
         right = residual if factored._rows == 60 else np.tile(residual, 2)
-        assert np.allclose(factored.solve(right, 0.3), dense.solve(residual, 0.3), rtol=1e-9)
+        assert np.allclose(
+            factored.solve(right, 0.3), dense.solve(residual, 0.3), rtol=1e-9
+        )
         assert np.allclose(factored.null_vector(), dense.null_vector(), atol=1e-12)
 
 

@@ -18,7 +18,9 @@ class WithoutSeries(LoopClosure):
 
 @pytest.fixture
 def ellipse():
-    return FunctionProblem(lambda u: np.array([u[0] ** 2 / 4 + u[1] ** 2 - 1.0]), [(-3, 3)] * 2)
+    return FunctionProblem(
+        lambda u: np.array([u[0] ** 2 / 4 + u[1] ** 2 - 1.0]), [(-3, 3)] * 2
+    )
 
 
 def test_pieces_are_solutions_by_arclength_and_follow_each_other(ellipse):
@@ -36,16 +38,24 @@ def test_pieces_are_solutions_by_arclength_and_follow_each_other(ellipse):
         slope = powers[:, :-1] @ (piece[1:] * np.arange(1, 17)[:, None]) / radii[i]
         assert np.linalg.norm(slope, axis=1) == pytest.approx(1.0, abs=1e-9)
         if i:
-            assert powers[0] @ piece == pytest.approx(powers[-1] @ pieces[i - 1], abs=1e-12)
+            assert powers[0] @ piece == pytest.approx(
+                powers[-1] @ pieces[i - 1], abs=1e-12
+            )
             assert steps[i] == pytest.approx(radii[i] + radii[i - 1], abs=1e-12)
 
 
 def test_a_start_off_the_curve_is_corrected_and_one_without_a_curve_is_open(ellipse):
-    _, pieces, *_ = march_by_collocation(ellipse, np.array([2.01, 0.0]), np.array([0.0, 1.0]), 12, 1e-12, 1e-9, 1.0, 1)
+    _, pieces, *_ = march_by_collocation(
+        ellipse, np.array([2.01, 0.0]), np.array([0.0, 1.0]), 12, 1e-12, 1e-9, 1.0, 1
+    )
     start = (-1.0) ** np.arange(13) @ pieces[0]
     assert start == pytest.approx([2.0, 0.0], abs=1e-11)
-    nothing = FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 1.0]), [(-3, 3)] * 2)
-    status, pieces, _, _, gaps = march_by_collocation(nothing, np.ones(2), np.array([0.6, -0.8]), 12, 1e-12, 1e-9, 1.0, 1)
+    nothing = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 1.0]), [(-3, 3)] * 2
+    )
+    status, pieces, _, _, gaps = march_by_collocation(
+        nothing, np.ones(2), np.array([0.6, -0.8]), 12, 1e-12, 1e-9, 1.0, 1
+    )
     assert status == MarchStatus.OPEN
     assert not len(pieces)
     assert gaps[-1] * nothing.magnitude >= 1.0
@@ -53,14 +63,20 @@ def test_a_start_off_the_curve_is_corrected_and_one_without_a_curve_is_open(elli
 
 def test_a_bridge_passes_a_crossing_on_its_own_branch():
     # from (-0.2, 0) along the x-axis over the crossing with x^2 = y at the origin
-    problem = FunctionProblem(lambda u: np.array([u[1] * (u[1] - u[0] ** 2 - u[0])]), [(-1, 1)] * 2)
-    bridged = bridge_by_collocation(problem, np.array([-0.2, 0.0]), np.array([1.0, 0.0]), 16, 1e-12, 0.4)
+    problem = FunctionProblem(
+        lambda u: np.array([u[1] * (u[1] - u[0] ** 2 - u[0])]), [(-1, 1)] * 2
+    )
+    bridged = bridge_by_collocation(
+        problem, np.array([-0.2, 0.0]), np.array([1.0, 0.0]), 16, 1e-12, 0.4
+    )
     assert bridged is not None
     piece, length, residual = bridged
     assert length == pytest.approx(0.4, abs=1e-10)
     assert residual < 3e-11
     points = np.vander(np.linspace(-1, 1, 101), len(piece), increasing=True) @ piece
-    assert points == pytest.approx(np.stack([np.linspace(-0.2, 0.2, 101), np.zeros(101)], axis=1), abs=1e-9)
+    assert points == pytest.approx(
+        np.stack([np.linspace(-0.2, 0.2, 101), np.zeros(101)], axis=1), abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("name", ["bennett", "bricard-line-symmetric"])
@@ -68,7 +84,10 @@ def test_a_motion_traced_without_series_is_the_one_traced_with_it(name):
     loop = entry(name).build()
     problem = LoopClosure(loop)
     start = problem.seeds(np.random.default_rng(0), 1).points[0]
-    series, plain = trace_branch(problem, start), trace_branch(WithoutSeries(loop), start)
+    series, plain = (
+        trace_branch(problem, start),
+        trace_branch(WithoutSeries(loop), start),
+    )
     assert plain.outcome is series.outcome
     assert plain.length == pytest.approx(series.length, abs=1e-10)
     # both within tolerance 1e-13 over the smallest singular value, 0.02 to 0.1

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from bifurc.numerics.corrector import correct_across, null_vector, project_by_least_squares, project_to_sphere_by_newton
+from bifurc.numerics.corrector import (
+    correct_across,
+    null_vector,
+    project_by_least_squares,
+    project_to_sphere_by_newton,
+)
 from bifurc.problem import FunctionProblem
 
 BOX = [(-2.0, 2.0)] * 3
@@ -25,7 +30,9 @@ def cubic():
 
 
 def test_the_null_vector_is_the_tangent_and_is_turned_to_the_given_side(cubic):
-    expected = np.array([1.0, 1.0, 0.75]) / np.linalg.norm([1.0, 1.0, 0.75])  # (1, 2t, 3t^2) at t = 1/2
+    expected = np.array([1.0, 1.0, 0.75]) / np.linalg.norm(
+        [1.0, 1.0, 0.75]
+    )  # (1, 2t, 3t^2) at t = 1/2
     point = np.array([0.5, 0.25, 0.125])
     assert null_vector(cubic, point, expected) == pytest.approx(expected, abs=1e-14)
     assert null_vector(cubic, point, -expected) == pytest.approx(-expected, abs=1e-14)
@@ -38,7 +45,9 @@ def test_at_a_crossing_the_null_vector_is_the_projection_of_the_given_direction(
 
 
 @pytest.mark.parametrize("weights", [(1.0, 1.0, 1.0), (1.0, 1e3, 1e-3)])
-def test_a_correction_across_the_tangent_reaches_rounding_whatever_the_weights_of_the_equations(weights):
+def test_a_correction_across_the_tangent_reaches_rounding_whatever_the_weights_of_the_equations(
+    weights,
+):
     problem = FunctionProblem(lambda u: np.array(weights) * twisted_cubic(u), BOX)
     t = 0.7
     tangent = np.array([1.0, 2 * t, 3 * t * t])
@@ -46,14 +55,21 @@ def test_a_correction_across_the_tangent_reaches_rounding_whatever_the_weights_o
     start = np.array([t, t**2, t**3]) + 0.02 * np.array([0.3, -0.5, 0.8])
     point, gap, _ = correct_across(problem, start, tangent, 1e-13)
     assert gap < 1e-14
-    assert point[1:] == pytest.approx([point[0] ** 2, point[0] ** 3], abs=1e-12)  # 1e-15 over a weight of 1e-3
-    assert abs((point - start) @ tangent) < 1e-3 * 0.02  # across the tangent to second order of the correction
+    assert point[1:] == pytest.approx(
+        [point[0] ** 2, point[0] ** 3], abs=1e-12
+    )  # 1e-15 over a weight of 1e-3
+    assert (
+        abs((point - start) @ tangent) < 1e-3 * 0.02
+    )  # across the tangent to second order of the correction
 
 
 def test_a_correction_of_inconsistent_equations_ends_at_the_smallest_residual():
-    # y = 0 and y = 0.01 with x free: the valley is y = 0.005 with a residual of 0.005 sqrt(2)
+    # y = 0 and y = 0.01 with x free: the valley is y = 0.005 with a residual of 0.005
+    # sqrt(2)
     problem = FunctionProblem(lambda u: np.array([u[1], u[1] - 0.01]), BOX[:2])
-    point, gap, _ = correct_across(problem, np.array([0.3, 0.4]), np.array([1.0, 0.0]), 1e-13)
+    point, gap, _ = correct_across(
+        problem, np.array([0.3, 0.4]), np.array([1.0, 0.0]), 1e-13
+    )
     assert point == pytest.approx([0.3, 0.005], abs=1e-12)
     assert gap * problem.magnitude == pytest.approx(0.005 * np.sqrt(2), abs=1e-12)
 
@@ -69,13 +85,19 @@ def test_projection_from_anywhere_ends_on_the_curve(cubic):
 
 def test_projection_is_fast_onto_a_crossing_as_well():
     lines = FunctionProblem(lambda u: np.array([u[0] * u[1]]), BOX[:2])
-    _, gaps = project_by_least_squares(lines, np.array([[1e-3, 1e-3], [0.5, -0.5], [1e-8, 2e-8]]))
+    _, gaps = project_by_least_squares(
+        lines, np.array([[1e-3, 1e-3], [0.5, -0.5], [1e-8, 2e-8]])
+    )
     assert gaps.max() < 1e-14
 
 
 def test_projection_states_the_gap_where_there_is_no_solution():
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 0.25]), BOX[:2])
-    points, gaps = project_by_least_squares(problem, np.array([[0.3, 0.2], [1.0, -1.0]]))
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 0.25]), BOX[:2]
+    )
+    points, gaps = project_by_least_squares(
+        problem, np.array([[0.3, 0.2], [1.0, -1.0]])
+    )
     assert gaps * problem.magnitude == pytest.approx(0.25, abs=1e-9)
     assert points == pytest.approx(0.0, abs=1e-4)
 
@@ -85,18 +107,28 @@ def test_points_on_a_small_sphere_about_a_crossing_are_those_of_both_branches():
     radius = 1e-3
     angles = 0.1 + np.arange(16) * np.pi / 8
     starts = radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    points, gaps, last = project_to_sphere_by_newton(problem, starts, np.zeros(2), radius)
+    points, gaps, last = project_to_sphere_by_newton(
+        problem, starts, np.zeros(2), radius
+    )
     assert gaps.max() < 1e-15
     assert last.max() < 1e-12
     assert np.linalg.norm(points, axis=1) == pytest.approx(radius, abs=1e-15)
-    exact = np.array([[0, radius], [0, -radius], [radius, radius**2], [-radius, radius**2]])
+    exact = np.array(
+        [[0, radius], [0, -radius], [radius, radius**2], [-radius, radius**2]]
+    )
     nearest = np.linalg.norm(points[:, None] - exact, axis=2)
-    assert nearest.min(axis=1).max() < 1e-8  # (r, r^2) lies r^5 / 2 beside the sphere and is that exact
+    assert (
+        nearest.min(axis=1).max() < 1e-8
+    )  # (r, r^2) lies r^5 / 2 beside the sphere and is that exact
     assert len(set(nearest.argmin(axis=1))) == 4
 
 
 def test_cylinder_and_plane_meet_in_a_curve_of_rank_two_of_three_equations():
     problem = FunctionProblem(cylinder_and_plane, BOX)
-    point, gap, _ = correct_across(problem, np.array([0.6, 0.9, 0.4]), np.array([0.5, -0.5, 0.5]), 1e-13)
+    point, gap, _ = correct_across(
+        problem, np.array([0.6, 0.9, 0.4]), np.array([0.5, -0.5, 0.5]), 1e-13
+    )
     assert gap < 1e-14
-    assert [np.hypot(point[0], point[1]), point[2]] == pytest.approx([1.0, point[0]], abs=1e-14)
+    assert [np.hypot(point[0], point[1]), point[2]] == pytest.approx(
+        [1.0, point[0]], abs=1e-14
+    )

@@ -17,7 +17,11 @@ def test_a_root_at_the_end_or_in_the_middle_of_a_bracket_is_found():
 
 
 def test_a_steep_function_is_bisected():
-    roots = bracketed_roots(lambda x: np.sign(x - 0.3) * np.abs(x - 0.3) ** 0.1, np.array([-5.0]), np.array([4.0]))
+    roots = bracketed_roots(
+        lambda x: np.sign(x - 0.3) * np.abs(x - 0.3) ** 0.1,
+        np.array([-5.0]),
+        np.array([4.0]),
+    )
     assert abs(roots[0] - 0.3) < 1e-15
 
 

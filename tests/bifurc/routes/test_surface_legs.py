@@ -30,25 +30,40 @@ def sarrus() -> LoopClosure:
 def search(problem: Problem, on_surfaces: list[list[float]], **options: int) -> Atlas:
     """The atlas found from solutions on the surfaces alone, and what hangs on them."""
     points = np.array(on_surfaces, dtype=float)
-    seeds = Seeds(points, np.ones(len(points), dtype=bool), np.empty(0), np.empty((0, problem.n)))
+    seeds = Seeds(
+        points, np.ones(len(points), dtype=bool), np.empty(0), np.empty((0, problem.n))
+    )
     return explore(problem, seeds=seeds, **options)
 
 
 class Union(Problem):
-    """The union, in a cube, of sets: each given by functions (p, k) of x, y, z (k,) whose common zeros it is."""
+    """The union, in a cube, of sets: each given by functions (p, k) of x, y, z (k,)
+    whose common zeros it is."""
 
     def __init__(self, *sets: Callable, size: float = 2.0):
-        self.names, self.units, self.periods = ("x", "y", "z"), ("",) * 3, np.full(3, np.inf)
+        self.names, self.units, self.periods = (
+            ("x", "y", "z"),
+            ("",) * 3,
+            np.full(3, np.inf),
+        )
         self.bounds, self.sets = np.full((3, 2), [-size, size]), sets
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         out = np.ones((len(points), 1))
         for functions in self.sets:
-            out = (out[:, :, None] * functions(*points.T).T[:, None]).reshape(len(points), -1)
+            out = (out[:, :, None] * functions(*points.T).T[:, None]).reshape(
+                len(points), -1
+            )
         return out
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
-        return np.stack([self.residuals(points + 1e-100j * step).imag / 1e-100 for step in np.eye(3)], axis=2)
+        return np.stack(
+            [
+                self.residuals(points + 1e-100j * step).imag / 1e-100
+                for step in np.eye(3)
+            ],
+            axis=2,
+        )
 
 
 PLANE_AND_LINES = Union(
@@ -58,7 +73,8 @@ PLANE_AND_LINES = Union(
     lambda x, y, z: np.array([x + 1, y + 1 - z]),
 )
 SPHERE_AND_AXIS = Union(
-    lambda x, y, z: np.array([x * x + y * y + z * z - 1]), lambda x, y, z: np.array([x, y])
+    lambda x, y, z: np.array([x * x + y * y + z * z - 1]),
+    lambda x, y, z: np.array([x, y]),
 )
 PLANES = Union(lambda x, y, z: np.array([z]), lambda x, y, z: np.array([y]))
 CONE = Union(lambda x, y, z: np.array([z * z - x * x - y * y]))
@@ -82,9 +98,14 @@ def folded() -> Atlas:
 
 @pytest.fixture(scope="module")
 def goldberg() -> Atlas:
-    """The double-subtractive-Goldberg loop with b = d: two forms, and a torus that they never meet."""
+    """The double-subtractive-Goldberg loop with b = d: two forms, and a torus that they
+    never meet."""
     alpha, beta, gamma = np.radians([66, 50, 28])
-    return explore(LoopClosure(double_subtractive_goldberg(1.7 * np.sin(alpha), alpha, beta, gamma, beta)))
+    return explore(
+        LoopClosure(
+            double_subtractive_goldberg(1.7 * np.sin(alpha), alpha, beta, gamma, beta)
+        )
+    )
 
 
 def on_torus(theta1: float, theta2: float) -> np.ndarray:
@@ -92,30 +113,46 @@ def on_torus(theta1: float, theta2: float) -> np.ndarray:
 
 
 def assert_is_walk(atlas: Atlas, problem: Problem, route: Route) -> None:
-    """The path solves the equations, has no jump, is as long as the legs say, and the legs hang together."""
+    """The path solves the equations, has no jump, is as long as the legs say, and the
+    legs hang together."""
     assert np.abs(problem.residuals(route.path)).max() < 1e-12
     steps = np.linalg.norm(np.diff(route.path, axis=0), axis=1)
     assert steps.max() < 2 * route.length / len(steps)
     assert steps.sum() == pytest.approx(route.length, rel=1e-4)  # chords of 400 steps
-    assert np.all(np.abs(np.diff(route.path, axis=0)).sum(axis=0) == pytest.approx(route.travel, rel=1e-3, abs=1e-9))
+    assert np.all(
+        np.abs(np.diff(route.path, axis=0)).sum(axis=0)
+        == pytest.approx(route.travel, rel=1e-3, abs=1e-9)
+    )
     assert route.legs[-1].at == "" and all(leg.at for leg in route.legs[:-1])
     points = {p.name: p.point.u for p in atlas.points}
     for before, after in pairwise(route.legs):
         np.testing.assert_array_equal(before.path[-1], after.path[0])
-        assert np.abs(wrap(before.path[-1] - points[before.at], atlas.periods)).max() < 1e-9
-    np.testing.assert_array_equal(np.concatenate([route.path[:1], *(leg.path[1:] for leg in route.legs)]), route.path)
+        assert (
+            np.abs(wrap(before.path[-1] - points[before.at], atlas.periods)).max()
+            < 1e-9
+        )
+    np.testing.assert_array_equal(
+        np.concatenate([route.path[:1], *(leg.path[1:] for leg in route.legs)]),
+        route.path,
+    )
     for leg in route.legs:
-        assert leg.path.shape[0] >= 2 and (leg.dimension == 1 or (leg.start, leg.end) == (0.0, leg.length))
+        assert leg.path.shape[0] >= 2 and (
+            leg.dimension == 1 or (leg.start, leg.end) == (0.0, leg.length)
+        )
 
 
 # --- what is known exactly ----------------------------------------------------------------------------
 
 
-def test_a_route_crosses_a_plane_in_a_straight_line_from_one_curve_to_another(lines: Atlas) -> None:
+def test_a_route_crosses_a_plane_in_a_straight_line_from_one_curve_to_another(
+    lines: Atlas,
+) -> None:
     route = lines.route(np.array([0, 0, 1.2]), np.array([1, 0.5, -0.8]))
     assert [leg.dimension for leg in route.legs] == [1, 2, 1]
     assert route.legs[1].form == "surface 1" and route.legs[1].start == 0.0
-    assert [leg.length for leg in route.legs] == pytest.approx([1.2, np.hypot(1, 0.5), 0.8], abs=1e-9)
+    assert [leg.length for leg in route.legs] == pytest.approx(
+        [1.2, np.hypot(1, 0.5), 0.8], abs=1e-9
+    )
     assert route.travel == pytest.approx([1, 0.5, 2.0], abs=1e-9)
     assert_is_walk(lines, PLANE_AND_LINES, route)
 
@@ -124,20 +161,30 @@ def test_of_the_curves_that_meet_a_plane_the_nearer_way_is_taken(lines: Atlas) -
     # the slanted line x = -1, y = z - 1 meets the plane in (-1, -1, 0)
     start, goal = np.array([-1, 0.5, 1.5]), np.array([0.3, 0.2, 0.0])
     route = lines.route(start, goal)
-    assert route.length == pytest.approx(1.5 * np.sqrt(2) + np.hypot(1.3, 1.2), abs=1e-9)
+    assert route.length == pytest.approx(
+        1.5 * np.sqrt(2) + np.hypot(1.3, 1.2), abs=1e-9
+    )
     assert_is_walk(lines, PLANE_AND_LINES, route)
     back = lines.route(goal, start)
-    assert back.length == pytest.approx(route.length, abs=1e-12) and [leg.dimension for leg in back.legs] == [2, 1]
+    assert back.length == pytest.approx(route.length, abs=1e-12) and [
+        leg.dimension for leg in back.legs
+    ] == [2, 1]
     np.testing.assert_allclose(back.path[[0, -1]], [goal, start], atol=1e-9)
 
 
 def test_start_and_goal_on_one_surface_need_no_singular_point(lines: Atlas) -> None:
     route = lines.route(np.array([-1.5, 1, 0]), np.array([1.5, 1, 0]))
-    assert [(leg.form, leg.at) for leg in route.legs] == [("surface 1", "")] and route.length == pytest.approx(3.0)
+    assert [(leg.form, leg.at) for leg in route.legs] == [
+        ("surface 1", "")
+    ] and route.length == pytest.approx(3.0)
 
 
-@pytest.mark.parametrize("goal", [(0.6, 0.8, 0.0), (0.0, -0.6, -0.8), (0.8, 0.0, 0.6), (-0.28, 0.0, -0.96)])
-def test_a_way_over_a_sphere_is_a_great_circle(sphere: Atlas, goal: tuple[float, ...]) -> None:
+@pytest.mark.parametrize(
+    "goal", [(0.6, 0.8, 0.0), (0.0, -0.6, -0.8), (0.8, 0.0, 0.6), (-0.28, 0.0, -0.96)]
+)
+def test_a_way_over_a_sphere_is_a_great_circle(
+    sphere: Atlas, goal: tuple[float, ...]
+) -> None:
     start = np.array([0.48, 0.6, 0.64])
     route = sphere.route(start, np.array(goal))
     angle = np.arccos(start @ goal)
@@ -155,12 +202,22 @@ def test_through_the_sphere_it_is_shorter_than_around(sphere: Atlas) -> None:
 
 
 def test_around_the_waist_of_a_hyperboloid_the_way_is_a_circle() -> None:
-    # on so strong a saddle pulling without a measured step would swing from side to side
-    problem = Union(lambda x, y, z: np.array([4 * x * x + 4 * y * y - 4 * z * z - 1]), size=0.7)
+    # on so strong a saddle pulling without a measured step would swing from side to
+    # side
+    problem = Union(
+        lambda x, y, z: np.array([4 * x * x + 4 * y * y - 4 * z * z - 1]), size=0.7
+    )
     charts = cover_surface(problem, np.array([[0.5, 0.0, 0.0]]))
-    path = charts.path(np.array([0.5, 0.0, 0.0]), np.array([-0.5, 0.0, 0.0]), spacing=0.02)
-    assert np.abs(path[:, 2]).max() < 1e-4 and np.abs(problem.residuals(path)).max() < 1e-12
-    assert np.linalg.norm(np.diff(path, axis=0), axis=1).sum() == pytest.approx(0.5 * np.pi, rel=1e-4)
+    path = charts.path(
+        np.array([0.5, 0.0, 0.0]), np.array([-0.5, 0.0, 0.0]), spacing=0.02
+    )
+    assert (
+        np.abs(path[:, 2]).max() < 1e-4
+        and np.abs(problem.residuals(path)).max() < 1e-12
+    )
+    assert np.linalg.norm(np.diff(path, axis=0), axis=1).sum() == pytest.approx(
+        0.5 * np.pi, rel=1e-4
+    )
 
 
 def test_two_planes_are_joined_by_the_singular_points_found_on_both() -> None:
@@ -172,15 +229,23 @@ def test_two_planes_are_joined_by_the_singular_points_found_on_both() -> None:
     assert route.length == pytest.approx(over, abs=1e-9)
 
 
-def test_from_one_half_of_a_cone_to_the_other_the_way_leads_through_the_tip_and_on_one_half_around_it() -> None:
+def test_from_one_half_of_a_cone_to_the_other_the_way_leads_through_the_tip_and_on_one_half_around_it() -> (
+    None
+):
     atlas = search(CONE, [[0.3, 0.4, 0.5], [0.3, 0.4, -0.5]])
     assert [p.surfaces for p in atlas.points] == [(0, 1)]
     start = np.array([0.3, 0.4, 0.5])
     through = atlas.route(start, np.array([-0.4, 0.3, -0.5]))
-    assert through.length == pytest.approx(np.sqrt(2), abs=1e-9) and [leg.dimension for leg in through.legs] == [2, 2]
+    assert through.length == pytest.approx(np.sqrt(2), abs=1e-9) and [
+        leg.dimension for leg in through.legs
+    ] == [2, 2]
     assert_is_walk(atlas, CONE, through)
-    around = atlas.route(start, np.array([-0.3, -0.4, 0.5]))  # unrolled, the cone is a sector of sqrt(2) pi
-    assert around.length == pytest.approx(np.sqrt(2) * np.sin(np.sqrt(2) * np.pi / 4), rel=1e-5)
+    around = atlas.route(
+        start, np.array([-0.3, -0.4, 0.5])
+    )  # unrolled, the cone is a sector of sqrt(2) pi
+    assert around.length == pytest.approx(
+        np.sqrt(2) * np.sin(np.sqrt(2) * np.pi / 4), rel=1e-5
+    )
 
 
 # --- linkages -----------------------------------------------------------------------------------------
@@ -189,33 +254,49 @@ def test_from_one_half_of_a_cone_to_the_other_the_way_leads_through_the_tip_and_
 def test_a_sarrus_loop_goes_from_form_to_form_over_its_torus(folded: Atlas) -> None:
     route = folded.route("Form 1", "Form 2")
     assert [leg.form for leg in route.legs] == ["Form 1", "surface 1", "Form 2"]
-    assert route.legs[1].length == pytest.approx(np.sqrt(2) * np.pi, abs=1e-6)  # two joints turn by half a turn each
-    assert [leg.at for leg in route.legs][-1] == "" and {leg.at for leg in route.legs} < {"", "D1", "D2", "D3", "D4"}
+    assert route.legs[1].length == pytest.approx(
+        np.sqrt(2) * np.pi, abs=1e-6
+    )  # two joints turn by half a turn each
+    assert [leg.at for leg in route.legs][-1] == "" and {
+        leg.at for leg in route.legs
+    } < {"", "D1", "D2", "D3", "D4"}
     assert_is_walk(folded, SARRUS, route)
-    assert folded.route("Form 2", "Form 1").length == pytest.approx(route.length, abs=1e-9)
+    assert folded.route("Form 2", "Form 1").length == pytest.approx(
+        route.length, abs=1e-9
+    )
 
 
 def test_the_middle_of_a_surface_stands_for_its_name(folded: Atlas) -> None:
     route = folded.route("surface 1", "Form 2")
     assert [leg.form for leg in route.legs] == ["surface 1", "Form 2"]
-    assert np.linalg.norm(wrap(route.path[0] - folded.points[0].point.u, folded.periods)) > 1.0
+    assert (
+        np.linalg.norm(wrap(route.path[0] - folded.points[0].point.u, folded.periods))
+        > 1.0
+    )
     none = folded.route("surface 1", "surface 1")
     assert none.legs == () and none.path.shape == (1, 6)
 
 
-def test_a_path_stays_near_its_start_however_often_the_start_is_turned(folded: Atlas) -> None:
+def test_a_path_stays_near_its_start_however_often_the_start_is_turned(
+    folded: Atlas,
+) -> None:
     start, goal = folded.surfaces[0].samples[[0, -1]] + 4 * np.pi
     route = folded.route(start, goal)
     np.testing.assert_allclose(route.path[0], start, atol=1e-9)
     assert np.abs(wrap(route.path[-1] - goal, folded.periods)).max() < 1e-9
-    assert route.length == pytest.approx(np.linalg.norm(route.path[-1] - start), rel=1e-9)  # the torus is flat
+    assert route.length == pytest.approx(
+        np.linalg.norm(route.path[-1] - start), rel=1e-9
+    )  # the torus is flat
 
 
 def test_a_start_at_a_dimension_change_lies_on_form_and_surface(folded: Atlas) -> None:
     point = folded.points[0]
     on_form = folded.forms[point.passes[0][0]].branch(point.passes[0][1] + 0.5)
     assert [leg.dimension for leg in folded.route(point.point.u, on_form).legs] == [1]
-    assert [leg.dimension for leg in folded.route(point.point.u, folded.surfaces[0].samples[0]).legs] == [2]
+    assert [
+        leg.dimension
+        for leg in folded.route(point.point.u, folded.surfaces[0].samples[0]).legs
+    ] == [2]
 
 
 def test_a_route_does_not_depend_on_how_densely_it_is_drawn(folded: Atlas) -> None:
@@ -224,60 +305,106 @@ def test_a_route_does_not_depend_on_how_densely_it_is_drawn(folded: Atlas) -> No
     np.testing.assert_array_equal(few.travel, many.travel)
 
 
-def test_the_graphs_of_an_atlas_are_those_of_its_forms_after_a_route(folded: Atlas) -> None:
+def test_the_graphs_of_an_atlas_are_those_of_its_forms_after_a_route(
+    folded: Atlas,
+) -> None:
     folded.route("Form 1", "Form 2")
     assert all("form" in arc for *_, arc in folded.arcs.edges(data=True))
-    assert all(edge["layer"] in ("forms", "arcs") for *_, edge in plain_graph(folded).edges(data=True))
+    assert all(
+        edge["layer"] in ("forms", "arcs")
+        for *_, edge in plain_graph(folded).edges(data=True)
+    )
 
 
-def test_an_atlas_from_a_file_needs_its_problem_for_legs_over_surfaces(folded: Atlas, tmp_path) -> None:
+def test_an_atlas_from_a_file_needs_its_problem_for_legs_over_surfaces(
+    folded: Atlas, tmp_path
+) -> None:
     again = load_atlas(save_atlas(folded, tmp_path / "sarrus.nc"))
-    with pytest.raises(RouteError, match="'surface 1': an atlas from a file needs its problem"):
+    with pytest.raises(
+        RouteError, match="'surface 1': an atlas from a file needs its problem"
+    ):
         again.route("Form 1", "Form 2")
-    with pytest.raises(RouteError, match="perhaps on 'surface 1': an atlas read from a file can tell only"):
+    with pytest.raises(
+        RouteError,
+        match="perhaps on 'surface 1': an atlas read from a file can tell only",
+    ):
         again.route(folded.surfaces[0].samples[0], "Form 2")
     route = again.route("Form 1", "Form 2", problem=SARRUS)
-    np.testing.assert_allclose(route.path, folded.route("Form 1", "Form 2").path, atol=1e-9)
-    assert again.route("Form 1", folded.forms[0].branch(0.3)).length > 0  # along forms it needs none
+    np.testing.assert_allclose(
+        route.path, folded.route("Form 1", "Form 2").path, atol=1e-9
+    )
+    assert (
+        again.route("Form 1", folded.forms[0].branch(0.3)).length > 0
+    )  # along forms it needs none
 
 
 def test_of_the_ways_round_a_torus_the_shortest_is_taken(goldberg: Atlas) -> None:
-    # theta1 and theta2 turn freely, each with another joint: the torus is flat, its sides are sqrt(2) 2 pi long
+    # theta1 and theta2 turn freely, each with another joint: the torus is flat, its
+    # sides are sqrt(2) 2 pi long
     for start, goal in np.random.default_rng(0).uniform(-np.pi, np.pi, (25, 2, 2)):
         turned = wrap(goal - start, np.full(2, 2 * np.pi))
         route = goldberg.route(on_torus(*start), on_torus(*goal), count=60)
-        assert route.length == pytest.approx(np.sqrt(2) * np.linalg.norm(turned), rel=1e-9)
+        assert route.length == pytest.approx(
+            np.sqrt(2) * np.linalg.norm(turned), rel=1e-9
+        )
 
 
 # --- no route -----------------------------------------------------------------------------------------
 
 
-def test_a_configuration_beside_form_and_surface_is_refused_with_both_distances(lines: Atlas) -> None:
-    with pytest.raises(RouteError, match=r"0\.3 away from the nearest form.* and 0\.1 away from 'surface 1'"):
+def test_a_configuration_beside_form_and_surface_is_refused_with_both_distances(
+    lines: Atlas,
+) -> None:
+    with pytest.raises(
+        RouteError,
+        match=r"0\.3 away from the nearest form.* and 0\.1 away from 'surface 1'",
+    ):
         lines.route(np.array([0.3, 0.0, 0.1]), "surface 1")
 
 
 def test_where_charts_end_a_configuration_says_so() -> None:
     atlas = search(SPHERE_AND_AXIS, [[0.6, 0.0, 0.8]], charts=10)
     far = -atlas.surfaces[0].charts.centers[0]
-    with pytest.raises(RouteError, match=r"away from the charts of 'surface 1' \(incomplete: the largest number"):
+    with pytest.raises(
+        RouteError,
+        match=r"away from the charts of 'surface 1' \(incomplete: the largest number",
+    ):
         atlas.route(far, "surface 1")
 
 
 def test_charts_that_do_not_hang_together_are_named() -> None:
     atlas = search(SPHERE_AND_AXIS, [[0.6, 0.0, 0.8]])
     charts = atlas.surfaces[0].charts
-    cut = charts.neighbours[np.sign(charts.centers[charts.neighbours, 2]).prod(axis=1) > 0]
-    torn = replace(atlas, points=(), forms=(), surfaces=(replace(atlas.surfaces[0], charts=replace(charts, neighbours=cut)),))
-    with pytest.raises(RouteError, match=r"only 'surface 1' can be reached.*surface 1 \(complete.*no chain of charts"):
+    cut = charts.neighbours[
+        np.sign(charts.centers[charts.neighbours, 2]).prod(axis=1) > 0
+    ]
+    torn = replace(
+        atlas,
+        points=(),
+        forms=(),
+        surfaces=(replace(atlas.surfaces[0], charts=replace(charts, neighbours=cut)),),
+    )
+    with pytest.raises(
+        RouteError,
+        match=r"only 'surface 1' can be reached.*surface 1 \(complete.*no chain of charts",
+    ):
         torn.route(np.array([0.6, 0.0, 0.8]), np.array([0.6, 0.0, -0.8]))
 
 
-def test_a_component_of_three_dimensions_is_only_sampled_and_no_route_goes_over_it() -> None:
-    atlas = explore(LoopClosure(Loop((1, 1.2, 0.9, 1.3, 1.1, 0.8), (0,) * 6, (0,) * 6)), starts=20)
-    with pytest.raises(RouteError, match=r"surface 1 \(dimension 3\): it is only sampled"):
+def test_a_component_of_three_dimensions_is_only_sampled_and_no_route_goes_over_it() -> (
+    None
+):
+    atlas = explore(
+        LoopClosure(Loop((1, 1.2, 0.9, 1.3, 1.1, 0.8), (0,) * 6, (0,) * 6)), starts=20
+    )
+    with pytest.raises(
+        RouteError, match=r"surface 1 \(dimension 3\): it is only sampled"
+    ):
         atlas.route("surface 1", "surface 1")
-    with pytest.raises(RouteError, match=r"the atlas has no forms.*surface 1 \(dimension 3\): it is only sampled"):
+    with pytest.raises(
+        RouteError,
+        match=r"the atlas has no forms.*surface 1 \(dimension 3\): it is only sampled",
+    ):
         atlas.route(atlas.surfaces[0].samples[0], "surface 1")
 
 

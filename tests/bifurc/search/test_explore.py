@@ -15,13 +15,38 @@ from linkages.loop import Loop
 # function, bounds, lengths of the forms, bifurcations (place, number of passes)
 KNOWN = {
     "circle": (lambda x, y: x * x + y * y - 1, 2.0, [2 * np.pi], []),
-    "pitchfork": (lambda x, y: x * y - x**3, 2.0, [4.0, 2 * (0.5 * np.sqrt(2) * 3 + 0.25 * np.arcsinh(2 * np.sqrt(2)))], [((0, 0), 2)]),
-    "two crossing lines": (lambda x, y: (x - y) * (x + 2 * y - 0.3), 1.0, [2 * np.sqrt(2), np.sqrt(5)], [((0.1, 0.1), 2)]),
-    "lemniscate": (lambda x, y: (x * x + y * y) ** 2 - x * x + y * y, 2.0, [5.244115108584239], [((0, 0), 2)]),
-    "triple crossing": (lambda x, y: x * (x - y) * (x + y), 1.0, [2 * np.sqrt(2)] * 2 + [2.0], [((0, 0), 3)]),
-    "two circles apart": (lambda x, y: ((x - 1) ** 2 + y * y - 0.5) * ((x + 1) ** 2 + y * y - 0.25), 2.0, [2 * np.pi * np.sqrt(0.5), np.pi], []),
+    "pitchfork": (
+        lambda x, y: x * y - x**3,
+        2.0,
+        [4.0, 2 * (0.5 * np.sqrt(2) * 3 + 0.25 * np.arcsinh(2 * np.sqrt(2)))],
+        [((0, 0), 2)],
+    ),
+    "two crossing lines": (
+        lambda x, y: (x - y) * (x + 2 * y - 0.3),
+        1.0,
+        [2 * np.sqrt(2), np.sqrt(5)],
+        [((0.1, 0.1), 2)],
+    ),
+    "lemniscate": (
+        lambda x, y: (x * x + y * y) ** 2 - x * x + y * y,
+        2.0,
+        [5.244115108584239],
+        [((0, 0), 2)],
+    ),
+    "triple crossing": (
+        lambda x, y: x * (x - y) * (x + y),
+        1.0,
+        [2 * np.sqrt(2)] * 2 + [2.0],
+        [((0, 0), 3)],
+    ),
+    "two circles apart": (
+        lambda x, y: ((x - 1) ** 2 + y * y - 0.5) * ((x + 1) ** 2 + y * y - 0.25),
+        2.0,
+        [2 * np.pi * np.sqrt(0.5), np.pi],
+        [],
+    ),
     "hyperbola": (lambda x, y: x * y - 1e-4, 1.0, [1.983056] * 2, []),
-}  # fmt: skip
+}
 ROTATION = np.linalg.qr(np.random.default_rng(5).normal(size=(5, 5)))[0][:, 0]
 COPIES = {
     "as it is": lambda f: np.array([f]),
@@ -35,7 +60,10 @@ COPIES = {
 @pytest.mark.parametrize("name", KNOWN)
 def test_redundant_equations_change_nothing(name, copy):
     function, bound, lengths, bifurcations = KNOWN[name]
-    atlas = explore(FunctionProblem(lambda u: COPIES[copy](function(*u)), [(-bound, bound)] * 2), starts=40)
+    atlas = explore(
+        FunctionProblem(lambda u: COPIES[copy](function(*u)), [(-bound, bound)] * 2),
+        starts=40,
+    )
     found = sorted((form.branch.length for form in atlas.forms), reverse=True)
     assert found == pytest.approx(sorted(lengths, reverse=True), abs=1e-6)
     assert not any(point.note for point in atlas.points)
@@ -57,12 +85,15 @@ def test_central_differences_give_the_same_answer_and_say_so():
     assert atlas.info["derivatives"] == "central differences"
     assert len(atlas.forms) == 2
     assert [p.kind for p in atlas.points] == [Kind.BIFURCATION]
-    # second derivatives are differences of differences: the place is known to their accuracy
+    # second derivatives are differences of differences: the place is known to their
+    # accuracy
     assert np.linalg.norm(atlas.points[0].point.u) < 1e-6
 
 
 def test_both_sides_of_a_pitchfork_are_found_from_a_start_on_the_side_branch():
-    problem = FunctionProblem(lambda u: np.array([u[0] * u[1] - u[0] ** 3]), [(-2, 2)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] * u[1] - u[0] ** 3]), [(-2, 2)] * 2
+    )
     for start in ((1.2, 1.44), (0.0, -1.5)):
         atlas = explore(problem, seeds=_only(start))
         assert len(atlas.forms) == 2
@@ -71,12 +102,22 @@ def test_both_sides_of_a_pitchfork_are_found_from_a_start_on_the_side_branch():
 
 def _only(*points):
     points = np.array(points, dtype=float)
-    return Seeds(points, np.zeros(len(points), dtype=bool), np.empty(0), np.empty((0, points.shape[1])))
+    return Seeds(
+        points,
+        np.zeros(len(points), dtype=bool),
+        np.empty(0),
+        np.empty((0, points.shape[1])),
+    )
 
 
 def test_a_square_problem_with_a_parameter_is_a_curve_like_any_other():
-    # imperfect pitchfork x^3 - a x + 0.1 = 0: two arcs, one of them with a fold, no bifurcation
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 3 - u[1] * u[0] + 0.1]), [(-2, 2), (-1, 2)], names=("x", "a"))
+    # imperfect pitchfork x^3 - a x + 0.1 = 0: two arcs, one of them with a fold, no
+    # bifurcation
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 3 - u[1] * u[0] + 0.1]),
+        [(-2, 2), (-1, 2)],
+        names=("x", "a"),
+    )
     atlas = explore(problem, starts=60)
     assert len(atlas.forms) == 2
     assert not atlas.points
@@ -87,7 +128,9 @@ def test_a_square_problem_with_a_parameter_is_a_curve_like_any_other():
 
 
 def test_no_solution_is_no_form_and_the_gap_is_the_smallest_residual():
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 0.5]), [(-2, 2)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 0.5]), [(-2, 2)] * 2
+    )
     atlas = explore(problem, starts=20)
     assert not atlas.forms
     assert not atlas.points
@@ -95,14 +138,23 @@ def test_no_solution_is_no_form_and_the_gap_is_the_smallest_residual():
 
 
 def test_isolated_solutions_are_rigid_and_found_once():
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 2 - 1, u[1] ** 2 - 4 * u[0] ** 2]), [(-3, 3)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 - 1, u[1] ** 2 - 4 * u[0] ** 2]), [(-3, 3)] * 2
+    )
     atlas = explore(problem, starts=60)
     assert not atlas.forms
-    assert sorted(map(tuple, np.round(atlas.rigid, 12))) == [(-1, -2), (-1, 2), (1, -2), (1, 2)]
+    assert sorted(map(tuple, np.round(atlas.rigid, 12))) == [
+        (-1, -2),
+        (-1, 2),
+        (1, -2),
+        (1, 2),
+    ]
 
 
 def test_an_isolated_real_point_of_a_curve_is_no_form():
-    atlas = explore(LoopClosure(Loop((1.0, 1.0, 1.0, 3.0), (0.0,) * 4, (0.0,) * 4)))  # stretched, it cannot move
+    atlas = explore(
+        LoopClosure(Loop((1.0, 1.0, 1.0, 3.0), (0.0,) * 4, (0.0,) * 4))
+    )  # stretched, it cannot move
     assert not atlas.forms
     assert [p.kind for p in atlas.points] == [Kind.ISOLATED]
     assert np.abs(np.sin(atlas.points[0].point.u)).max() < 1e-9
@@ -114,8 +166,14 @@ def test_an_isolated_real_point_of_a_curve_is_no_form():
 @pytest.mark.parametrize(
     "loop",
     [
-        Loop((1.0, 1.0, 1.0, 5.0), (0.0,) * 4, (0.0,) * 4),  # one bar longer than the others together
-        Loop((10.0, 1.0, 1.0, 1.0, 1.0, 1.0), (0.5, 1.0, -0.7, 1.2, 0.3, -1.1), (0.0,) * 6),
+        Loop(
+            (1.0, 1.0, 1.0, 5.0), (0.0,) * 4, (0.0,) * 4
+        ),  # one bar longer than the others together
+        Loop(
+            (10.0, 1.0, 1.0, 1.0, 1.0, 1.0),
+            (0.5, 1.0, -0.7, 1.2, 0.3, -1.1),
+            (0.0,) * 6,
+        ),
         Loop((0.0,) * 4, (0.1, 0.1, 0.1, 1.0), (0.0,) * 4),
     ],
 )
@@ -128,10 +186,15 @@ def test_a_loop_that_cannot_be_closed_has_nothing_but_a_large_gap(loop):
 
 
 @pytest.mark.parametrize("relative", [1e-3, 1e-6, 1e-9])
-@pytest.mark.parametrize("name", ["bennett", "goldberg-5r", "special-double-subtractive-goldberg"])
-def test_geometry_that_misses_its_condition_has_no_form_and_a_gap_of_that_size(name, relative):
-    # one length too long by `relative`: the loop stays open by about that length, less what the joints can take up
-    # and what is not measured in the median; over the characteristic length the factor is 0.02 to 2
+@pytest.mark.parametrize(
+    "name", ["bennett", "goldberg-5r", "special-double-subtractive-goldberg"]
+)
+def test_geometry_that_misses_its_condition_has_no_form_and_a_gap_of_that_size(
+    name, relative
+):
+    # one length too long by `relative`: the loop stays open by about that length, less
+    # what the joints can take up and what is not measured in the median; over the
+    # characteristic length the factor is 0.02 to 2
     loop = entry(name).build()
     lengths = (loop.lengths[0] * (1 + relative), *loop.lengths[1:])
     atlas = explore(LoopClosure(Loop(lengths, loop.twists, loop.offsets)))
@@ -146,19 +209,27 @@ def test_geometry_that_misses_its_condition_has_no_form_and_a_gap_of_that_size(n
 def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
     rng = np.random.default_rng(3)
     for _ in range(3):
-        loop = Loop(rng.uniform(0.5, 1, 7), rng.uniform(-3, 3, 7), rng.uniform(-0.5, 0.5, 7))
+        loop = Loop(
+            rng.uniform(0.5, 1, 7), rng.uniform(-3, 3, 7), rng.uniform(-0.5, 0.5, 7)
+        )
         one, other = (explore(LoopClosure(loop), seed=seed) for seed in (0, 1))
         assert one.forms
         assert all(f.branch.outcome is Outcome.CLOSED for f in one.forms)
         assert not one.points
-        assert [f.branch.length for f in one.forms] == pytest.approx([f.branch.length for f in other.forms], abs=1e-8)
+        assert [f.branch.length for f in one.forms] == pytest.approx(
+            [f.branch.length for f in other.forms], abs=1e-8
+        )
 
 
 @pytest.mark.parametrize(
     "loop",
     [
         Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5),  # planar 5R
-        Loop((0.6, 0.9, 0.7, 0.8, 1.0, 0.5, 0.75, 0.65), (0.3, -1.2, 2.1, 0.9, -2.5, 1.4, 0.6, -0.8), (0.1,) * 8),
+        Loop(
+            (0.6, 0.9, 0.7, 0.8, 1.0, 0.5, 0.75, 0.65),
+            (0.3, -1.2, 2.1, 0.9, -2.5, 1.4, 0.6, -0.8),
+            (0.1,) * 8,
+        ),
     ],
 )
 def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
@@ -168,14 +239,21 @@ def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
     assert atlas.surfaces
     for surface in atlas.surfaces:
         assert surface.dimension == 2
-        assert np.linalg.norm(LoopClosure(loop).residuals(surface.samples), axis=1).max() < 1e-11
+        assert (
+            np.linalg.norm(LoopClosure(loop).residuals(surface.samples), axis=1).max()
+            < 1e-11
+        )
 
 
 def test_joints_that_spin_on_coincident_axes_make_a_surface():
     bennett = entry("bennett").build()
     for spare in (1, 2):
-        lengths, twists = (v + (0.0,) * spare for v in (bennett.lengths, bennett.twists))
-        atlas = explore(LoopClosure(Loop(lengths, twists, (0.0,) * (4 + spare))), starts=20)
+        lengths, twists = (
+            v + (0.0,) * spare for v in (bennett.lengths, bennett.twists)
+        )
+        atlas = explore(
+            LoopClosure(Loop(lengths, twists, (0.0,) * (4 + spare))), starts=20
+        )
         assert atlas.surfaces
         assert not atlas.forms
         assert not any(p.kind is Kind.ISOLATED for p in atlas.points)
@@ -192,7 +270,9 @@ def test_an_interrupted_search_keeps_what_was_found():
             seen.append(count)
             raise KeyboardInterrupt
 
-    atlas = explore(LoopClosure(entry("bricard-line-symmetric").build()), progress=interrupt)
+    atlas = explore(
+        LoopClosure(entry("bricard-line-symmetric").build()), progress=interrupt
+    )
     assert atlas.info["interrupted"] is True
     assert atlas.completeness.level == "interrupted"
     assert len(atlas.forms) == seen[0] == 1
@@ -200,7 +280,9 @@ def test_an_interrupted_search_keeps_what_was_found():
 
 
 def test_a_search_interrupted_before_anything_was_found_is_an_empty_atlas():
-    problem = FunctionProblem(lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1]), [(-2, 2)] * 2)
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1]), [(-2, 2)] * 2
+    )
 
     def interrupted(rng, count):
         raise KeyboardInterrupt
@@ -212,7 +294,10 @@ def test_a_search_interrupted_before_anything_was_found_is_an_empty_atlas():
 
 
 def test_the_same_seed_gives_the_same_atlas_to_the_last_bit():
-    one, other = (explore(LoopClosure(entry("reconfigurable-bricard-1").build()), seed=3) for _ in range(2))
+    one, other = (
+        explore(LoopClosure(entry("reconfigurable-bricard-1").build()), seed=3)
+        for _ in range(2)
+    )
     for left, right in zip(one.forms, other.forms, strict=True):
         assert np.array_equal(left.branch.pieces, right.branch.pieces)
     assert one.info["seed"] == 3
@@ -220,17 +305,25 @@ def test_the_same_seed_gives_the_same_atlas_to_the_last_bit():
 
 def test_no_starts_are_refused():
     with pytest.raises(ProblemError, match="starts: 0 is not allowed"):
-        explore(FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2), starts=0)
+        explore(
+            FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2), starts=0
+        )
 
 
 def test_a_seed_that_only_looks_as_on_a_surface_is_taken_for_what_it_is():
-    # two bodies of the linkage are almost alike: next to its rank drops F is so flat that one start seems on a surface
+    # two bodies of the linkage are almost alike: next to its rank drops F is so flat
+    # that one start seems on a surface
     parameters = {
-        "a": 2.144874646208794, "alpha": 1.5668555382374716, "beta": 0.5795111767234356, "gamma": 1.5921695469201371,
+        "a": 2.144874646208794,
+        "alpha": 1.5668555382374716,
+        "beta": 0.5795111767234356,
+        "gamma": 1.5921695469201371,
         "delta": 0.5790264703154796,
-    }  # fmt: skip
+    }
     linkage = entry("double-subtractive-goldberg-type-iii")
-    loop = linkage.build(**{key: value for key, value in parameters.items() if key in linkage.defaults})
+    loop = linkage.build(
+        **{key: value for key, value in parameters.items() if key in linkage.defaults}
+    )
     atlas = explore(LoopClosure(loop))
     assert not atlas.surfaces
     assert len(atlas.forms) == 1

@@ -43,7 +43,9 @@ def test_more_digits_are_more_exact(digits):
 
 def test_repeated_equations_change_nothing():
     once = confirm_singular_point(crossing, np.array([ROOT, 1e-9]), BOTH)
-    often = confirm_singular_point(lambda u: [*crossing(u), 3 * crossing(u)[0], 0], np.array([ROOT, 1e-9]), BOTH)
+    often = confirm_singular_point(
+        lambda u: [*crossing(u), 3 * crossing(u)[0], 0], np.array([ROOT, 1e-9]), BOTH
+    )
     with mpmath.workdps(60):
         assert mpmath.norm(once.u - often.u) < mpmath.mpf(10) ** -49
     assert often.nullity == 2
@@ -57,18 +59,28 @@ def test_the_error_at_a_tacnode_is_stated_and_bounds_the_true_one():
 
 
 def test_a_regular_point_is_not_confirmed():
-    found = confirm_singular_point(lambda u: [u[0] ** 2 + u[1] ** 2 - 1], np.array([1.0, 0.0]), BOTH)
+    found = confirm_singular_point(
+        lambda u: [u[0] ** 2 + u[1] ** 2 - 1], np.array([1.0, 0.0]), BOTH
+    )
     assert found.convergence is Convergence.NONE
 
 
 def test_equations_that_contradict_each_other_show_their_gap():
-    found = confirm_singular_point(lambda u: [u[0] * u[1], u[0] * u[1] + mpmath.mpf(10) ** -12], np.zeros(2), BOTH)
+    found = confirm_singular_point(
+        lambda u: [u[0] * u[1], u[0] * u[1] + mpmath.mpf(10) ** -12], np.zeros(2), BOTH
+    )
     assert found.convergence is Convergence.INCONSISTENT
     assert found.residual == pytest.approx(1e-12, rel=1e-6)
 
 
 def test_small_equations_are_measured_by_their_magnitude():
-    found = confirm_singular_point(lambda u: [1e-7 * (u[0] ** 2 + u[1] ** 2 - 1)], np.array([1.0, 0.0]), BOTH, 50, 1e-7)
+    found = confirm_singular_point(
+        lambda u: [1e-7 * (u[0] ** 2 + u[1] ** 2 - 1)],
+        np.array([1.0, 0.0]),
+        BOTH,
+        50,
+        1e-7,
+    )
     assert found.convergence is Convergence.NONE
 
 

@@ -1,4 +1,5 @@
-"""The command line, in one process; what is written to disk, and signals, are in their own files."""
+"""The command line, in one process; what is written to disk, and signals, are in their
+own files."""
 
 import json
 import subprocess
@@ -23,8 +24,17 @@ offsets = [0, 0, 0, 0]
 KEYS = {
     "linkage": {"name", "lengths", "twists", "offsets"},
     "forms": {
-        "name", "dimension", "closed", "length", "winding", "inactive_joints", "symmetry", "sample", "max_residual",
-        "min_singular_value", "component",
+        "name",
+        "dimension",
+        "closed",
+        "length",
+        "winding",
+        "inactive_joints",
+        "symmetry",
+        "sample",
+        "max_residual",
+        "min_singular_value",
+        "component",
     },
     "bifurcations": {"theta", "rank", "forms", "tangents", "error"},
     "rank_drops": {"theta", "rank", "form"},
@@ -32,8 +42,11 @@ KEYS = {
     "dead_points": {"theta", "joint", "form"},
     "rigid_assemblies": None,
     "completeness": {"level", "certainty", "statement", "missed_probability"},
-    "seconds": None, "version": None, "seed": None, "tolerance": None,
-}  # fmt: skip
+    "seconds": None,
+    "version": None,
+    "seed": None,
+    "tolerance": None,
+}
 
 
 def bifurc(*arguments):
@@ -63,7 +76,12 @@ def test_list_names_every_linkage_of_the_catalogue():
 def test_show_gives_source_parameters_and_geometry_in_degrees():
     result = bifurc("show", "bennett")
     assert result.exit_code == 0
-    for expected in ("Bennett 1903", "100 deg", "sin(alpha)/a = sin(beta)/b", "Misprints"):
+    for expected in (
+        "Bennett 1903",
+        "100 deg",
+        "sin(alpha)/a = sin(beta)/b",
+        "Misprints",
+    ):
         assert expected in result.stdout
 
 
@@ -107,12 +125,16 @@ def test_json_loads_nothing_that_it_does_not_need():
         "import sys, linkages.app.cli as c; c.main(['map', 'bennett', '--json'], standalone_mode=False)\n"
         "print([m for m in ('matplotlib', 'xarray', 'sympy', 'mpmath') if m in sys.modules], file=sys.stderr)"
     )
-    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    result = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
     assert result.stderr.splitlines()[-1] == "[]"
 
 
 def test_json_speaks_of_radians_joints_from_1_and_relative_residuals():
-    document = json.loads(bifurc("map", "special-double-subtractive-goldberg", "--json").stdout)
+    document = json.loads(
+        bifurc("map", "special-double-subtractive-goldberg", "--json").stdout
+    )
     loop_angles = np.array([b["theta"] for b in document["bifurcations"]])
     assert np.abs(np.sin(loop_angles)).max() < 1e-11  # all joints at 0 or pi
     inactive = {form["name"]: form["inactive_joints"] for form in document["forms"]}
@@ -132,11 +154,17 @@ def test_json_speaks_of_radians_joints_from_1_and_relative_residuals():
 
 def closure_of(document):
     geometry = document["linkage"]
-    return LoopClosure(Loop(geometry["lengths"], geometry["twists"], geometry["offsets"]))
+    return LoopClosure(
+        Loop(geometry["lengths"], geometry["twists"], geometry["offsets"])
+    )
 
 
 def test_parameters_of_kind_angle_are_given_in_degrees():
-    document = json.loads(bifurc("map", "bennett", "--param", "alpha=70", "--param", "a=2", "--json").stdout)
+    document = json.loads(
+        bifurc(
+            "map", "bennett", "--param", "alpha=70", "--param", "a=2", "--json"
+        ).stdout
+    )
     assert document["linkage"]["twists"][0] == pytest.approx(np.radians(70), abs=1e-15)
     assert document["linkage"]["lengths"][0] == 2.0
 
@@ -165,7 +193,10 @@ def test_a_surface_is_a_form_of_dimension_2(write):
 
 
 DOES_NOT_MOVE = {
-    "no real configuration": (MINE.replace("1.0, 2.0, 1.0, 2.0", "10, 1, 1, 1"), "has no real configuration"),
+    "no real configuration": (
+        MINE.replace("1.0, 2.0, 1.0, 2.0", "10, 1, 1, 1"),
+        "has no real configuration",
+    ),
     "a rigid linkage": (
         'angles = "deg"\nlengths = [1.5, 0.7, 1.2, 0.9, 1.1, 0.6]\ntwists = [50, 80, 30, 100, 60, 110]\n'
         "offsets = [0.2, -0.3, 0.5, 0.1, -0.4, 0.6]",
@@ -175,7 +206,9 @@ DOES_NOT_MOVE = {
 
 
 @pytest.mark.parametrize("what", DOES_NOT_MOVE)
-def test_a_linkage_that_does_not_move_is_said_to_be_what_it_is_with_exit_code_3(write, what):
+def test_a_linkage_that_does_not_move_is_said_to_be_what_it_is_with_exit_code_3(
+    write, what
+):
     text, expected = DOES_NOT_MOVE[what]
     path = write(text)
     result = bifurc("map", path)
@@ -188,7 +221,9 @@ def test_a_linkage_that_does_not_move_is_said_to_be_what_it_is_with_exit_code_3(
 
 
 @pytest.mark.parametrize("relative", [1e-3, 1e-6, 1e-9])
-def test_a_linkage_that_misses_its_condition_is_said_to_and_by_how_much(write, relative):
+def test_a_linkage_that_misses_its_condition_is_said_to_and_by_how_much(
+    write, relative
+):
     b = np.sin(np.radians(40)) / np.sin(np.radians(100))
     lengths = [1.0, float(b * (1 + relative)), 1.0, float(b)]
     text = f'angles = "deg"\nlengths = {lengths}\ntwists = [100, 40, 100, 40]\noffsets = [0, 0, 0, 0]'
@@ -203,9 +238,14 @@ def test_a_linkage_that_misses_its_condition_is_said_to_and_by_how_much(write, r
 
 
 def test_route_lists_the_legs_and_how_far_each_joint_turns():
-    result = bifurc("route", "special-double-subtractive-goldberg", "Form I", "Bennett 4R")
+    result = bifurc(
+        "route", "special-double-subtractive-goldberg", "Form I", "Bennett 4R"
+    )
     assert result.exit_code == 0
-    assert "Route from Form I (constructive 6R) to Form II (Bennett 4R): 3 legs" in result.stdout
+    assert (
+        "Route from Form I (constructive 6R) to Form II (Bennett 4R): 3 legs"
+        in result.stdout
+    )
     assert "turn 6" in result.stdout
 
 
@@ -220,7 +260,9 @@ def test_an_unknown_form_and_forms_that_are_not_connected_have_their_own_exit_co
     unknown = bifurc("route", "kite", "kite", "nothing")
     assert unknown.exit_code == 2
     assert "form 'nothing': it must be one of" in unknown.stderr
-    apart = bifurc("route", "bricard-line-symmetric", "Form I (original)", "Form II (original)")
+    apart = bifurc(
+        "route", "bricard-line-symmetric", "Form I (original)", "Form II (original)"
+    )
     assert apart.exit_code == 4
     assert "no route" in apart.stderr
 
@@ -231,16 +273,40 @@ BAD = {
     "an unknown name": (("map", "benett"), "the nearest names are bennett"),
     "an unknown name to show": (("show", "wolhart"), "no linkage is called 'wolhart'"),
     "a missing file": (("map", "nowhere.toml"), "nowhere.toml: there is no such file"),
-    "a missing atlas": (("route", "nowhere.nc", "a", "b"), "nowhere.nc: there is no such file"),
-    "an unknown parameter": (("map", "bennett", "--param", "gamma=3"), "one of a, alpha, beta"),
-    "a parameter without a value": (("map", "bennett", "--param", "alpha"), "of the form key=value"),
-    "a parameter that is no number": (("map", "bennett", "--param", "alpha=x"), "--param alpha: 'x'"),
-    "a parameter that is not finite": (("map", "bennett", "--param", "alpha=nan"), "--param alpha: nan"),
-    "parameters that make no linkage": (("map", "bennett", "--param", "alpha=200"), "alpha"),
+    "a missing atlas": (
+        ("route", "nowhere.nc", "a", "b"),
+        "nowhere.nc: there is no such file",
+    ),
+    "an unknown parameter": (
+        ("map", "bennett", "--param", "gamma=3"),
+        "one of a, alpha, beta",
+    ),
+    "a parameter without a value": (
+        ("map", "bennett", "--param", "alpha"),
+        "of the form key=value",
+    ),
+    "a parameter that is no number": (
+        ("map", "bennett", "--param", "alpha=x"),
+        "--param alpha: 'x'",
+    ),
+    "a parameter that is not finite": (
+        ("map", "bennett", "--param", "alpha=nan"),
+        "--param alpha: nan",
+    ),
+    "parameters that make no linkage": (
+        ("map", "bennett", "--param", "alpha=200"),
+        "alpha",
+    ),
     "no random starts": (("map", "bennett", "--starts", "0"), "0 is not in the range"),
-    "a tolerance out of range": (("map", "bennett", "--tolerance", "1"), "tolerance: 1.0"),
+    "a tolerance out of range": (
+        ("map", "bennett", "--tolerance", "1"),
+        "tolerance: 1.0",
+    ),
     "an unknown option": (("map", "bennett", "--output", "x"), "No such option"),
-    "a word for a number": (("map", "bennett", "--seed", "x"), "'x' is not a valid integer"),
+    "a word for a number": (
+        ("map", "bennett", "--seed", "x"),
+        "'x' is not a valid integer",
+    ),
     "a negative seed": (("map", "bennett", "--seed", "-1"), "-1 is not in the range"),
 }
 

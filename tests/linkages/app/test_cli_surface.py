@@ -36,7 +36,14 @@ def folder(tmp_path_factory):
 def test_map_lists_surfaces_and_the_points_where_forms_meet_them(folder):
     summary = (folder / "summary.txt").read_text()
     assert re.search(r"surface 1 +2 +\d+ +\S+ +complete: every part", summary)
-    assert len(re.findall(r"^ +D\d .*Form \d, surface 1 +dimension change", summary, re.MULTILINE)) == 4
+    assert (
+        len(
+            re.findall(
+                r"^ +D\d .*Form \d, surface 1 +dimension change", summary, re.MULTILINE
+            )
+        )
+        == 4
+    )
 
 
 @pytest.mark.parametrize("source", ["sarrus.toml", "atlas.nc"])
@@ -45,20 +52,34 @@ def test_a_route_leads_over_a_surface(folder, source):
     assert result.exit_code == 0, result.output
     assert "Route from Form 1 to Form 2: 3 legs" in result.stdout
     # on the torus theta4 and theta6 turn by half a turn each, all others stand still
-    assert re.search(r"2 +surface 1 +D\d +0\.00 +0\.00 +0\.00 +180\.00 +0\.00 +180\.00", result.stdout)
+    assert re.search(
+        r"2 +surface 1 +D\d +0\.00 +0\.00 +0\.00 +180\.00 +0\.00 +180\.00",
+        result.stdout,
+    )
     assert result.stdout.rstrip().endswith("Over a surface the way is a geodesic.")
 
 
 def test_a_surface_is_a_start_or_goal_by_its_name(folder):
     result = bifurc("route", folder / "atlas.nc", "surface 1", "Form 2")
-    assert result.exit_code == 0 and "Route from surface 1 to Form 2: 2 legs" in result.stdout
+    assert (
+        result.exit_code == 0
+        and "Route from surface 1 to Form 2: 2 legs" in result.stdout
+    )
     unknown = bifurc("route", folder / "atlas.nc", "surface 2", "Form 2")
-    assert unknown.exit_code == 2 and "it must be one of 'Form 1', 'Form 2', 'surface 1'" in unknown.stderr
+    assert (
+        unknown.exit_code == 2
+        and "it must be one of 'Form 1', 'Form 2', 'surface 1'" in unknown.stderr
+    )
 
 
 def test_there_is_no_route_over_what_is_only_sampled(tmp_path):
     (tmp_path / "free.toml").write_text(
         'angles = "deg"\nlengths = [1, 1.2, 0.9, 1.3, 1.1, 0.8]\ntwists = [0, 0, 0, 0, 0, 0]\noffsets = [0, 0, 0, 0, 0, 0]'
     )
-    result = bifurc("route", tmp_path / "free.toml", "surface 1", "surface 1", "--starts", 30)
-    assert result.exit_code == 4 and "surface 1 (dimension 3): it is only sampled" in result.stderr
+    result = bifurc(
+        "route", tmp_path / "free.toml", "surface 1", "surface 1", "--starts", 30
+    )
+    assert (
+        result.exit_code == 4
+        and "surface 1 (dimension 3): it is only sampled" in result.stderr
+    )

@@ -22,7 +22,9 @@ def test_every_error_that_a_map_states_holds():
 
 
 def test_the_digits_are_shown_for_every_singular_point():
-    result = CliRunner().invoke(main, ["map", "kite", "--digits", "50", "--starts", "20"])
+    result = CliRunner().invoke(
+        main, ["map", "kite", "--digits", "50", "--starts", "20"]
+    )
     shown = result.output.split("Confirmation at 50 digits")[1]
     assert result.exit_code == 0
     assert "B1" in shown and "B2" in shown and "quadratic" in shown

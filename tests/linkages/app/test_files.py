@@ -42,11 +42,15 @@ def test_out_holds_dataset_graph_summary_and_figures_and_nothing_else(tmp_path):
     figures = set(found) - {"atlas.nc", "graph.graphml", "summary.txt"}
     stems = {name.rsplit(".", 1)[0] for name in figures}
     assert len(stems) >= 4
-    assert figures == {f"{stem}.{ending}" for stem in stems for ending in ("png", "svg")}
+    assert figures == {
+        f"{stem}.{ending}" for stem in stems for ending in ("png", "svg")
+    }
     assert (folder / "summary.txt").read_text() == result.stdout
 
 
-def test_an_interrupted_search_keeps_what_was_found_and_ends_with_130(tmp_path, interrupted_search):
+def test_an_interrupted_search_keeps_what_was_found_and_ends_with_130(
+    tmp_path, interrupted_search
+):
     result = run("map", "rhombus", "--out", tmp_path, "--json")
     assert result.exit_code == 130
     document = json.loads(result.stdout)
@@ -67,7 +71,9 @@ def test_a_search_interrupted_before_anything_is_found_ends_with_130(monkeypatch
     assert "interrupted" in result.stdout
 
 
-def test_an_interrupt_while_a_file_is_written_leaves_no_half_of_it(tmp_path, monkeypatch):
+def test_an_interrupt_while_a_file_is_written_leaves_no_half_of_it(
+    tmp_path, monkeypatch
+):
     import bifurc.figures.plotting
 
     def half(atlas, folder):
@@ -80,9 +86,13 @@ def test_an_interrupt_while_a_file_is_written_leaves_no_half_of_it(tmp_path, mon
     assert names(tmp_path) == ["atlas.nc", "graph.graphml", "summary.txt"]
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(tmp_path, monkeypatch):
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
+    tmp_path, monkeypatch
+):
     (tmp_path / "file").write_text("in the way")
-    monkeypatch.setattr(bifurc.search.explore, "trace_branch", None)  # any computation would fail
+    monkeypatch.setattr(
+        bifurc.search.explore, "trace_branch", None
+    )  # any computation would fail
     for folder in (tmp_path / "file", tmp_path / "file" / "below", "/proc/nothing"):
         result = run("map", "parallelogram", "--out", folder)
         assert result.exit_code == 2

@@ -27,11 +27,16 @@ def identify(tmp_path, a34, *options):
 def test_a_file_is_named_with_its_parameters_in_degrees(tmp_path):
     result = identify(tmp_path, 0.65270364, "--tolerance", "1e-7")
     assert result.exit_code == 0
-    assert "bennett: Bennett linkage, asymmetric set-up, 3 free parameters" in result.stdout
+    assert (
+        "bennett: Bennett linkage, asymmetric set-up, 3 free parameters"
+        in result.stdout
+    )
     assert "40 deg" in result.stdout
 
 
-def test_a_file_that_is_nothing_known_ends_with_its_own_code_and_shows_the_nearest(tmp_path):
+def test_a_file_that_is_nothing_known_ends_with_its_own_code_and_shows_the_nearest(
+    tmp_path,
+):
     result = identify(tmp_path, 0.66)
     assert result.exit_code == NOT_KNOWN
     assert "No linkage of the catalogue" in result.stdout
@@ -40,11 +45,13 @@ def test_a_file_that_is_nothing_known_ends_with_its_own_code_and_shows_the_neare
 
 
 def test_the_document_holds_parameters_that_build_the_table(tmp_path):
-    document = json.loads(identify(tmp_path, 0.65270364, "--tolerance", "1e-7", "--json").stdout)
-    (bennett,) = [match for match in document["matches"] if match["name"] == "bennett"]
-    assert sorted(entry("bennett").build(**bennett["parameters"]).lengths) == pytest.approx(
-        [0.65270364, 0.65270364, 1, 1], abs=1e-7
+    document = json.loads(
+        identify(tmp_path, 0.65270364, "--tolerance", "1e-7", "--json").stdout
     )
+    (bennett,) = [match for match in document["matches"] if match["name"] == "bennett"]
+    assert sorted(
+        entry("bennett").build(**bennett["parameters"]).lengths
+    ) == pytest.approx([0.65270364, 0.65270364, 1, 1], abs=1e-7)
     assert document["nearest"] != []
 
 

@@ -28,7 +28,10 @@ from linkages.loop import GeometryError
 
 PLAN = Plan(
     "bennett",
-    axes={"alpha": tuple(np.radians(np.linspace(20, 160, 6)).tolist()), "beta": tuple(np.radians([15, 40, 65]).tolist())},
+    axes={
+        "alpha": tuple(np.radians(np.linspace(20, 160, 6)).tolist()),
+        "beta": tuple(np.radians([15, 40, 65]).tolist()),
+    },
     starts=20,
     block=4,
 )
@@ -51,14 +54,24 @@ def members(path):
 def same_but_for_seconds(one, other):
     names = [name for name in one.variables if name != "seconds"]
     assert set(one.variables) == set(other.variables)
-    return all(np.array_equal(one[n].values, other[n].values, equal_nan=one[n].dtype.kind == "f") for n in names)
+    return all(
+        np.array_equal(
+            one[n].values, other[n].values, equal_nan=one[n].dtype.kind == "f"
+        )
+        for n in names
+    )
 
 
 def start_and_kill_after(folder, count):
-    """Run the sweep in a process of its own and kill it once the journal holds ``count`` more members."""
+    """Run the sweep in a process of its own and kill it once the journal holds
+    ``count`` more members."""
     journal = journal_path(folder / "killed.zarr")
     goal = len(members(journal)) + count
-    process = subprocess.Popen([sys.executable, "script.py"], cwd=folder, env={**os.environ, "PYTHONPATH": path_of(folder)})
+    process = subprocess.Popen(
+        [sys.executable, "script.py"],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": path_of(folder)},
+    )
     while len(members(journal)) < goal and process.poll() is None:
         time.sleep(0.002)
     process.send_signal(signal.SIGKILL)
@@ -72,13 +85,17 @@ def path_of(folder):
 def test_a_sweep_killed_twice_equals_one_that_was_not(tmp_path):
     run_sweep(PLAN, tmp_path / "whole.zarr", workers=1)
     (tmp_path / "script.py").write_text(SCRIPT)
-    (tmp_path / "tests_plan.py").write_text(f"from linkages.app.sweep.plan import Plan\nPLAN = {PLAN!r}\n")
+    (tmp_path / "tests_plan.py").write_text(
+        f"from linkages.app.sweep.plan import Plan\nPLAN = {PLAN!r}\n"
+    )
     for count in (3, 6):
         assert start_and_kill_after(tmp_path, count) == -signal.SIGKILL
     run_sweep(PLAN, tmp_path / "killed.zarr", workers=1)
     finished = members(journal_path(tmp_path / "killed.zarr"))
     assert sorted(finished) == list(range(PLAN.size))
-    assert same_but_for_seconds(open_sweep(tmp_path / "whole.zarr"), open_sweep(tmp_path / "killed.zarr"))
+    assert same_but_for_seconds(
+        open_sweep(tmp_path / "whole.zarr"), open_sweep(tmp_path / "killed.zarr")
+    )
 
 
 def test_a_finished_sweep_does_nothing_more(tmp_path):
@@ -94,7 +111,12 @@ def test_a_finished_sweep_does_nothing_more(tmp_path):
 def test_atlases_are_written_on_request(tmp_path):
     from bifurc.files.dataset import load_atlas
 
-    run_sweep(Plan("bennett", random=2, starts=10), tmp_path / "a.zarr", workers=1, atlases=tmp_path / "atlases")
+    run_sweep(
+        Plan("bennett", random=2, starts=10),
+        tmp_path / "a.zarr",
+        workers=1,
+        atlases=tmp_path / "atlases",
+    )
     names = sorted(path.name for path in (tmp_path / "atlases").iterdir())
     assert names == ["member_0000000.nc", "member_0000001.nc"]
     assert len(load_atlas(tmp_path / "atlases" / names[0]).forms) == 1
@@ -105,10 +127,16 @@ def test_a_dask_cluster_of_processes_gives_the_same(tmp_path):
     plan = read_plan("bennett", ["alpha=20:160:3", "beta=15:65:2"], starts=20)
     run_sweep(plan, tmp_path / "pool.zarr", workers=1)
     with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=None
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        host="127.0.0.1",
+        dashboard_address=None,
     ) as cluster:
         run_sweep(plan, tmp_path / "dask.zarr", scheduler=cluster.scheduler_address)
-    assert same_but_for_seconds(open_sweep(tmp_path / "pool.zarr"), open_sweep(tmp_path / "dask.zarr"))
+    assert same_but_for_seconds(
+        open_sweep(tmp_path / "pool.zarr"), open_sweep(tmp_path / "dask.zarr")
+    )
 
 
 class Stub(Executor):
@@ -116,7 +144,14 @@ class Stub(Executor):
 
     def submit(self, function, *arguments, **options):
         future = Future()
-        future.set_result({"status": 0, "forms": 1, "inactive_joints": [0] * 4, "seconds": time.process_time()})
+        future.set_result(
+            {
+                "status": 0,
+                "forms": 1,
+                "inactive_joints": [0] * 4,
+                "seconds": time.process_time(),
+            }
+        )
         return future
 
 
@@ -150,8 +185,12 @@ def test_a_sweep_holds_no_more_of_many_members_than_of_few(tmp_path, monkeypatch
             sizes[done] = held()
 
     with traced() as held:
-        run_sweep(Plan("bennett", random=1550, block=50), tmp_path / "a.zarr", progress=look)
-    assert sizes[1500] - sizes[500] < 1000 * 100  # a record alone is more than 500 bytes
+        run_sweep(
+            Plan("bennett", random=1550, block=50), tmp_path / "a.zarr", progress=look
+        )
+    assert (
+        sizes[1500] - sizes[500] < 1000 * 100
+    )  # a record alone is more than 500 bytes
 
 
 @pytest.mark.parametrize("family", ["bennett", "goldberg-5r"])
@@ -171,7 +210,9 @@ def test_the_watch_sees_a_process_that_grows():
 
     watch, kept, size = Watch(), [], 1 << 22
     for done in range(20):
-        kept.append(mmap.mmap(-1, size))  # an array might be given memory that the process has in hand
+        kept.append(
+            mmap.mmap(-1, size)
+        )  # an array might be given memory that the process has in hand
         kept[-1].write(bytes([1]) * size)
         watch.look(done)
     assert watch.own[-1] == pytest.approx(psutil.Process().memory_info().rss, rel=0.1)
@@ -180,14 +221,24 @@ def test_the_watch_sees_a_process_that_grows():
 
 
 def test_refused_parameters_are_recorded_as_such():
-    record = map_member("double-subtractive-goldberg", {"alpha": 0.5, "gamma": 1.5}, 10, 0)
+    record = map_member(
+        "double-subtractive-goldberg", {"alpha": 0.5, "gamma": 1.5}, 10, 0
+    )
     assert record["status"] == Status.REFUSED
     assert "length" in record["message"]
 
 
 def test_the_command_says_what_became_of_the_members(tmp_path):
     out = tmp_path / "out.zarr"
-    arguments = ["double-subtractive-goldberg", "--param", "gamma=28:70:2", "--workers", "1", "--out", str(out)]
+    arguments = [
+        "double-subtractive-goldberg",
+        "--param",
+        "gamma=28:70:2",
+        "--workers",
+        "1",
+        "--out",
+        str(out),
+    ]
     result = CliRunner().invoke(sweep_command, [*arguments, "--starts", "20"])
     assert result.exit_code == 0, result.output
     assert "1 mapped, 1 refused" in result.output
@@ -197,12 +248,22 @@ def test_the_command_says_what_became_of_the_members(tmp_path):
 
 
 def test_blocks_hold_every_member_once():
-    plan = Plan("bennett", axes={"a": tuple(range(1, 6)), "alpha": tuple(range(1, 8)), "beta": (0.1, 0.2, 0.3)}, block=8)
+    plan = Plan(
+        "bennett",
+        axes={
+            "a": tuple(range(1, 6)),
+            "alpha": tuple(range(1, 8)),
+            "beta": (0.1, 0.2, 0.3),
+        },
+        block=8,
+    )
     blocks = list(plan.blocks())
     indices = np.concatenate([block.indices for block in blocks])
     assert sorted(indices.tolist()) == list(range(plan.size))
     assert len(blocks) == plan.block_count
-    assert all(plan.block_of(int(i)) == block.number for block in blocks for i in block.indices)
+    assert all(
+        plan.block_of(int(i)) == block.number for block in blocks for i in block.indices
+    )
     assert max(len(block.indices) for block in blocks) <= 8
 
 
@@ -213,12 +274,25 @@ def test_degrees_are_read_as_radians_and_lengths_as_they_are():
 
 
 def test_a_random_member_does_not_depend_on_how_many_there_are():
-    few, many = (read_plan("bennett", ["alpha=10:80"], random=n, seed=3) for n in (5, 50))
+    few, many = (
+        read_plan("bennett", ["alpha=10:80"], random=n, seed=3) for n in (5, 50)
+    )
     assert few.parameters(4) == many.parameters(4)
     assert few.parameters(4) != few.parameters(3)
 
 
-@pytest.mark.parametrize("text", ["alpha", "twist=3", "alpha=x", "alpha=1:2", "alpha=1:2:3:4", "alpha=1:2:0.5", "alpha=nan"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "alpha",
+        "twist=3",
+        "alpha=x",
+        "alpha=1:2",
+        "alpha=1:2:3:4",
+        "alpha=1:2:0.5",
+        "alpha=nan",
+    ],
+)
 def test_a_parameter_that_cannot_be_read_is_refused(text):
     with pytest.raises(GeometryError):
         read_plan("bennett", [text])
@@ -246,5 +320,8 @@ def test_the_journal_of_another_sweep_is_refused(tmp_path):
 
 
 def test_two_sweeps_cannot_write_one_journal(tmp_path):
-    with Journal(tmp_path / "j", {"sweep": 1}), pytest.raises(JournalError, match="is writing"):
+    with (
+        Journal(tmp_path / "j", {"sweep": 1}),
+        pytest.raises(JournalError, match="is writing"),
+    ):
         Journal(tmp_path / "j", {"sweep": 1})

@@ -1,4 +1,5 @@
-"""Verification: every linkage passes, failures are said, and the command tells them by its exit code."""
+"""Verification: every linkage passes, failures are said, and the command tells them by
+its exit code."""
 
 import dataclasses
 import json
@@ -33,7 +34,13 @@ def test_linkage_without_closed_form_moves_as_stated(name):
 
 def test_description_says_what_was_checked():
     text = describe(verify("mixed-double-goldberg-type-i"))
-    for word in ("condition", "proved exactly at 6 points", "1 by rank, 1 by tracing", "distance", "erratum"):
+    for word in (
+        "condition",
+        "proved exactly at 6 points",
+        "1 by rank, 1 by tracing",
+        "distance",
+        "erratum",
+    ):
         assert word in text
     assert "FAILED" not in text
 
@@ -47,11 +54,15 @@ def test_misprint_that_does_not_fail_is_a_failure():
 
 def test_mobility_other_than_stated_is_a_failure():
     checked = verify("bennett")
-    assert dataclasses.replace(checked, expected=2).failures == ("member 1: mobility 1, not 2",)
+    assert dataclasses.replace(checked, expected=2).failures == (
+        "member 1: mobility 1, not 2",
+    )
 
 
 def test_command_prints_json_and_nothing_else():
-    result = CliRunner().invoke(main, ["verify", "goldberg-5r", "--members", "2", "--json"])
+    result = CliRunner().invoke(
+        main, ["verify", "goldberg-5r", "--members", "2", "--json"]
+    )
     assert result.exit_code == 0
     document = json.loads(result.stdout)
     assert document["closed_forms"][0]["proved"] and len(document["members"]) == 2

@@ -1,4 +1,5 @@
-"""Closed forms: they close, they are the numerical curves, they have no poles, and their LaTeX comes out of them."""
+"""Closed forms: they close, they are the numerical curves, they have no poles, and
+their LaTeX comes out of them."""
 
 import subprocess
 import sys
@@ -13,7 +14,9 @@ from linkages.loop import GeometryError
 
 FORMS = all_closed_forms()
 IDS = [f"{form.linkage}: {form.form}" for form in FORMS]
-POLES = np.array([0.0, np.pi, 1e-9, np.pi - 1e-9, 1e-5 - np.pi])  # of the tangents and just beside
+POLES = np.array(
+    [0.0, np.pi, 1e-9, np.pi - 1e-9, 1e-5 - np.pi]
+)  # of the tangents and just beside
 
 
 def members(form, count, seed):
@@ -45,7 +48,9 @@ def test_closed_form_closes_the_loop_everywhere_and_at_its_poles(form):
             theta = form.configurations(theta_1, values, root)
             theta = theta[np.isfinite(theta).all(axis=1)]
             seen += len(theta)
-            assert closure(entry(form.linkage).build(**values), theta) < 1e-12  # rounding times the ratios of the links
+            assert (
+                closure(entry(form.linkage).build(**values), theta) < 1e-12
+            )  # rounding times the ratios of the links
     assert seen > 60
 
 
@@ -57,10 +62,16 @@ def test_input_angle_is_the_first_angle(form):
     assert np.allclose(theta[found, 0], theta_1[found], atol=1e-14)
 
 
-@pytest.mark.parametrize("form", [form for form in FORMS if form.relation is not None], ids=lambda form: form.linkage)
+@pytest.mark.parametrize(
+    "form",
+    [form for form in FORMS if form.relation is not None],
+    ids=lambda form: form.linkage,
+)
 def test_the_two_roots_are_different_configurations(form):
     values = entry(form.linkage).defaults
-    one, other = (form.configurations(np.linspace(-3, 3, 41), values, root) for root in form.roots)
+    one, other = (
+        form.configurations(np.linspace(-3, 3, 41), values, root) for root in form.roots
+    )
     found = np.isfinite(one[:, 0])
     assert np.any(np.abs(np.sin((one - other)[found] / 2)) > 1e-3)
 
@@ -70,7 +81,10 @@ def test_motion_of_the_mixed_linkage_loses_no_digits_beside_a_pole():
     form = closed_forms("mixed-double-goldberg-type-i")[0]
     values = entry(form.linkage).defaults
     theta = form.configurations(np.array([0.7, 0.9, 1.1]), values)
-    assert closure(entry(form.linkage).build(**values), theta[np.isfinite(theta[:, 0])]) < 1e-14
+    assert (
+        closure(entry(form.linkage).build(**values), theta[np.isfinite(theta[:, 0])])
+        < 1e-14
+    )
 
 
 def test_sum_of_two_angles_has_no_pole():
@@ -88,7 +102,10 @@ def test_latex_names_every_joint_and_every_constant(form):
 
 
 def test_latex_of_bennett_is_the_textbook_formula():
-    assert closed_forms("bennett")[0].latex()[r"\tan\frac{\theta_2}{2}"] == r"\frac{m}{t_{1}}"
+    assert (
+        closed_forms("bennett")[0].latex()[r"\tan\frac{\theta_2}{2}"]
+        == r"\frac{m}{t_{1}}"
+    )
 
 
 def test_linkage_without_closed_form_has_none():

@@ -1,4 +1,5 @@
-"""Proofs in exact arithmetic: every closed form closes without floating point, and a wrong one does not."""
+"""Proofs in exact arithmetic: every closed form closes without floating point, and a
+wrong one does not."""
 
 import dataclasses
 from fractions import Fraction
@@ -9,7 +10,12 @@ import sympy as sp
 
 from linkages.catalogue import entry
 from linkages.closed_forms.all_forms import all_closed_forms, closed_forms
-from linkages.closed_forms.proof import closing_defects, exact_parameters, prove, prove_symbolically
+from linkages.closed_forms.proof import (
+    closing_defects,
+    exact_parameters,
+    prove,
+    prove_symbolically,
+)
 from linkages.construction import exact
 from linkages.construction.exact import Angle, Quadratic
 
@@ -24,7 +30,9 @@ def test_closed_form_closes_exactly(form):
     assert proof.doubt < 1e-12
 
 
-@pytest.mark.parametrize("name", ["bennett", "bennett-ab-2", "bennett-line-symmetric", "bennett-lb-2"])
+@pytest.mark.parametrize(
+    "name", ["bennett", "bennett-ab-2", "bennett-line-symmetric", "bennett-lb-2"]
+)
 def test_bennett_closes_identically_in_all_symbols(name):
     assert prove_symbolically(closed_forms(name)[0])
 
@@ -32,7 +40,14 @@ def test_bennett_closes_identically_in_all_symbols(name):
 @pytest.mark.parametrize("form", FORMS[::4], ids=IDS[::4])
 def test_closed_form_with_one_joint_turned_round_is_refuted(form):
     top, bottom = form.half_tangents[2][0]
-    wrong = dataclasses.replace(form, half_tangents=(*form.half_tangents[:2], ((bottom, top),), *form.half_tangents[3:]))
+    wrong = dataclasses.replace(
+        form,
+        half_tangents=(
+            *form.half_tangents[:2],
+            ((bottom, top),),
+            *form.half_tangents[3:],
+        ),
+    )
     assert prove(wrong, points=2).closed == 0
 
 
@@ -58,7 +73,10 @@ def test_exact_parameters_lie_in_their_ranges():
 
 
 def test_numbers_with_a_square_root_follow_the_rules_of_a_field():
-    x, y = Quadratic(Fraction(1), Fraction(2), Fraction(3)), Quadratic(Fraction(-2), Fraction(1, 5), Fraction(3))
+    x, y = (
+        Quadratic(Fraction(1), Fraction(2), Fraction(3)),
+        Quadratic(Fraction(-2), Fraction(1, 5), Fraction(3)),
+    )
     assert x * y / y == x and x - x == 0 and (x + y) - y == x
     assert x * x.inverse() == 1
     assert float(x * y) == pytest.approx(float(x) * float(y))
@@ -80,4 +98,7 @@ def test_exact_angles_add_up_like_angles():
 def test_exact_inverse_functions_undo_the_functions():
     x = Angle(Fraction(2, 7))
     assert exact.acos(exact.cos(x)) == x and exact.asin(exact.sin(x)) == x
-    assert exact.atan2(exact.sin(x), exact.cos(x)) == x and 2 * exact.atan(Fraction(2, 7)) == x
+    assert (
+        exact.atan2(exact.sin(x), exact.cos(x)) == x
+        and 2 * exact.atan(Fraction(2, 7)) == x
+    )

@@ -1,4 +1,5 @@
-"""Loops with locked and geared joints: derivatives at 50 digits, dense closure, and what a locked joint must give."""
+"""Loops with locked and geared joints: derivatives at 50 digits, dense closure, and
+what a locked joint must give."""
 
 import mpmath
 import numpy as np
@@ -18,27 +19,41 @@ DIGITS = 50
 
 def general_loop(joints, seed):
     rng = np.random.default_rng(seed)
-    return Loop(rng.uniform(0.5, 1.5, joints), rng.uniform(0.6, 2.5, joints), rng.uniform(0.0, 0.4, joints))
+    return Loop(
+        rng.uniform(0.5, 1.5, joints),
+        rng.uniform(0.6, 2.5, joints),
+        rng.uniform(0.0, 0.4, joints),
+    )
 
 
 def geared(joints, ratios=(-1.0, 1.0)):
-    """A loop whose joints from the eighth on are geared to the first ones, with phases."""
+    """A loop whose joints from the eighth on are geared to the first ones, with
+    phases."""
     matrix = np.vstack([np.eye(7), np.zeros((joints - 7, 7))])
     for i in range(7, joints):
         matrix[i, i - 7] = ratios[i % len(ratios)]
-    return CoupledClosure(general_loop(joints, joints), matrix, np.linspace(0.0, 1.0, joints))
+    return CoupledClosure(
+        general_loop(joints, joints), matrix, np.linspace(0.0, 1.0, joints)
+    )
 
 
 def closed_point(problem, seed=0):
-    points, gaps = problem.project(np.random.default_rng(seed).uniform(-np.pi, np.pi, (20, problem.n)))
+    points, gaps = problem.project(
+        np.random.default_rng(seed).uniform(-np.pi, np.pi, (20, problem.n))
+    )
     return points[gaps < 1e-12][0]
 
 
 def precisely(problem, v, *shifts):
-    """The residual at 50 digits at v shifted along the unknowns: from M, c and the quaternions alone."""
-    moved = [mpmath.mpf(float(x)) + sum(step for j, step in shifts if j == i) for i, x in enumerate(v)]
+    """The residual at 50 digits at v shifted along the unknowns: from M, c and the
+    quaternions alone."""
+    moved = [
+        mpmath.mpf(float(x)) + sum(step for j, step in shifts if j == i)
+        for i, x in enumerate(v)
+    ]
     theta = [
-        mpmath.mpf(float(c)) + sum(mpmath.mpf(float(m)) * x for m, x in zip(row, moved, strict=True))
+        mpmath.mpf(float(c))
+        + sum(mpmath.mpf(float(m)) * x for m, x in zip(row, moved, strict=True))
         for row, c in zip(problem.matrix, problem.offset, strict=True)
     ]
     return mpmath.matrix(precise_residual(problem.loop)(theta))
@@ -52,17 +67,36 @@ def as_floats(values):
 def test_residual_and_derivatives_agree_with_50_digits(joints):
     problem = geared(joints, ratios=(-0.7, 2.5))
     v = np.random.default_rng(3).uniform(-np.pi, np.pi, 7)
-    bound = 1e-13 * joints  # rounding of theta = M v + c, up to 10 rad, and products of n rotations
+    bound = (
+        1e-13 * joints
+    )  # rounding of theta = M v + c, up to 10 rad, and products of n rotations
     with mpmath.workdps(DIGITS):
-        assert np.abs(problem.residuals(v[None])[0] - as_floats(precisely(problem, v))).max() < bound
+        assert (
+            np.abs(
+                problem.residuals(v[None])[0] - as_floats(precisely(problem, v))
+            ).max()
+            < bound
+        )
         h = mpmath.mpf(10) ** -15  # central differences: errors of 1e-30 and of 1e-20
         for j in range(7):
-            slope = (precisely(problem, v, (j, h)) - precisely(problem, v, (j, -h))) / (2 * h)
-            assert np.abs(problem.jacobians(v[None])[0][:, j] - as_floats(slope)).max() < bound
+            slope = (precisely(problem, v, (j, h)) - precisely(problem, v, (j, -h))) / (
+                2 * h
+            )
+            assert (
+                np.abs(problem.jacobians(v[None])[0][:, j] - as_floats(slope)).max()
+                < bound
+            )
             for i in range(j + 1):
-                ends = [precisely(problem, v, (i, a * h), (j, b * h)) for a in (1, -1) for b in (1, -1)]
+                ends = [
+                    precisely(problem, v, (i, a * h), (j, b * h))
+                    for a in (1, -1)
+                    for b in (1, -1)
+                ]
                 second = (ends[0] - ends[1] - ends[2] + ends[3]) / (4 * h**2)
-                assert np.abs(problem.hessian(v)[:, i, j] - as_floats(second)).max() < 10 * bound
+                assert (
+                    np.abs(problem.hessian(v)[:, i, j] - as_floats(second)).max()
+                    < 10 * bound
+                )
 
 
 @pytest.mark.parametrize("joints", [8, 12])
@@ -74,7 +108,8 @@ def test_a_geared_loop_closes_everywhere_on_its_curve(joints):
     gap = problem.loop.frames(problem.angles(branch(s)))[:, -1] - np.eye(4)
     gap[:, :3, 3] /= problem.loop.characteristic_length
     assert np.abs(gap).max() < 1e-13
-    # the tolerance 1e-13 of the last terms of the series, times their order, is what the speed may be off
+    # the tolerance 1e-13 of the last terms of the series, times their order, is what
+    # the speed may be off
     assert np.linalg.norm(branch(s, 1), axis=1) == pytest.approx(1.0, abs=1e-11)
 
 
@@ -86,7 +121,10 @@ def test_a_locked_joint_gives_the_curve_of_the_loop_with_its_two_links_made_one(
     frames = np.delete(loop.frames(problem.angles(start))[:8], locked - 1, axis=0)
     merged, angles = loop_from_axes(frames[:, :3, 3], frames[:, :3, 2])
     assert merged.n == 7
-    branch, other = trace_branch(problem, start), trace_branch(LoopClosure(merged), angles)
+    branch, other = (
+        trace_branch(problem, start),
+        trace_branch(LoopClosure(merged), angles),
+    )
     assert branch.closed
     assert other.closed
     assert branch.length == pytest.approx(other.length, rel=1e-12)
@@ -104,7 +142,9 @@ def test_the_symmetric_motion_of_a_line_symmetric_bricard_needs_three_unknowns()
     assert branch.closed
     theta = problem.angles(branch(np.linspace(0.0, branch.length, 300)))
     whole = trace_branch(LoopClosure(loop), theta[0])
-    assert whole.length == pytest.approx(np.sqrt(2) * branch.length, rel=1e-12)  # every unknown turns two joints
+    assert whole.length == pytest.approx(
+        np.sqrt(2) * branch.length, rel=1e-12
+    )  # every unknown turns two joints
     assert whole.nearest(theta)[0].max() < 1e-10
 
 
@@ -113,14 +153,19 @@ def test_the_map_of_a_coupled_loop_has_the_symmetric_forms_and_certifies_them():
     problem = CoupledClosure(loop, np.vstack([np.eye(3), np.eye(3)]))
     atlas = certify_atlas(problem, explore(problem, starts=40))
     whole = explore(LoopClosure(loop), starts=40)
-    assert [np.sqrt(2) * f.branch.length for f in atlas.forms] == pytest.approx([f.branch.length for f in whole.forms], rel=1e-10)
+    assert [np.sqrt(2) * f.branch.length for f in atlas.forms] == pytest.approx(
+        [f.branch.length for f in whole.forms], rel=1e-10
+    )
     assert [f.labels["certificate"]["status"] for f in atlas.forms] == ["certified"] * 2
 
 
 def test_an_unknown_comes_round_when_all_joints_that_it_turns_do():
     ratios = [(1.0, 0.0), (1.0, 0.5), (2.0, -4.0), (1 / 3, 0.5), (np.sqrt(2.0), 1.0)]
     turns = [
-        CoupledClosure(general_loop(4, 0), np.array([[a, 0.0], [b, 0.0], [0.0, 1.0], [0.0, 0.0]])).periods / (2 * np.pi)
+        CoupledClosure(
+            general_loop(4, 0), np.array([[a, 0.0], [b, 0.0], [0.0, 1.0], [0.0, 0.0]])
+        ).periods
+        / (2 * np.pi)
         for a, b in ratios
     ]
     assert [t[0] for t in turns] == [1.0, 2.0, 0.5, 6.0, np.inf]
@@ -145,5 +190,7 @@ def test_a_coupling_that_is_none_is_refused_with_its_value(matrix, offset, said)
 
 
 def test_a_joint_that_the_loop_does_not_have_cannot_be_locked():
-    with pytest.raises(GeometryError, match="locked joint: 9 is not allowed; it must be from 1 to 8"):
+    with pytest.raises(
+        GeometryError, match="locked joint: 9 is not allowed; it must be from 1 to 8"
+    ):
         locked_joints(8, {9: 0.0})

@@ -1,4 +1,5 @@
-"""The compiled kernels against 50-digit arithmetic on a closure written independently of them."""
+"""The compiled kernels against 50-digit arithmetic on a closure written independently
+of them."""
 
 import mpmath
 import numpy as np
@@ -11,14 +12,18 @@ from linkages.loop import Loop
 
 DIGITS = 50
 LOOPS = {
-    "special double-subtractive Goldberg 6R": entry("special-double-subtractive-goldberg").build(),
+    "special double-subtractive Goldberg 6R": entry(
+        "special-double-subtractive-goldberg"
+    ).build(),
     "line-symmetric Bricard 6R": entry("bricard-line-symmetric").build(),
     "Bennett": entry("bennett").build(),
     "random 7R": Loop(
-        (0.5, 0.9, 0.7, 0.6, 1.0, 0.8, 0.75), (0.3, -1.2, 2.1, 0.9, -2.5, 1.4, 0.6), (0.1, -0.4, 0.3, 0.2, -0.1, 0.5, 0.0)
+        (0.5, 0.9, 0.7, 0.6, 1.0, 0.8, 0.75),
+        (0.3, -1.2, 2.1, 0.9, -2.5, 1.4, 0.6),
+        (0.1, -0.4, 0.3, 0.2, -0.1, 0.5, 0.0),
     ),
     "planar 4R": Loop((1.0, 2.5, 2.0, 2.2), (0.0,) * 4, (0.0,) * 4),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(params=LOOPS)
@@ -31,14 +36,22 @@ def geometry(loop):
 
 
 def product(loop, theta):
-    """T_1 ... T_n, mpmath, from the Denavit-Hartenberg convention alone; theta in mpmath numbers."""
+    """T_1 ... T_n, mpmath, from the Denavit-Hartenberg convention alone; theta in
+    mpmath numbers."""
     out = mpmath.eye(4)
     for a, alpha, offset, angle in zip(*loop.arrays, theta, strict=True):
         c, s = mpmath.cos(angle), mpmath.sin(angle)
         alpha, size = mpmath.mpf(float(alpha)), mpmath.mpf(loop.characteristic_length)
         ca, sa = mpmath.cos(alpha), mpmath.sin(alpha)
         a, offset = mpmath.mpf(float(a)) / size, mpmath.mpf(float(offset)) / size
-        out *= mpmath.matrix([[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, offset], [0, 0, 0, 1]])
+        out *= mpmath.matrix(
+            [
+                [c, -s * ca, s * sa, a * c],
+                [s, c * ca, -c * sa, a * s],
+                [0, sa, ca, offset],
+                [0, 0, 0, 1],
+            ]
+        )
     return out
 
 
@@ -60,7 +73,9 @@ def as_floats(values):
 
 def shifted(loop, theta, shifts):
     """Residual at theta + shifts, as a column of mpmath numbers."""
-    return mpmath.matrix(residual(loop, [x + d for x, d in zip(exactly(theta), shifts, strict=True)]))
+    return mpmath.matrix(
+        residual(loop, [x + d for x, d in zip(exactly(theta), shifts, strict=True)])
+    )
 
 
 def test_the_residual_agrees_with_50_digits(loop):
@@ -69,7 +84,10 @@ def test_the_residual_agrees_with_50_digits(loop):
     with mpmath.workdps(DIGITS):
         for theta, row in zip(thetas, found, strict=True):
             # products of n rotations in double: a few n roundings
-            assert np.abs(row - as_floats(residual(loop, exactly(theta)))).max() < 2e-15 * loop.n
+            assert (
+                np.abs(row - as_floats(residual(loop, exactly(theta)))).max()
+                < 2e-15 * loop.n
+            )
 
 
 def test_the_jacobian_agrees_with_50_digits_also_where_the_loop_is_open(loop):
@@ -79,7 +97,9 @@ def test_the_jacobian_agrees_with_50_digits_also_where_the_loop_is_open(loop):
         step = mpmath.mpf(10) ** -20  # central differences: an error of 1e-40
         for j in range(loop.n):
             shift = [step if i == j else 0 for i in range(loop.n)]
-            exact = (shifted(loop, theta, shift) - shifted(loop, theta, [-x for x in shift])) / (2 * step)
+            exact = (
+                shifted(loop, theta, shift) - shifted(loop, theta, [-x for x in shift])
+            ) / (2 * step)
             assert np.abs(found[:, j] - as_floats(exact)).max() < 1e-14 * loop.n
 
 
@@ -91,7 +111,11 @@ def test_the_hessian_agrees_with_50_digits_also_where_the_loop_is_open(loop):
         step = mpmath.mpf(10) ** -12  # second differences: an error of 1e-24
         for i in range(loop.n):
             for j in range(i + 1):
-                ends = [[a * step * (k == i) + b * step * (k == j) for k in range(loop.n)] for a in (1, -1) for b in (1, -1)]
+                ends = [
+                    [a * step * (k == i) + b * step * (k == j) for k in range(loop.n)]
+                    for a in (1, -1)
+                    for b in (1, -1)
+                ]
                 upper, left, right, lower = (shifted(loop, theta, end) for end in ends)
                 exact = (upper - left - right + lower) / (4 * step**2)
                 assert np.abs(found[:, i, j] - as_floats(exact)).max() < 1e-14 * loop.n
@@ -102,7 +126,10 @@ def test_the_hessian_agrees_with_50_digits_also_where_the_loop_is_open(loop):
 
 def times(a, b, order):
     """Product of two truncated series of 4 x 4 matrices."""
-    return [sum((a[m] * b[k - m] for m in range(1, k + 1)), a[0] * b[k]) for k in range(order + 1)]
+    return [
+        sum((a[m] * b[k - m] for m in range(1, k + 1)), a[0] * b[k])
+        for k in range(order + 1)
+    ]
 
 
 def turn_series(coefficients, order):
@@ -113,19 +140,34 @@ def turn_series(coefficients, order):
         s.append(sum(m * coefficients[m] * c[k - m] for m in range(1, k + 1)) / k)
     zero = [1] + [0] * order
     return [
-        mpmath.matrix([[c[k], -s[k], 0, 0], [s[k], c[k], 0, 0], [0, 0, zero[k], 0], [0, 0, 0, zero[k]]])
+        mpmath.matrix(
+            [
+                [c[k], -s[k], 0, 0],
+                [s[k], c[k], 0, 0],
+                [0, 0, zero[k], 0],
+                [0, 0, 0, zero[k]],
+            ]
+        )
         for k in range(order + 1)
     ]
 
 
 def exact_series(loop, center, tangent, order):
-    """Taylor coefficients of the motion by arclength from 40-digit series of T_1 ... T_n, order by order."""
+    """Taylor coefficients of the motion by arclength from 40-digit series of T_1 ...
+    T_n, order by order."""
     links = []
     size = mpmath.mpf(loop.characteristic_length)
     for a, alpha, offset in zip(*loop.arrays, strict=True):
-        ca, sa = mpmath.cos(mpmath.mpf(float(alpha))), mpmath.sin(mpmath.mpf(float(alpha)))
+        ca, sa = (
+            mpmath.cos(mpmath.mpf(float(alpha))),
+            mpmath.sin(mpmath.mpf(float(alpha))),
+        )
         a, offset = mpmath.mpf(float(a)) / size, mpmath.mpf(float(offset)) / size
-        links.append(mpmath.matrix([[1, 0, 0, a], [0, ca, -sa, 0], [0, sa, ca, offset], [0, 0, 0, 1]]))
+        links.append(
+            mpmath.matrix(
+                [[1, 0, 0, a], [0, ca, -sa, 0], [0, sa, ca, offset], [0, 0, 0, 1]]
+            )
+        )
 
     def closure(u, k):
         total = [mpmath.eye(4)] + [mpmath.zeros(4)] * k
@@ -133,11 +175,21 @@ def exact_series(loop, center, tangent, order):
             turns = turn_series([row[i] for row in u], k)
             total = times(total, [turn * link for turn in turns], k)
         t = total[k]
-        return [t[2, 1] - t[1, 2], t[0, 2] - t[2, 0], t[1, 0] - t[0, 1], t[0, 3], t[1, 3], t[2, 3]]
+        return [
+            t[2, 1] - t[1, 2],
+            t[0, 2] - t[2, 0],
+            t[1, 0] - t[0, 1],
+            t[0, 3],
+            t[1, 3],
+            t[2, 3],
+        ]
 
     def jacobian(point):
         zero = [mpmath.mpf(0)] * loop.n
-        columns = [closure([point, [mpmath.mpf(i == j) for i in range(loop.n)]], 1) for j in range(loop.n)]
+        columns = [
+            closure([point, [mpmath.mpf(i == j) for i in range(loop.n)]], 1)
+            for j in range(loop.n)
+        ]
         return [[columns[j][row] for j in range(loop.n)] for row in range(6)], zero
 
     def solve(rows, right):
@@ -155,50 +207,86 @@ def exact_series(loop, center, tangent, order):
     u = [point, [x / norm for x in first]]
     for k in range(2, order + 1):
         u.append(zero)
-        inner = sum(i * (k + 1 - i) * sum(x * y for x, y in zip(u[i], u[k + 1 - i], strict=True)) for i in range(2, k))
+        inner = sum(
+            i
+            * (k + 1 - i)
+            * sum(x * y for x, y in zip(u[i], u[k + 1 - i], strict=True))
+            for i in range(2, k)
+        )
         u[k] = solve([*rows, u[1]], [-x for x in closure(u, k)] + [-inner / (2 * k)])
     return np.array([as_floats(row) for row in u])
 
 
 @pytest.mark.parametrize(
-    "name", ["special double-subtractive Goldberg 6R", "line-symmetric Bricard 6R", "Bennett", "random 7R"]
+    "name",
+    [
+        "special double-subtractive Goldberg 6R",
+        "line-symmetric Bricard 6R",
+        "Bennett",
+        "random 7R",
+    ],
 )
 def test_taylor_coefficients_of_the_motion_agree_with_40_digits(name):
     loop, order = LOOPS[name], 9
     problem = LoopClosure(loop)
-    starts, gaps = problem.project(np.random.default_rng(3).uniform(-np.pi, np.pi, (60, loop.n)))
+    starts, gaps = problem.project(
+        np.random.default_rng(3).uniform(-np.pi, np.pi, (60, loop.n))
+    )
     values = np.linalg.svd(problem.jacobians(starts), compute_uv=False)[:, loop.n - 2]
     start = starts[np.argmax(np.where(gaps < 1e-14, values, 0.0))]
     tangent = np.linalg.svd(problem.jacobians(start[None])[0])[2][-1]
-    _, pieces, _, radii, _, _ = kernels.march(start, tangent, geometry(loop), 16, 1e-13, 1e-9, 2.0, 1)
+    _, pieces, _, radii, _, _ = kernels.march(
+        start, tangent, geometry(loop), 16, 1e-13, 1e-9, 2.0, 1
+    )
     with mpmath.workdps(40):
         exact = exact_series(loop, pieces[0][0], tangent, order)
     powers = radii[0] ** np.arange(order + 1)
-    # the coefficients times the radius^k are terms of the piece; rounding of the centre enters with 1 / sigma
-    assert np.abs(pieces[0][: order + 1] - exact * powers[:, None]).max() < 1e-14 / values.max()
+    # the coefficients times the radius^k are terms of the piece; rounding of the centre
+    # enters with 1 / sigma
+    assert (
+        np.abs(pieces[0][: order + 1] - exact * powers[:, None]).max()
+        < 1e-14 / values.max()
+    )
 
 
 def test_pieces_overlap_and_follow_each_other_at_the_stated_arclengths():
     loop = LOOPS["special double-subtractive Goldberg 6R"]
     problem = LoopClosure(loop)
-    start = np.array([-1.3705021688108496, 1.5903232408988792, 1.0070110748490153, 1.551269412690914, -1.7710904847789435, -1.0070110748490149])
+    start = np.array(
+        [
+            -1.3705021688108496,
+            1.5903232408988792,
+            1.0070110748490153,
+            1.551269412690914,
+            -1.7710904847789435,
+            -1.0070110748490149,
+        ]
+    )
     tangent = np.linalg.svd(problem.jacobians(start[None])[0])[2][-1]
-    status, pieces, steps, radii, residuals, sigmas = kernels.march(start, tangent, geometry(loop), 16, 1e-13, 1e-9, 2.0, 12)
+    status, pieces, steps, radii, residuals, sigmas = kernels.march(
+        start, tangent, geometry(loop), 16, 1e-13, 1e-9, 2.0, 12
+    )
     assert status == 0
     assert residuals.max() < 3e-13
     assert sigmas.min() > 0
     for i in range(1, len(pieces)):
         assert steps[i] < radii[i - 1] + radii[i]
-        s = steps[i] * radii[i - 1] / (radii[i - 1] + radii[i])  # from the centre of the piece before
+        s = (
+            steps[i] * radii[i - 1] / (radii[i - 1] + radii[i])
+        )  # from the centre of the piece before
         left = (s / radii[i - 1]) ** np.arange(17) @ pieces[i - 1]
         right = ((s - steps[i]) / radii[i]) ** np.arange(17) @ pieces[i]
-        assert np.abs(left - right).max() < 1e-12  # two pieces of tolerance 1e-13 over singular values above 0.1
+        assert (
+            np.abs(left - right).max() < 1e-12
+        )  # two pieces of tolerance 1e-13 over singular values above 0.1
 
 
 def test_a_march_from_an_open_loop_says_by_how_much_it_is_open():
     loop = LOOPS["planar 4R"]
     long = Loop((1.0, 1.0, 1.0, 5.0), loop.twists, loop.offsets)
-    status, pieces, _, _, gaps, _ = kernels.march(np.zeros(4), np.ones(4) / 2, geometry(long), 16, 1e-13, 1e-9, 2.0, 5)
+    status, pieces, _, _, gaps, _ = kernels.march(
+        np.zeros(4), np.ones(4) / 2, geometry(long), 16, 1e-13, 1e-9, 2.0, 5
+    )
     assert status == 2
     assert not len(pieces)
     assert gaps[-1] > 0.1

@@ -1,4 +1,5 @@
-"""Construction methods: closure is inherited, and the published linkages come out of them."""
+"""Construction methods: closure is inherited, and the published linkages come out of
+them."""
 
 import itertools
 
@@ -18,14 +19,25 @@ from linkages.construction.constructions import (
     superpose_across_bennett,
     superposed_angles,
 )
-from linkages.construction.link import Link, bennett_links, closed_chain, half_angle_ratio, syncopated_link
+from linkages.construction.link import (
+    Link,
+    bennett_links,
+    closed_chain,
+    half_angle_ratio,
+    syncopated_link,
+)
 from linkages.construction.spatial_triangle import Kink, composite_link
 from linkages.families.generalized_double_goldberg import generalized_double_goldberg
 from linkages.families.goldberg import goldberg, subtractive_goldberg
 from linkages.families.goldberg_5r import generalized_goldberg, syncopated_goldberg
 from linkages.families.goldberg_6r import l_shape_goldberg, serial_goldberg
 from linkages.families.mavroidis_roth import OffsetPattern, mavroidis_roth
-from linkages.families.mixed_double_goldberg import KINDS, TYPES, double_goldberg_chain, double_goldberg_type
+from linkages.families.mixed_double_goldberg import (
+    KINDS,
+    TYPES,
+    double_goldberg_chain,
+    double_goldberg_type,
+)
 from linkages.loop import GeometryError, Loop
 
 A = 1.3
@@ -51,7 +63,13 @@ def gap(loop: Loop, theta: np.ndarray) -> float:
 def same(one: Loop, other: Loop) -> bool:
     """Whether the loops agree up to the first joint and the direction of reading."""
     reads = [loop.relabelled(k) for loop in (one, one.reversed()) for k in range(one.n)]
-    return any(all(np.allclose(x, y, atol=1e-12) for x, y in zip(r.arrays, other.arrays, strict=True)) for r in reads)
+    return any(
+        all(
+            np.allclose(x, y, atol=1e-12)
+            for x, y in zip(r.arrays, other.arrays, strict=True)
+        )
+        for r in reads
+    )
 
 
 def test_superposed_loops_close_in_every_pair_of_positions():
@@ -68,13 +86,19 @@ def test_locking_a_joint_keeps_the_loop_closed():
     theta = superposed_angles(bennett_angles(a, b, 1.1), bennett_angles(c, b, 0.7))
     for joint in range(1, 7):
         kink = theta[joint - 1]
-        assert gap(lock(both, joint, kink), locked_angles(both, joint, kink, theta)) < TIGHT
+        assert (
+            gap(lock(both, joint, kink), locked_angles(both, joint, kink, theta))
+            < TIGHT
+        )
 
 
 def test_collinear_kinks_are_the_limits_of_the_spatial_triangle():
     one, other = Link(1.2, 0.9), Link(0.7, 0.4)
     for kink, angle in ((Kink.STRAIGHT, 0.0), (Kink.FOLDED, np.pi)):
-        exact, limit = composite_link(one, other, kink), composite_link(one, other, angle)
+        exact, limit = (
+            composite_link(one, other, kink),
+            composite_link(one, other, angle),
+        )
         assert limit.link.length == pytest.approx(exact.link.length, abs=1e-14)
         assert limit.link.twist == pytest.approx(exact.link.twist, abs=1e-14)
         assert limit.before[0] == pytest.approx(0, abs=1e-14)
@@ -103,15 +127,24 @@ def test_syncopation_is_subtraction_from_a_primary_bennett_loop():
     made = lock(lock(both, 4, Kink.FOLDED), 1, Kink.FOLDED)
     assert [float(x) for x in made.offsets] == [0.0] * 5
     wanted = syncopated_goldberg(A, ALPHA, BETA, GAMMA)
-    assert np.allclose(sorted(np.abs(made.arrays[0])), sorted(np.abs(wanted.arrays[0])), atol=1e-12)
+    assert np.allclose(
+        sorted(np.abs(made.arrays[0])), sorted(np.abs(wanted.arrays[0])), atol=1e-12
+    )
 
 
 def test_three_bennett_loops_make_goldbergs_six_bars():
     a, b, c, d = LINKS
     row = summate(bennett_loop(a, b), bennett_loop(c, b)).relabelled(4)  # c a b a+c b
-    assert same(summate(row, bennett_loop(d, b)), serial_goldberg(A, ALPHA, BETA, GAMMA, DELTA))
-    bent = summate(bennett_loop(a, b), bennett_loop(c, b)).reversed().relabelled(4)  # a last
-    assert same(summate(bent, bennett_loop(d, a)), l_shape_goldberg(A, ALPHA, BETA, GAMMA, DELTA))
+    assert same(
+        summate(row, bennett_loop(d, b)), serial_goldberg(A, ALPHA, BETA, GAMMA, DELTA)
+    )
+    bent = (
+        summate(bennett_loop(a, b), bennett_loop(c, b)).reversed().relabelled(4)
+    )  # a last
+    assert same(
+        summate(bent, bennett_loop(d, a)),
+        l_shape_goldberg(A, ALPHA, BETA, GAMMA, DELTA),
+    )
 
 
 def test_isomerized_loop_closes():
@@ -119,7 +152,9 @@ def test_isomerized_loop_closes():
     both = superpose(bennett_loop(a, b), bennett_loop(c, b))
     theta = superposed_angles(bennett_angles(a, b, 1.1), bennett_angles(c, b, 0.7))
     for joint in (2, 3, 5, 6):
-        assert gap(isomerize(both, joint), isomerized_angles(both, joint, theta)) < TIGHT
+        assert (
+            gap(isomerize(both, joint), isomerized_angles(both, joint, theta)) < TIGHT
+        )
 
 
 def test_hybrid_on_a_common_axis_closes_where_the_kinks_allow():
@@ -129,9 +164,14 @@ def test_hybrid_on_a_common_axis_closes_where_the_kinks_allow():
     kink_1, shift = 0.4, 0.37
     kink_2 = first[0] + second[0] - kink_1
     hybrid = share_joint(bennett_loop(a, b), bennett_loop(d, c), kink_1, kink_2, shift)
-    forth, back = composite_link(b, d, kink_1, shift), composite_link(c, a, kink_2, -shift)
+    forth, back = (
+        composite_link(b, d, kink_1, shift),
+        composite_link(c, a, kink_2, -shift),
+    )
     theta = np.concatenate([first[1:], second[1:]])
-    theta += np.array([back.after[1], 0, forth.before[1], forth.after[1], 0, back.before[1]])
+    theta += np.array(
+        [back.after[1], 0, forth.before[1], forth.after[1], 0, back.before[1]]
+    )
     assert gap(hybrid, theta) < TIGHT
 
 
@@ -148,7 +188,8 @@ def test_constructions_refuse_what_does_not_fit():
 
 
 def goldberg_angles(sides: float, turn: float) -> np.ndarray:
-    """Configuration of the Goldberg 5R with links of twist ``sides`` whose joint 5 has the angle ``turn``."""
+    """Configuration of the Goldberg 5R with links of twist ``sides`` whose joint 5 has
+    the angle ``turn``."""
     m1, m2 = half_angle_ratio(ALPHA, sides), half_angle_ratio(GAMMA, sides)
     tangent = 1 / np.tan(turn / 2)  # theta2 + theta3 = pi - theta5
     x = max(np.roots([m2, -tangent * (1 - m1 * m2), m1]).real)
@@ -161,7 +202,13 @@ def test_common_link_pair_closes_where_the_common_joint_agrees():
     for turn in (0.5, -0.3):
         first, second = goldberg_angles(BETA, turn), goldberg_angles(DELTA, turn)
         assert max(gap(one, first), gap(other, second)) < TIGHT
-        assert gap(superpose(one, other, shared=2), superposed_angles(first, second, shared=2)) < TIGHT
+        assert (
+            gap(
+                superpose(one, other, shared=2),
+                superposed_angles(first, second, shared=2),
+            )
+            < TIGHT
+        )
         bent = isomerize(other, 5)
         turned = isomerized_angles(other, 5, second)
         crossed = superpose_across_bennett(one, bent)
@@ -175,7 +222,9 @@ def test_type_iii_is_a_goldberg_linkage_with_a_locked_joint():
     assert same(mixed, goldberg(A * np.sin(BETA) / np.sin(ALPHA), BETA, ALPHA, DELTA))
     a, b, _, d = LINKS
     for kind in ("goldberg", "subtractive"):
-        made = lock(double_goldberg_type(*values, order="III", kind=kind), 3, Kink.FOLDED)
+        made = lock(
+            double_goldberg_type(*values, order="III", kind=kind), 3, Kink.FOLDED
+        )
         assert same_up_to_link_direction(made, closed_chain(a, b - d, a, d, b))
 
 
@@ -183,7 +232,8 @@ def test_type_iii_is_a_goldberg_linkage_with_a_locked_joint():
 
 
 def five_bars(sign: int, b: Link) -> tuple[Loop, ...]:
-    """The three places of the link pair a, c in a Goldberg (+1) or subtractive (-1) 5R with the link b."""
+    """The three places of the link pair a, c in a Goldberg (+1) or subtractive (-1) 5R
+    with the link b."""
     a, _, c, _ = LINKS
 
     def joined(x: Link, y: Link) -> Link:
@@ -200,13 +250,16 @@ def last_two(loop: Loop) -> list[Link]:
 
 
 def type_of(loop: Loop) -> str:
-    """Which mixed Type the links of ``loop`` make, for some naming of the basic links and some sign of c."""
+    """Which mixed Type the links of ``loop`` make, for some naming of the basic links
+    and some sign of c."""
     found = {
         order
         for a, b, c, d in itertools.permutations(LINKS)
         for order in TYPES
         for signed in (c, -c)
-        if same_up_to_link_direction(loop, double_goldberg_chain(a, b, signed, d, order, "mixed"))
+        if same_up_to_link_direction(
+            loop, double_goldberg_chain(a, b, signed, d, order, "mixed")
+        )
     }
     assert len(found) == 1, found
     return found.pop()
@@ -216,12 +269,16 @@ def test_eighteen_combinations_give_the_six_mixed_types():
     _, b, _, d = LINKS
     expected = {
         ("S3", "G3"): ("I", "I"),
-        **dict.fromkeys((("S3", "G1"), ("S3", "G2"), ("S1", "G3"), ("S2", "G3")), ("II", "II")),
+        **dict.fromkeys(
+            (("S3", "G1"), ("S3", "G2"), ("S1", "G3"), ("S2", "G3")), ("II", "II")
+        ),
         **dict.fromkeys((("S1", "G1"), ("S2", "G2")), ("III", "IV")),
         **dict.fromkeys((("S1", "G2"), ("S2", "G1")), ("V", "VI")),
     }
     found = {}
-    for (i, s), (j, g) in itertools.product(enumerate(five_bars(-1, b), 1), enumerate(five_bars(1, d), 1)):
+    for (i, s), (j, g) in itertools.product(
+        enumerate(five_bars(-1, b), 1), enumerate(five_bars(1, d), 1)
+    ):
         pair = last_two(s)
         link_pair = superpose(s, ending_with(g, *pair), shared=2)
         across = superpose_across_bennett(s, ending_with(g, *pair[::-1]))
@@ -235,7 +292,12 @@ def test_two_equal_kinds_of_five_bars_give_the_twelve_counterparts():
         if kind == "mixed":
             continue
         first, second = five_bars(sign, b), five_bars(sign, d)
-        pairs = {"I": (2, 2, False), "II": (0, 2, False), "III": (0, 0, False), "IV": (0, 0, True)}
+        pairs = {
+            "I": (2, 2, False),
+            "II": (0, 2, False),
+            "III": (0, 0, False),
+            "IV": (0, 0, True),
+        }
         pairs |= {"V": (0, 1, False), "VI": (0, 1, True)}
         for order, (i, j, crossed) in pairs.items():
             s = first[i]
@@ -244,12 +306,15 @@ def test_two_equal_kinds_of_five_bars_give_the_twelve_counterparts():
                 made = superpose_across_bennett(s, ending_with(second[j], *pair[::-1]))
             else:
                 made = superpose(s, ending_with(second[j], *pair), shared=2)
-            wanted = double_goldberg_type(A, ALPHA, BETA, GAMMA, DELTA, order=order, kind=kind)
+            wanted = double_goldberg_type(
+                A, ALPHA, BETA, GAMMA, DELTA, order=order, kind=kind
+            )
             assert same_up_to_link_direction(made, wanted), (kind, order)
 
 
 def same_up_to_link_direction(one: Loop, other: Loop) -> bool:
-    """As `same`, where a link a/alpha may also be read as -a/-alpha (its common normal turned round)."""
+    """As `same`, where a link a/alpha may also be read as -a/-alpha (its common normal
+    turned round)."""
 
     def folded(loop: Loop) -> np.ndarray:
         lengths, twists, _ = loop.arrays

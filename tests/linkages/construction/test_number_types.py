@@ -1,4 +1,5 @@
-"""Constructors run on doubles, at 50 digits and on sympy expressions, with one result."""
+"""Constructors run on doubles, at 50 digits and on sympy expressions, with one
+result."""
 
 from fractions import Fraction
 
@@ -25,16 +26,35 @@ def flat(loop: Loop) -> list:
 def test_fifty_digits_agree_with_doubles(entry: Entry):
     doubles = np.concatenate(entry.build().arrays)
     with mpmath.workdps(50):
-        precise = flat(entry.build(**{k: mpmath.mpf(v) for k, v in entry.defaults.items()}))
-        gap = max(abs(float(x - mpmath.mpf(float(y)))) for x, y in zip(precise, doubles, strict=True))
-    assert gap <= 2e-13 * max(1, np.abs(doubles).max())  # doubles lose digits in folded links and nested kinks
+        precise = flat(
+            entry.build(**{k: mpmath.mpf(v) for k, v in entry.defaults.items()})
+        )
+        gap = max(
+            abs(float(x - mpmath.mpf(float(y))))
+            for x, y in zip(precise, doubles, strict=True)
+        )
+    assert gap <= 2e-13 * max(
+        1, np.abs(doubles).max()
+    )  # doubles lose digits in folded links and nested kinks
 
 
 def matrix_product(loop: Loop, theta: list) -> mpmath.matrix:
     total = mpmath.eye(4)
-    for a, alpha, r, t in zip(loop.lengths, loop.twists, loop.offsets, theta, strict=True):
-        c, s, ca, sa = mpmath.cos(t), mpmath.sin(t), mpmath.cos(alpha), mpmath.sin(alpha)
-        step = [[c, -s * ca, s * sa, a * c], [s, c * ca, -c * sa, a * s], [0, sa, ca, r], [0, 0, 0, 1]]
+    for a, alpha, r, t in zip(
+        loop.lengths, loop.twists, loop.offsets, theta, strict=True
+    ):
+        c, s, ca, sa = (
+            mpmath.cos(t),
+            mpmath.sin(t),
+            mpmath.cos(alpha),
+            mpmath.sin(alpha),
+        )
+        step = [
+            [c, -s * ca, s * sa, a * c],
+            [s, c * ca, -c * sa, a * s],
+            [0, sa, ca, r],
+            [0, 0, 0, 1],
+        ]
         total *= mpmath.matrix(step)
     return total
 
@@ -47,12 +67,20 @@ def bennett_angle(twist, common, theta):
 
 def test_generalized_goldberg_closes_at_fifty_digits():
     with mpmath.workdps(50):
-        a, alpha, beta, gamma, t, u = (mpmath.mpf(x) / 10 for x in (13, 11, 9, 5, 12, 7))
-        # two Bennett loops on the link b; the joint between a and c is locked where t and u put it
+        a, alpha, beta, gamma, t, u = (
+            mpmath.mpf(x) / 10 for x in (13, 11, 9, 5, 12, 7)
+        )
+        # two Bennett loops on the link b; the joint between a and c is locked where t
+        # and u put it
         first, second = bennett_angle(alpha, beta, t), bennett_angle(gamma, beta, u)
         kink = -first + second + mpmath.pi
         loop = generalized_goldberg(a, alpha, beta, gamma, kink)
-        ca, sa, cc, sc = mpmath.cos(alpha), mpmath.sin(alpha), mpmath.cos(gamma), mpmath.sin(gamma)
+        ca, sa, cc, sc = (
+            mpmath.cos(alpha),
+            mpmath.sin(alpha),
+            mpmath.cos(gamma),
+            mpmath.sin(gamma),
+        )
         ck, sk = mpmath.cos(kink), mpmath.sin(kink)
         before = mpmath.atan2(sk * sc, ck * sc * ca + cc * sa)
         after = mpmath.atan2(sk * sa, ck * sa * cc + ca * sc)
@@ -78,7 +106,9 @@ def test_rational_half_tangents_give_exact_lengths(construct):
         assert abs(float(sympy.sympify(x).evalf(30)) - float(y)) < 1e-13
     a, alpha = exact.lengths[-1], exact.twists[-1]
     for length, twist in zip(exact.lengths[3:], exact.twists[3:], strict=True):
-        ratio = sympy.expand_trig(sympy.sin(alpha) / a) - sympy.expand_trig(sympy.sin(twist) / length)
+        ratio = sympy.expand_trig(sympy.sin(alpha) / a) - sympy.expand_trig(
+            sympy.sin(twist) / length
+        )
         assert sympy.simplify(ratio) == 0
 
 
@@ -87,14 +117,20 @@ def test_kinks_work_on_expressions():
     kinks = [rational_twist(Fraction(1, 4)), rational_twist(Fraction(-1, 2))]
     exact = waldron_hybrid(2, *twists[:2], 3, *twists[2:], *kinks, sympy.Rational(1, 3))
     doubles = waldron_hybrid(
-        2.0, *(float(t) for t in twists[:2]), 3.0, *(float(t) for t in (*twists[2:], *kinks)), 1 / 3
+        2.0,
+        *(float(t) for t in twists[:2]),
+        3.0,
+        *(float(t) for t in (*twists[2:], *kinks)),
+        1 / 3,
     )
     for x, y in zip(flat(exact), flat(doubles), strict=True):
         assert abs(float(sympy.sympify(x).evalf(30)) - float(y)) < 1e-13
 
 
 def test_symbols_pass_through():
-    a, alpha, beta, gamma, delta = sympy.symbols("a alpha beta gamma delta", positive=True)
+    a, alpha, beta, gamma, delta = sympy.symbols(
+        "a alpha beta gamma delta", positive=True
+    )
     loop = serial_goldberg(a, alpha, beta, gamma, delta)
     assert sympy.simplify(loop.lengths[0] - a * sympy.sin(beta) / sympy.sin(alpha)) == 0
     assert loop.twists[1] == alpha + gamma + delta

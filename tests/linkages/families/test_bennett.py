@@ -4,7 +4,12 @@ import mpmath
 import pytest
 import sympy
 
-from linkages.families.bennett import bennett, bennett_ab_2, bennett_lb_2, bennett_line_symmetric
+from linkages.families.bennett import (
+    bennett,
+    bennett_ab_2,
+    bennett_lb_2,
+    bennett_line_symmetric,
+)
 from linkages.loop import GeometryError
 
 SET_UPS = (bennett, bennett_ab_2, bennett_line_symmetric, bennett_lb_2)
@@ -14,7 +19,9 @@ SET_UPS = (bennett, bennett_ab_2, bennett_line_symmetric, bennett_lb_2)
 def test_a_length_that_breaks_the_bennett_ratio_is_refused_with_the_amount(construct):
     b = math.sin(0.7) / math.sin(1.2)
     assert construct(1.0, 1.2, 0.7, b=b).lengths[1] == b
-    with pytest.raises(GeometryError, match=r"link 23: sin\(twist\)/length.*off by 0\.000931"):
+    with pytest.raises(
+        GeometryError, match=r"link 23: sin\(twist\)/length.*off by 0\.000931"
+    ):
         construct(1.0, 1.2, 0.7, b=b * 1.001)
 
 
@@ -25,7 +32,9 @@ def test_a_twist_outside_the_half_turn_is_refused(twist):
 
 
 def test_the_thesis_example_has_its_printed_length():
-    assert bennett(1.0, math.radians(100), math.radians(40)).lengths[1] == pytest.approx(0.6527, abs=5e-5)
+    assert bennett(1.0, math.radians(100), math.radians(40)).lengths[
+        1
+    ] == pytest.approx(0.6527, abs=5e-5)
 
 
 @pytest.mark.parametrize("construct", SET_UPS)
@@ -39,10 +48,15 @@ def test_the_closed_form_closes_at_fifty_digits(construct, closure_entries):
         t1 = mpmath.mpf("0.37")
         theta = [2 * mpmath.atan(t1), 2 * mpmath.atan(product / t1)]
         theta += theta if symmetric else [-theta[0], -theta[1]]
-        assert max(abs(x) for x in closure_entries(loop, theta, mpmath)) < mpmath.mpf(10) ** -48
+        assert (
+            max(abs(x) for x in closure_entries(loop, theta, mpmath))
+            < mpmath.mpf(10) ** -48
+        )
 
 
-def test_the_closed_form_closes_exactly_with_rational_half_angle_tangents(closure_entries):
+def test_the_closed_form_closes_exactly_with_rational_half_angle_tangents(
+    closure_entries,
+):
     u, v, t1 = sympy.Rational(2, 5), sympy.Rational(7, 4), sympy.Rational(1, 3)
     loop = bennett(1, 2 * sympy.atan(u), 2 * sympy.atan(v))
     t2 = (v + u) / (v - u) / t1

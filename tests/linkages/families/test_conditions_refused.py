@@ -1,4 +1,5 @@
-"""Dependent quantities that are handed in and do not fit are refused, by name and amount."""
+"""Dependent quantities that are handed in and do not fit are refused, by name and
+amount."""
 
 import numpy as np
 import pytest
@@ -39,15 +40,47 @@ def test_other_bennett_ratio(construct, which):
 @pytest.mark.parametrize(
     ("construct", "good", "name"),
     [
-        (lambda b: syncopated_goldberg(1.0, *TWISTS[:3], b=b), needed_length(TWISTS[1]), "link b"),
-        (lambda b: waldron_collinear(1.0, *TWISTS[:2], 2.0, *TWISTS[2:], b=b), needed_length(TWISTS[1]), "link b"),
-        (lambda c: mavroidis_roth(1.0, *TWISTS[:2], 1.1, 1.2, 0.3, 0.4, c=c), needed_length(TWISTS[1]), "link c"),
-        (lambda t: back_to_back(1.0, *TWISTS[:3], delta=t), matching_twist(*TWISTS[:3]), "tan"),
-        (lambda t: extended_myard(1.0, *TWISTS[:2], 0.0, alpha34=t), np.pi - 2 * TWISTS[0], "alpha34"),
+        (
+            lambda b: syncopated_goldberg(1.0, *TWISTS[:3], b=b),
+            needed_length(TWISTS[1]),
+            "link b",
+        ),
+        (
+            lambda b: waldron_collinear(1.0, *TWISTS[:2], 2.0, *TWISTS[2:], b=b),
+            needed_length(TWISTS[1]),
+            "link b",
+        ),
+        (
+            lambda c: mavroidis_roth(1.0, *TWISTS[:2], 1.1, 1.2, 0.3, 0.4, c=c),
+            needed_length(TWISTS[1]),
+            "link c",
+        ),
+        (
+            lambda t: back_to_back(1.0, *TWISTS[:3], delta=t),
+            matching_twist(*TWISTS[:3]),
+            "tan",
+        ),
+        (
+            lambda t: extended_myard(1.0, *TWISTS[:2], 0.0, alpha34=t),
+            np.pi - 2 * TWISTS[0],
+            "alpha34",
+        ),
         (lambda a: trihedral(1.0, 0.7, 1.1, 0.9, 0.8, a), 1.55**0.5, "a61"),
-        (lambda r: wohlhart_hybrid(1.0, 0.8, 1.25, -0.9, 1.3, 1.9, 0.4, 0.3, r), -0.7, "R6"),
-        (lambda a: dietmaier(*DIETMAIER, a34=a), dietmaier(*DIETMAIER).lengths[2], "a34"),
-        (lambda a: dietmaier(*DIETMAIER, a61=a), dietmaier(*DIETMAIER).lengths[5], "link a61"),
+        (
+            lambda r: wohlhart_hybrid(1.0, 0.8, 1.25, -0.9, 1.3, 1.9, 0.4, 0.3, r),
+            -0.7,
+            "R6",
+        ),
+        (
+            lambda a: dietmaier(*DIETMAIER, a34=a),
+            dietmaier(*DIETMAIER).lengths[2],
+            "a34",
+        ),
+        (
+            lambda a: dietmaier(*DIETMAIER, a61=a),
+            dietmaier(*DIETMAIER).lengths[5],
+            "link a61",
+        ),
         (
             lambda t: plane_symmetric_octahedral(*OCTAHEDRON, alpha56=t),
             plane_symmetric_octahedral(*OCTAHEDRON).twists[4],

@@ -1,6 +1,12 @@
 import pytest
 
-from linkages.families.four_bar import form_patterns, four_bar, kite, parallelogram, rhombus
+from linkages.families.four_bar import (
+    form_patterns,
+    four_bar,
+    kite,
+    parallelogram,
+    rhombus,
+)
 from linkages.loop import GeometryError
 
 
@@ -22,4 +28,7 @@ def test_a_length_of_zero_is_refused():
 
 def test_a_four_bar_without_equal_links_has_no_named_forms():
     assert form_patterns(1.0, 2.4, 2.0, 2.7) == ()
-    assert [p.name for p in form_patterns(1.0, 1.0, 2.0, 2.0)] == ["folded form (joints 2,4 inactive)", "kite form"]
+    assert [p.name for p in form_patterns(1.0, 1.0, 2.0, 2.0)] == [
+        "folded form (joints 2,4 inactive)",
+        "kite form",
+    ]

@@ -14,7 +14,10 @@ TWISTS = dict(zip(("alpha", "beta", "gamma"), (1.15, 0.87, 0.49), strict=True))
 def test_a_length_off_by_a_thousandth_is_refused_by_name(construct, length, twist):
     right = math.sin(TWISTS[twist]) / math.sin(TWISTS["alpha"])
     construct(1.0, **TWISTS, **{length: right})
-    with pytest.raises(GeometryError, match=rf"link {length}/{twist}: sin\(twist\)/length.*off by 0\.00091"):
+    with pytest.raises(
+        GeometryError,
+        match=rf"link {length}/{twist}: sin\(twist\)/length.*off by 0\.00091",
+    ):
         construct(1.0, **TWISTS, **{length: right * 1.001})
 
 
@@ -26,7 +29,10 @@ def test_a_subtraction_that_leaves_no_length_is_refused():
 def test_symbols_give_the_composite_link_exactly():
     a, alpha, beta, gamma = sympy.symbols("a alpha beta gamma", positive=True)
     loop = goldberg(a, alpha, beta, gamma)
-    assert sympy.simplify(loop.lengths[1] - a * (1 + sympy.sin(gamma) / sympy.sin(alpha))) == 0
+    assert (
+        sympy.simplify(loop.lengths[1] - a * (1 + sympy.sin(gamma) / sympy.sin(alpha)))
+        == 0
+    )
     assert loop.twists[1] == alpha + gamma
 
 
@@ -35,7 +41,9 @@ def test_joint_angles_keep_the_published_sums(reference_cases, trace_form):
 
     for case in reference_cases:
         if case["linkage"] in ("goldberg-5r", "subtractive-goldberg-5r"):
-            theta = trace_form(entry(case["linkage"]).build(), case["forms"][0]["theta"])
+            theta = trace_form(
+                entry(case["linkage"]).build(), case["forms"][0]["theta"]
+            )
             half = (math.pi if case["linkage"] == "goldberg-5r" else 0.0) / 2
             for joints in ([0, 3], [1, 2, 4]):
                 gap = theta[:, joints].sum(axis=1) / 2 - half

@@ -1,4 +1,5 @@
-"""Tori: the same surface by two circles, and the 5R as the generalized Goldberg linkage."""
+"""Tori: the same surface by two circles, and the 5R as the generalized Goldberg
+linkage."""
 
 import itertools
 
@@ -14,8 +15,11 @@ FIVE_BARS = [entry for entry in ENTRIES if entry.name.startswith("torus-5r")]
 EXAMPLE = {"r1": 1.5, "s1": 0.9, "chi1": 0.8, "theta1": 0.25}
 
 
-def surface(r: float, s: float, chi: float, theta: float, phi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance from the axis and height of the circle's points, equation (2.2) of Bil and Budniak (2015)."""
+def surface(
+    r: float, s: float, chi: float, theta: float, phi: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Distance from the axis and height of the circle's points, equation (2.2) of Bil
+    and Budniak (2015)."""
     x = s * np.cos(phi) * np.cos(theta) + r
     y = s * np.sin(phi) * np.cos(chi) + s * np.cos(phi) * np.sin(theta) * np.sin(chi)
     z = s * np.sin(phi) * np.sin(chi) - s * np.cos(phi) * np.sin(theta) * np.cos(chi)
@@ -23,7 +27,8 @@ def surface(r: float, s: float, chi: float, theta: float, phi: np.ndarray) -> tu
 
 
 def torus_angles(torus, radius):
-    """chi and theta (rad) of the circle of a torus link whose centre is at ``radius``."""
+    """chi and theta (rad) of the circle of a torus link whose centre is at
+    ``radius``."""
     sine, cosine = np.sin(torus.link.twist), np.cos(torus.link.twist)
     theta = np.arcsin(torus.shift * sine**2 / radius)
     return np.arctan2(torus.link.length * sine / radius, cosine), theta
@@ -56,7 +61,8 @@ def test_four_bar_of_tori_is_a_bennett_linkage():
 
 
 def axes_turned(loop: Loop, which: tuple[bool, ...]) -> Loop:
-    """The same linkage with these axes pointing the other way, lengths made positive, twists in (-pi, pi]."""
+    """The same linkage with these axes pointing the other way, lengths made positive,
+    twists in (-pi, pi]."""
     lengths, twists, offsets = (x.copy() for x in loop.arrays)
     for i in np.flatnonzero(which):
         offsets[i] *= -1
@@ -68,7 +74,8 @@ def axes_turned(loop: Loop, which: tuple[bool, ...]) -> Loop:
 
 
 def as_generalized_goldberg(loop: Loop) -> float:
-    """Smallest difference between ``loop`` and a generalized Goldberg 5R with its links 12, 45, 51."""
+    """Smallest difference between ``loop`` and a generalized Goldberg 5R with its links
+    12, 45, 51."""
     best = np.inf
     for which in itertools.product((False, True), repeat=5):
         read = axes_turned(loop.relabelled(3), which)
@@ -80,10 +87,14 @@ def as_generalized_goldberg(loop: Loop) -> float:
             cosine = (c[3] * c[4] - np.cos(joined)) / (s[3] * s[4])
             kink = sign * np.arccos(np.clip(cosine, -1, 1))
             try:
-                model = generalized_goldberg(lengths[4], twists[4], twists[0], twists[3], kink)
+                model = generalized_goldberg(
+                    lengths[4], twists[4], twists[0], twists[3], kink
+                )
             except GeometryError:
                 continue
-            here = axes_turned(Loop(model.lengths, model.twists, model.offsets), (False,) * 5).arrays
+            here = axes_turned(
+                Loop(model.lengths, model.twists, model.offsets), (False,) * 5
+            ).arrays
             gap = max(
                 np.abs(here[0] - lengths).max(),
                 np.abs(np.sin((here[1] - twists) / 2)).max(),
@@ -99,7 +110,9 @@ def test_five_bar_of_tori_is_the_generalized_goldberg_linkage(entry):
     for values in [entry.defaults, *(entry.draw(rng) for _ in range(8))]:
         loop = entry.build(**values)
         extent = np.abs(np.concatenate(loop.arrays)).max()
-        assert as_generalized_goldberg(loop) < 1e-9 * extent  # arccos and 1/sin^2 of the composite twist amplify
+        assert (
+            as_generalized_goldberg(loop) < 1e-9 * extent
+        )  # arccos and 1/sin^2 of the composite twist amplify
 
 
 def test_there_are_sixteen_variants():
@@ -111,7 +124,9 @@ def test_plain_bennett_loops_give_the_goldberg_linkage():
     r1, s1 = 1.7 * np.sin([alpha, beta])
     ratio = np.sin(np.radians(55.0)) / np.sin(beta)
     loop = torus_5r(r1, s1, alpha, 0.0, ratio, 0.0)
-    assert sorted(np.abs(loop.arrays[0])) == pytest.approx(sorted([s1, s1, r1, s1 * ratio, r1 + s1 * ratio]), abs=1e-12)
+    assert sorted(np.abs(loop.arrays[0])) == pytest.approx(
+        sorted([s1, s1, r1, s1 * ratio, r1 + s1 * ratio]), abs=1e-12
+    )
     assert np.abs(loop.arrays[2]).max() < 1e-12
 
 

@@ -18,7 +18,13 @@ def test_a_twist_in_degrees_is_refused():
         wohlhart_symmetric(1.0, 90.0)
 
 
-def test_the_input_angle_of_the_right_angled_mechanism_stays_within_120_degrees(trace_form, reference_cases):
-    case = next(c for c in reference_cases if c["linkage"] == "wohlhart-symmetric" and not c["parameters"])
+def test_the_input_angle_of_the_right_angled_mechanism_stays_within_120_degrees(
+    trace_form, reference_cases
+):
+    case = next(
+        c
+        for c in reference_cases
+        if c["linkage"] == "wohlhart-symmetric" and not c["parameters"]
+    )
     theta = trace_form(entry("wohlhart-symmetric").build(), case["forms"][0]["theta"])
     assert math.degrees(abs(theta).max()) == pytest.approx(120.0, abs=0.2)

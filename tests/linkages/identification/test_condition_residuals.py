@@ -1,4 +1,5 @@
-"""The conditions that the catalogue states hold for its members, and tell by how much a table breaks them."""
+"""The conditions that the catalogue states hold for its members, and tell by how much a
+table breaks them."""
 
 import numpy as np
 import pytest
@@ -12,13 +13,17 @@ from linkages.identification.identify import identify
 @pytest.mark.parametrize("name", list(catalogue()))
 def test_conditions_written_in_symbols_hold_for_the_default_member(name):
     found = entry(name)
-    residuals = [condition_residual(text, table(found.build())) for text in found.conditions]
+    residuals = [
+        condition_residual(text, table(found.build())) for text in found.conditions
+    ]
     assert all(size is None or size < 1e-12 for size in residuals)
 
 
 def test_a_third_of_the_conditions_and_more_are_equations_in_the_numbers_of_the_table():
     sizes = [
-        condition_residual(text, table(found.build())) for found in catalogue().values() for text in found.conditions
+        condition_residual(text, table(found.build()))
+        for found in catalogue().values()
+        for text in found.conditions
     ]
     assert sum(size is not None for size in sizes) >= len(sizes) // 3
 
@@ -42,13 +47,19 @@ def test_a_third_of_the_conditions_and_more_are_equations_in_the_numbers_of_the_
 )
 def test_a_condition_is_evaluated(condition, size):
     values = np.array([[1.0, 2, 3, 4], [0.3, 0, -0.1, 0], [0, 0.7, 0, 0]])
-    assert condition_residual(condition, values) == (None if size is None else pytest.approx(size))
+    assert condition_residual(condition, values) == (
+        None if size is None else pytest.approx(size)
+    )
 
 
 def test_a_broken_condition_is_told_with_its_residual():
     values = table(entry("dietmaier").build())
     values[2, 1] *= 1.001  # R2 = R6
-    match = identify(as_loop(values), entries=[entry("dietmaier")], locking=False).nearest[0]
+    match = identify(
+        as_loop(values), entries=[entry("dietmaier")], locking=False
+    ).nearest[0]
     sizes = dict(match.conditions)
-    assert sizes["R1 = R4 = 0, R2 = R6, R3 = R5"] == pytest.approx(3.1e-4 / as_loop(values).characteristic_length)
+    assert sizes["R1 = R4 = 0, R2 = R6, R3 = R5"] == pytest.approx(
+        3.1e-4 / as_loop(values).characteristic_length
+    )
     assert sizes["a23 = a56, alpha23 = alpha56"] < 1e-15

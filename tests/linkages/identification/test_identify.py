@@ -1,4 +1,5 @@
-"""Recognition: every reference case is named whichever way it is read, and refused when it is a little off."""
+"""Recognition: every reference case is named whichever way it is read, and refused when
+it is a little off."""
 
 import json
 from functools import cache
@@ -21,7 +22,9 @@ from linkages.identification.equivalence import (
 from linkages.identification.identify import ALIKE, identify
 from linkages.identification.recovery import HINTS, SCANS, plain_parameters
 
-CASES = json.loads((Path(__file__).parents[3] / "data" / "catalogue_cases.json").read_text())
+CASES = json.loads(
+    (Path(__file__).parents[3] / "data" / "catalogue_cases.json").read_text()
+)
 NAMES = [case["case"] for case in CASES]
 
 
@@ -30,9 +33,12 @@ def table_of(case):
 
 
 def disguised(values, rng):
-    """The same linkage, or its mirror image, read another way, with axes and links reversed, in another unit."""
+    """The same linkage, or its mirror image, read another way, with axes and links
+    reversed, in another unit."""
     n = values.shape[1]
-    reading = Reading(int(rng.integers(n)), bool(rng.integers(2)), bool(rng.integers(2)))
+    reading = Reading(
+        int(rng.integers(n)), bool(rng.integers(2)), bool(rng.integers(2))
+    )
     signs = Signs(rng.choice([-1.0, 1.0], n), rng.choice([-1.0, 1.0], n))
     unit = np.exp(rng.uniform(-3, 3))
     return as_loop(signs.of(reading.of(values)) * [[unit], [1.0], [unit]])
@@ -41,7 +47,9 @@ def disguised(values, rng):
 @cache
 def identified(number):
     """What a case is found to be in disguise."""
-    return identify(disguised(table_of(CASES[number]), np.random.default_rng(number)), locking=False)
+    return identify(
+        disguised(table_of(CASES[number]), np.random.default_rng(number)), locking=False
+    )
 
 
 @pytest.mark.parametrize("number", range(84), ids=NAMES)
@@ -51,8 +59,14 @@ def test_a_disguised_case_is_named_and_its_member_has_its_numbers(number):
     assert CASES[number]["entry"] in found.names
     for match in found.matches:
         member = match.entry.build(**match.parameters)
-        again = compare(match.reading.of(table(loop)), table(member)[None], loop.characteristic_length)
-        assert again.exact[0] < 1e-8  # the tolerance; parameters that it reports make the table
+        again = compare(
+            match.reading.of(table(loop)),
+            table(member)[None],
+            loop.characteristic_length,
+        )
+        assert (
+            again.exact[0] < 1e-8
+        )  # the tolerance; parameters that it reports make the table
     freedoms = [match.freedom for match in found.matches]
     assert freedoms == sorted(freedoms)
 
@@ -70,17 +84,30 @@ def test_a_case_off_by_1e_4_is_refused_and_the_nearest_is_what_it_was(number):
     near = [match for match in found.nearest if match.distance < 10 * ALIKE * 1e-4]
     assert near[0].entry.name in identified(number).names
     named = {match.entry.name for match in near}
-    # the linkages of tori are the generalized Goldberg 5R in more parameters than it has
-    assert CASES[number]["entry"] in named or CASES[number]["entry"].startswith("torus-5r")
+    # the linkages of tori are the generalized Goldberg 5R in more parameters than it
+    # has
+    assert CASES[number]["entry"] in named or CASES[number]["entry"].startswith(
+        "torus-5r"
+    )
 
 
 def test_a_special_linkage_is_named_before_the_general_ones():
-    found = identify(entry("special-double-subtractive-goldberg").build(), locking=False)
-    assert found.names[:2] == ("special-double-subtractive-goldberg", "double-subtractive-goldberg")
-    assert found.matches[0].parameters == pytest.approx(entry("special-double-subtractive-goldberg").defaults)
+    found = identify(
+        entry("special-double-subtractive-goldberg").build(), locking=False
+    )
+    assert found.names[:2] == (
+        "special-double-subtractive-goldberg",
+        "double-subtractive-goldberg",
+    )
+    assert found.matches[0].parameters == pytest.approx(
+        entry("special-double-subtractive-goldberg").defaults
+    )
 
 
-@pytest.mark.parametrize("name", ["altmann", "mavroidis-roth-opposite", "dietmaier", "waldron-hybrid", "yu-baker"])
+@pytest.mark.parametrize(
+    "name",
+    ["altmann", "mavroidis-roth-opposite", "dietmaier", "waldron-hybrid", "yu-baker"],
+)
 def test_a_table_as_built_gives_its_parameters_back(name):
     found = identify(entry(name).build(), locking=False, entries=[entry(name)])
     assert found.matches[0].parameters == pytest.approx(entry(name).defaults)
@@ -91,7 +118,9 @@ def test_type_iii_is_a_5r_with_a_locked_joint(kind):
     type_iii = entry(f"{kind}-goldberg-type-iii")
     (locked,) = identify(type_iii.build(), entries=[type_iii]).locked
     assert (locked.joint, locked.angle) == (3, 0.0 if kind == "mixed-double" else np.pi)
-    assert locked.matches[0].entry.name == ("goldberg-5r" if kind == "mixed-double" else "subtractive-goldberg-5r")
+    assert locked.matches[0].entry.name == (
+        "goldberg-5r" if kind == "mixed-double" else "subtractive-goldberg-5r"
+    )
 
 
 def test_no_joint_of_a_wohlhart_double_goldberg_can_be_locked_to_a_5r():
@@ -101,7 +130,9 @@ def test_no_joint_of_a_wohlhart_double_goldberg_can_be_locked_to_a_5r():
 def test_residuals_stand_at_the_number_that_is_off():
     values = table(entry("bennett").build())
     values[0, 3] *= 1.001
-    match = identify(as_loop(values), entries=[entry("bennett")], locking=False).nearest[0]
+    match = identify(
+        as_loop(values), entries=[entry("bennett")], locking=False
+    ).nearest[0]
     assert abs(match.residuals[0, 3]) == abs(match.residuals[0, 1:]).max() > 1e-4
 
 
@@ -116,7 +147,9 @@ def test_a_reading_is_undone(reading):
     assert np.array_equal(reading.undone(reading.of(values)), values)
     loop = as_loop(values).reversed() if reading.is_reversed else as_loop(values)
     loop = loop.relabelled(reading.shift)
-    assert np.array_equal(reading.of(values), table(loop.mirrored() if reading.is_mirrored else loop))
+    assert np.array_equal(
+        reading.of(values), table(loop.mirrored() if reading.is_mirrored else loop)
+    )
 
 
 def test_reversed_axes_and_links_leave_no_distance_and_are_found_again():
@@ -134,9 +167,12 @@ def test_reversed_axes_and_links_turn_a_closed_loop_into_a_closed_loop():
     theta = np.array(case["theta"])
     links, axes = np.array([1, -1, -1, 1, 1, -1.0]), np.array([-1, 1, 1, -1, 1, 1.0])
     moved = as_loop(Signs(links, axes).of(table_of(case)))
-    turned = theta + np.where(links * np.roll(links, 1) < 0, np.pi, 0)  # links before and after the joint
+    turned = theta + np.where(
+        links * np.roll(links, 1) < 0, np.pi, 0
+    )  # links before and after the joint
     gaps = [
-        np.abs(moved.frames(sign * axes * turned)[-1] - np.eye(4)).max() for sign in (1, -1)
+        np.abs(moved.frames(sign * axes * turned)[-1] - np.eye(4)).max()
+        for sign in (1, -1)
     ]  # a half turn about x changes all offsets and angles
     assert min(gaps) < 1e-12
 

@@ -8,8 +8,17 @@ from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
-# near this twist of a plane-symmetric Bricard linkage a second, small motion appears beside the large one
-SMALL = {"a12": 0.483, "a23": 1.966, "a34": 0.890, "alpha23": 1.213, "alpha34": 1.023, "R2": 0.043, "R3": -0.267}
+# near this twist of a plane-symmetric Bricard linkage a second, small motion appears
+# beside the large one
+SMALL = {
+    "a12": 0.483,
+    "a23": 1.966,
+    "a34": 0.890,
+    "alpha23": 1.213,
+    "alpha34": 1.023,
+    "R2": 0.043,
+    "R3": -0.267,
+}
 
 
 def small_and_large(twist):
@@ -21,7 +30,15 @@ def extents(atlas):
 
 
 @pytest.mark.parametrize(
-    "name", ["bennett", "parallelogram", "goldberg-5r", "serial-goldberg-6r", "waldron-hybrid", "bricard-line-symmetric"]
+    "name",
+    [
+        "bennett",
+        "parallelogram",
+        "goldberg-5r",
+        "serial-goldberg-6r",
+        "waldron-hybrid",
+        "bricard-line-symmetric",
+    ],
 )
 def test_numbers_alone_prove_many_linkages_complete(name):
     atlas = explore(LoopClosure(entry(name).build()))
@@ -29,7 +46,14 @@ def test_numbers_alone_prove_many_linkages_complete(name):
     assert atlas.completeness.statement.startswith("no motion is missing")
 
 
-@pytest.mark.parametrize("name", ["special-double-subtractive-goldberg", "wohlhart-hybrid", "bricard-plane-symmetric"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "special-double-subtractive-goldberg",
+        "wohlhart-hybrid",
+        "bricard-plane-symmetric",
+    ],
+)
 def test_following_proves_what_numbers_leave_open(name):
     problem = LoopClosure(entry(name).build())
     counted, followed = explore(problem), explore(problem, prove=True)
@@ -40,10 +64,18 @@ def test_following_proves_what_numbers_leave_open(name):
 
 
 def test_sheets_that_run_to_infinity_leave_the_statement_at_certified():
-    assert explore(LoopClosure(entry("wohlhart-symmetric").build()), prove=True).completeness.level == "certified"
+    assert (
+        explore(
+            LoopClosure(entry("wohlhart-symmetric").build()), prove=True
+        ).completeness.level
+        == "certified"
+    )
 
 
-@pytest.mark.parametrize("name", ["parallelogram", "special-double-subtractive-goldberg", "bricard-line-symmetric"])
+@pytest.mark.parametrize(
+    "name",
+    ["parallelogram", "special-double-subtractive-goldberg", "bricard-line-symmetric"],
+)
 def test_no_list_with_a_motion_left_out_is_called_complete(name):
     problem = LoopClosure(entry(name).build())
     branches = [form.branch for form in explore(problem).forms]
@@ -53,7 +85,9 @@ def test_no_list_with_a_motion_left_out_is_called_complete(name):
         assert audit(branches[:i] + branches[i + 1 :], np.inf).level == "estimated"
 
 
-@pytest.mark.parametrize("twist", [2.264, 2.2643, 2.264327])  # the small motion turns by 0.14, 0.039 and 0.0023 rad
+@pytest.mark.parametrize(
+    "twist", [2.264, 2.2643, 2.264327]
+)  # the small motion turns by 0.14, 0.039 and 0.0023 rad
 @pytest.mark.parametrize("seed", range(3))
 def test_a_motion_smaller_than_the_gap_between_slices_is_found(twist, seed):
     atlas = explore(small_and_large(twist), starts=1, seed=seed, prove=True)
@@ -64,10 +98,14 @@ def test_a_motion_smaller_than_the_gap_between_slices_is_found(twist, seed):
 
 @pytest.mark.parametrize("twist", [2.2643, 2.264327])
 @pytest.mark.parametrize("seed", range(3))
-def test_a_small_motion_that_no_slice_passes_is_not_denied_and_is_reached_from_the_audit(twist, seed):
+def test_a_small_motion_that_no_slice_passes_is_not_denied_and_is_reached_from_the_audit(
+    twist, seed
+):
     problem = small_and_large(twist)
     forms = explore(problem).forms
-    small, large = (pick(forms, key=lambda form: form.branch.length).branch for pick in (min, max))
+    small, large = (
+        pick(forms, key=lambda form: form.branch.length).branch for pick in (min, max)
+    )
     audit = problem.seeds(np.random.default_rng(seed), 1).audit
     blind = audit([large], np.inf)
     assert blind.level != "proved"
@@ -79,8 +117,13 @@ def test_a_small_motion_that_no_slice_passes_is_not_denied_and_is_reached_from_t
 
 @pytest.mark.parametrize("missing", [1e-2, 1e-4, 1e-5])
 def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
-    # the longest bar is as long as the others together, but for a little: the motion is an oval of its square root
-    atlas = explore(LoopClosure(entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)), starts=1, prove=True)
+    # the longest bar is as long as the others together, but for a little: the motion is
+    # an oval of its square root
+    atlas = explore(
+        LoopClosure(entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)),
+        starts=1,
+        prove=True,
+    )
     assert len(atlas.forms) == 1
     assert 3 * np.sqrt(missing) < extents(atlas)[0] < 5 * np.sqrt(missing)
     assert atlas.completeness.level == "proved"
@@ -88,7 +131,12 @@ def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
 
 def test_a_loop_that_cannot_move_is_proved_not_to():
     rng = np.random.default_rng(3)
-    loop = Loop(rng.uniform(0.5, 1, 6), rng.uniform(0.5, 2.5, 6), rng.uniform(-0.3, 0.3, 6), "general 6R")
+    loop = Loop(
+        rng.uniform(0.5, 1, 6),
+        rng.uniform(0.5, 2.5, 6),
+        rng.uniform(-0.3, 0.3, 6),
+        "general 6R",
+    )
     atlas = explore(LoopClosure(loop))
     assert not atlas.forms
     assert atlas.completeness.level == "proved"
@@ -105,12 +153,22 @@ def test_surfaces_and_long_loops_are_estimated():
 def test_little_time_ends_at_numbers_alone():
     problem = LoopClosure(entry("bricard-plane-symmetric").build())
     branches = [form.branch for form in explore(problem).forms]
-    assert problem.seeds(np.random.default_rng(0), 10).audit(branches, 1e-6).level == "certified"
+    assert (
+        problem.seeds(np.random.default_rng(0), 10).audit(branches, 1e-6).level
+        == "certified"
+    )
 
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize(
-    "name", ["kite", "goldberg-5r", "wohlhart-double-goldberg", "bricard-plane-symmetric", "altmann"]
+    "name",
+    [
+        "kite",
+        "goldberg-5r",
+        "wohlhart-double-goldberg",
+        "bricard-plane-symmetric",
+        "altmann",
+    ],
 )
 def test_random_members_are_proved_and_other_seeds_find_the_same(name, seed):
     found = entry(name)

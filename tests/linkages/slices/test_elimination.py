@@ -1,4 +1,5 @@
-"""Slices against starts at random, closed forms, and the properties that any complete list must have."""
+"""Slices against starts at random, closed forms, and the properties that any complete
+list must have."""
 
 import numpy as np
 import pytest
@@ -23,17 +24,54 @@ DSG = Loop(
 )
 DSG_FORMS = np.array(
     [
-        [-1.370502168810, 1.590323240898, 1.007011074849, 1.551269412690, -1.771090484778, -1.007011074849],
-        [-1.090293433401, 2.596676221562, 1.456603570217, -0.798905611299, 2.888064043664, 1.456603570217],
-        [2.630223952232, -1.032173240761, 1.383698921515, 2.901155374489, -0.761241818504, 1.383698921515],
-        [-1.636469749097, 1.325455779904, -3.141592653589, -1.505122904492, 1.816136873685, -3.141592653589],
+        [
+            -1.370502168810,
+            1.590323240898,
+            1.007011074849,
+            1.551269412690,
+            -1.771090484778,
+            -1.007011074849,
+        ],
+        [
+            -1.090293433401,
+            2.596676221562,
+            1.456603570217,
+            -0.798905611299,
+            2.888064043664,
+            1.456603570217,
+        ],
+        [
+            2.630223952232,
+            -1.032173240761,
+            1.383698921515,
+            2.901155374489,
+            -0.761241818504,
+            1.383698921515,
+        ],
+        [
+            -1.636469749097,
+            1.325455779904,
+            -3.141592653589,
+            -1.505122904492,
+            1.816136873685,
+            -3.141592653589,
+        ],
     ]
-)  # fmt: skip
-WOHLHART = Loop((1.0,) * 6, (np.pi / 2, -np.pi / 2) * 3, (0,) * 6, "sixfold, right angles")
+)
+WOHLHART = Loop(
+    (1.0,) * 6, (np.pi / 2, -np.pi / 2) * 3, (0,) * 6, "sixfold, right angles"
+)
 
 
 def trihedral():
-    a = (1.0, 0.8, 1.1, 0.7, 0.5, np.sqrt(1.0 - 0.64 + 1.21 - 0.49 + 0.25))  # alternating squares sum to 0
+    a = (
+        1.0,
+        0.8,
+        1.1,
+        0.7,
+        0.5,
+        np.sqrt(1.0 - 0.64 + 1.21 - 0.49 + 0.25),
+    )  # alternating squares sum to 0
     return Loop(a, (np.pi / 2, -np.pi / 2) * 3, (0,) * 6, "Bricard trihedral")
 
 
@@ -42,7 +80,12 @@ def octahedral(twists=(0.7, 1.1, 1.4), offsets=(1.0, 0.6, -1.3)):
 
 
 def line_symmetric():
-    return Loop((0.8, 1.1, 0.5) * 2, (1.0, 0.6, 1.3) * 2, (0.3, -0.2, 0.4) * 2, "line-symmetric Bricard")
+    return Loop(
+        (0.8, 1.1, 0.5) * 2,
+        (1.0, 0.6, 1.3) * 2,
+        (0.3, -0.2, 0.4) * 2,
+        "line-symmetric Bricard",
+    )
 
 
 def planar(*lengths):
@@ -71,7 +114,8 @@ def closure(loop, theta):
 
 
 def found_from_random_starts(loop, joint, angle, rng, starts=150):
-    """Distinct configurations with the joint at ``angle`` that damped Gauss-Newton reaches."""
+    """Distinct configurations with the joint at ``angle`` that damped Gauss-Newton
+    reaches."""
     theta = rng.uniform(-np.pi, np.pi, (starts, loop.n))
     theta[:, joint - 1] = angle
     free = np.delete(np.arange(loop.n), joint - 1)
@@ -86,7 +130,9 @@ def found_from_random_starts(loop, joint, angle, rng, starts=150):
         normal = np.swapaxes(screws, 1, 2) @ screws
         damping = 1e-14 + 1e-2 * np.minimum(1, np.sum(error**2, axis=1))
         normal += damping[:, None, None] * np.eye(loop.n - 1)
-        theta[:, free] -= np.linalg.solve(normal, np.swapaxes(screws, 1, 2) @ error[..., None])[..., 0]
+        theta[:, free] -= np.linalg.solve(
+            normal, np.swapaxes(screws, 1, 2) @ error[..., None]
+        )[..., 0]
     distinct: list[np.ndarray] = []
     for t in theta[closure(loop, theta) < 1e-10]:
         if not distinct or distance(distinct, t).min() > 1e-4:
@@ -127,8 +173,12 @@ def test_every_configuration_closes_and_has_the_angle_of_its_slice(loop):
     for joint in range(1, loop.n + 1):
         result = slice_configurations(loop, joint, angles)
         assert np.all(closure(loop, result.configurations) < 1e-12)
-        np.testing.assert_allclose(closure(loop, result.configurations), result.closure, atol=1e-15)
-        np.testing.assert_array_equal(result.configurations[:, joint - 1], angles[result.index])
+        np.testing.assert_allclose(
+            closure(loop, result.configurations), result.closure, atol=1e-15
+        )
+        np.testing.assert_array_equal(
+            result.configurations[:, joint - 1], angles[result.index]
+        )
         assert np.all(result.configurations > -np.pi)
         assert np.all(result.configurations <= np.pi)
 
@@ -137,7 +187,9 @@ def test_every_configuration_closes_and_has_the_angle_of_its_slice(loop):
 def test_a_rigid_loop_closed_at_a_random_configuration_gives_that_one_back(n):
     rng = np.random.default_rng(n)
     for _ in range(20):
-        loop, theta = loop_from_axes(rng.uniform(-1, 1, (n, 3)), rng.normal(size=(n, 3)))
+        loop, theta = loop_from_axes(
+            rng.uniform(-1, 1, (n, 3)), rng.normal(size=(n, 3))
+        )
         for joint in range(1, n + 1):
             result = slice_configurations(loop, joint, theta[joint - 1])
             assert len(result.configurations) == result.n_complex[0] == 1
@@ -147,7 +199,9 @@ def test_a_rigid_loop_closed_at_a_random_configuration_gives_that_one_back(n):
 def test_a_random_6r_loop_has_no_configuration():
     rng = np.random.default_rng(3)
     for _ in range(10):
-        loop = Loop(rng.uniform(0.2, 2, 6), rng.uniform(-3, 3, 6), rng.uniform(-1, 1, 6))
+        loop = Loop(
+            rng.uniform(0.2, 2, 6), rng.uniform(-3, 3, 6), rng.uniform(-1, 1, 6)
+        )
         result = slice_configurations(loop, 2, rng.uniform(-3, 3, 10))
         assert result.is_complete
         assert len(result.configurations) == 0
@@ -168,7 +222,9 @@ def test_a_known_configuration_is_in_its_slice(joint):
 
 
 def test_a_slice_with_a_whole_motion_in_it_says_so():
-    result = slice_configurations(DSG, 3, [1.0, np.pi])  # joints 3 and 6 rest in its Bennett form
+    result = slice_configurations(
+        DSG, 3, [1.0, np.pi]
+    )  # joints 3 and 6 rest in its Bennett form
     np.testing.assert_array_equal(result.degenerate, [False, True])
     np.testing.assert_array_equal(result.n_complex, [4, -1])
     assert "whole motion" in result.reason
@@ -180,7 +236,9 @@ def test_the_folded_rhombus_turns_about_two_axes_in_one_line():
     np.testing.assert_array_equal(result.degenerate, [False, True])
 
 
-@pytest.mark.parametrize("loop", [planar(1, 1.2, 1.1, 0.9, 1.3), planar(1, 1.2, 1.1, 0.9, 1.3, 1.0)])
+@pytest.mark.parametrize(
+    "loop", [planar(1, 1.2, 1.1, 0.9, 1.3), planar(1, 1.2, 1.1, 0.9, 1.3, 1.0)]
+)
 def test_a_planar_chain_of_mobility_two_or_more_is_never_called_complete(loop):
     result = slice_configurations(loop, 1, [0.3, 1.0])
     assert np.all(result.degenerate)
@@ -189,10 +247,15 @@ def test_a_planar_chain_of_mobility_two_or_more_is_never_called_complete(loop):
 
 
 def test_a_tangential_slice_gives_the_dead_point_once():
-    reach = np.arccos((1 + 4 - 1.5**2) / 4)  # the input angle of a rocker with its other links in line
+    reach = np.arccos(
+        (1 + 4 - 1.5**2) / 4
+    )  # the input angle of a rocker with its other links in line
     loop = planar(1, 2, 0.7, 0.8)
     inner = np.pi - reach
-    assert [len(slice_configurations(loop, 2, x).index) for x in (inner + 1e-3, inner, inner - 1e-3)] == [
+    assert [
+        len(slice_configurations(loop, 2, x).index)
+        for x in (inner + 1e-3, inner, inner - 1e-3)
+    ] == [
         2,
         1,
         0,
@@ -203,13 +266,17 @@ def test_a_tangential_slice_gives_the_dead_point_once():
 def test_the_unit_of_length_does_not_matter(factor):
     loop, angles = line_symmetric(), np.linspace(-3, 3, 20)
     for joint in (1, 3):
-        a, b = (slice_configurations(x, joint, angles) for x in (loop, loop.scaled(factor)))
+        a, b = (
+            slice_configurations(x, joint, angles) for x in (loop, loop.scaled(factor))
+        )
         np.testing.assert_array_equal(a.index, b.index)
         for i in range(len(angles)):
             assert all(distance(b.at(i), theta).min() < 1e-9 for theta in a.at(i))
 
 
-@pytest.mark.parametrize("loop", [DSG, trihedral(), line_symmetric()], ids=lambda loop: loop.name)
+@pytest.mark.parametrize(
+    "loop", [DSG, trihedral(), line_symmetric()], ids=lambda loop: loop.name
+)
 def test_relabelled_reversed_and_mirrored_loops_have_the_same_slices(loop):
     angles = np.linspace(-2.9, 3, 9)
     original = slice_configurations(loop, 2, angles)
@@ -222,7 +289,9 @@ def test_relabelled_reversed_and_mirrored_loops_have_the_same_slices(loop):
         np.testing.assert_array_equal(result.index, original.index)
         np.testing.assert_array_equal(result.n_complex, original.n_complex)
         for i in range(len(angles)):
-            assert all(distance(original.at(i), q).min() < 1e-9 for q in back(result.at(i)))
+            assert all(
+                distance(original.at(i), q).min() < 1e-9 for q in back(result.at(i))
+            )
 
 
 def test_complex_configurations_complete_the_count_of_the_real_ones():
