@@ -1,35 +1,21 @@
-"""The transition map: forms, singular points, and the graphs between them."""
+"""The transition map as data: forms, singular points, surfaces, and what is known."""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from itertools import combinations, pairwise, product
 from typing import Any
 
-import networkx as nx
 import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.monitor import Profile
-from bifurc.problem import Problem, ProblemError
-from bifurc.routes.route import Leg, Route, RouteError, find_route, wrap
-from bifurc.seeding import Completeness
+from bifurc.errors import ProblemError, RouteError
+from bifurc.seeds import Completeness
 from bifurc.singular.locate import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = [
-    "Atlas",
-    "Event",
-    "Form",
-    "Leg",
-    "MeetingPoint",
-    "Route",
-    "RouteError",
-    "Surface",
-    "wrap",
-]
+__all__ = ["Atlas", "Event", "Form", "MeetingPoint", "Surface"]
 
 
 @dataclass(frozen=True)
@@ -173,147 +159,6 @@ class Atlas:
         return replace(self, forms=forms)
 
     # --- graphs ---------------------------------------------------------------------------------------
-
-    @cached_property
-    def arcs(self) -> nx.MultiGraph:
-        """Graph of arcs: nodes are singular points (and ends of open forms), edges the
-        arcs between them.
-
-        Node attributes: ``kind``, ``u``. Edge attributes: see `arc`; ``first`` and
-        ``last`` are the nodes at its ``start`` and ``end``. A closed form that passes
-        no singular point is a loop on a node of its own.
-        """
-        graph = nx.MultiGraph()
-        for point in self.points:
-            graph.add_node(point.name, kind=point.kind.value, u=point.point.u)
-        for index, form in enumerate(self.forms):
-            branch = form.branch
-            stops = [
-                (s, p.name) for p in self.points for i, s in p.passes if i == index
-            ]
-            if branch.closed:
-                ends = [] if stops else [(0.0, "start")]
-            else:
-                near = 1e-6 * max(branch.length, 1.0)
-                ends = [(0.0, "start"), (branch.length, "end")]
-                ends = [
-                    (at, which)
-                    for at, which in ends
-                    if all(abs(s - at) > near for s, _ in stops)
-                ]
-            for at, which in ends:
-                graph.add_node(
-                    f"{form.name} {which}",
-                    kind="regular" if branch.closed else "end",
-                    u=branch(at),
-                )
-                stops.append((at, f"{form.name} {which}"))
-            stops.sort()
-            if branch.closed:
-                stops.append((stops[0][0] + branch.length, stops[0][1]))
-            for (start, first), (end, last) in pairwise(stops):
-                graph.add_edge(first, last, **self.arc(index, start, end, first, last))
-        return graph
-
-    def arc(
-        self, form: int, start: float, end: float, first: Hashable, last: Hashable
-    ) -> dict[str, Any]:
-        """Attributes of the arc of a form (by its index) from arclength ``start`` to
-        ``end`` >= start, which may exceed the length of a closed form: these, its
-        ``length``, and the total turning ``travel`` (n,) of each unknown."""
-        branch = self.forms[form].branch
-        turns = (0.0, branch.length) if branch.closed else (0.0,)
-        travel = np.empty(branch.n)
-        for i in range(branch.n):
-            dead = [
-                e.s + turn
-                for e in self.dead_points
-                if (e.form, e.index) == (form, i)
-                for turn in turns
-            ]
-            stops = np.array([start, *sorted(s for s in dead if start < s < end), end])
-            travel[i] = np.abs(np.diff(branch(stops)[:, i])).sum()
-        return {
-            "form": form,
-            "start": start,
-            "end": end,
-            "length": end - start,
-            "travel": travel,
-            "first": first,
-            "last": last,
-        }
-
-    @cached_property
-    def graph(self) -> nx.MultiGraph:
-        """Graph of forms: nodes are the names of the forms, edges the bifurcations at
-        which two of them meet.
-
-        A bifurcation that one form passes more than once is a loop on that form.
-        Surfaces are nodes as well, with their ``dimension``, joined to the forms that
-        meet them and to the surfaces with which they share a singular point.
-        """
-        graph = nx.MultiGraph()
-        for form in self.forms:
-            length, closed = form.branch.length, form.branch.closed
-            graph.add_node(
-                form.name, component=form.component, length=length, closed=closed
-            )
-        for point in self.bifurcations:
-            passing = sorted(i for i, _ in point.passes)
-            for i, j in sorted(set(combinations(passing, 2))):
-                graph.add_edge(
-                    self.forms[i].name,
-                    self.forms[j].name,
-                    key=point.name,
-                    bifurcation=point.name,
-                )
-        for surface in self.surfaces:
-            graph.add_node(surface.name, dimension=surface.dimension)
-        for point in self.points:
-            met = [self.surfaces[k].name for k in point.surfaces]
-            through = [self.forms[i].name for i in sorted({i for i, _ in point.passes})]
-            for one, other in [*product(through, met), *combinations(met, 2)]:
-                graph.add_edge(one, other, key=point.name, bifurcation=point.name)
-        return graph
-
-    # --- routes ---------------------------------------------------------------------------------------
-
-    def route(
-        self,
-        start: str | np.ndarray,
-        goal: str | np.ndarray,
-        count: int = 400,
-        problem: Problem | None = None,
-    ) -> Route:
-        """The shortest way from ``start`` to ``goal`` along forms and over surfaces,
-        its path about ``count`` points.
-
-        Either is a configuration (n,) on a form or a surface, or the name of one: it
-        stands for the middle of a form's longest arc, or for the chart of a surface
-        farthest from its singular points. Forms and surfaces are left at singular
-        points. A leg over a surface is a geodesic near the shortest chain of charts.
-        The path begins at ``start`` (the point of a name is taken into half a period
-        about zero) and has no jumps. An atlas read from a file needs the ``problem``
-        for legs over surfaces. Raises `RouteError` for an unknown name, a configuration
-        on no form or surface, a component that is only sampled, or where no route
-        exists.
-        """
-        return find_route(self, start, goal, count, problem)
-
-    # --- files ----------------------------------------------------------------------------------------
-
-    def to_dataset(self) -> Any:
-        """This atlas as an `xarray.Dataset`; see `bifurc.files.dataset`."""
-        from bifurc.files.dataset import to_dataset
-
-        return to_dataset(self)
-
-    @staticmethod
-    def from_dataset(dataset: Any) -> Atlas:
-        """The atlas that `to_dataset` stored."""
-        from bifurc.files.dataset import from_dataset
-
-        return from_dataset(dataset)
 
 
 def _find(name: str, names: Sequence[str]) -> int:

@@ -3,38 +3,26 @@ curves."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any
+from enum import IntEnum
 
 import numpy as np
-from scipy.sparse import csc_array, issparse
+from scipy.sparse import sparray
 
-from bifurc.numerics.bordered import as_dense
-from bifurc.numerics.collocation import march_by_collocation
-from bifurc.numerics.corrector import (
-    project_by_least_squares,
-    project_to_sphere_by_newton,
-)
-from bifurc.seeding import Seeds, random_seeds
+from bifurc import torus
+from bifurc.errors import ProblemError
+from bifurc.seeds import Seeds
 
-__all__ = ["FunctionProblem", "March", "MarchStatus", "Problem", "ProblemError"]
+__all__ = ["March", "MarchStatus", "Problem", "ProblemError"]
 
 
-class ProblemError(ValueError):
-    """A problem or a start that cannot be used: names the thing, its value and what is
-    allowed."""
+class MarchStatus(IntEnum):
+    """Why a march of pieces ended. Compiled kernels return the numbers."""
 
-    def __init__(self, name: str, value: object, allowed: str):
-        self.name, self.value, self.allowed = name, value, allowed
-        super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
-
-
-class MarchStatus:
-    """Why a march of pieces ended: all pieces made, no trusted step left, or no
-    solution at the start."""
-
-    RAN, STALLED, OPEN = 0, 1, 2
+    RAN = 0  # all pieces that were asked for are made
+    STALLED = 1  # no trusted step is left
+    OPEN = 2  # there is no solution at the start
 
 
 @dataclass(frozen=True)
@@ -48,20 +36,20 @@ class March:
     at the start alone when the status is OPEN.
     """
 
-    status: int
+    status: MarchStatus
     pieces: np.ndarray
     steps: np.ndarray
     radii: np.ndarray
     residuals: np.ndarray
 
 
-class Problem:
+class Problem(ABC):
     """F: R^n -> R^m with any m; the curves are where rank F' = n - 1 and F = 0.
 
     Redundant equations are normal: a spatial loop has six for five or fewer that are
-    independent. A subclass gives `residuals` and `jacobians` for many points at once,
-    and may replace `hessian`, `march` and `project` by something faster; the methods
-    here need nothing but those two.
+    independent. This is what a search asks of its equations; `NumericalProblem` answers
+    all of it from `residuals` and `jacobians` alone, and a problem that knows more
+    about itself answers faster.
 
     ``names`` and ``units`` (n,) label the unknowns, ``periods`` (n,) are their periods
     (inf where there is none), ``bounds`` (n, 2) the region of interest (infinite where
@@ -84,26 +72,21 @@ class Problem:
         """Number of unknowns."""
         return len(self.names)
 
+    @abstractmethod
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n)."""
-        raise NotImplementedError
 
-    def jacobian(self, point: np.ndarray) -> Any:
-        """F' (m, n) at one point (n,): an array, or a sparse matrix where that is how
-        it is made."""
+    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,), sparse where that is how it is made."""
         return self.jacobians(point[None])[0]
 
+    @abstractmethod
     def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,), here by central differences of F'."""
-        step = 1e-5 * (1.0 + np.abs(point))
-        shifts = np.diag(step)
-        upper, lower = self.jacobians(point + shifts), self.jacobians(point - shifts)
-        out = np.moveaxis((upper - lower) / (2 * step[:, None, None]), 0, -1)
-        return 0.5 * (out + np.swapaxes(out, 1, 2))
+        """F'' (m, n, n) at a point (n,)."""
 
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None
@@ -113,6 +96,7 @@ class Problem:
         """
         return None
 
+    @abstractmethod
     def march(
         self,
         start: np.ndarray,
@@ -123,42 +107,27 @@ class Problem:
         longest: float,
         count: int,
     ) -> March:
-        """Up to ``count`` pieces of the curve from ``start`` along ``tangent``, here by
-        collocation."""
-        return March(
-            *march_by_collocation(
-                self, start, tangent, order, tolerance, shortest, longest, count
-            )
-        )
+        """Up to ``count`` pieces of the curve from ``start`` (n,) along ``tangent``."""
 
+    @abstractmethod
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
         left at each."""
-        return project_by_least_squares(self, starts)
 
+    @abstractmethod
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals
-        and last steps (k,)."""
-        return project_to_sphere_by_newton(self, starts, center, radius)
+        """Solutions (k, n) at distance ``radius`` from ``center`` (n,), relative
+        residuals (k,) and last steps (k,)."""
 
+    @abstractmethod
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """Solutions to start from, here reached from ``count`` random starts."""
-        return random_seeds(self, rng, count)
+        """Solutions to start from, ``count`` random starts among what they come of."""
 
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """a - b with every periodic unknown taken to within half a period of zero."""
-        gap = np.asarray(a, dtype=float) - b
-        periodic = np.isfinite(self.periods)
-        if np.all(
-            periodic
-        ):  # as in every loop: picking columns would take most of the time
-            gap -= self.periods * np.round(gap / self.periods)
-        elif np.any(periodic):
-            period = self.periods[periodic]
-            gap[..., periodic] -= period * np.round(gap[..., periodic] / period)
-        return gap
+        """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
+        return torus.difference(a, b, self.periods)
 
     def check_point(self, point: np.ndarray, name: str) -> np.ndarray:
         """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or
@@ -169,133 +138,3 @@ class Problem:
         if not np.all(np.isfinite(out)):
             raise ProblemError(name, out, "finite")
         return out
-
-
-class FunctionProblem(Problem):
-    """A problem from a plain Python callable ``function``: (n,) -> (m,).
-
-    Derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where given,
-    else by complex step where the function lets complex numbers through, else by
-    central differences; ``derivatives`` says which. ``bounds`` (n, 2) is the region
-    from which `explore` draws starts and in which curves are followed. Raises
-    `ProblemError` for bounds out of order and for a function that gives no finite
-    vector.
-    """
-
-    def __init__(
-        self,
-        function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
-        bounds: Sequence[Sequence[float]],
-        *,
-        jacobian: Callable[[np.ndarray], Any] | None = None,
-        names: Sequence[str] | None = None,
-        units: Sequence[str] | None = None,
-        periods: Sequence[float] | None = None,
-    ):
-        self.bounds = np.array(bounds, dtype=float)
-        if (
-            self.bounds.ndim != 2
-            or self.bounds.shape[1] != 2
-            or not np.all(self.bounds[:, 0] < self.bounds[:, 1])
-        ):
-            raise ProblemError(
-                "bounds", self.bounds.tolist(), "rows of (low, high) with low < high"
-            )
-        n = len(self.bounds)
-        self.names = tuple(names) if names else tuple(f"u{i + 1}" for i in range(n))
-        self.units = tuple(units) if units else ("",) * n
-        self.periods = (
-            np.full(n, np.inf) if periods is None else np.array(periods, dtype=float)
-        )
-        for what, given in (
-            ("names", self.names),
-            ("units", self.units),
-            ("periods", self.periods),
-        ):
-            if len(given) != n:
-                raise ProblemError(
-                    f"number of {what}", len(given), f"{n}, the number of bounds"
-                )
-        if not np.all(self.periods > 0):
-            raise ProblemError(
-                "periods",
-                self.periods.tolist(),
-                "positive, inf where an unknown has none",
-            )
-        self._function, self._jacobian = function, jacobian
-        low = np.where(np.isfinite(self.bounds[:, 0]), self.bounds[:, 0], -1.0)
-        high = np.where(np.isfinite(self.bounds[:, 1]), self.bounds[:, 1], 1.0)
-        probes = np.random.default_rng(0).uniform(low, high, (7, n))
-        value = np.asarray(function(probes[0]), dtype=float)
-        if value.ndim != 1 or not np.all(np.isfinite(value)):
-            raise ProblemError(
-                "value of the function", value, "a vector of finite numbers"
-            )
-        self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
-        self.magnitude = (
-            float(np.median([_spectral_norm(self.jacobian(u)) for u in probes])) or 1.0
-        )
-        self.scale = float(np.median(high - low)) / 4.0
-
-    def _choose_derivatives(self, probe: np.ndarray) -> str:
-        try:
-            by_complex = self._complex_step(probe)
-        except (TypeError, ValueError, np.exceptions.ComplexWarning):
-            return "central differences"
-        by_difference = self._central_difference(probe)
-        size = 1.0 + np.abs(by_difference).max()
-        agree = (
-            by_complex.shape == by_difference.shape
-            and np.abs(by_complex - by_difference).max() < 1e-5 * size
-        )
-        return "complex step" if agree else "central differences"
-
-    def _complex_step(self, point: np.ndarray) -> np.ndarray:
-        shifts = point + 1e-100j * np.eye(self.n)
-        return np.column_stack(
-            [np.imag(np.asarray(self._function(row))) / 1e-100 for row in shifts]
-        )
-
-    def _central_difference(self, point: np.ndarray) -> np.ndarray:
-        columns = []
-        for i in range(self.n):
-            step = np.zeros(self.n)
-            step[i] = 6e-6 * (1.0 + abs(point[i]))
-            upper, lower = (
-                np.asarray(self._function(point + sign * step), dtype=float)
-                for sign in (1, -1)
-            )
-            columns.append((upper - lower) / (2 * step[i]))
-        return np.column_stack(columns)
-
-    def residuals(self, points: np.ndarray) -> np.ndarray:
-        """F (k, m) at points (k, n)."""
-        return np.array(
-            [np.asarray(self._function(u), dtype=float) for u in np.atleast_2d(points)]
-        )
-
-    def jacobian(self, point: np.ndarray) -> Any:
-        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it
-        so."""
-        if self._jacobian is None:
-            return (
-                self._complex_step(point)
-                if self.derivatives == "complex step"
-                else self._central_difference(point)
-            )
-        made = self._jacobian(point)
-        return made if issparse(made) else np.asarray(made, dtype=float)
-
-    def jacobians(self, points: np.ndarray) -> np.ndarray:
-        """F' (k, m, n) at points (k, n), dense."""
-        made = [self.jacobian(u) for u in np.atleast_2d(points)]
-        return np.array([as_dense(j) for j in made])
-
-
-def _spectral_norm(matrix: Any) -> float:
-    """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1
-    |A|_inf)."""
-    if issparse(matrix):
-        size: Any = abs(csc_array(matrix))
-        return float(np.sqrt(size.sum(axis=0).max() * size.sum(axis=1).max()))
-    return float(np.linalg.norm(matrix, ord=2))

@@ -10,6 +10,7 @@ import difflib
 from functools import cache
 from importlib import import_module
 
+from bifurc.errors import BifurcError
 from linkages.entry import Entry
 
 __all__ = ["FAMILIES", "UnknownLinkageError", "catalogue", "entry"]
@@ -39,7 +40,7 @@ FAMILIES = (
 )
 
 
-class UnknownLinkageError(KeyError):
+class UnknownLinkageError(BifurcError, KeyError):
     """No linkage of that name: ``name`` is what was asked for, ``nearest`` the names
     most like it."""
 

@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from bifurc.errors import BifurcError
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop, loop_from_axes
 
 __all__ = ["LinkageFileError", "read_linkage", "read_precisely"]
@@ -38,7 +39,7 @@ KNOWN = ("name", "angles", *TABLE, *AXES)
 FULL_TURN = 2 * math.pi
 
 
-class LinkageFileError(ValueError):
+class LinkageFileError(BifurcError, ValueError):
     """A linkage file that cannot be used: which file, and what in it must be what."""
 
     def __init__(self, path: Path | str, message: str):

@@ -17,13 +17,15 @@ from typing import Any
 
 import numpy as np
 
+from bifurc.errors import BifurcError
+
 __all__ = ["MAX_JOINTS", "MIN_JOINTS", "GeometryError", "Loop", "loop_from_axes"]
 
 MIN_JOINTS, MAX_JOINTS = 4, 12
 NUMBERS = (int, float, np.integer, np.floating)
 
 
-class GeometryError(ValueError):
+class GeometryError(BifurcError, ValueError):
     """A linkage that cannot be built: ``name`` is the offending quantity, ``value``
     what was given and ``allowed`` what it may be."""
 

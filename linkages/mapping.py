@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
-from bifurc.curves.certificate import certify_atlas
+from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
-from linkages.catalogue import entry
+from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
-from linkages.entry import FormPattern
 from linkages.forms import name_forms
+from linkages.linkage import Linkage
 from linkages.loop import Loop
 
-__all__ = ["map_by_name", "map_linkage"]
+__all__ = ["largest_residual", "map_linkage"]
+
+DEFAULT_SEARCH = SearchSettings()
 
 NAMING = 400  # samples of a form for its name
 CLOSING = np.linspace(
@@ -27,30 +28,30 @@ CLOSING = np.linspace(
 
 
 def map_linkage(
-    loop: Loop,
-    patterns: Sequence[FormPattern] = (),
+    linkage: Linkage | Loop,
     *,
+    settings: SearchSettings = DEFAULT_SEARCH,
     certify: bool = False,
-    prove: bool = True,
-    **options: Any,
+    seed: int = 0,
+    progress: Callable[[str, int], None] | None = None,
 ) -> Atlas:
-    """The transition map of a loop: every form with its name, every bifurcation, every
-    near miss.
+    """The transition map of a linkage: every form with its name, every bifurcation,
+    every near miss.
 
-    ``patterns`` are the forms that a source names, ``options`` those of
-    `bifurc.search.explore.explore` (``starts``, ``seed``, ``settings``, ``budget``,
-    ``progress``). ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
+    ``seed`` is that of the random starts; ``progress`` is called with what was found
+    and how many. ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
     ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest
     closure error seen along it relative to the characteristic length;
     ``info["linkage"]`` of the atlas the geometry, twists in rad. With ``certify`` they
-    also hold the ``certificate`` of `bifurc.curves.certificate`. With ``prove`` it is
-    looked into whether a form can be missing (`linkages.slices.completeness`).
+    also hold the ``certificate`` of `bifurc.curves.certificate`.
     """
+    if isinstance(linkage, Loop):
+        linkage = Linkage(linkage)
+    loop = linkage.loop
     problem = LoopClosure(loop)
-    atlas = explore(problem, prove=prove, **options)
-    identities = name_forms(
-        [form.branch.sample(NAMING) for form in atlas.forms], loop, patterns
-    )
+    atlas = explore(problem, settings=settings, seed=seed, progress=progress)
+    samples = [form.branch.sample(NAMING) for form in atlas.forms]
+    identities = name_forms(samples, loop, linkage.patterns)
     labels = [
         {
             "inactive_joints": list(identity.inactive_joints),
@@ -61,30 +62,15 @@ def map_linkage(
         for identity, form in zip(identities, atlas.forms, strict=True)
     ]
     lengths, twists, offsets = (values.tolist() for values in loop.arrays)
-    linkage = {
+    geometry = {
         "name": loop.name,
         "lengths": lengths,
         "twists": twists,
         "offsets": offsets,
     }
     named = atlas.renamed([identity.name for identity in identities], labels)
-    named = replace(named, info={**atlas.info, "linkage": linkage})
+    named = replace(named, info={**atlas.info, "linkage": geometry})
     return certify_atlas(problem, named) if certify else named
-
-
-def map_by_name(
-    name: str, *, starts: int = 200, seed: int = 0, **parameters: Any
-) -> Atlas:
-    """The transition map of a linkage of the catalogue, its parameters (rad) at their
-    defaults unless given.
-
-    Raises `linkages.catalogue.UnknownLinkageError`, and `linkages.loop.GeometryError`
-    for parameters that make no linkage.
-    """
-    found = entry(name)
-    values = found.complete(parameters)
-    patterns = found.patterns(**values) if found.patterns is not None else ()
-    return map_linkage(found.build(**values), patterns, starts=starts, seed=seed)
 
 
 def largest_residual(problem: LoopClosure, branch: Branch) -> float:

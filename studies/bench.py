@@ -22,6 +22,7 @@ from typing import Any
 
 import click
 import numpy as np
+from linkages.linkage import Linkage
 
 from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
 from bifurc.search.explore import explore
@@ -88,7 +89,9 @@ def benchmarks() -> dict[str, float]:
             lambda: slice_configurations(loop, 1, np.linspace(0, 6, 24))
         ),
         "explore, four forms of a 6R": median_time(lambda: explore(problem)),
-        "complete map of a 6R, named": median_time(lambda: map_linkage(loop, patterns)),
+        "complete map of a 6R, named": median_time(
+            lambda: map_linkage(Linkage(loop, patterns))
+        ),
         "Bratu, 50 unknowns, tolerance 1e-9": median_time(
             lambda: trace_branch(chain.problem, chain.start, chain.tangent, loose)
         ),

@@ -16,10 +16,12 @@ from pathlib import Path
 
 import click
 import numpy as np
+from linkages.linkage import load
 
 from bifurc.atlas import Atlas
 from linkages.catalogue import FAMILIES, catalogue
 from linkages.entry import Entry, Parameter
+from linkages.mapping import map_linkage
 from linkages.relations import RelationKind, relations_of
 from linkages.scene import Scene, breadth, clearance, make_scene
 
@@ -174,9 +176,8 @@ def main(out: Path | None, keep_counts: bool) -> None:
     for found in catalogue().values():
         if found.name in counts and out is None:
             continue
-        from linkages.mapping import map_by_name
 
-        atlas = map_by_name(found.name)
+        atlas = map_linkage(load(found.name))
         counts[found.name] = count_map(atlas)
         click.echo(f"{found.name}: {counts[found.name]}")
         theta = clearest_configuration(atlas, found)

@@ -14,9 +14,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from linkages.linkage import load
 
 from bifurc.atlas import Atlas
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 from studies.redrawing import Claim, Redrawing, angles_along, largest
 
 BENNETT, KINK = "Bennett 4R form", math.radians(-70)
@@ -24,7 +25,7 @@ BENNETT, KINK = "Bennett 4R form", math.radians(-70)
 
 def compute() -> Atlas:
     """The transition map for the geometry of (5.3.12), the default of the catalogue."""
-    return map_by_name("reconfigurable-bricard-1", kink=KINK)
+    return map_linkage(load("reconfigurable-bricard-1", kink=KINK))
 
 
 def claims(atlas: Atlas) -> list[Claim]:

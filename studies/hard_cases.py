@@ -10,7 +10,8 @@ from math import sqrt
 import numpy as np
 from scipy.optimize import brentq
 
-from bifurc.problem import FunctionProblem, Problem
+from bifurc.function_problem import FunctionProblem
+from bifurc.problem import Problem
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

@@ -17,6 +17,7 @@ from collections.abc import Iterator
 
 import click
 import numpy as np
+from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
@@ -87,13 +88,13 @@ def main(count: int, seed: int) -> None:
         name, loop = next(drawn)
         kind = name if name == "beside a birth" else "catalogue"
         problem, began = LoopClosure(loop), time.process_time()
-        first = explore(problem, starts=1, seed=1, prove=True)
+        first = explore(problem, settings=SearchSettings(starts=1, prove=True), seed=1)
         seconds.append(time.process_time() - began)
         level = first.completeness.level
         levels.setdefault(kind, {}).setdefault(level, 0)
         levels[kind][level] += 1
         if level == "proved" and not same_motions(
-            first, explore(problem, starts=STARTS, seed=2)
+            first, explore(problem, settings=SearchSettings(starts=STARTS), seed=2)
         ):
             refuted.append(f"{name}: {loop}")
             click.echo(f"refuted: {refuted[-1]}")

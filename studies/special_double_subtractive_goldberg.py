@@ -13,9 +13,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from linkages.linkage import load
 
 from bifurc.atlas import Atlas
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 from studies.redrawing import Claim, Redrawing, angles_along, largest
 
 ALPHA, BETA, DELTA = math.radians(125), math.radians(60), math.radians(45)
@@ -23,8 +24,8 @@ ALPHA, BETA, DELTA = math.radians(125), math.radians(60), math.radians(45)
 
 def compute() -> Atlas:
     """The transition map for the geometry of (5.2.34)."""
-    return map_by_name(
-        "special-double-subtractive-goldberg", alpha=ALPHA, beta=BETA, delta=DELTA
+    return map_linkage(
+        load("special-double-subtractive-goldberg", alpha=ALPHA, beta=BETA, delta=DELTA)
     )
 
 

@@ -18,9 +18,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from linkages.linkage import load
 
 from bifurc.atlas import Atlas
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 from studies.redrawing import Claim, Redrawing, angles_along, largest
 
 ALPHA, BETA, DELTA = math.radians(125), math.radians(60), math.radians(45)
@@ -28,8 +29,8 @@ ALPHA, BETA, DELTA = math.radians(125), math.radians(60), math.radians(45)
 
 def compute() -> Atlas:
     """The transition map, links named as in the source."""
-    return map_by_name(
-        "special-wohlhart-double-goldberg", alpha=ALPHA, beta=DELTA, delta=BETA
+    return map_linkage(
+        load("special-wohlhart-double-goldberg", alpha=ALPHA, beta=DELTA, delta=BETA)
     )
 
 

@@ -39,7 +39,7 @@ from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.problem import Problem
 from bifurc.search.explore import explore
-from bifurc.seeding import Seeds
+from bifurc.seeds import Seeds
 from linkages.app.summary import table
 from studies.hard_cases import Crossing, Ladder, crossings, ladders
 from studies.methods import natural, null_field, peers, point_by_point

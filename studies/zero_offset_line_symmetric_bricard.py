@@ -10,9 +10,10 @@ ones, never two of a kind. The source draws theta5 against theta1.
 from __future__ import annotations
 
 import numpy as np
+from linkages.linkage import load
 
 from bifurc.atlas import Atlas
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 from studies.redrawing import Claim, Redrawing, largest
 
 ORIGINAL, REVISED = "theta_i = theta_{i+3}", "theta_i = -theta_{i+3}"
@@ -21,7 +22,7 @@ ORIGINAL, REVISED = "theta_i = theta_{i+3}", "theta_i = -theta_{i+3}"
 def compute() -> Atlas:
     """The transition map for the geometry of (4.2.25) without offsets, the default of
     the catalogue."""
-    return map_by_name("bricard-line-symmetric-zero-offset")
+    return map_linkage(load("bricard-line-symmetric-zero-offset"))
 
 
 def claims(atlas: Atlas) -> list[Claim]:

@@ -14,8 +14,11 @@ from pathlib import Path
 import matplotlib
 import pytest
 from click.testing import CliRunner
+from linkages.linkage import load
 
+from bifurc.graphs import transition_graph
 from linkages.app.cli import main
+from linkages.mapping import map_linkage
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -74,12 +77,11 @@ def test_the_examples_of_a_page_do_what_it_says(page, tmp_path, monkeypatch):
 
 
 def test_the_picture_in_the_readme_is_the_graph_of_forms():
-    from linkages.mapping import map_by_name
 
     (text,) = blocks(ROOT / "README.md", "mermaid")
     names = dict(re.findall(r'(\w+)\["(.*?)"\]', text))
     drawn = re.findall(r"(\w+)(?:\[.*?\])? ---\|(\w+)\| (\w+)", text)
-    graph = map_by_name("special-double-subtractive-goldberg").graph
+    graph = transition_graph(map_linkage(load("special-double-subtractive-goldberg")))
     real = {
         (frozenset((a, b)), data["bifurcation"])
         for a, b, data in graph.edges(data=True)

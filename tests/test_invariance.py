@@ -6,10 +6,11 @@ from collections import Counter
 import networkx as nx
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Outcome
 from bifurc.search.explore import explore
-from bifurc.seeding import Seeds
+from bifurc.seeds import Seeds
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import GeometryError
@@ -175,7 +176,10 @@ def members(name, count):
 def test_random_members_are_traced_whole_with_closure_and_the_same_from_two_seeds(name):
     for loop in members(name, 2):
         problem = LoopClosure(loop)
-        one, other = explore(problem, seed=0), explore(problem, seed=1, starts=300)
+        one, other = (
+            explore(problem, seed=0),
+            explore(problem, settings=SearchSettings(starts=300), seed=1),
+        )
         assert_same_atlas(one, other)
         assert one.forms
         assert all(form.branch.outcome is Outcome.CLOSED for form in one.forms)

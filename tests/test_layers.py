@@ -1,59 +1,87 @@
 """Data flows one way: studies know linkages, linkages know bifurc, and never the other
-way round."""
+way round; and no module leads back to itself, however it imports."""
 
 import ast
 from pathlib import Path
 
+import networkx as nx
 import pytest
 
 ROOT = Path(__file__).parents[1]
+PACKAGES = ("bifurc", "linkages", "studies")
 FORBIDDEN = {"bifurc": {"linkages", "studies"}, "linkages": {"studies"}}
-MODULES = [
-    (package, path)
-    for package in FORBIDDEN
+
+
+def name_of(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def source(path):
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+MODULES = {
+    name_of(path): path
+    for package in PACKAGES
     for path in sorted((ROOT / package).glob("**/*.py"))
-]
+}
 
 
-def imported_packages(path):
-    """Top-level packages named by any import in a file, also inside functions."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+def imported_modules(path):
+    """Modules named by any import in a file, also inside functions and for types."""
+    for node in ast.walk(source(path)):
         if isinstance(node, ast.Import):
-            yield from (alias.name.split(".")[0] for alias in node.names)
+            yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{path.name} line {node.lineno}: a relative import"
-            yield str(node.module).split(".")[0]
-        elif isinstance(node, ast.Call) and getattr(node.func, "id", "") in (
-            "import_module",
-            "__import__",
-        ):
-            yield from (
-                str(arg.value).split(".")[0]
-                for arg in node.args
-                if isinstance(arg, ast.Constant)
-            )
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                yield inner if inner in MODULES else node.module
+        elif isinstance(node, ast.Call) and calls_import(node):
+            constants = [a.value for a in node.args if isinstance(a, ast.Constant)]
+            yield from map(str, constants)
 
 
-@pytest.mark.parametrize(
-    ("package", "path"), MODULES, ids=[f"{p}/{f.name}" for p, f in MODULES]
-)
-def test_a_module_imports_no_package_above_its_own(package, path):
-    assert not FORBIDDEN[package] & set(imported_packages(path))
+def calls_import(node):
+    name = getattr(node.func, "id", getattr(node.func, "attr", ""))
+    return name in ("import_module", "__import__")
 
 
-def test_there_are_modules_to_look_at():
-    assert {package for package, _ in MODULES} == set(FORBIDDEN)
-    assert len(MODULES) > 20
+@pytest.mark.parametrize("name", MODULES)
+def test_a_module_imports_no_package_above_its_own(name):
+    forbidden = FORBIDDEN.get(name.split(".")[0], set())
+    imported = {module.split(".")[0] for module in imported_modules(MODULES[name])}
+    assert not forbidden & imported
+
+
+def test_no_module_leads_back_to_itself_by_any_kind_of_import():
+    graph = nx.DiGraph(
+        (name, module)
+        for name, path in MODULES.items()
+        for module in imported_modules(path)
+        if module in MODULES
+    )
+    circles = [c for c in nx.strongly_connected_components(graph) if len(c) > 1]
+    assert circles == []
+    assert graph.number_of_edges() > 100
+
+
+def test_the_front_doors_import_no_module_before_it_is_used():
+    for package in ("bifurc", "linkages"):
+        assert not set(imported_modules(MODULES[package])) & set(MODULES)
 
 
 @pytest.mark.parametrize("package", FORBIDDEN)
 def test_a_library_package_never_prints(package):
     for path in (ROOT / package).glob("**/*.py"):
-        calls = [
-            n
-            for n in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-            if isinstance(n, ast.Call)
-        ]
-        assert not [n.lineno for n in calls if getattr(n.func, "id", "") == "print"], (
-            path
-        )
+        calls = [node for node in ast.walk(source(path)) if isinstance(node, ast.Call)]
+        printing = [n.lineno for n in calls if getattr(n.func, "id", "") == "print"]
+        assert not printing, path
+
+
+@pytest.mark.parametrize("package", ("bifurc", "linkages"))
+def test_the_tests_stand_in_folders_of_the_same_names(package):
+    rooms = {p.parent.relative_to(ROOT) for p in (ROOT / package).glob("**/*.py")}
+    for test in (ROOT / "tests" / package).glob("**/test_*.py"):
+        assert test.parent.relative_to(ROOT / "tests") in rooms, test

@@ -3,8 +3,9 @@ their singular points."""
 
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.singular.locate import Kind, classify_singular_point
 from linkages.closure.loop_closure import LoopClosure
@@ -17,8 +18,7 @@ def test_cyclohexane_has_one_flexible_form_and_two_rigid_chairs():
     twist = np.arccos(1 / 3)
     atlas = explore(
         LoopClosure(Loop((0,) * 6, (twist,) * 6, (1,) * 6, "cyclohexane")),
-        starts=300,
-        prove=True,
+        settings=SearchSettings(starts=300, prove=True),
     )
     assert len(atlas.forms) == 1
     assert atlas.forms[0].branch.closed
@@ -34,7 +34,7 @@ def test_a_flat_folding_vertex_has_four_half_branches_flat_and_folded():
     sectors = tuple(np.radians([60.0, 90.0, 120.0, 90.0]))
     atlas = explore(
         LoopClosure(Loop((0,) * 4, sectors, (0,) * 4, "vertex of four creases")),
-        prove=True,
+        settings=SearchSettings(prove=True),
     )
     assert len(atlas.forms) == 2
     assert [p.kind for p in atlas.points] == [Kind.BIFURCATION] * 2
@@ -79,7 +79,7 @@ def test_the_double_watt_mechanism_has_a_cusp_in_the_middle(seed):
     # the middles leave the vertical as t^5 / (8 half arm^3), so that their heights
     # differ by the root of t^5
     problem, middle = double_watt(1.0, 0.2, 2.0)
-    atlas = explore(problem, starts=60, seed=seed)
+    atlas = explore(problem, settings=SearchSettings(starts=60), seed=seed)
     assert len(atlas.points) == 1
     point = atlas.points[0]
     assert point.kind is Kind.CUSP

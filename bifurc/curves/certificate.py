@@ -25,19 +25,18 @@ certificate says where.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 from bifurc.curves.kantorovich import SHARE, Samples, sample_curve
 from bifurc.curves.monitor import Profile
 from bifurc.problem import Problem
 
-__all__ = ["Certificate", "certify_atlas", "certify_branch"]
+__all__ = ["Certificate", "certify_branch"]
 
 # distance, in scales, at which an arc is handed over to a located singular point
 HANDOVER = 1e-3
@@ -79,21 +78,6 @@ class Certificate:
             "bound": self.bound,
             "reversals": self.reversals.tolist(),
         }
-
-
-def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
-    """The atlas with a certificate among the labels of every form; its located singular
-    points are handed over to."""
-    forms = []
-    for i, form in enumerate(atlas.forms):
-        singular = [s for p in atlas.points for j, s in p.passes if j == i]
-        certificate = certify_branch(problem, form.branch, form.profile, singular)
-        forms.append(
-            replace(
-                form, labels={**form.labels, "certificate": certificate.as_labels()}
-            )
-        )
-    return replace(atlas, forms=tuple(forms))
 
 
 def certify_branch(

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
+from bifurc.errors import ProblemError
 from bifurc.numerics.collocation import bridge_by_collocation
 from bifurc.numerics.corrector import LARGE, null_vector
-from bifurc.problem import MarchStatus, Problem, ProblemError
+from bifurc.problem import MarchStatus, Problem
 from bifurc.singular.locate import locate_singular_point
 
 __all__ = ["TraceSettings", "trace_branch"]

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.problem import March, MarchStatus, Problem
 from bifurc.singular.sphere import section
@@ -27,7 +28,7 @@ LOWER = 1e-5
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 
 
-class _WithNullVector(Problem):
+class _WithNullVector(NumericalProblem):
     """The deflated system in the unknowns (u, v), for one choice of a and t."""
 
     def __init__(self, problem: Problem, a: np.ndarray, t: np.ndarray):
@@ -58,7 +59,7 @@ class _WithNullVector(Problem):
         return out
 
 
-class Deflated(Problem):
+class Deflated(NumericalProblem):
     """The same problem, followed along curves on which F' has rank n - 2.
 
     Everything but `march` is that of ``problem``.
@@ -111,16 +112,17 @@ class Deflated(Problem):
             np.concatenate([start, a]),
             np.concatenate([t, np.zeros(self.n)]),
         )
-        status, pieces, _, _, residuals = march_by_collocation(
+        march = march_by_collocation(
             pair, begin, heading, order, tolerance, shortest, longest, min(count, RUN)
         )
-        if status == MarchStatus.STALLED and len(pieces):
+        status = march.status
+        if status is MarchStatus.STALLED and len(march.pieces):
             status = MarchStatus.RAN  # perhaps only the choice of a and t wore out
-        made = [reparametrised(piece[:, : self.n]) for piece in pieces]
+        made = [reparametrised(piece[:, : self.n]) for piece in march.pieces]
         radii = np.array([length / 2 for _, length in made])
         steps = radii + np.concatenate([[0.0], radii[:-1]]) if len(made) else radii
         kept = np.array([piece for piece, _ in made]).reshape(-1, order + 1, self.n)
-        return March(status, kept, steps, radii, residuals)
+        return March(status, kept, steps, radii, march.residuals)
 
 
 def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | None:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
 from bifurc.figures.drawing import SETTINGS, Style, form_style, note_emptiness
+from bifurc.graphs import transition_graph
 
 __all__ = ["plot_form_graph"]
 
@@ -70,13 +71,15 @@ def _order(atlas: Atlas) -> list[str]:
     """Names of what is drawn: all forms, then the surfaces that meet something."""
     forms = [form.name for form in atlas.forms]
     return forms + [
-        surface.name for surface in atlas.surfaces if atlas.graph.degree(surface.name)
+        surface.name
+        for surface in atlas.surfaces
+        if transition_graph(atlas).degree(surface.name)
     ]
 
 
 def _drawn(atlas: Atlas) -> nx.MultiGraph:
     """The graph of what is drawn."""
-    return atlas.graph.subgraph(_order(atlas))
+    return transition_graph(atlas).subgraph(_order(atlas))
 
 
 def _places(atlas: Atlas) -> dict[str, np.ndarray]:

@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator, NullLocator
 
 from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.errors import ProblemError
 from bifurc.figures.drawing import (
     SETTINGS,
     draw_curve,
@@ -38,7 +39,6 @@ from bifurc.figures.planes import (
     cut_to_frame,
     scale_of,
 )
-from bifurc.problem import ProblemError
 
 __all__ = [
     "plot_form_graph",

@@ -22,10 +22,11 @@ import xarray as xr
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.monitor import Profile
+from bifurc.errors import BifurcError
 from bifurc.files.json_values import from_text, to_text
 from bifurc.files.layout import Variable, atlas_variables, split_rows, variable
 from bifurc.files.surface_layout import read_surfaces
-from bifurc.seeding import Completeness
+from bifurc.seeds import Completeness
 from bifurc.singular.locate import Kind, SingularPoint
 
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
@@ -34,7 +35,7 @@ FORMAT, FORMAT_VERSION = "bifurc atlas", 2
 LINKAGE_UNITS = {"twists": "rad"}
 
 
-class AtlasFileError(ValueError):
+class AtlasFileError(BifurcError, ValueError):
     """A dataset or file that holds no atlas: ``source`` names it, ``missing`` what it
     lacks."""
 

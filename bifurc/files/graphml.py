@@ -11,6 +11,7 @@ import networkx as nx
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.graphs import arc_graph, transition_graph
 
 __all__ = ["plain_graph", "write_graphml"]
 
@@ -43,13 +44,13 @@ def plain_graph(atlas: Atlas) -> nx.MultiGraph:
     for each unknown, such as ``travel_theta1``.
     """
     out = nx.MultiGraph()
-    for name, data in atlas.graph.nodes(data=True):
+    for name, data in transition_graph(atlas).nodes(data=True):
         out.add_node(f"form/{name}", label=name, layer="forms", **_plain(data, atlas))
-    for a, b, data in atlas.graph.edges(data=True):
+    for a, b, data in transition_graph(atlas).edges(data=True):
         out.add_edge(f"form/{a}", f"form/{b}", label=data["bifurcation"], layer="forms")
-    for name, data in atlas.arcs.nodes(data=True):
+    for name, data in arc_graph(atlas).nodes(data=True):
         out.add_node(f"point/{name}", label=name, layer="arcs", **_plain(data, atlas))
-    for a, b, data in atlas.arcs.edges(data=True):
+    for a, b, data in arc_graph(atlas).edges(data=True):
         form = atlas.forms[data["form"]].name
         out.add_edge(
             f"point/{a}", f"point/{b}", label=form, layer="arcs", **_plain(data, atlas)

@@ -11,20 +11,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from bifurc.numerics.bordered import Bordered
 from bifurc.numerics.corrector import correct_across
-
-if TYPE_CHECKING:
-    from bifurc.problem import Problem
+from bifurc.problem import March, MarchStatus, Problem
 
 __all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
 
-RAN, STALLED, OPEN = 0, 1, 2
 PREDICT_FROM = 10  # nodes through which the next one is predicted
 
 
@@ -37,16 +33,16 @@ def march_by_collocation(
     shortest: float,
     longest: float,
     count: int,
-) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """(status, pieces, steps, radii, residuals) as in `bifurc.problem.March`."""
+) -> March:
+    """Up to ``count`` pieces of the curve from ``start`` (n,) along ``tangent``."""
     point, gap, _ = correct_across(problem, start, tangent, tolerance)
     pieces: list[np.ndarray] = []
     radii: list[float] = []
     residuals: list[float] = []
-    status = RAN
+    status = MarchStatus.RAN
     if gap > 100 * tolerance + 1e-12:
-        return (
-            OPEN,
+        return March(
+            MarchStatus.OPEN,
             np.empty((0, order + 1, problem.n)),
             np.empty(0),
             np.empty(0),
@@ -64,7 +60,7 @@ def march_by_collocation(
             problem, point, heading, order, tolerance, shortest, width
         )
         if piece is None:
-            status = STALLED
+            status = MarchStatus.STALLED
             break
         pieces.append(piece)
         radii.append(length / 2)
@@ -75,7 +71,7 @@ def march_by_collocation(
         width = min(width, 2 * longest)
     half = np.array(radii)
     steps = half + np.concatenate([[0.0], half[:-1]]) if len(half) else half
-    return (
+    return March(
         status,
         np.array(pieces).reshape(-1, order + 1, problem.n),
         steps,

@@ -3,15 +3,11 @@ system."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.sparse import issparse
 
 from bifurc.numerics.bordered import Bordered
-
-if TYPE_CHECKING:
-    from bifurc.problem import Problem
+from bifurc.problem import Problem
 
 __all__ = [
     "correct_across",

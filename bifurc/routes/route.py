@@ -6,11 +6,15 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import networkx as nx
 import numpy as np
 
+from bifurc.atlas import Atlas
+from bifurc.errors import RouteError
+from bifurc.graphs import arc_attributes, arc_graph
+from bifurc.problem import Problem
 from bifurc.routes.surface_legs import (
     add_crossings,
     charts_of,
@@ -18,22 +22,15 @@ from bifurc.routes.surface_legs import (
     measure_crossing,
     middle_of,
 )
+from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.geodesic import resample
+from bifurc.torus import wrap
 
-if TYPE_CHECKING:
-    from bifurc.atlas import Atlas
-    from bifurc.problem import Problem
-    from bifurc.surfaces.chart_atlas import ChartAtlas
-
-__all__ = ["Leg", "Route", "RouteError", "find_route", "wrap"]
+__all__ = ["Leg", "Route", "find_route"]
 
 ON = 1e-6  # distance below which a configuration lies on a form or a surface
 NO_WAY = 1e-9  # length below which a leg is none
 START, GOAL = ("start",), ("goal",)  # nodes of their own: those of the arcs are strings
-
-
-class RouteError(LookupError):
-    """There is no such form or surface, or no route from one to another."""
 
 
 @dataclass(frozen=True)
@@ -88,44 +85,44 @@ class Route:
         )
 
 
-def wrap(point: np.ndarray, periods: np.ndarray) -> np.ndarray:
-    """``point`` with periodic unknowns taken into (-period / 2, period / 2]."""
-    out = np.array(point, dtype=float)
-    periodic = np.isfinite(periods)
-    period = periods[periodic]
-    turned = out[..., periodic] - period * np.round(out[..., periodic] / period)
-    out[..., periodic] = np.where(
-        turned <= -0.5 * period + 1e-9, turned + period, turned
-    )
-    return out
-
-
 def find_route(
     atlas: Atlas,
     start: str | np.ndarray,
     goal: str | np.ndarray,
+    *,
     count: int = 400,
     problem: Problem | None = None,
 ) -> Route:
-    """The shortest route from ``start`` to ``goal``; see `Atlas.route`."""
-    charts = charts_of(atlas, problem)
-    graph = atlas.arcs.copy()
+    """The shortest way from ``start`` to ``goal`` along forms and over surfaces.
+
+    Either is a configuration (n,) on a form or a surface, or the name of one: it stands
+    for the middle of a form's longest arc, or for the chart of a surface farthest from
+    its singular points. Forms and surfaces are left at singular points. A leg over a
+    surface is a geodesic near the shortest chain of charts; it needs the ``problem``.
+    The path has about ``count`` points and no jumps; it begins at ``start`` (the point
+    of a name is taken into half a period about zero). Raises `RouteError` for an
+    unknown name, a configuration on no form or surface, a component that is only
+    sampled, or where no route exists.
+    """
+    charts = charts_of(atlas)
+    graph = arc_graph(atlas)
     on: dict[Hashable, dict[int, np.ndarray]] = {}
     for node, where in ((START, start), (GOAL, goal)):
         graph.add_node(node)
-        form, on[node] = _place(atlas, charts, where)
+        form, on[node] = _place(atlas, problem, charts, graph, where)
         if form is not None:
             _insert(graph, atlas, node, *form)
     add_crossings(graph, atlas, charts, on)
     lost: list[str] = []
     try:
-        chain = _shortest_chain(atlas, graph, charts, lost)
+        chain = _shortest_chain(atlas, problem, graph, charts, lost)
     except nx.NetworkXNoPath:
         raise RouteError(
             _no_route(atlas, graph, list(on[START]), start, goal, lost)
         ) from None
     legs = [
-        _leg(atlas, charts, edge, a, b, count / _length(chain)) for a, b, edge in chain
+        _leg(atlas, problem, charts, edge, a, b, count / _length(chain))
+        for a, b, edge in chain
     ]
     return _joined(atlas, legs, start)
 
@@ -134,12 +131,16 @@ def find_route(
 
 
 def _place(
-    atlas: Atlas, charts: dict[int, ChartAtlas], where: str | np.ndarray
+    atlas: Atlas,
+    problem: Problem | None,
+    charts: dict[int, ChartAtlas],
+    graph: nx.MultiGraph,
+    where: str | np.ndarray,
 ) -> tuple[tuple[int, float] | None, dict[int, np.ndarray]]:
     """(index of a form, arclength) or None, and points (n,) by the indices of surfaces,
     for a name or configuration."""
     if isinstance(where, str):
-        return _place_of_name(atlas, charts, where)
+        return _place_of_name(atlas, charts, graph, where)
     point = np.asarray(where, dtype=float)
     if point.shape != (len(atlas.names),) or not np.all(np.isfinite(point)):
         raise RouteError(
@@ -159,12 +160,10 @@ def _place(
         )
     for k, over in charts.items():
         name = repr(atlas.surfaces[k].name)
-        if over.problem is None:
-            misses.append(
-                f"perhaps on {name}: an atlas read from a file can tell only with its problem"
-            )
+        if problem is None:
+            misses.append(f"perhaps on {name}: only the problem of the atlas can tell")
             continue
-        distance, foot = foot_on(over, point)
+        distance, foot = foot_on(problem, over, point)
         if foot is not None and distance <= ON:
             on[k] = foot
         misses.append(
@@ -185,13 +184,13 @@ def _charts_of(charts: ChartAtlas, name: str) -> str:
 
 
 def _place_of_name(
-    atlas: Atlas, charts: dict[int, ChartAtlas], name: str
+    atlas: Atlas, charts: dict[int, ChartAtlas], graph: nx.MultiGraph, name: str
 ) -> tuple[tuple[int, float] | None, dict[int, np.ndarray]]:
     """The middle of a form's longest arc, or of a surface."""
     full = atlas.full_name(name)
     index = next((i for i, form in enumerate(atlas.forms) if form.name == full), None)
     if index is not None:
-        arcs = [arc for *_, arc in atlas.arcs.edges(data=True) if arc["form"] == index]
+        arcs = [arc for *_, arc in graph.edges(data=True) if arc.get("form") == index]
         longest = max(arcs, key=lambda arc: (round(arc["length"], 9), -arc["start"]))
         return (index, 0.5 * (longest["start"] + longest["end"])), {}
     k = next(k for k, surface in enumerate(atlas.surfaces) if surface.name == full)
@@ -228,7 +227,9 @@ def _insert(
         (arc["first"], node, arc["start"], s),
         (node, arc["last"], s, arc["end"]),
     ):
-        graph.add_edge(first, last, **atlas.arc(index, low, high, first, last))
+        graph.add_edge(
+            first, last, **arc_attributes(atlas, index, low, high, first, last)
+        )
 
 
 # --- the chain of edges -------------------------------------------------------------------------------
@@ -237,7 +238,11 @@ Chain = list[tuple[Hashable, Hashable, dict[str, Any]]]
 
 
 def _shortest_chain(
-    atlas: Atlas, graph: nx.MultiGraph, charts: dict[int, ChartAtlas], lost: list[str]
+    atlas: Atlas,
+    problem: Problem | None,
+    graph: nx.MultiGraph,
+    charts: dict[int, ChartAtlas],
+    lost: list[str],
 ) -> Chain:
     """The shortest chain from start to goal: nodes and edges; why ways over surfaces
     are ``lost`` is added to the list.
@@ -265,12 +270,12 @@ def _shortest_chain(
             return chain
         for a, b, key in waiting:
             k = graph[a][b][key]["surface"]
-            if charts[k].problem is None:
+            if problem is None:
                 raise RouteError(
-                    f"the route leads over {atlas.surfaces[k].name!r}: an atlas from a file needs its problem there"
+                    f"the route leads over {atlas.surfaces[k].name!r}: the problem of the atlas is needed there"
                 )
             try:
-                measure_crossing(charts[k], graph[a][b][key])
+                measure_crossing(problem, charts[k], graph[a][b][key])
             except ValueError as error:
                 lost.append(
                     f"{atlas.surfaces[k].name} ({charts[k].outcome.value}): {error}"
@@ -284,6 +289,7 @@ def _length(chain: Chain) -> float:
 
 def _leg(
     atlas: Atlas,
+    problem: Problem | None,
     charts: dict[int, ChartAtlas],
     edge: dict[str, Any],
     first: Hashable,
@@ -312,7 +318,9 @@ def _leg(
             form.branch(np.linspace(start, end, samples)),
         )
     k, along = edge["surface"], edge["path"] if forwards else edge["path"][::-1]
-    path = resample(charts[k], along, samples - 1) if samples > 1 else along[:1]
+    path = (
+        resample(problem, charts[k], along, samples - 1) if samples > 1 else along[:1]
+    )
     return Leg(atlas.surfaces[k].name, 0.0, edge["length"], at, edge["travel"], 2, path)
 
 

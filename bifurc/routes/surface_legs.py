@@ -4,21 +4,18 @@ graph."""
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
-from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import networkx as nx
 import numpy as np
 
+from bifurc.atlas import Atlas
 from bifurc.numerics.corrector import correct_normal
+from bifurc.problem import Problem
 from bifurc.singular.dimension import tangent_planes
+from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.geodesic import entrances, path_length, shortest_path
-
-if TYPE_CHECKING:
-    from bifurc.atlas import Atlas
-    from bifurc.problem import Problem
-    from bifurc.surfaces.chart_atlas import ChartAtlas
 
 __all__ = ["add_crossings", "charts_of", "foot_on", "measure_crossing", "middle_of"]
 
@@ -26,19 +23,13 @@ __all__ = ["add_crossings", "charts_of", "foot_on", "measure_crossing", "middle_
 FINE = 0.15
 
 
-def charts_of(atlas: Atlas, problem: Problem | None) -> dict[int, ChartAtlas]:
-    """The charts of every surface that has some, with the equations of ``problem``
-    where it is given."""
-    found = {
+def charts_of(atlas: Atlas) -> dict[int, ChartAtlas]:
+    """The charts of every surface that has some, by the index of the surface."""
+    return {
         k: surface.charts
         for k, surface in enumerate(atlas.surfaces)
         if surface.charts is not None
     }
-    return (
-        found
-        if problem is None
-        else {k: replace(charts, problem=problem) for k, charts in found.items()}
-    )
 
 
 def middle_of(charts: ChartAtlas, points: Iterable[np.ndarray]) -> np.ndarray:
@@ -61,19 +52,17 @@ def middle_of(charts: ChartAtlas, points: Iterable[np.ndarray]) -> np.ndarray:
     return charts.centers[max(sorted(distance), key=lambda k: round(distance[k], 9))]
 
 
-def foot_on(charts: ChartAtlas, point: np.ndarray) -> tuple[float, np.ndarray | None]:
+def foot_on(
+    problem: Problem, charts: ChartAtlas, point: np.ndarray
+) -> tuple[float, np.ndarray | None]:
     """Distance of a point (n,) from a surface and its foot (n,); from the charts, and
-    None, where they do not reach.
-
-    The charts must have their equations.
-    """
-    assert charts.problem is not None
+    None, where they do not reach."""
     gap = np.linalg.norm(charts.apart(charts.centers, point), axis=1)
     plane = charts.bases[np.argmin(gap / charts.radii)][None]
     for _ in range(4):
-        foot, gaps = correct_normal(charts.problem, point[None], plane)
-        plane = tangent_planes(charts.problem, foot, plane)
-    if gaps[0] < 1e-9 and len(entrances(charts, foot[0])):
+        foot, gaps = correct_normal(problem, point[None], plane)
+        plane = tangent_planes(problem, foot, plane)
+    if gaps[0] < 1e-9 and len(entrances(problem, charts, foot[0])):
         return float(np.linalg.norm(foot[0] - point)), foot[0]
     return float(np.maximum(gap - charts.radii, 0.1 * charts.radii).min()), None
 
@@ -109,14 +98,18 @@ def add_crossings(
             )
 
 
-def measure_crossing(charts: ChartAtlas, edge: dict[str, Any]) -> None:
+def measure_crossing(
+    problem: Problem, charts: ChartAtlas, edge: dict[str, Any]
+) -> None:
     """Give an edge over a surface its ``path`` (k, n), ``length`` and ``travel`` (n,),
     the turning of each unknown.
 
     Raises `ValueError` where there is no path.
     """
     start, goal = edge["ends"]
-    path = shortest_path(charts, start, goal, FINE * float(np.median(charts.radii)))
+    path = shortest_path(
+        problem, charts, start, goal, FINE * float(np.median(charts.radii))
+    )
     edge |= {
         "path": path,
         "length": path_length(path),

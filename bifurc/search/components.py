@@ -68,7 +68,7 @@ class Components:
         self.charts = made
         at = self.charts.chart_at(on)
         if not self.charts.complete:
-            at[at < 0] = reached_charts(self.charts, on[at < 0], deadline)
+            at[at < 0] = reached_charts(problem, self.charts, on[at < 0], deadline)
         self.part_of = np.where(at >= 0, self.charts.part[at], -1)
         return []
 
@@ -203,11 +203,13 @@ def _is_on_singular_curve(
     return False
 
 
-def lies_on(surfaces: tuple[Surface, ...], point: np.ndarray) -> tuple[int, ...]:
+def lies_on(
+    problem: Problem, surfaces: tuple[Surface, ...], point: np.ndarray
+) -> tuple[int, ...]:
     """Indices of the surfaces with charts on which a singular point (n,) of dimension 2
     or more lies."""
     return tuple(
         k
         for k, s in enumerate(surfaces)
-        if s.charts is not None and len(entrances(s.charts, point))
+        if s.charts is not None and len(entrances(problem, s.charts, point))
     )

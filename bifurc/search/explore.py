@@ -11,15 +11,16 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
+from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.monitor import profile_branch, singular_value_minima, singular_values
-from bifurc.interrupts import HeldInterrupt
-from bifurc.limits import Deadline
-from bifurc.problem import Problem, ProblemError
+from bifurc.limits import Deadline, HeldInterrupt
+from bifurc.problem import Problem
 from bifurc.search.components import singular_points_of, sort_out
 from bifurc.search.findings import SAME, Findings, assemble_atlas
-from bifurc.seeding import CLOSED, Seeds
+from bifurc.search.settings import SearchSettings
+from bifurc.seeding import CLOSED
+from bifurc.seeds import Seeds
 from bifurc.singular.locate import (
     SingularPoint,
     classify_singular_point,
@@ -28,6 +29,8 @@ from bifurc.singular.locate import (
 from bifurc.singular.sphere import is_on_surface
 
 __all__ = ["explore"]
+
+DEFAULT_SEARCH = SearchSettings()
 
 log = logging.getLogger(__name__)
 
@@ -40,48 +43,49 @@ NEARLY = 1e-3
 def explore(
     problem: Problem,
     *,
-    starts: int = 200,
+    settings: SearchSettings = DEFAULT_SEARCH,
     seed: int = 0,
     seeds: Seeds | None = None,
-    settings: TraceSettings = DEFAULT_SETTINGS,
     progress: Callable[[str, int], None] | None = None,
-    budget: float = np.inf,
-    charts: int = 1500,
-    prove: bool = False,
 ) -> Atlas:
     """All solution curves of a problem, all singular points on them, nothing twice.
 
     Seeds come from `Problem.seeds` (complete slices where the problem has them, and
-    ``starts`` random starts drawn with ``seed``) unless given. Every branch found is
-    traced whole and monitored; from every singular point the directions in which other
-    branches leave become further starts. ``progress`` is called with what was found and
-    how many. Ctrl-C ends the search early: the atlas holds what was found, and
-    ``info["interrupted"]`` is true. The search also ends when the ``budget`` (s) is
-    used up, but for the step it is in: the completeness says so, and
-    ``info["out_of_time"]``. Surfaces are covered with up to ``charts`` charts. With
-    ``prove`` the problem's audit, if it has one, takes the time to find out whether a
-    branch can be missing.
+    random starts drawn with ``seed``) unless given. Every branch found is traced whole
+    and monitored; from every singular point the directions in which other branches
+    leave become further starts. ``progress`` is called with what was found and how
+    many. Ctrl-C ends the search early: the atlas holds what was found, and
+    ``info["interrupted"]`` is true. When the budget of time is used up, the
+    completeness says so, and ``info["out_of_time"]``.
     """
-    if not budget > 0:
-        raise ProblemError("budget", budget, "a positive number of seconds")
-    if starts < 1 and seeds is None:
-        raise ProblemError("starts", starts, "at least 1")
     began = time.perf_counter()
-    deadline = Deadline(budget)
+    deadline = Deadline(settings.budget)
     found = Findings(deadline=deadline)
     interrupted = False
     gathered = seeds
     try:
         with HeldInterrupt() as held:
             if gathered is None:
-                gathered = problem.seeds(np.random.default_rng(seed), starts)
+                gathered = problem.seeds(np.random.default_rng(seed), settings.starts)
             held.check()
-            _work_through(problem, gathered, found, settings, progress, held)
+            _work_through(problem, gathered, found, settings.tracing, progress, held)
             _work_on_surfaces(
-                problem, gathered, found, settings, charts, progress, held
+                problem,
+                gathered,
+                found,
+                settings.tracing,
+                settings.charts,
+                progress,
+                held,
             )
             gathered = _audited(
-                problem, gathered, found, settings, progress, held, prove
+                problem,
+                gathered,
+                found,
+                settings.tracing,
+                progress,
+                held,
+                settings.prove,
             )
     except KeyboardInterrupt:
         interrupted = True
@@ -91,10 +95,10 @@ def explore(
         gathered = Seeds(nothing, np.empty(0, dtype=bool), np.empty(0), nothing)
     info = {
         "seed": seed,
-        "starts": starts,
-        "settings": asdict(settings),
+        "starts": settings.starts,
+        "settings": asdict(settings.tracing),
         "interrupted": interrupted,
-        "budget": budget,
+        "budget": settings.budget,
         "out_of_time": deadline.passed,
         "derivatives": problem.derivatives,
         "seconds": time.perf_counter() - began,

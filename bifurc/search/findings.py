@@ -10,14 +10,16 @@ from typing import Any
 import networkx as nx
 import numpy as np
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface, wrap
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.monitor import Profile, dead_points
 from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.search.components import Components, lies_on
-from bifurc.seeding import Audit, Completeness, Seeds, missed_probability
+from bifurc.seeding import missed_probability
+from bifurc.seeds import Audit, Completeness, Seeds
 from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.torus import wrap
 
 __all__ = ["SAME", "Findings", "assemble_atlas"]
 
@@ -174,7 +176,7 @@ def _meeting_point(
         note = f"{explained} half-branches were traced, the section shows {seen}"
         crossing = Kind.BIFURCATION if explained > 2 else Kind.UNDECIDED
         kind = Kind.DIMENSION_CHANGE if point.dimension > 1 else crossing
-    met = lies_on(surfaces, point.u) if point.dimension > 1 else ()
+    met = lies_on(problem, surfaces, point.u) if point.dimension > 1 else ()
     return MeetingPoint("", kind, point, tuple(through + ends), tangents, note, met)
 
 

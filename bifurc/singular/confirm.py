@@ -11,7 +11,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from bifurc.problem import ProblemError
+from bifurc.errors import ProblemError
 
 __all__ = ["Confirmation", "Convergence", "Residual", "confirm_singular_point"]
 

@@ -10,14 +10,11 @@ probed.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bifurc.limits import Deadline
-
-if TYPE_CHECKING:
-    from bifurc.problem import Problem
+from bifurc.problem import Problem
 
 __all__ = ["LocalDimensions", "local_dimensions", "null_spaces", "tangent_planes"]
 

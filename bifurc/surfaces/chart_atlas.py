@@ -3,7 +3,7 @@ parts and paths."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 
@@ -11,9 +11,6 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-
-from bifurc.problem import Problem
-from bifurc.surfaces.geodesic import shortest_path
 
 __all__ = ["ChartAtlas", "Covering"]
 
@@ -42,8 +39,7 @@ class ChartAtlas:
     lists the ``vertices`` (v, n) around it, solutions that it shares with its
     neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one
     behind the other. ``neighbours`` (p, 2) are the pairs of charts whose polygons have
-    an edge in common. Paths are corrected onto the surface by the equations of
-    ``problem``; an atlas read from a file has none.
+    an edge in common.
     """
 
     centers: np.ndarray
@@ -55,7 +51,6 @@ class ChartAtlas:
     polygon_sizes: np.ndarray
     periods: np.ndarray
     outcome: Covering
-    problem: Problem | None = field(default=None, compare=False, repr=False)
 
     def __len__(self) -> int:
         return len(self.centers)
@@ -155,23 +150,7 @@ class ChartAtlas:
         """Which solutions (k, n) lie in a chart (k,)."""
         return self.chart_at(points) >= 0
 
-    # --- paths ----------------------------------------------------------------------------------------
-
-    def path(
-        self, start: np.ndarray, goal: np.ndarray, spacing: float | None = None
-    ) -> np.ndarray:
-        """Solutions (k, n) from ``start`` to ``goal`` (n,), without jumps: the shortest
-        chain of charts, pulled tight.
-
-        Neighbouring points are about ``spacing`` apart (half the median radius unless
-        given); the goal may come out shifted by whole periods. Raises `ValueError`
-        where an end lies in no chart, or where no chain of charts leads from one to the
-        other. Without ``problem`` the path is that of the chords between the centres.
-        """
-        start, goal = np.asarray(start, dtype=float), np.asarray(goal, dtype=float)
-        return shortest_path(
-            self, start, goal, spacing or 0.5 * float(np.median(self.radii))
-        )
+    # --- charts about a point ----------------------------------------------------------------------------------------
 
     def holding(self, point: np.ndarray) -> np.ndarray:
         """Numbers (k,) of all charts in which a solution (n,) lies."""
@@ -262,5 +241,4 @@ class ChartAtlas:
             self.polygon_sizes[charts],
             self.periods,
             self.outcome,
-            self.problem,
         )

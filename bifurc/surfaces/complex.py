@@ -77,7 +77,6 @@ def assemble_charts(
         np.bincount(owner[distinct], minlength=len(sizes)),
         problem.periods,
         outcome,
-        problem,
     )
 
 

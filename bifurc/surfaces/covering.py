@@ -18,9 +18,10 @@ from collections import deque
 
 import numpy as np
 
+from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
-from bifurc.problem import Problem, ProblemError
+from bifurc.problem import Problem
 from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import assemble_charts

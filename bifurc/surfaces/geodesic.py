@@ -12,17 +12,15 @@ round before. The number of rounds does not grow with that of the points.
 from __future__ import annotations
 
 from collections.abc import Hashable
-from typing import TYPE_CHECKING
 
 import networkx as nx
 import numpy as np
 from scipy.linalg import solveh_banded
 
 from bifurc.numerics.corrector import correct_normal
+from bifurc.problem import Problem
 from bifurc.singular.dimension import tangent_planes
-
-if TYPE_CHECKING:
-    from bifurc.surfaces.chart_atlas import ChartAtlas
+from bifurc.surfaces.chart_atlas import ChartAtlas
 
 __all__ = ["entrances", "path_length", "resample", "shortest_path"]
 
@@ -35,7 +33,11 @@ SOLVED = 1e-10  # relative residual above which a point could not be corrected
 
 
 def shortest_path(
-    charts: ChartAtlas, start: np.ndarray, goal: np.ndarray, spacing: float
+    problem: Problem,
+    charts: ChartAtlas,
+    start: np.ndarray,
+    goal: np.ndarray,
+    spacing: float,
 ) -> np.ndarray:
     """Solutions (k, n) about ``spacing`` apart from ``start`` to ``goal`` (n,), as
     short as pulling makes them.
@@ -47,15 +49,20 @@ def shortest_path(
     one end to the other, or points cannot be corrected onto the surface.
     """
     paths = [
-        _pulled(charts, start, goal, chain, spacing)
-        for chain in _chains(charts, start, goal)
+        _pulled(problem, charts, start, goal, chain, spacing)
+        for chain in _chains(problem, charts, start, goal)
     ]
     path = min(paths, key=path_length)
     intervals = _intervals(path, spacing)
-    return resample(charts, path, intervals) if 2 * len(path) < 3 * intervals else path
+    return (
+        resample(problem, charts, path, intervals)
+        if 2 * len(path) < 3 * intervals
+        else path
+    )
 
 
 def _pulled(
+    problem: Problem,
     charts: ChartAtlas,
     start: np.ndarray,
     goal: np.ndarray,
@@ -68,17 +75,27 @@ def _pulled(
     points[1:] = points[0] + np.cumsum(charts.apart(points[1:], points[:-1]), axis=0)
     spacing = max(spacing, 0.3 * float(np.median(charts.radii[chain])))
     return _tightened(
-        charts, _lifted(charts, _evenly(points, _intervals(points, spacing))), ROUNDS
+        problem,
+        charts,
+        _lifted(problem, charts, _evenly(points, _intervals(points, spacing))),
+        ROUNDS,
     )
 
 
-def resample(charts: ChartAtlas, path: np.ndarray, intervals: int) -> np.ndarray:
+def resample(
+    problem: Problem, charts: ChartAtlas, path: np.ndarray, intervals: int
+) -> np.ndarray:
     """A path (intervals + 1, n) on the surface along a tight one (k, n), evenly spread
     and tight as well.
 
     Raises `ValueError` where points cannot be corrected onto the surface.
     """
-    return _tightened(charts, _lifted(charts, _evenly(path, intervals)), FINAL_ROUNDS)
+    return _tightened(
+        problem,
+        charts,
+        _lifted(problem, charts, _evenly(path, intervals)),
+        FINAL_ROUNDS,
+    )
 
 
 def path_length(path: np.ndarray) -> float:
@@ -92,7 +109,7 @@ def path_length(path: np.ndarray) -> float:
     )
 
 
-def entrances(charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
+def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
     """Numbers (k,) of the charts in which a solution (n,) lies.
 
     Where there is none, as at the tip of a cone, those next to it whose centres are
@@ -100,7 +117,7 @@ def entrances(charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
     to it.
     """
     found = charts.holding(point)
-    if len(found) or charts.problem is None:
+    if len(found):
         return found
     found = charts.beside(point)
     if not len(found):
@@ -111,7 +128,7 @@ def entrances(charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
     )  # (k, 12, n)
     lines = (point + steps).reshape(-1, len(point))
     ends, gaps = correct_normal(
-        charts.problem, lines, np.repeat(charts.bases[found], len(share), axis=0)
+        problem, lines, np.repeat(charts.bases[found], len(share), axis=0)
     )
     off = np.linalg.norm(ends - lines, axis=1) / np.linalg.norm(steps, axis=2).ravel()
     return found[
@@ -119,7 +136,9 @@ def entrances(charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
     ]
 
 
-def _chains(charts: ChartAtlas, start: np.ndarray, goal: np.ndarray) -> list[list[int]]:
+def _chains(
+    problem: Problem, charts: ChartAtlas, start: np.ndarray, goal: np.ndarray
+) -> list[list[int]]:
     """Numbers of the charts on the shortest way, from one about the start to one about
     the goal.
 
@@ -132,7 +151,7 @@ def _chains(charts: ChartAtlas, start: np.ndarray, goal: np.ndarray) -> list[lis
         zip(i.tolist(), j.tolist(), lengths.tolist(), strict=True)
     )
     for name, point in (("start", start), ("goal", goal)):
-        about = entrances(charts, point)
+        about = entrances(problem, charts, point)
         if not len(about):
             raise ValueError(f"the {name} lies in no chart of the surface")
         away = np.linalg.norm(charts.apart(charts.centers[about], point), axis=1)
@@ -156,13 +175,13 @@ def _chains(charts: ChartAtlas, start: np.ndarray, goal: np.ndarray) -> list[lis
     return [first[1:-1], other[1:-1]] if worth else [first[1:-1]]
 
 
-def _lifted(charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
+def _lifted(problem: Problem, charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
     """The points (k, n) with the inner ones corrected onto the surface straight above
     the planes of the charts."""
     out = points.copy()
-    if charts.problem is not None and len(points) > 2:
+    if len(points) > 2:
         out[1:-1], solved = _corrected(
-            charts, points[1:-1], charts.bases[charts.nearest(points[1:-1])]
+            problem, charts, points[1:-1], charts.bases[charts.nearest(points[1:-1])]
         )
         if not np.all(solved):
             raise ValueError(
@@ -171,17 +190,19 @@ def _lifted(charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
     return out
 
 
-def _tightened(charts: ChartAtlas, path: np.ndarray, rounds: int) -> np.ndarray:
+def _tightened(
+    problem: Problem, charts: ChartAtlas, path: np.ndarray, rounds: int
+) -> np.ndarray:
     """The path after up to so many rounds of pulling. Its ends stay, and points that
     would leave surface or bounds."""
     spacing = np.linalg.norm(np.diff(path, axis=0), axis=1).mean()
-    if charts.problem is None or len(path) < 3 or spacing == 0:
+    if len(path) < 3 or spacing == 0:
         return path
     path = path.copy()
-    inner, (low, high) = path[1:-1], charts.problem.bounds.T
+    inner, (low, high) = path[1:-1], problem.bounds.T
     planes, share, energy = charts.bases[charts.nearest(inner)], 1.0, _energy(path)
     for _ in range(rounds):
-        planes = tangent_planes(charts.problem, inner, planes)
+        planes = tangent_planes(problem, inner, planes)
         force, pull = _pull(path, planes)
         slope = -2.0 * float(
             np.sum(force * pull)
@@ -191,7 +212,7 @@ def _tightened(charts: ChartAtlas, path: np.ndarray, rounds: int) -> np.ndarray:
         step = np.einsum("kij,kj->ki", planes, pull)
         size = np.linalg.norm(step, axis=1).max()
         share = min(share, 0.5 * charts.radii.max() / size)
-        moved, good = _corrected(charts, inner + share * step, planes)
+        moved, good = _corrected(problem, charts, inner + share * step, planes)
         good &= np.all((moved >= low) & (moved <= high), axis=1)
         before = inner.copy()
         inner[good] = moved[good]
@@ -223,12 +244,11 @@ def _pull(path: np.ndarray, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 
 def _corrected(
-    charts: ChartAtlas, points: np.ndarray, planes: np.ndarray
+    problem: Problem, charts: ChartAtlas, points: np.ndarray, planes: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) straight above ``points`` of ``planes`` (k, n, 2), and which
     (k,) are solutions nearby."""
-    assert charts.problem is not None
-    found, gaps = correct_normal(charts.problem, points, planes)
+    found, gaps = correct_normal(problem, points, planes)
     return found, (gaps < SOLVED) & (
         np.linalg.norm(found - points, axis=1) < 0.5 * charts.radii.max()
     )

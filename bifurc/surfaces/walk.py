@@ -7,6 +7,7 @@ import numpy as np
 
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
+from bifurc.problem import Problem
 from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
@@ -18,7 +19,7 @@ CHUNK = 256  # walkers between two looks at the clock
 
 
 def reached_charts(
-    charts: ChartAtlas, points: np.ndarray, deadline: Deadline
+    problem: Problem, charts: ChartAtlas, points: np.ndarray, deadline: Deadline
 ) -> np.ndarray:
     """Numbers (k,) of the charts that regular solutions (k, n) come to on the surface;
     -1 where no walk arrives.
@@ -35,18 +36,20 @@ def reached_charts(
             if not deadline.passed:
                 part = slice(begin, begin + CHUNK)
                 out[left[part]] = _walk(
-                    charts, points[left[part]], None if goals is None else goals[part]
+                    problem,
+                    charts,
+                    points[left[part]],
+                    None if goals is None else goals[part],
                 )
     return out
 
 
 def _walk(
-    charts: ChartAtlas, points: np.ndarray, goals: np.ndarray | None
+    problem: Problem, charts: ChartAtlas, points: np.ndarray, goals: np.ndarray | None
 ) -> np.ndarray:
     """Where walks towards the charts numbered ``goals`` (k,), or to the nearest,
     arrive; -1 where they do not."""
-    problem, out = charts.problem, np.full(len(points), -1)
-    assert problem is not None
+    out = np.full(len(points), -1)
     at, planes = (
         points.copy(),
         np.swapaxes(null_spaces(problem, points)[1][:, -2:], 1, 2),

@@ -5,44 +5,35 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 
-from linkages.catalogue import UnknownLinkageError, entry
-from linkages.entry import Entry, FormPattern
-from linkages.file import read_linkage, read_precisely
+from linkages.catalogue import entry
+from linkages.entry import Entry
+from linkages.file import read_precisely
+from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["Choice", "choose_linkage", "choose_precisely"]
+__all__ = ["choose_linkage", "choose_precisely"]
 
 
-@dataclass(frozen=True)
-class Choice:
-    """A loop and the forms that its source names."""
-
-    loop: Loop
-    patterns: tuple[FormPattern, ...] = ()
-
-
-def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Choice:
+def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
     """The linkage called ``text``, or read from the file ``text`` if that is one (or
     ends with .toml).
 
     ``parameters`` are "key=value", angles in degrees. Raises `GeometryError`,
     `UnknownLinkageError` and `LinkageFileError`.
     """
-    if _is_file(text):
+    if is_linkage_file(text):
         if parameters:
             raise GeometryError(
                 "--param",
                 parameters[0],
                 "left out with a file, which holds the whole geometry",
             )
-        return Choice(read_linkage(text)[0])
-    found = _entry(text)
-    values = found.complete(dict(_parameter(found, item) for item in parameters))
-    patterns = found.patterns(**values) if found.patterns is not None else ()
-    return Choice(found.build(**values), patterns)
+        return load(text)
+    if not parameters:
+        return load(text)
+    family = entry(text)
+    return load(text, **dict(_parameter(family, item) for item in parameters))
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
@@ -54,29 +45,11 @@ def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
     """
     import mpmath
 
-    if _is_file(text):
+    if is_linkage_file(text):
         return read_precisely(text)
     found = entry(text)
     values = found.complete(dict(_parameter(found, item) for item in parameters))
     return found.build(**{key: mpmath.mpf(value) for key, value in values.items()})
-
-
-def _entry(text: str) -> Entry:
-    """The entry called ``text``; where there is none but a file of that name, it is
-    among the nearest."""
-    try:
-        return entry(text)
-    except UnknownLinkageError as error:
-        file = f"{text}.toml"
-        raise (
-            UnknownLinkageError(text, (file, *error.nearest))
-            if Path(file).is_file()
-            else error
-        ) from None
-
-
-def _is_file(text: str) -> bool:
-    return text.endswith(".toml") or Path(text).is_file()
 
 
 def _parameter(found: Entry, item: str) -> tuple[str, float]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bifurc.interrupts import HeldInterrupt
+from bifurc.limits import HeldInterrupt
 from linkages.app.status import EchoHandler, ExitCode, StatusLine, compilation_announced
 from linkages.app.sweep.command import sweep_command
 from linkages.app.tolerance_command import tolerance_command
@@ -95,8 +95,7 @@ class Commands(click.Group):
         try:
             return super().invoke(ctx)
         except (ValueError, LookupError) as error:
-            from bifurc.atlas import RouteError
-            from bifurc.problem import ProblemError
+            from bifurc.errors import ProblemError, RouteError
             from linkages.catalogue import UnknownLinkageError
             from linkages.file import LinkageFileError
             from linkages.loop import GeometryError
@@ -313,12 +312,13 @@ def route(
         if source.endswith(".nc")
         else _explore(source, parameters, **search)
     )
-    from bifurc.atlas import RouteError
+    from bifurc.errors import RouteError
+    from bifurc.routes.route import find_route
     from linkages.app.summary import describe_route
 
     names = [atlas.full_name(name) for name in (start, goal)]
     try:
-        found = atlas.route(names[0], names[1], problem=_problem(atlas))
+        found = find_route(atlas, names[0], names[1], problem=_problem(atlas))
     except RouteError as error:
         raise NoRoute(str(error)) from None
     click.echo(describe_route(atlas, found, *names))
@@ -359,24 +359,24 @@ def _explore(
     certify: bool = False,
     *,
     tolerance: float,
-    **search: Any,
+    starts: int,
+    seed: int,
+    budget: float,
 ) -> Atlas:
     from bifurc.curves.continuation import TraceSettings
+    from bifurc.search.settings import SearchSettings
     from linkages.app.choice import choose_linkage
     from linkages.mapping import map_linkage
 
-    settings = TraceSettings(tolerance=tolerance)
+    settings = SearchSettings(
+        starts=starts, budget=budget, tracing=TraceSettings(tolerance=tolerance)
+    )
     chosen = choose_linkage(linkage, parameters)
     status = StatusLine()
     try:
         with compilation_announced():
             return map_linkage(
-                chosen.loop,
-                chosen.patterns,
-                certify=certify,
-                settings=settings,
-                progress=status,
-                **search,
+                chosen, settings=settings, certify=certify, seed=seed, progress=status
             )
     finally:
         status.wipe()

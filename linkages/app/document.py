@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from bifurc.atlas import Atlas, Form, Surface, wrap
+from bifurc.atlas import Atlas, Form, Surface
+from bifurc.torus import wrap
 
 __all__ = ["make_document"]
 

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from bifurc.atlas import Atlas, MeetingPoint, Route, wrap
+from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.routes.route import Route
+from bifurc.torus import wrap
 from linkages.app.verdict import judge
 from linkages.entry import Entry
 

@@ -61,7 +61,7 @@ def tolerance_command(
 
     chosen = choose_linkage(linkage, parameters)
     with compilation_announced():
-        atlas = map_linkage(chosen.loop, chosen.patterns)
+        atlas = map_linkage(chosen)
     seeds = range(seed, seed + samples)
     copies = [measure(atlas, chosen.loop, error, number) for number in seeds]
     ladder = climb(atlas, chosen.loop, seeds)

@@ -14,7 +14,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from bifurc.problem import March, Problem
+from bifurc.function_problem import NumericalProblem
+from bifurc.problem import March, MarchStatus
 from linkages.closure import kernels
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import GeometryError, Loop
@@ -24,7 +25,7 @@ __all__ = ["CoupledClosure", "locked_joints"]
 LARGEST_DENOMINATOR = 1000  # of a gear ratio whose angles come back to where they were
 
 
-class CoupledClosure(Problem):
+class CoupledClosure(NumericalProblem):
     """The closure equations of a loop in k unknowns v (rad) with theta = M v + c.
 
     ``matrix`` M (n, k) is constant and its columns are independent: a row of zeros
@@ -96,7 +97,7 @@ class CoupledClosure(Problem):
             count,
             self._coupling,
         )
-        return March(status, pieces, steps, radii, residuals)
+        return March(MarchStatus(status), pieces, steps, radii, residuals)
 
 
 def locked_joints(

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.problem import March, Problem
-from bifurc.seeding import CLOSED, Seeds, random_seeds
+from bifurc.function_problem import NumericalProblem
+from bifurc.problem import March, MarchStatus
+from bifurc.seeding import CLOSED, random_seeds
+from bifurc.seeds import Seeds
 from linkages.closure import kernels
 from linkages.loop import Loop
 from linkages.slices.completeness import SliceAudit
@@ -21,7 +23,7 @@ NEARLY_REAL = 0.2  # rad: imaginary parts of configurations whose real part is a
 ROUNDING = 4e-16  # below this residual norm a projection has nothing left to gain
 
 
-class LoopClosure(Problem):
+class LoopClosure(NumericalProblem):
     """Six closure equations in the n joint angles (rad) of a loop.
 
     Translations are measured in the loop's characteristic length. The derivatives are
@@ -110,7 +112,7 @@ class LoopClosure(Problem):
             longest,
             count,
         )
-        return March(status, pieces, steps, radii, residuals)
+        return March(MarchStatus(status), pieces, steps, radii, residuals)
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Closed configurations to start from: complete slices of every joint of a 4R,

@@ -33,7 +33,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.monitor import dead_points
 from bifurc.limits import Deadline
-from bifurc.seeding import Audit
+from bifurc.seeds import Audit
 from linkages.loop import Loop
 from linkages.slices.elimination import Slice, slice_configurations
 from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, Problem
 from studies.methods.curve import MethodFailure
 
@@ -16,7 +17,7 @@ __all__ = ["Counted"]
 A_PIECE = 10
 
 
-class Counted(Problem):
+class Counted(NumericalProblem):
     """``problem`` with the number of ``evaluations`` so far: points at which F or F'
     was asked for, one each.
 
@@ -37,7 +38,7 @@ class Counted(Problem):
         ):
             setattr(self, name, getattr(problem, name))
         if (
-            type(problem).march is Problem.march
+            type(problem).march is NumericalProblem.march
         ):  # by collocation, through the evaluations below
             self._compiled = False
         else:

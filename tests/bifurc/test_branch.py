@@ -5,7 +5,7 @@ import pytest
 
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from bifurc.interrupts import HeldInterrupt
+from bifurc.limits import HeldInterrupt
 
 
 @pytest.fixture(autouse=True)

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from bifurc.problem import FunctionProblem, ProblemError
+from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 

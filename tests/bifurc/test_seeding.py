@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.seeding import missed_probability, random_seeds
 
 

@@ -2,14 +2,16 @@
 
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
+from linkages.linkage import load
 
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.loop import GeometryError, Loop
-from linkages.mapping import map_by_name, map_linkage
+from linkages.mapping import map_linkage
 
 
 def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
-    atlas = map_by_name("special-double-subtractive-goldberg")
+    atlas = map_linkage(load("special-double-subtractive-goldberg"))
     bennett = atlas.forms[atlas.form("Form II (Bennett 4R)")]
     assert bennett.labels["inactive_joints"] == [3, 6]
     assert np.abs(bennett.labels["inactive_angles"]) == pytest.approx(np.pi)
@@ -22,7 +24,7 @@ def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
 
 
 def test_every_form_says_how_well_it_closes_and_the_atlas_what_was_mapped():
-    atlas = map_by_name("parallelogram", b=3.0)
+    atlas = map_linkage(load("parallelogram", b=3.0))
     assert all(0 < form.labels["max_residual"] < 1e-12 for form in atlas.forms)
     assert atlas.info["linkage"] == {
         "name": "parallelogram",
@@ -41,11 +43,13 @@ def test_a_loop_without_a_source_is_mapped_too():
 
 def test_a_name_or_a_parameter_that_does_not_exist_is_refused():
     with pytest.raises(UnknownLinkageError, match="bennett"):
-        map_by_name("benet")
+        map_linkage(load("benet"))
     with pytest.raises(GeometryError, match="one of a, alpha, beta"):
-        map_by_name("bennett", gamma=1.0)
+        map_linkage(load("bennett", gamma=1.0))
 
 
 def test_a_map_is_certified_on_request():
-    atlas = map_linkage(entry("bennett").build(), certify=True, starts=20)
+    atlas = map_linkage(
+        entry("bennett").build(), settings=SearchSettings(starts=20), certify=True
+    )
     assert atlas.forms[0].labels["certificate"]["status"] == "certified"

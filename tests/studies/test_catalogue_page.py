@@ -4,11 +4,12 @@ drawn."""
 import re
 
 import numpy as np
+from linkages.linkage import load
 
 from linkages.app.scene_figure import draw_configuration
 from linkages.catalogue import catalogue, entry
 from linkages.closed_forms.all_forms import all_closed_forms
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 from studies import catalogue_page
 from studies.catalogue_page import (
     PAGE,
@@ -52,7 +53,7 @@ def test_the_page_counts_the_map_of_every_linkage():
 def test_a_count_of_the_page_is_that_of_the_map():
     counts = read_counts(PAGE.read_text(encoding="utf-8"))
     for name in ("bennett", "special-double-subtractive-goldberg"):
-        assert counts[name] == count_map(map_by_name(name))
+        assert counts[name] == count_map(map_linkage(load(name)))
 
 
 def test_every_linkage_has_its_section_and_every_condition_stands_on_the_page():
@@ -72,7 +73,7 @@ def test_links_on_the_page_lead_to_sections():
 
 def test_a_parallelogram_is_not_drawn_folded():
     found = entry("parallelogram")
-    theta = clearest_configuration(map_by_name("parallelogram"), found)
+    theta = clearest_configuration(map_linkage(load("parallelogram")), found)
     assert np.abs(np.sin(theta)).max() > 0.5
 
 

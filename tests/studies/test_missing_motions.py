@@ -1,6 +1,7 @@
 """The study that tries to refute proofs of completeness."""
 
 import numpy as np
+from bifurc.search.settings import SearchSettings
 from click.testing import CliRunner
 
 from bifurc.search.explore import explore
@@ -16,14 +17,16 @@ def test_every_second_linkage_has_a_small_motion_beside_a_large_one():
     for loop in loops[1::2]:
         small, large = sorted(
             form.branch.length
-            for form in explore(LoopClosure(loop), starts=20, prove=True).forms
+            for form in explore(
+                LoopClosure(loop), settings=SearchSettings(starts=20, prove=True)
+            ).forms
         )
         assert small < 1.0 < 5.0 < large
 
 
 def test_a_motion_that_is_missing_is_noticed():
     one, other = (
-        explore(LoopClosure(entry(name).build()), starts=20)
+        explore(LoopClosure(entry(name).build()), settings=SearchSettings(starts=20))
         for name in ("bennett", "parallelogram")
     )
     assert same_motions(one, one)

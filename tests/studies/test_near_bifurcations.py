@@ -3,11 +3,12 @@ say otherwise."""
 
 import numpy as np
 import pytest
+from linkages.linkage import load
 
 from bifurc.curves.continuation import trace_branch
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 from studies.half_turn import SHIFT, HalfTurn
 from studies.near_bifurcations import STEPS, describe, describe_certificates, follow
 from studies.near_misses import FAMILIES, near_misses
@@ -77,7 +78,7 @@ def test_a_double_goldberg_that_goes_straight_through_the_bifurcation_is_seen():
 )
 def test_only_the_line_symmetric_forms_pass_as_such(name):
     relation = HalfTurn(entry(name).build())
-    for form in map_by_name(name).forms:
+    for form in map_linkage(load(name)).forms:
         points = form.branch.sample(200)
         symmetric = np.abs(np.sin((points[:, 3:] - points[:, :3]) / 2)).max() < 1e-9
         assert relation.stays(form.branch) == symmetric == ("original" in form.name)
@@ -86,7 +87,7 @@ def test_only_the_line_symmetric_forms_pass_as_such(name):
 def test_the_sheet_squares_to_the_discriminant():
     name = "bricard-line-symmetric"
     relation = HalfTurn(entry(name).build())
-    points = map_by_name(name).forms[0].branch.sample(50)
+    points = map_linkage(load(name)).forms[0].branch.sample(50)
     half = (points[:, 0] - SHIFT[0]) / 2
     powers = np.cos(half)[:, None] ** np.arange(4, -1, -1) * np.sin(half)[
         :, None

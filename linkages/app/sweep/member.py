@@ -13,9 +13,12 @@ from typing import Any
 
 import networkx as nx
 import numpy as np
+from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas
+from bifurc.graphs import arc_graph, transition_graph
 from linkages.catalogue import entry
+from linkages.linkage import Linkage
 from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
 
@@ -114,7 +117,11 @@ def map_member(
     except (GeometryError, ArithmeticError) as error:
         return {"status": int(Status.REFUSED), "message": str(error)}
     try:
-        atlas = map_linkage(loop, patterns, prove=False, starts=starts, seed=seed)
+        atlas = map_linkage(
+            Linkage(loop, patterns),
+            settings=SearchSettings(prove=False, starts=starts),
+            seed=seed,
+        )
     # one bad member must not end a sweep of thousands; the journal keeps the reason
     except Exception as error:
         log.exception("%s with %s", family, dict(parameters))
@@ -141,7 +148,7 @@ def summarise(atlas: Atlas) -> dict[str, Any]:
     idle = np.zeros(len(atlas.names), dtype=int)
     for form in atlas.forms:
         idle[np.array(form.labels.get("inactive_joints", []), dtype=int) - 1] += 1
-    graph = nx.Graph(atlas.graph)
+    graph = nx.Graph(transition_graph(atlas))
     cycle = (
         len(graph) > 2
         and nx.is_connected(graph)
@@ -181,7 +188,7 @@ def _routes(atlas: Atlas) -> tuple[float, float]:
     """Largest and mean of the shortest distances between two singular points of one
     component."""
     names = [point.name for point in atlas.points]
-    lengths = dict(nx.all_pairs_dijkstra_path_length(atlas.arcs, weight="length"))
+    lengths = dict(nx.all_pairs_dijkstra_path_length(arc_graph(atlas), weight="length"))
     found = [
         lengths[a][b]
         for i, a in enumerate(names)

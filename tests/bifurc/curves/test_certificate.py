@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.certificate import certify_atlas, certify_branch
+from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
+from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
@@ -57,7 +59,7 @@ def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configu
 ):
     problem = LoopClosure(entry(name).build())
     bound, rng, worst = problem.curvature_bound(), np.random.default_rng(1), 0.0
-    for form in explore(problem, starts=20).forms:
+    for form in explore(problem, settings=SearchSettings(starts=20)).forms:
         for theta in form.branch.sample(40) + rng.normal(
             scale=1e-2, size=(40, problem.n)
         ):

@@ -5,7 +5,8 @@ import pytest
 
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
-from bifurc.problem import FunctionProblem, ProblemError
+from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 

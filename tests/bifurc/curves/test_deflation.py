@@ -1,11 +1,12 @@
 """Curves along which F' has a lower rank throughout."""
 
 import numpy as np
+from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 
 
@@ -53,7 +54,7 @@ def test_a_regular_point_is_no_start_of_a_curve_of_lower_rank():
 
 
 def test_explore_finds_a_double_circle_once_and_says_its_rank():
-    atlas = explore(double_circle(), starts=40)
+    atlas = explore(double_circle(), settings=SearchSettings(starts=40))
     assert [(form.rank, form.branch.outcome) for form in atlas.forms] == [
         (1, Outcome.CLOSED)
     ]

@@ -11,7 +11,7 @@ from bifurc.curves.monitor import (
     singular_value_minima,
     singular_values,
 )
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 
 
 def traced(function, start, direction=None, low=-2.0, high=2.0):

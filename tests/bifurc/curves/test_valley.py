@@ -9,7 +9,7 @@ from bifurc.curves.valley import (
     follow_valley,
     unfold_crossing,
 )
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 
 BOX = [[-2.0, 2.0], [-2.0, 2.0]]
 

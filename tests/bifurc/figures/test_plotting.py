@@ -10,9 +10,11 @@ from itertools import combinations
 import matplotlib
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
+from bifurc.errors import ProblemError
 from bifurc.figures.planes import (
     Scale,
     choose_plane,
@@ -28,7 +30,7 @@ from bifurc.figures.plotting import (
     plot_transition_map,
     save_figures,
 )
-from bifurc.problem import FunctionProblem, ProblemError
+from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 
 TORUS = (Scale(180 / np.pi, 180.0, "x"), Scale(180 / np.pi, 180.0, "y"))
@@ -66,7 +68,7 @@ def parallelogram() -> Atlas:
         units=("rad",) * 3,
         periods=(2 * np.pi,) * 3,
     )
-    return explore(problem, starts=30)
+    return explore(problem, settings=SearchSettings(starts=30))
 
 
 @pytest.fixture(scope="module")
@@ -78,14 +80,15 @@ def circle() -> Atlas:
         names=("x", "y"),
         units=("", "m"),
     )
-    return explore(problem, starts=30)
+    return explore(problem, settings=SearchSettings(starts=30))
 
 
 @pytest.fixture(scope="module")
 def nothing() -> Atlas:
     """No solution at all."""
     return explore(
-        FunctionProblem(lambda u: np.array([u @ u + 1]), [[-1, 1], [-1, 1]]), starts=5
+        FunctionProblem(lambda u: np.array([u @ u + 1]), [[-1, 1], [-1, 1]]),
+        settings=SearchSettings(starts=5),
     )
 
 
@@ -139,7 +142,9 @@ def test_the_plane_tells_forms_apart_that_look_alike_in_others(circle: Atlas) ->
     def lines(u: np.ndarray) -> np.ndarray:
         return np.array([u[0] - u[1], u[2] ** 2 - 1.0])
 
-    atlas = explore(FunctionProblem(lines, [[-2, 2]] * 3), starts=20)
+    atlas = explore(
+        FunctionProblem(lines, [[-2, 2]] * 3), settings=SearchSettings(starts=20)
+    )
     assert len(atlas.forms) == 2 and 2 in choose_plane(atlas)
 
 
@@ -184,7 +189,9 @@ def test_bifurcations_on_one_spot_of_the_plane_share_a_label(circle: Atlas) -> N
         names=("x", "y", "z"),
     )
     assert "B1, B2" in texts_of(
-        plot_transition_map(explore(flat, starts=30), joints=[2, 3])
+        plot_transition_map(
+            explore(flat, settings=SearchSettings(starts=30)), joints=[2, 3]
+        )
     )
 
 

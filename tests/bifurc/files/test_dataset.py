@@ -10,6 +10,7 @@ from typing import Any
 import networkx as nx
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas, Event, Surface
 from bifurc.files.dataset import (
@@ -21,7 +22,8 @@ from bifurc.files.dataset import (
 )
 from bifurc.files.graphml import write_graphml
 from bifurc.files.json_values import from_text, to_text
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
+from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.explore import explore
 
 
@@ -63,7 +65,7 @@ def atlas() -> Atlas:
         units=("rad", "rad"),
         periods=(2 * np.pi, np.inf),
     )
-    found = explore(problem, starts=40)
+    found = explore(problem, settings=SearchSettings(starts=40))
     assert {form.branch.closed for form in found.forms} == {True, False}
     label = {
         "inactive": ("x",),
@@ -111,7 +113,7 @@ def test_an_atlas_without_any_solution_comes_back_identical(tmp_path) -> None:
         FunctionProblem(
             lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 1]), [[-1, 1], [-1, 1]]
         ),
-        starts=5,
+        settings=SearchSettings(starts=5),
     )
     assert not nothing.forms and nothing.closure_gap > 0
     assert (
@@ -265,8 +267,10 @@ def test_graphml_holds_both_graphs_with_plain_attributes(
         )
         for layer in ("forms", "arcs")
     }
-    assert layers["forms"].number_of_edges() == atlas.graph.number_of_edges()
-    assert layers["arcs"].number_of_edges() == atlas.arcs.number_of_edges()
+    assert (
+        layers["forms"].number_of_edges() == transition_graph(atlas).number_of_edges()
+    )
+    assert layers["arcs"].number_of_edges() == arc_graph(atlas).number_of_edges()
     total = sum(length for *_, length in layers["arcs"].edges(data="length"))
     assert total == pytest.approx(sum(form.branch.length for form in atlas.forms))
     assert all("travel_x" in edge for *_, edge in layers["arcs"].edges(data=True))

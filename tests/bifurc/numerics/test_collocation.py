@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
+from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.collocation import bridge_by_collocation, march_by_collocation
-from bifurc.problem import FunctionProblem, MarchStatus, Problem
+from bifurc.problem import MarchStatus, Problem
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 
@@ -24,12 +25,15 @@ def ellipse():
 
 
 def test_pieces_are_solutions_by_arclength_and_follow_each_other(ellipse):
-    status, pieces, steps, radii, residuals = march_by_collocation(
+    march = march_by_collocation(
         ellipse, np.array([2.0, 0.0]), np.array([0.0, 1.0]), 16, 1e-13, 1e-9, 2.0, 8
     )
-    assert status == MarchStatus.RAN
+    pieces, steps, radii = march.pieces, march.steps, march.radii
+    assert march.status is MarchStatus.RAN
     assert len(pieces) == 8
-    assert residuals.max() < 3e-12  # 30 times the tolerance is what a piece may have
+    assert (
+        march.residuals.max() < 3e-12
+    )  # 30 times the tolerance is what a piece may have
     x = np.linspace(-1, 1, 101)
     powers = np.vander(x, 17, increasing=True)
     for i, piece in enumerate(pieces):
@@ -45,20 +49,20 @@ def test_pieces_are_solutions_by_arclength_and_follow_each_other(ellipse):
 
 
 def test_a_start_off_the_curve_is_corrected_and_one_without_a_curve_is_open(ellipse):
-    _, pieces, *_ = march_by_collocation(
+    march = march_by_collocation(
         ellipse, np.array([2.01, 0.0]), np.array([0.0, 1.0]), 12, 1e-12, 1e-9, 1.0, 1
     )
-    start = (-1.0) ** np.arange(13) @ pieces[0]
+    start = (-1.0) ** np.arange(13) @ march.pieces[0]
     assert start == pytest.approx([2.0, 0.0], abs=1e-11)
     nothing = FunctionProblem(
         lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 1.0]), [(-3, 3)] * 2
     )
-    status, pieces, _, _, gaps = march_by_collocation(
+    march = march_by_collocation(
         nothing, np.ones(2), np.array([0.6, -0.8]), 12, 1e-12, 1e-9, 1.0, 1
     )
-    assert status == MarchStatus.OPEN
-    assert not len(pieces)
-    assert gaps[-1] * nothing.magnitude >= 1.0
+    assert march.status is MarchStatus.OPEN
+    assert not len(march.pieces)
+    assert march.residuals[-1] * nothing.magnitude >= 1.0
 
 
 def test_a_bridge_passes_a_crossing_on_its_own_branch():

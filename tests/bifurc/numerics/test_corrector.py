@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.corrector import (
     correct_across,
     null_vector,
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
-from bifurc.problem import FunctionProblem
 
 BOX = [(-2.0, 2.0)] * 3
 

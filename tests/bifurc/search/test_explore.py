@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Outcome
-from bifurc.problem import FunctionProblem, ProblemError
+from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.seeding import Seeds
+from bifurc.seeds import Seeds
 from bifurc.singular.locate import Kind
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
@@ -62,7 +64,7 @@ def test_redundant_equations_change_nothing(name, copy):
     function, bound, lengths, bifurcations = KNOWN[name]
     atlas = explore(
         FunctionProblem(lambda u: COPIES[copy](function(*u)), [(-bound, bound)] * 2),
-        starts=40,
+        settings=SearchSettings(starts=40),
     )
     found = sorted((form.branch.length for form in atlas.forms), reverse=True)
     assert found == pytest.approx(sorted(lengths, reverse=True), abs=1e-6)
@@ -81,7 +83,9 @@ def test_central_differences_give_the_same_answer_and_say_so():
         x, y = (np.float64(v) for v in u)
         return np.array([x * y - x**3])
 
-    atlas = explore(FunctionProblem(rounded, [(-2, 2)] * 2), starts=30)
+    atlas = explore(
+        FunctionProblem(rounded, [(-2, 2)] * 2), settings=SearchSettings(starts=30)
+    )
     assert atlas.info["derivatives"] == "central differences"
     assert len(atlas.forms) == 2
     assert [p.kind for p in atlas.points] == [Kind.BIFURCATION]
@@ -118,7 +122,7 @@ def test_a_square_problem_with_a_parameter_is_a_curve_like_any_other():
         [(-2, 2), (-1, 2)],
         names=("x", "a"),
     )
-    atlas = explore(problem, starts=60)
+    atlas = explore(problem, settings=SearchSettings(starts=60))
     assert len(atlas.forms) == 2
     assert not atlas.points
     folds = [event.u for event in atlas.dead_points if event.index == 1]
@@ -131,7 +135,7 @@ def test_no_solution_is_no_form_and_the_gap_is_the_smallest_residual():
     problem = FunctionProblem(
         lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 0.5]), [(-2, 2)] * 2
     )
-    atlas = explore(problem, starts=20)
+    atlas = explore(problem, settings=SearchSettings(starts=20))
     assert not atlas.forms
     assert not atlas.points
     assert atlas.closure_gap * problem.magnitude == pytest.approx(0.5, rel=0.5)
@@ -141,7 +145,7 @@ def test_isolated_solutions_are_rigid_and_found_once():
     problem = FunctionProblem(
         lambda u: np.array([u[0] ** 2 - 1, u[1] ** 2 - 4 * u[0] ** 2]), [(-3, 3)] * 2
     )
-    atlas = explore(problem, starts=60)
+    atlas = explore(problem, settings=SearchSettings(starts=60))
     assert not atlas.forms
     assert sorted(map(tuple, np.round(atlas.rigid, 12))) == [
         (-1, -2),
@@ -233,7 +237,7 @@ def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
     ],
 )
 def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
-    atlas = explore(LoopClosure(loop), starts=30)
+    atlas = explore(LoopClosure(loop), settings=SearchSettings(starts=30))
     assert not atlas.forms
     assert not len(atlas.rigid)
     assert atlas.surfaces
@@ -252,7 +256,8 @@ def test_joints_that_spin_on_coincident_axes_make_a_surface():
             v + (0.0,) * spare for v in (bennett.lengths, bennett.twists)
         )
         atlas = explore(
-            LoopClosure(Loop(lengths, twists, (0.0,) * (4 + spare))), starts=20
+            LoopClosure(Loop(lengths, twists, (0.0,) * (4 + spare))),
+            settings=SearchSettings(starts=20),
         )
         assert atlas.surfaces
         assert not atlas.forms
@@ -306,7 +311,8 @@ def test_the_same_seed_gives_the_same_atlas_to_the_last_bit():
 def test_no_starts_are_refused():
     with pytest.raises(ProblemError, match="starts: 0 is not allowed"):
         explore(
-            FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2), starts=0
+            FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2),
+            settings=SearchSettings(starts=0),
         )
 
 

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from bifurc.problem import ProblemError
+from bifurc.errors import ProblemError
 from bifurc.singular.confirm import Convergence, confirm_singular_point
 
 BOTH = np.eye(2)

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Outcome
 from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.singular.locate import Kind
 from linkages.catalogue import entry
@@ -41,7 +42,10 @@ def test_a_singular_point_of_any_kind_is_found_once_with_its_half_branches(
 ):
     polynomial, kind, half_branches, forms = AT_THE_ORIGIN[name]
     problem = FunctionProblem(lambda u: np.array([polynomial(*u)]), BOX)
-    atlas = explore(problem, starts=40, settings=TraceSettings(longest=longest))
+    atlas = explore(
+        problem,
+        settings=SearchSettings(starts=40, tracing=TraceSettings(longest=longest)),
+    )
     assert [(p.kind, len(p.point.half_branches), p.note) for p in atlas.points] == [
         (kind, half_branches, "")
     ]
@@ -104,7 +108,8 @@ def test_what_misses_a_crossing_by_rounding_is_a_singular_point(error, longest):
         lambda u: np.array([u[0] * u[1] - u[1] ** 3 + error]), BOX
     )
     (point,) = explore(
-        problem, starts=40, settings=TraceSettings(longest=longest)
+        problem,
+        settings=SearchSettings(starts=40, tracing=TraceSettings(longest=longest)),
     ).points
     assert point.kind is Kind.BIFURCATION
     assert np.linalg.norm(point.point.u) < np.sqrt(error)
@@ -116,7 +121,10 @@ def test_what_doubles_resolve_is_a_near_miss_and_no_singular_point(error, longes
     problem = FunctionProblem(
         lambda u: np.array([u[0] * u[1] - u[1] ** 3 + error]), BOX
     )
-    atlas = explore(problem, starts=40, settings=TraceSettings(longest=longest))
+    atlas = explore(
+        problem,
+        settings=SearchSettings(starts=40, tracing=TraceSettings(longest=longest)),
+    )
     assert (len(atlas.forms), len(atlas.points), len(atlas.near_misses)) == (2, 0, 2)
 
 
@@ -155,7 +163,7 @@ def test_neighbouring_pieces_overlap_also_where_a_bridge_was_laid():
     for _ in range(22):
         values = found.draw(rng)
     problem = LoopClosure(found.build(**values))
-    for form in explore(problem, starts=60).forms:
+    for form in explore(problem, settings=SearchSettings(starts=60)).forms:
         for start in form.branch(form.branch.length * np.linspace(0, 1, 6)):
             branch = trace_branch(problem, start)
             assert np.all(
@@ -184,7 +192,9 @@ def test_a_second_tangent_that_misses_one_equation_by_a_part_in_1e8_is_none(name
         "gamma": 1.5921695469201371,
         "delta": 0.5790264703154796,
     }
-    atlas = explore(LoopClosure(entry(name).build(**values)), starts=20)
+    atlas = explore(
+        LoopClosure(entry(name).build(**values)), settings=SearchSettings(starts=20)
+    )
     assert [(p.kind, len(p.point.half_branches), p.note) for p in atlas.points] == 2 * [
         (Kind.RANK_DROP, 2, "")
     ]

@@ -3,7 +3,7 @@ known."""
 
 import numpy as np
 
-from bifurc.problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.singular.locate import locate_singular_point
 
 

@@ -9,14 +9,18 @@ from collections.abc import Callable
 import networkx as nx
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas
+from bifurc.errors import ProblemError
 from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.surface_plot import plot_charts
 from bifurc.files.dataset import load_atlas, save_atlas
-from bifurc.problem import FunctionProblem, Problem, ProblemError
+from bifurc.function_problem import FunctionProblem, NumericalProblem
+from bifurc.graphs import transition_graph
+from bifurc.problem import Problem
 from bifurc.search.explore import explore
-from bifurc.seeding import Seeds
+from bifurc.seeds import Seeds
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import Kind
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
@@ -61,7 +65,7 @@ def sarrus() -> LoopClosure:
     return LoopClosure(loop_from_axes(points, [(1, 0, 0)] * 3 + [(0, 1, 0)] * 3)[0])
 
 
-class Level(Problem):
+class Level(NumericalProblem):
     """The surface where a function of three unknowns is zero."""
 
     def __init__(self, function: Callable, gradient: Callable, size: float):
@@ -409,7 +413,7 @@ def test_the_double_goldberg_loop_with_equal_links_has_forms_and_a_torus_that_th
         problem.jacobians(surface.charts.centers), compute_uv=False
     )[:, 3]
     assert regular.min() > 0.1  # rank 4 all over: no singular point, and so no way out
-    assert not nx.has_path(atlas.graph, atlas.forms[0].name, surface.name)
+    assert not nx.has_path(transition_graph(atlas), atlas.forms[0].name, surface.name)
 
 
 def test_a_sarrus_loop_with_folded_legs_changes_mobility_where_its_forms_meet_the_torus(
@@ -422,7 +426,7 @@ def test_a_sarrus_loop_with_folded_legs_changes_mobility_where_its_forms_meet_th
         assert len(point.point.half_branches) == 2 and len(point.passes) == 1
         assert point.surfaces == (0,) and point.note == ""
     assert (
-        nx.is_connected(atlas.graph)
+        nx.is_connected(transition_graph(atlas))
         and len({form.component for form in atlas.forms}) == 1
     )
 
@@ -433,7 +437,7 @@ def test_a_curve_through_a_plane_is_found_with_both_of_its_halves(bend: float) -
         lambda u: np.array([u[2] * u[0], u[2] * (u[1] - bend * u[2] ** 2)]),
         [(-1, 1)] * 3,
     )
-    atlas = explore(problem, starts=100)
+    atlas = explore(problem, settings=SearchSettings(starts=100))
     (point,) = atlas.points
     assert point.kind is Kind.DIMENSION_CHANGE and np.abs(point.point.u).max() < 1e-10
     assert (
@@ -442,7 +446,9 @@ def test_a_curve_through_a_plane_is_found_with_both_of_its_halves(bend: float) -
         and point.surfaces == (0,)
     )
     assert len(atlas.forms) == 1 and atlas.surfaces[0].complete
-    assert list(atlas.graph.edges(keys=True)) == [("Form 1", "surface 1", point.name)]
+    assert list(transition_graph(atlas).edges(keys=True)) == [
+        ("Form 1", "surface 1", point.name)
+    ]
 
 
 def test_curves_that_meet_a_plane_are_found_from_the_plane_alone() -> None:
@@ -486,16 +492,18 @@ def test_components_of_higher_dimension_are_reported_with_it_and_nothing_else(
 
 def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
     began = time.perf_counter()
-    atlas = explore(general(8), budget=1.0)
+    atlas = explore(general(8), settings=SearchSettings(budget=1.0))
     assert time.perf_counter() - began < 5.0
     assert atlas.info["out_of_time"] and atlas.completeness.level == "out of time"
     assert (
         atlas.surfaces[0].dimension == 2
         and atlas.surfaces[0].charts.outcome is Covering.OUT_OF_TIME
     )
-    assert not explore(planar(1, 2, 1.4, 2.2), budget=60.0).info["out_of_time"]
+    assert not explore(
+        planar(1, 2, 1.4, 2.2), settings=SearchSettings(budget=60.0)
+    ).info["out_of_time"]
     with pytest.raises(ProblemError, match="budget"):
-        explore(general(8), budget=0.0)
+        explore(general(8), settings=SearchSettings(budget=0.0))
 
 
 def test_charts_and_meeting_points_survive_a_dataset(folded: Atlas, tmp_path) -> None:
@@ -515,7 +523,7 @@ def test_charts_and_meeting_points_survive_a_dataset(folded: Atlas, tmp_path) ->
         assert np.array_equal(getattr(old.charts, name), getattr(new.charts, name))
     assert new.charts.area == old.charts.area and new.charts.euler_characteristic == 0
     assert [p.surfaces for p in again.points] == [(0,)] * 4
-    assert nx.utils.graphs_equal(atlas.graph, again.graph)
+    assert nx.utils.graphs_equal(transition_graph(atlas), transition_graph(again))
 
 
 def test_the_picture_of_a_surface_has_all_its_triangles_and_the_graph_of_forms_still_draws(
@@ -529,7 +537,11 @@ def test_the_picture_of_a_surface_has_all_its_triangles_and_the_graph_of_forms_s
     )
     texts = [
         text.get_text()
-        for text in plot_form_graph(explore(problem, starts=20)).axes[0].texts
+        for text in plot_form_graph(
+            explore(problem, settings=SearchSettings(starts=20))
+        )
+        .axes[0]
+        .texts
     ]
     assert sorted(texts) == ["D1", "Form 1", "surface 1"]
 
@@ -540,7 +552,7 @@ def test_the_picture_of_a_surface_has_all_its_triangles_and_the_graph_of_forms_s
 def test_seeds_beside_unfinished_charts_belong_to_the_surface_to_which_they_can_walk() -> (
     None
 ):
-    (surface,) = explore(SPHERE, starts=60, charts=40).surfaces
+    (surface,) = explore(SPHERE, settings=SearchSettings(starts=60, charts=40)).surfaces
     assert surface.charts.outcome is Covering.CHART_LIMIT and len(surface.samples) == 60
     assert np.count_nonzero(~surface.charts.holds(surface.samples)) > 10
 
@@ -573,7 +585,7 @@ def test_a_surface_says_which_singular_points_are_samples_of_curves_and_how_many
     problem = FunctionProblem(
         lambda u: np.array([u[1] * u[2]]), [(-1, 1)] * 3
     )  # two planes that meet in the x-axis
-    atlas = explore(problem, starts=40)
+    atlas = explore(problem, settings=SearchSettings(starts=40))
     assert len(atlas.points) > 1 and all(
         np.abs(p.point.u[1:]).max() < 1e-9 for p in atlas.points
     )
@@ -585,7 +597,7 @@ def test_a_surface_says_which_singular_points_are_samples_of_curves_and_how_many
         "samples of curves of such points" in s.note for s in atlas.surfaces if s.note
     )
     monkeypatch.setattr("bifurc.search.components.MOST_POINTS", 1)
-    cut = explore(problem, starts=40)
+    cut = explore(problem, settings=SearchSettings(starts=40))
     assert len(cut.points) == 1
     assert any(
         "places singular points were not looked for" in surface.note

@@ -2,19 +2,20 @@
 
 import mpmath
 from click.testing import CliRunner
+from linkages.linkage import load
 
 from linkages.app.choice import choose_precisely
 from linkages.app.cli import main
 from linkages.app.confirmation import confirm_points
 from linkages.catalogue import entry
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 
 TABLE = 'angles = "deg"\nlengths = [1.0, 0.7, 1.0, 0.7]\ntwists = [0, 90, 0, 0.1]\noffsets = [0, 0, 0, 0]\n'
 
 
 def test_every_error_that_a_map_states_holds():
     for name in ("kite", "serial-goldberg-6r"):
-        found = list(confirm_points(map_by_name(name), name))
+        found = list(confirm_points(map_linkage(load(name)), name))
         assert found
         for point, confirmation in found:
             assert confirmation.distance <= point.point.error < 1e-12

@@ -4,11 +4,13 @@ import json
 
 import pytest
 from click.testing import CliRunner
+from linkages.linkage import load
 
 import bifurc.search.explore
 from linkages.app.cli import main
 from linkages.app.files import prepare_folder, write_data
 from linkages.closure.loop_closure import LoopClosure
+from linkages.mapping import map_linkage
 
 
 def run(*arguments):
@@ -106,9 +108,8 @@ def test_preparing_a_folder_leaves_nothing_in_it(tmp_path):
 
 
 def test_results_replace_older_ones(tmp_path):
-    from linkages.mapping import map_by_name
 
     (tmp_path / "summary.txt").write_text("old")
-    written = write_data(map_by_name("bennett"), tmp_path, "new")
+    written = write_data(map_linkage(load("bennett")), tmp_path, "new")
     assert (tmp_path / "summary.txt").read_text() == "new\n"
     assert sorted(path.name for path in written) == names(tmp_path)

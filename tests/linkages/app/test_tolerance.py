@@ -3,18 +3,19 @@
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from linkages.linkage import load
 
 from linkages.app.tolerance import climb, half_branches, measure, slope
 from linkages.app.tolerance_command import tolerance_command
 from linkages.catalogue import entry
 from linkages.loop import GeometryError
-from linkages.mapping import map_by_name
+from linkages.mapping import map_linkage
 from linkages.tolerance import make_with_errors
 
 
 @pytest.fixture(scope="module")
 def parallelogram():
-    return map_by_name("parallelogram"), entry("parallelogram").build()
+    return map_linkage(load("parallelogram")), entry("parallelogram").build()
 
 
 def test_errors_have_the_size_that_is_asked_for():

@@ -4,9 +4,10 @@ what a locked joint must give."""
 import mpmath
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
-from bifurc.curves.certificate import certify_atlas
 from bifurc.curves.continuation import trace_branch
+from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure, locked_joints
@@ -151,8 +152,8 @@ def test_the_symmetric_motion_of_a_line_symmetric_bricard_needs_three_unknowns()
 def test_the_map_of_a_coupled_loop_has_the_symmetric_forms_and_certifies_them():
     loop = entry("bricard-line-symmetric").build()
     problem = CoupledClosure(loop, np.vstack([np.eye(3), np.eye(3)]))
-    atlas = certify_atlas(problem, explore(problem, starts=40))
-    whole = explore(LoopClosure(loop), starts=40)
+    atlas = certify_atlas(problem, explore(problem, settings=SearchSettings(starts=40)))
+    whole = explore(LoopClosure(loop), settings=SearchSettings(starts=40))
     assert [np.sqrt(2) * f.branch.length for f in atlas.forms] == pytest.approx(
         [f.branch.length for f in whole.forms], rel=1e-10
     )

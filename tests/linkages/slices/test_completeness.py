@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from bifurc.search.settings import SearchSettings
 
 from bifurc.search.explore import explore
 from linkages.catalogue import entry
@@ -56,7 +57,10 @@ def test_numbers_alone_prove_many_linkages_complete(name):
 )
 def test_following_proves_what_numbers_leave_open(name):
     problem = LoopClosure(entry(name).build())
-    counted, followed = explore(problem), explore(problem, prove=True)
+    counted, followed = (
+        explore(problem),
+        explore(problem, settings=SearchSettings(prove=True)),
+    )
     assert counted.completeness.level == "certified"
     assert "more than 15 degrees" in counted.completeness.statement
     assert followed.completeness.level == "proved"
@@ -66,7 +70,8 @@ def test_following_proves_what_numbers_leave_open(name):
 def test_sheets_that_run_to_infinity_leave_the_statement_at_certified():
     assert (
         explore(
-            LoopClosure(entry("wohlhart-symmetric").build()), prove=True
+            LoopClosure(entry("wohlhart-symmetric").build()),
+            settings=SearchSettings(prove=True),
         ).completeness.level
         == "certified"
     )
@@ -90,7 +95,9 @@ def test_no_list_with_a_motion_left_out_is_called_complete(name):
 )  # the small motion turns by 0.14, 0.039 and 0.0023 rad
 @pytest.mark.parametrize("seed", range(3))
 def test_a_motion_smaller_than_the_gap_between_slices_is_found(twist, seed):
-    atlas = explore(small_and_large(twist), starts=1, seed=seed, prove=True)
+    atlas = explore(
+        small_and_large(twist), settings=SearchSettings(starts=1, prove=True), seed=seed
+    )
     small, large = extents(atlas)
     assert small < 0.15 < 5 < large
     assert atlas.completeness.level == "proved"
@@ -121,8 +128,7 @@ def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
     # an oval of its square root
     atlas = explore(
         LoopClosure(entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)),
-        starts=1,
-        prove=True,
+        settings=SearchSettings(starts=1, prove=True),
     )
     assert len(atlas.forms) == 1
     assert 3 * np.sqrt(missing) < extents(atlas)[0] < 5 * np.sqrt(missing)
@@ -145,7 +151,9 @@ def test_a_loop_that_cannot_move_is_proved_not_to():
 
 def test_surfaces_and_long_loops_are_estimated():
     planar = Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5, "planar 5R")
-    atlas = explore(LoopClosure(planar), starts=20, charts=50, prove=True)
+    atlas = explore(
+        LoopClosure(planar), settings=SearchSettings(starts=20, charts=50, prove=True)
+    )
     assert atlas.completeness.level == "estimated"
     assert "could not be made complete" in atlas.completeness.statement
 
@@ -173,7 +181,10 @@ def test_little_time_ends_at_numbers_alone():
 def test_random_members_are_proved_and_other_seeds_find_the_same(name, seed):
     found = entry(name)
     problem = LoopClosure(found.build(**found.draw(np.random.default_rng(seed))))
-    atlases = [explore(problem, seed=k, starts=20, prove=True) for k in range(2)]
+    atlases = [
+        explore(problem, settings=SearchSettings(starts=20, prove=True), seed=k)
+        for k in range(2)
+    ]
     assert [a.completeness.level for a in atlases] == ["proved"] * 2
     lengths = [sorted(form.branch.length for form in a.forms) for a in atlases]
     np.testing.assert_allclose(lengths[0], lengths[1], rtol=1e-9)

@@ -1,0 +1,35 @@
+from .atlas import Atlas as Atlas
+from .atlas import Event as Event
+from .atlas import Form as Form
+from .atlas import MeetingPoint as MeetingPoint
+from .atlas import Surface as Surface
+from .branch import Branch as Branch
+from .branch import Outcome as Outcome
+from .curves.continuation import TraceSettings as TraceSettings
+from .curves.continuation import trace_branch as trace_branch
+from .errors import BifurcError as BifurcError
+from .errors import ProblemError as ProblemError
+from .errors import RouteError as RouteError
+from .figures.plotting import plot_transition_map as plot_transition_map
+from .files.dataset import AtlasFileError as AtlasFileError
+from .files.dataset import from_dataset as from_dataset
+from .files.dataset import load_atlas as load_atlas
+from .files.dataset import save_atlas as save_atlas
+from .files.dataset import to_dataset as to_dataset
+from .function_problem import FunctionProblem as FunctionProblem
+from .function_problem import NumericalProblem as NumericalProblem
+from .graphs import arc_graph as arc_graph
+from .graphs import transition_graph as transition_graph
+from .problem import Problem as Problem
+from .routes.route import Leg as Leg
+from .routes.route import Route as Route
+from .routes.route import find_route as find_route
+from .search.certify_atlas import certify_atlas as certify_atlas
+from .search.explore import explore as explore
+from .search.settings import SearchSettings as SearchSettings
+from .seeds import Completeness as Completeness
+from .seeds import Seeds as Seeds
+from .singular.locate import Kind as Kind
+from .singular.locate import SingularPoint as SingularPoint
+
+__version__: str

@@ -1,0 +1,37 @@
+"""The settings of a search."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from bifurc.curves.continuation import TraceSettings
+from bifurc.errors import ProblemError
+
+__all__ = ["SearchSettings"]
+
+
+@dataclass(frozen=True)
+class SearchSettings:
+    """How much a search looks at.
+
+    ``starts``: random starts that are projected onto the solutions. ``budget`` (s): the
+    search ends when it is used up, but for the step it is in. ``charts``: the most with
+    which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
+    takes the time to find out if a branch is missing. ``tracing``: how a curve is
+    followed. Raises `ProblemError` outside the ranges.
+    """
+
+    starts: int = 200
+    budget: float = math.inf
+    charts: int = 1500
+    prove: bool = True
+    tracing: TraceSettings = field(default_factory=TraceSettings)
+
+    def __post_init__(self) -> None:
+        if self.starts < 1:
+            raise ProblemError("starts", self.starts, "at least 1")
+        if not self.budget > 0:
+            raise ProblemError("budget", self.budget, "a positive number of seconds")
+        if self.charts < 0:
+            raise ProblemError("charts", self.charts, "0 or more")

@@ -1,0 +1,59 @@
+"""Arithmetic modulo the periods of the unknowns.
+
+An unknown with a period p stands for a circle; one whose period is infinite stands for
+a line. Every function takes ``periods`` (n,), inf where there is none.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+__all__ = ["difference", "into_box", "tree_box", "wrap"]
+
+# A half turn that came out as -p/2 by rounding is shown as +p/2.
+HALF_TURN = 1e-9
+
+
+def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """a - b (..., n), periodic unknowns taken to within half a period of zero."""
+    gap = np.asarray(a, dtype=float) - b
+    periodic = np.isfinite(periods)
+    if np.all(
+        periodic
+    ):  # as in every loop: picking columns would take most of the time
+        gap -= periods * np.round(gap / periods)
+    elif np.any(periodic):
+        period = periods[periodic]
+        gap[..., periodic] -= period * np.round(gap[..., periodic] / period)
+    return gap
+
+
+def wrap(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """``points`` (..., n) with periodic unknowns in (-period / 2, period / 2]."""
+    out = np.array(points, dtype=float)
+    periodic = np.isfinite(periods)
+    period = periods[periodic]
+    turned = out[..., periodic] - period * np.round(out[..., periodic] / period)
+    at_the_seam = turned <= -0.5 * period + HALF_TURN
+    out[..., periodic] = np.where(at_the_seam, turned + period, turned)
+    return out
+
+
+def tree_box(periods: np.ndarray) -> np.ndarray:
+    """The periods (n,) as `scipy.spatial.cKDTree` takes them: 0 where there is none."""
+    return np.where(np.isfinite(periods), periods, 0.0)
+
+
+def into_box(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """``points`` (..., n) with periodic unknowns in [0, period)."""
+    out = np.array(points, dtype=float)
+    periodic = np.isfinite(periods)
+    if np.all(
+        periodic
+    ):  # as in every loop: picking columns would take most of the time
+        out %= periods
+        return np.where(out >= periods, 0.0, out)
+    period = periods[periodic]
+    inside = out[..., periodic] % period
+    out[..., periodic] = np.where(inside >= period, 0.0, inside)
+    return out
