@@ -22,13 +22,13 @@ from typing import Any
 
 import click
 import numpy as np
-from linkages.linkage import Linkage
 
 from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
 from bifurc.search.explore import explore
 from linkages.catalogue import entry
 from linkages.closure import kernels
 from linkages.closure.loop_closure import LoopClosure
+from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
 from linkages.slices.elimination import slice_configurations
 from studies.methods.cases import bratu

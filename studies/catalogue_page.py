@@ -16,11 +16,11 @@ from pathlib import Path
 
 import click
 import numpy as np
-from linkages.linkage import load
 
 from bifurc.atlas import Atlas
 from linkages.catalogue import FAMILIES, catalogue
 from linkages.entry import Entry, Parameter
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.relations import RelationKind, relations_of
 from linkages.scene import Scene, breadth, clearance, make_scene

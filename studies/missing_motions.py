@@ -17,10 +17,10 @@ from collections.abc import Iterator
 
 import click
 import numpy as np
-from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from linkages.app.summary import table
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure

@@ -18,9 +18,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from linkages.linkage import load
 
 from bifurc.atlas import Atlas
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 from studies.redrawing import Claim, Redrawing, angles_along, largest
 

@@ -10,9 +10,9 @@ ones, never two of a kind. The source draws theta5 against theta1.
 from __future__ import annotations
 
 import numpy as np
-from linkages.linkage import load
 
 from bifurc.atlas import Atlas
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 from studies.redrawing import Claim, Redrawing, largest
 

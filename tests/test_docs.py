@@ -14,10 +14,10 @@ from pathlib import Path
 import matplotlib
 import pytest
 from click.testing import CliRunner
-from linkages.linkage import load
 
 from bifurc.graphs import transition_graph
 from linkages.app.cli import main
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 
 ROOT = Path(__file__).parents[1]

@@ -6,10 +6,10 @@ from collections import Counter
 import networkx as nx
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Outcome
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure

@@ -3,10 +3,10 @@ their singular points."""
 
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from bifurc.singular.locate import Kind, classify_singular_point
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

@@ -105,11 +105,12 @@ def find_route(
     sampled, or where no route exists.
     """
     charts = charts_of(atlas)
-    graph = arc_graph(atlas)
+    arcs = arc_graph(atlas)
+    graph = arcs.copy()
     on: dict[Hashable, dict[int, np.ndarray]] = {}
     for node, where in ((START, start), (GOAL, goal)):
         graph.add_node(node)
-        form, on[node] = _place(atlas, problem, charts, graph, where)
+        form, on[node] = _place(atlas, problem, charts, arcs, where)
         if form is not None:
             _insert(graph, atlas, node, *form)
     add_crossings(graph, atlas, charts, on)
@@ -134,13 +135,13 @@ def _place(
     atlas: Atlas,
     problem: Problem | None,
     charts: dict[int, ChartAtlas],
-    graph: nx.MultiGraph,
+    arcs: nx.MultiGraph,
     where: str | np.ndarray,
 ) -> tuple[tuple[int, float] | None, dict[int, np.ndarray]]:
     """(index of a form, arclength) or None, and points (n,) by the indices of surfaces,
     for a name or configuration."""
     if isinstance(where, str):
-        return _place_of_name(atlas, charts, graph, where)
+        return _place_of_name(atlas, charts, arcs, where)
     point = np.asarray(where, dtype=float)
     if point.shape != (len(atlas.names),) or not np.all(np.isfinite(point)):
         raise RouteError(
@@ -184,14 +185,14 @@ def _charts_of(charts: ChartAtlas, name: str) -> str:
 
 
 def _place_of_name(
-    atlas: Atlas, charts: dict[int, ChartAtlas], graph: nx.MultiGraph, name: str
+    atlas: Atlas, charts: dict[int, ChartAtlas], arcs: nx.MultiGraph, name: str
 ) -> tuple[tuple[int, float] | None, dict[int, np.ndarray]]:
     """The middle of a form's longest arc, or of a surface."""
     full = atlas.full_name(name)
     index = next((i for i, form in enumerate(atlas.forms) if form.name == full), None)
     if index is not None:
-        arcs = [arc for *_, arc in graph.edges(data=True) if arc.get("form") == index]
-        longest = max(arcs, key=lambda arc: (round(arc["length"], 9), -arc["start"]))
+        own = [arc for *_, arc in arcs.edges(data=True) if arc["form"] == index]
+        longest = max(own, key=lambda arc: (round(arc["length"], 9), -arc["start"]))
         return (index, 0.5 * (longest["start"] + longest["end"])), {}
     k = next(k for k, surface in enumerate(atlas.surfaces) if surface.name == full)
     if k not in charts:

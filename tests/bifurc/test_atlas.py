@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint
 from bifurc.branch import Branch, Outcome
@@ -18,6 +17,7 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.routes.route import find_route
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
 from bifurc.singular.locate import Kind, SingularPoint
 from bifurc.torus import wrap

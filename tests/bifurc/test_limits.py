@@ -88,8 +88,11 @@ SEARCH = """
 import os, signal, threading
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from bifurc.search.explore import explore
-from linkages.catalogue import entry
+from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
+from linkages.linkage import load
+
+linkage = load("bricard-line-symmetric")
 
 class Pressed(LoopClosure):
     pressed = False  # the second Ctrl-C would act at once
@@ -101,7 +104,7 @@ class Pressed(LoopClosure):
         return super().project(starts)
 
 for delay in (0.001, 0.01, 0.03, 0.1):
-    atlas = explore(Pressed(entry("bricard-line-symmetric").build()), starts=60000)
+    atlas = explore(Pressed(linkage.loop), settings=SearchSettings(starts=60000))
     assert atlas.info["interrupted"], delay
     print(len(atlas.forms), "forms")
 """

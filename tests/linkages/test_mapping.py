@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
-from linkages.linkage import load
 
+from bifurc.search.settings import SearchSettings
 from linkages.catalogue import UnknownLinkageError, entry
+from linkages.linkage import load
 from linkages.loop import GeometryError, Loop
 from linkages.mapping import map_linkage
 

@@ -4,11 +4,11 @@ drawn."""
 import re
 
 import numpy as np
-from linkages.linkage import load
 
 from linkages.app.scene_figure import draw_configuration
 from linkages.catalogue import catalogue, entry
 from linkages.closed_forms.all_forms import all_closed_forms
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 from studies import catalogue_page
 from studies.catalogue_page import (

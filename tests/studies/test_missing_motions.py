@@ -1,10 +1,10 @@
 """The study that tries to refute proofs of completeness."""
 
 import numpy as np
-from bifurc.search.settings import SearchSettings
 from click.testing import CliRunner
 
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from studies.missing_motions import linkages, main, same_motions

@@ -3,11 +3,11 @@ say otherwise."""
 
 import numpy as np
 import pytest
-from linkages.linkage import load
 
 from bifurc.curves.continuation import trace_branch
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 from studies.half_turn import SHIFT, HalfTurn
 from studies.near_bifurcations import STEPS, describe, describe_certificates, follow

@@ -13,10 +13,10 @@ from typing import Any
 
 import networkx as nx
 import numpy as np
-from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
+from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError

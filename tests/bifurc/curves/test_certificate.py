@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import certify_branch
@@ -13,6 +12,7 @@ from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

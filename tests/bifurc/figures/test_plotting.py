@@ -10,7 +10,6 @@ from itertools import combinations
 import matplotlib
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
@@ -32,6 +31,7 @@ from bifurc.figures.plotting import (
 )
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 
 TORUS = (Scale(180 / np.pi, 180.0, "x"), Scale(180 / np.pi, 180.0, "y"))
 PLAIN = (Scale(1.0, np.inf, "x"), Scale(1.0, np.inf, "y"))

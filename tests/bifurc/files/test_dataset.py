@@ -10,7 +10,6 @@ from typing import Any
 import networkx as nx
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas, Event, Surface
 from bifurc.files.dataset import (
@@ -25,6 +24,7 @@ from bifurc.files.json_values import from_text, to_text
 from bifurc.function_problem import FunctionProblem
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 
 
 def difference(a: Any, b: Any, where: str = "atlas") -> str:

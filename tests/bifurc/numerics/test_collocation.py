@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
-from bifurc.function_problem import FunctionProblem
+from bifurc.function_problem import FunctionProblem, NumericalProblem
 from bifurc.numerics.collocation import bridge_by_collocation, march_by_collocation
-from bifurc.problem import MarchStatus, Problem
+from bifurc.problem import MarchStatus
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 
@@ -14,7 +14,7 @@ from linkages.closure.loop_closure import LoopClosure
 class WithoutSeries(LoopClosure):
     """The closure of a loop as any other problem: no Taylor series."""
 
-    march = Problem.march
+    march = NumericalProblem.march
 
 
 @pytest.fixture

@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas
 from bifurc.errors import RouteError
@@ -19,8 +18,10 @@ from bifurc.graphs import arc_graph
 from bifurc.problem import Problem
 from bifurc.routes.route import Route, find_route
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
 from bifurc.surfaces.covering import cover_surface
+from bifurc.surfaces.geodesic import shortest_path
 from bifurc.torus import wrap
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.double_goldberg import double_subtractive_goldberg
@@ -33,13 +34,17 @@ def sarrus() -> LoopClosure:
     return LoopClosure(loop_from_axes(points, [(1, 0, 0)] * 3 + [(0, 1, 0)] * 3)[0])
 
 
-def search(problem: Problem, on_surfaces: list[list[float]], **options: int) -> Atlas:
+def search(
+    problem: Problem,
+    on_surfaces: list[list[float]],
+    settings: SearchSettings = SearchSettings(),  # noqa: B008
+) -> Atlas:
     """The atlas found from solutions on the surfaces alone, and what hangs on them."""
     points = np.array(on_surfaces, dtype=float)
     seeds = Seeds(
         points, np.ones(len(points), dtype=bool), np.empty(0), np.empty((0, problem.n))
     )
-    return explore(problem, seeds=seeds, **options)
+    return explore(problem, seeds=seeds, settings=settings)
 
 
 class Union(NumericalProblem):
@@ -85,6 +90,10 @@ SPHERE_AND_AXIS = Union(
 PLANES = Union(lambda x, y, z: np.array([z]), lambda x, y, z: np.array([y]))
 CONE = Union(lambda x, y, z: np.array([z * z - x * x - y * y]))
 SARRUS = sarrus()
+ALPHA, BETA, GAMMA = np.radians([66, 50, 28])
+GOLDBERG = LoopClosure(
+    double_subtractive_goldberg(1.7 * np.sin(ALPHA), ALPHA, BETA, GAMMA, BETA)
+)
 
 
 @pytest.fixture(scope="module")
@@ -106,12 +115,7 @@ def folded() -> Atlas:
 def goldberg() -> Atlas:
     """The double-subtractive-Goldberg loop with b = d: two forms, and a torus that they
     never meet."""
-    alpha, beta, gamma = np.radians([66, 50, 28])
-    return explore(
-        LoopClosure(
-            double_subtractive_goldberg(1.7 * np.sin(alpha), alpha, beta, gamma, beta)
-        )
-    )
+    return explore(GOLDBERG)
 
 
 def on_torus(theta1: float, theta2: float) -> np.ndarray:
@@ -153,7 +157,9 @@ def assert_is_walk(atlas: Atlas, problem: Problem, route: Route) -> None:
 def test_a_route_crosses_a_plane_in_a_straight_line_from_one_curve_to_another(
     lines: Atlas,
 ) -> None:
-    route = find_route(lines, np.array([0, 0, 1.2]), np.array([1, 0.5, -0.8]))
+    route = find_route(
+        lines, np.array([0, 0, 1.2]), np.array([1, 0.5, -0.8]), problem=PLANE_AND_LINES
+    )
     assert [leg.dimension for leg in route.legs] == [1, 2, 1]
     assert route.legs[1].form == "surface 1" and route.legs[1].start == 0.0
     assert [leg.length for leg in route.legs] == pytest.approx(
@@ -166,12 +172,12 @@ def test_a_route_crosses_a_plane_in_a_straight_line_from_one_curve_to_another(
 def test_of_the_curves_that_meet_a_plane_the_nearer_way_is_taken(lines: Atlas) -> None:
     # the slanted line x = -1, y = z - 1 meets the plane in (-1, -1, 0)
     start, goal = np.array([-1, 0.5, 1.5]), np.array([0.3, 0.2, 0.0])
-    route = find_route(lines, start, goal)
+    route = find_route(lines, start, goal, problem=PLANE_AND_LINES)
     assert route.length == pytest.approx(
         1.5 * np.sqrt(2) + np.hypot(1.3, 1.2), abs=1e-9
     )
     assert_is_walk(lines, PLANE_AND_LINES, route)
-    back = find_route(lines, goal, start)
+    back = find_route(lines, goal, start, problem=PLANE_AND_LINES)
     assert back.length == pytest.approx(route.length, abs=1e-12) and [
         leg.dimension for leg in back.legs
     ] == [2, 1]
@@ -179,7 +185,9 @@ def test_of_the_curves_that_meet_a_plane_the_nearer_way_is_taken(lines: Atlas) -
 
 
 def test_start_and_goal_on_one_surface_need_no_singular_point(lines: Atlas) -> None:
-    route = find_route(lines, np.array([-1.5, 1, 0]), np.array([1.5, 1, 0]))
+    route = find_route(
+        lines, np.array([-1.5, 1, 0]), np.array([1.5, 1, 0]), problem=PLANE_AND_LINES
+    )
     assert [(leg.form, leg.at) for leg in route.legs] == [
         ("surface 1", "")
     ] and route.length == pytest.approx(3.0)
@@ -192,7 +200,7 @@ def test_a_way_over_a_sphere_is_a_great_circle(
     sphere: Atlas, goal: tuple[float, ...]
 ) -> None:
     start = np.array([0.48, 0.6, 0.64])
-    route = find_route(sphere, start, np.array(goal))
+    route = find_route(sphere, start, np.array(goal), problem=SPHERE_AND_AXIS)
     angle = np.arccos(start @ goal)
     assert route.length == pytest.approx(angle, rel=1e-5)
     assert_is_walk(sphere, SPHERE_AND_AXIS, route)
@@ -200,10 +208,15 @@ def test_a_way_over_a_sphere_is_a_great_circle(
 
 def test_through_the_sphere_it_is_shorter_than_around(sphere: Atlas) -> None:
     near_poles = np.array([[0.1, 0.0, np.sqrt(0.99)], [0.0, 0.1, -np.sqrt(0.99)]])
-    route = find_route(sphere, *near_poles)
+    route = find_route(sphere, *near_poles, problem=SPHERE_AND_AXIS)
     assert [leg.dimension for leg in route.legs] == [2, 1, 2]
     assert route.length == pytest.approx(2 + 2 * np.arcsin(0.1), rel=1e-6)
-    outside = find_route(sphere, np.array([0.0, 0.0, 1.5]), np.array([0.0, 1.0, 0.0]))
+    outside = find_route(
+        sphere,
+        np.array([0.0, 0.0, 1.5]),
+        np.array([0.0, 1.0, 0.0]),
+        problem=SPHERE_AND_AXIS,
+    )
     assert outside.length == pytest.approx(0.5 + np.pi / 2, rel=1e-6)
 
 
@@ -214,8 +227,8 @@ def test_around_the_waist_of_a_hyperboloid_the_way_is_a_circle() -> None:
         lambda x, y, z: np.array([4 * x * x + 4 * y * y - 4 * z * z - 1]), size=0.7
     )
     charts = cover_surface(problem, np.array([[0.5, 0.0, 0.0]]))
-    path = charts.path(
-        np.array([0.5, 0.0, 0.0]), np.array([-0.5, 0.0, 0.0]), spacing=0.02
+    path = shortest_path(
+        problem, charts, np.array([0.5, 0.0, 0.0]), np.array([-0.5, 0.0, 0.0]), 0.02
     )
     assert (
         np.abs(path[:, 2]).max() < 1e-4
@@ -229,7 +242,7 @@ def test_around_the_waist_of_a_hyperboloid_the_way_is_a_circle() -> None:
 def test_two_planes_are_joined_by_the_singular_points_found_on_both() -> None:
     atlas = search(PLANES, [[0.3, 0.4, 0.0], [0.3, 0.0, 0.4]])
     ends = np.array([[0.5, 0.7, 0.0], [-0.5, 0.0, 0.7]])
-    route = find_route(atlas, *ends)
+    route = find_route(atlas, *ends, problem=PLANES)
     assert {leg.form for leg in route.legs} == {"surface 1", "surface 2"}
     over = min(sum(np.linalg.norm(ends - p.point.u, axis=1)) for p in atlas.points)
     assert route.length == pytest.approx(over, abs=1e-9)
@@ -241,13 +254,13 @@ def test_from_one_half_of_a_cone_to_the_other_the_way_leads_through_the_tip_and_
     atlas = search(CONE, [[0.3, 0.4, 0.5], [0.3, 0.4, -0.5]])
     assert [p.surfaces for p in atlas.points] == [(0, 1)]
     start = np.array([0.3, 0.4, 0.5])
-    through = find_route(atlas, start, np.array([-0.4, 0.3, -0.5]))
+    through = find_route(atlas, start, np.array([-0.4, 0.3, -0.5]), problem=CONE)
     assert through.length == pytest.approx(np.sqrt(2), abs=1e-9) and [
         leg.dimension for leg in through.legs
     ] == [2, 2]
     assert_is_walk(atlas, CONE, through)
     around = find_route(
-        atlas, start, np.array([-0.3, -0.4, 0.5])
+        atlas, start, np.array([-0.3, -0.4, 0.5]), problem=CONE
     )  # unrolled, the cone is a sector of sqrt(2) pi
     assert around.length == pytest.approx(
         np.sqrt(2) * np.sin(np.sqrt(2) * np.pi / 4), rel=1e-5
@@ -258,7 +271,7 @@ def test_from_one_half_of_a_cone_to_the_other_the_way_leads_through_the_tip_and_
 
 
 def test_a_sarrus_loop_goes_from_form_to_form_over_its_torus(folded: Atlas) -> None:
-    route = find_route(folded, "Form 1", "Form 2")
+    route = find_route(folded, "Form 1", "Form 2", problem=SARRUS)
     assert [leg.form for leg in route.legs] == ["Form 1", "surface 1", "Form 2"]
     assert route.legs[1].length == pytest.approx(
         np.sqrt(2) * np.pi, abs=1e-6
@@ -267,19 +280,19 @@ def test_a_sarrus_loop_goes_from_form_to_form_over_its_torus(folded: Atlas) -> N
         leg.at for leg in route.legs
     } < {"", "D1", "D2", "D3", "D4"}
     assert_is_walk(folded, SARRUS, route)
-    assert find_route(folded, "Form 2", "Form 1").length == pytest.approx(
-        route.length, abs=1e-9
-    )
+    assert find_route(
+        folded, "Form 2", "Form 1", problem=SARRUS
+    ).length == pytest.approx(route.length, abs=1e-9)
 
 
 def test_the_middle_of_a_surface_stands_for_its_name(folded: Atlas) -> None:
-    route = find_route(folded, "surface 1", "Form 2")
+    route = find_route(folded, "surface 1", "Form 2", problem=SARRUS)
     assert [leg.form for leg in route.legs] == ["surface 1", "Form 2"]
     assert (
         np.linalg.norm(wrap(route.path[0] - folded.points[0].point.u, folded.periods))
         > 1.0
     )
-    none = find_route(folded, "surface 1", "surface 1")
+    none = find_route(folded, "surface 1", "surface 1", problem=SARRUS)
     assert none.legs == () and none.path.shape == (1, 6)
 
 
@@ -287,7 +300,7 @@ def test_a_path_stays_near_its_start_however_often_the_start_is_turned(
     folded: Atlas,
 ) -> None:
     start, goal = folded.surfaces[0].samples[[0, -1]] + 4 * np.pi
-    route = find_route(folded, start, goal)
+    route = find_route(folded, start, goal, problem=SARRUS)
     np.testing.assert_allclose(route.path[0], start, atol=1e-9)
     assert np.abs(wrap(route.path[-1] - goal, folded.periods)).max() < 1e-9
     assert route.length == pytest.approx(
@@ -299,17 +312,21 @@ def test_a_start_at_a_dimension_change_lies_on_form_and_surface(folded: Atlas) -
     point = folded.points[0]
     on_form = folded.forms[point.passes[0][0]].branch(point.passes[0][1] + 0.5)
     assert [
-        leg.dimension for leg in find_route(folded, point.point.u, on_form).legs
+        leg.dimension
+        for leg in find_route(folded, point.point.u, on_form, problem=SARRUS).legs
     ] == [1]
     assert [
         leg.dimension
-        for leg in find_route(folded, point.point.u, folded.surfaces[0].samples[0]).legs
+        for leg in find_route(
+            folded, point.point.u, folded.surfaces[0].samples[0], problem=SARRUS
+        ).legs
     ] == [2]
 
 
 def test_a_route_does_not_depend_on_how_densely_it_is_drawn(folded: Atlas) -> None:
     few, many = (
-        find_route(folded, "Form 1", "Form 2", count=count) for count in (20, 1000)
+        find_route(folded, "Form 1", "Form 2", count=count, problem=SARRUS)
+        for count in (20, 1000)
     )
     assert few.length == many.length and len(few.path) < 30 < 900 < len(many.path)
     np.testing.assert_array_equal(few.travel, many.travel)
@@ -318,7 +335,7 @@ def test_a_route_does_not_depend_on_how_densely_it_is_drawn(folded: Atlas) -> No
 def test_the_graphs_of_an_atlas_are_those_of_its_forms_after_a_route(
     folded: Atlas,
 ) -> None:
-    find_route(folded, "Form 1", "Form 2")
+    find_route(folded, "Form 1", "Form 2", problem=SARRUS)
     assert all("form" in arc for *_, arc in arc_graph(folded).edges(data=True))
     assert all(
         edge["layer"] in ("forms", "arcs")
@@ -331,17 +348,19 @@ def test_an_atlas_from_a_file_needs_its_problem_for_legs_over_surfaces(
 ) -> None:
     again = load_atlas(save_atlas(folded, tmp_path / "sarrus.nc"))
     with pytest.raises(
-        RouteError, match="'surface 1': an atlas from a file needs its problem"
+        RouteError, match="'surface 1': the problem of the atlas is needed there"
     ):
         find_route(again, "Form 1", "Form 2")
     with pytest.raises(
         RouteError,
-        match="perhaps on 'surface 1': an atlas read from a file can tell only",
+        match="perhaps on 'surface 1': only the problem of the atlas can tell",
     ):
         find_route(again, folded.surfaces[0].samples[0], "Form 2")
     route = find_route(again, "Form 1", "Form 2", problem=SARRUS)
     np.testing.assert_allclose(
-        route.path, find_route(folded, "Form 1", "Form 2").path, atol=1e-9
+        route.path,
+        find_route(folded, "Form 1", "Form 2", problem=SARRUS).path,
+        atol=1e-9,
     )
     assert (
         find_route(again, "Form 1", folded.forms[0].branch(0.3)).length > 0
@@ -353,7 +372,9 @@ def test_of_the_ways_round_a_torus_the_shortest_is_taken(goldberg: Atlas) -> Non
     # sides are sqrt(2) 2 pi long
     for start, goal in np.random.default_rng(0).uniform(-np.pi, np.pi, (25, 2, 2)):
         turned = wrap(goal - start, np.full(2, 2 * np.pi))
-        route = find_route(goldberg, on_torus(*start), on_torus(*goal), count=60)
+        route = find_route(
+            goldberg, on_torus(*start), on_torus(*goal), count=60, problem=GOLDBERG
+        )
         assert route.length == pytest.approx(
             np.sqrt(2) * np.linalg.norm(turned), rel=1e-9
         )
@@ -369,17 +390,19 @@ def test_a_configuration_beside_form_and_surface_is_refused_with_both_distances(
         RouteError,
         match=r"0\.3 away from the nearest form.* and 0\.1 away from 'surface 1'",
     ):
-        find_route(lines, np.array([0.3, 0.0, 0.1]), "surface 1")
+        find_route(
+            lines, np.array([0.3, 0.0, 0.1]), "surface 1", problem=PLANE_AND_LINES
+        )
 
 
 def test_where_charts_end_a_configuration_says_so() -> None:
-    atlas = search(SPHERE_AND_AXIS, [[0.6, 0.0, 0.8]], charts=10)
+    atlas = search(SPHERE_AND_AXIS, [[0.6, 0.0, 0.8]], SearchSettings(charts=10))
     far = -atlas.surfaces[0].charts.centers[0]
     with pytest.raises(
         RouteError,
         match=r"away from the charts of 'surface 1' \(incomplete: the largest number",
     ):
-        find_route(atlas, far, "surface 1")
+        find_route(atlas, far, "surface 1", problem=SPHERE_AND_AXIS)
 
 
 def test_charts_that_do_not_hang_together_are_named() -> None:
@@ -398,7 +421,12 @@ def test_charts_that_do_not_hang_together_are_named() -> None:
         RouteError,
         match=r"only 'surface 1' can be reached.*surface 1 \(complete.*no chain of charts",
     ):
-        find_route(torn, np.array([0.6, 0.0, 0.8]), np.array([0.6, 0.0, -0.8]))
+        find_route(
+            torn,
+            np.array([0.6, 0.0, 0.8]),
+            np.array([0.6, 0.0, -0.8]),
+            problem=SPHERE_AND_AXIS,
+        )
 
 
 def test_a_component_of_three_dimensions_is_only_sampled_and_no_route_goes_over_it() -> (
@@ -411,14 +439,16 @@ def test_a_component_of_three_dimensions_is_only_sampled_and_no_route_goes_over_
     with pytest.raises(
         RouteError, match=r"surface 1 \(dimension 3\): it is only sampled"
     ):
-        find_route(atlas, "surface 1", "surface 1")
+        find_route(atlas, "surface 1", "surface 1", problem=LoopClosure)
     with pytest.raises(
         RouteError,
         match=r"the atlas has no forms.*surface 1 \(dimension 3\): it is only sampled",
     ):
-        find_route(atlas, atlas.surfaces[0].samples[0], "surface 1")
+        find_route(
+            atlas, atlas.surfaces[0].samples[0], "surface 1", problem=LoopClosure
+        )
 
 
 def test_forms_that_never_meet_a_torus_have_no_route_to_it(goldberg: Atlas) -> None:
     with pytest.raises(RouteError, match="only 'Form 1', 'Form 2' can be reached"):
-        find_route(goldberg, "Form 1", on_torus(0.3, 0.5))
+        find_route(goldberg, "Form 1", on_torus(0.3, 0.5), problem=GOLDBERG)

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Outcome
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
 from bifurc.singular.locate import Kind
 from linkages.catalogue import entry

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.branch import Outcome
 from bifurc.curves.certificate import certify_branch
@@ -10,6 +9,7 @@ from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from bifurc.singular.locate import Kind
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure

@@ -9,7 +9,6 @@ from collections.abc import Callable
 import networkx as nx
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
@@ -20,11 +19,13 @@ from bifurc.function_problem import FunctionProblem, NumericalProblem
 from bifurc.graphs import transition_graph
 from bifurc.problem import Problem
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import Kind
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.covering import cover_surface
+from bifurc.surfaces.geodesic import shortest_path
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.double_goldberg import double_subtractive_goldberg
 from linkages.loop import Loop, loop_from_axes
@@ -75,8 +76,14 @@ class Level(NumericalProblem):
             np.full(3, np.inf),
         )
         self.bounds = np.full((3, 2), [-size, size])
-        self.residuals = lambda points: function(*points.T)[:, None]
-        self.jacobians = lambda points: np.stack(gradient(*points.T), axis=1)[:, None]
+        self.function = function
+        self.gradient = gradient
+
+    def residuals(self, points):
+        return self.function(*points.T)[:, None]
+
+    def jacobians(self, points):
+        return np.stack(self.gradient(*points.T), axis=1)[:, None]
 
 
 SPHERE = Level(
@@ -345,7 +352,7 @@ def test_a_covering_stops_at_its_limits_and_is_continued_from_there() -> None:
 
 def test_a_path_on_the_sphere_is_a_great_circle(sphere: ChartAtlas) -> None:
     start, goal = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.8, 0.0])
-    path = sphere.path(start, goal, spacing=0.05)
+    path = shortest_path(SPHERE, sphere, start, goal, 0.05)
     assert np.array_equal(path[0], start) and np.allclose(path[-1], goal)
     assert np.abs(np.linalg.norm(path, axis=1) - 1).max() < 1e-12
     steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
@@ -362,14 +369,13 @@ def test_a_path_on_a_torus_of_angles_has_no_jump_where_a_period_ends() -> None:
     start, goal = (
         np.array([a, b, np.pi, -b, -a, np.pi]) for a, b in ((3.0, 0.2), (-3.0, 0.4))
     )
-    path = cover_surface(problem, start[None], radius=1.0).path(
-        start, goal, spacing=0.1
-    )
+    charts = cover_surface(problem, start[None], radius=1.0)
+    path = shortest_path(problem, charts, start, goal, 0.1)
     assert np.abs(np.diff(path, axis=0)).max() < 0.2 and path[-1, 0] == pytest.approx(
         2 * np.pi - 3
     )
     with pytest.raises(ValueError, match="goal lies in no chart"):
-        cover_surface(problem, start[None], radius=1.0).path(start, np.zeros(6))
+        shortest_path(problem, charts, start, np.zeros(6), 0.1)
 
 
 def test_wrong_seeds_and_limits_are_refused() -> None:

@@ -2,12 +2,12 @@
 
 import mpmath
 from click.testing import CliRunner
-from linkages.linkage import load
 
 from linkages.app.choice import choose_precisely
 from linkages.app.cli import main
 from linkages.app.confirmation import confirm_points
 from linkages.catalogue import entry
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 
 TABLE = 'angles = "deg"\nlengths = [1.0, 0.7, 1.0, 0.7]\ntwists = [0, 90, 0, 0.1]\noffsets = [0, 0, 0, 0]\n'

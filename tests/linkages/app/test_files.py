@@ -4,12 +4,12 @@ import json
 
 import pytest
 from click.testing import CliRunner
-from linkages.linkage import load
 
 import bifurc.search.explore
 from linkages.app.cli import main
 from linkages.app.files import prepare_folder, write_data
 from linkages.closure.loop_closure import LoopClosure
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from linkages.linkage import load
 
 from linkages.app.tolerance import climb, half_branches, measure, slope
 from linkages.app.tolerance_command import tolerance_command
 from linkages.catalogue import entry
+from linkages.linkage import load
 from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
 from linkages.tolerance import make_with_errors

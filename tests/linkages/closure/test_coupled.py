@@ -4,11 +4,11 @@ what a locked joint must give."""
 import mpmath
 import numpy as np
 import pytest
-from bifurc.search.settings import SearchSettings
 
 from bifurc.curves.continuation import trace_branch
 from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure, locked_joints
 from linkages.closure.loop_closure import LoopClosure
