@@ -9,26 +9,33 @@ from typing import Any
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
 from bifurc.errors import ProblemError, RouteError
+from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
 from bifurc.singular.locate import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = ["Atlas", "Event", "Form", "MeetingPoint", "Surface"]
+__all__ = ["Atlas", "Event", "Form", "MeetingPoint", "Provenance", "Surface"]
 
 
 @dataclass(frozen=True)
 class Form:
     """A smooth motion branch with its name, the singular values along it, the smallest
     regular one of them (0 where it passes a singular point), and the number of the
-    component it belongs to. ``labels`` holds what a recogniser said of it."""
+    component it belongs to.
+
+    ``certificate`` says what is certified of it. ``labels`` holds what whoever knows
+    more than the equations said of it, as values that JSON can hold.
+    """
 
     name: str
     branch: Branch
     profile: Profile
     min_singular_value: float
     component: int = 0
+    certificate: Certificate | None = None
     labels: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -90,12 +97,30 @@ class Surface:
 
 
 @dataclass(frozen=True)
+class Provenance:
+    """How an atlas came about.
+
+    ``seed`` of the random starts and ``settings`` of the search, whether it was
+    ``interrupted`` or ``out_of_time``, how F' was made (``derivatives``), and the
+    ``seconds`` it took.
+    """
+
+    seed: int = 0
+    settings: SearchSettings = field(default_factory=SearchSettings)
+    interrupted: bool = False
+    out_of_time: bool = False
+    derivatives: str = "exact"
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
 class Atlas:
     """All that `bifurc.search.explore.explore` found of a problem.
 
     ``closure_gap``: where there is no form, the median relative residual along the
-    valley in which the system is nearly solved (0 where there are forms). ``info``
-    keeps provenance: settings, seed, seconds, whether the run was interrupted.
+    valley in which the system is nearly solved (0 where there are forms). ``provenance`` says
+    how the atlas came about. ``subject`` says what was mapped, in values that JSON can
+    hold: whoever maps something more than equations defines it.
     """
 
     names: tuple[str, ...]
@@ -109,7 +134,8 @@ class Atlas:
     surfaces: tuple[Surface, ...]
     completeness: Completeness
     closure_gap: float = 0.0
-    info: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Provenance = field(default_factory=Provenance)
+    subject: Mapping[str, Any] = field(default_factory=dict)
 
     # --- queries --------------------------------------------------------------------------------------
 

@@ -42,8 +42,8 @@ def map_linkage(
     and how many. ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
     ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest
     closure error seen along it relative to the characteristic length;
-    ``info["linkage"]`` of the atlas the geometry, twists in rad. With ``certify`` they
-    also hold the ``certificate`` of `bifurc.curves.certificate`.
+    the ``subject`` of the atlas holds the geometry, twists in rad. With ``certify``
+    every form has its ``certificate``.
     """
     if isinstance(linkage, Loop):
         linkage = Linkage(linkage)
@@ -69,7 +69,7 @@ def map_linkage(
         "offsets": offsets,
     }
     named = atlas.renamed([identity.name for identity in identities], labels)
-    named = replace(named, info={**atlas.info, "linkage": geometry})
+    named = replace(named, subject=geometry)
     return certify_atlas(problem, named) if certify else named
 
 

@@ -24,7 +24,7 @@ certificate says where.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -68,8 +68,8 @@ class Certificate:
     bound: float
     reversals: np.ndarray
 
-    def as_labels(self) -> dict[str, Any]:
-        """The certificate as plain values, for `Form.labels`."""
+    def as_values(self) -> dict[str, Any]:
+        """The certificate in values that JSON can hold."""
         return {
             "status": self.status,
             "gaps": self.gaps.tolist(),
@@ -78,6 +78,18 @@ class Certificate:
             "bound": self.bound,
             "reversals": self.reversals.tolist(),
         }
+
+    @staticmethod
+    def from_values(values: Mapping[str, Any]) -> Certificate:
+        """The certificate that `as_values` wrote down."""
+        return Certificate(
+            values["status"],
+            np.array(values["gaps"]).reshape(-1, 2),
+            np.array(values["blurred"]).reshape(-1, 2),
+            values["points"],
+            values["bound"],
+            np.array(values["reversals"]),
+        )
 
 
 def certify_branch(

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterable
+from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -19,19 +20,22 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance
 from bifurc.branch import Branch, Outcome
+from bifurc.curves.certificate import Certificate
+from bifurc.curves.continuation import TraceSettings
 from bifurc.curves.monitor import Profile
 from bifurc.errors import BifurcError
 from bifurc.files.json_values import from_text, to_text
 from bifurc.files.layout import Variable, atlas_variables, split_rows, variable
 from bifurc.files.surface_layout import read_surfaces
+from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
 from bifurc.singular.locate import Kind, SingularPoint
 
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
-FORMAT, FORMAT_VERSION = "bifurc atlas", 2
+FORMAT, FORMAT_VERSION = "bifurc atlas", 3
 LINKAGE_UNITS = {"twists": "rad"}
 
 
@@ -101,7 +105,7 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
     are not all angles), ``singular_value``, ``piece``, ``power``, ``point`` (singular
     points), ``pass`` and others named after what they count. ``sample`` runs over the
     points at which the singular values were taken, denser where the curve bends more.
-    Entries of ``atlas.info["linkage"]`` become variables along ``joint`` and attributes
+    Entries of ``atlas.subject`` become variables along ``joint`` and attributes
     called ``linkage_...``.
     """
     joint = "joint" if all(unit == "rad" for unit in atlas.units) else "unknown"
@@ -128,15 +132,18 @@ def _attributes(atlas: Atlas, joint: str) -> dict[str, Any]:
         release = version("bifurc")
     except PackageNotFoundError:
         release = "unknown"
-    plain: dict[str, Any] = {}
-    for key, value in atlas.info.items():
-        nested = (
-            {f"{key}_{k}": v for k, v in value.items()}
-            if isinstance(value, dict)
-            else {key: value}
-        )
-        plain |= {k: v for k, v in nested.items() if type(v) in (int, float, str)}
-        plain |= {k: int(v) for k, v in nested.items() if type(v) is bool}
+    settings = atlas.provenance.settings
+    plain = {
+        "seed": atlas.provenance.seed,
+        "starts": settings.starts,
+        "budget": settings.budget,
+        "interrupted": int(atlas.provenance.interrupted),
+        "out_of_time": int(atlas.provenance.out_of_time),
+        "derivatives": atlas.provenance.derivatives,
+        "seconds": atlas.provenance.seconds,
+    }
+    tracing = asdict(settings.tracing)
+    plain |= {f"settings_{name}": value for name, value in tracing.items()}
     return plain | {
         "title": "Transition map: forms, singular points and what connects them",
         "Conventions": "CF-1.11",
@@ -149,16 +156,17 @@ def _attributes(atlas: Atlas, joint: str) -> dict[str, Any]:
         "completeness_level": atlas.completeness.level,
         "completeness_statement": atlas.completeness.statement,
         "missed_probability": float(atlas.completeness.missed_probability),
-        "info": to_text(dict(atlas.info)),
+        "provenance": to_text(asdict(atlas.provenance)),
+        "subject": to_text(dict(atlas.subject)),
     }
 
 
 def _linkage(atlas: Atlas, joint: str) -> tuple[dict[str, Variable], dict[str, Any]]:
-    """Variables and attributes of ``info["linkage"]``: one number for each unknown
+    """Variables and attributes of the subject: one number for each unknown
     makes a variable."""
     variables: dict[str, Variable] = {}
     attributes: dict[str, Any] = {}
-    for key, value in atlas.info.get("linkage", {}).items():
+    for key, value in atlas.subject.items():
         if isinstance(value, str | int | float):
             attributes[f"linkage_{key}"] = value
         elif np.shape(value) == (len(atlas.names),):
@@ -199,8 +207,15 @@ def _read(dataset: xr.Dataset, source: str) -> Atlas:
             float(attributes["missed_probability"]),
         ),
         closure_gap=float(attributes["closure_gap"]),
-        info=from_text(attributes["info"]),
+        provenance=_read_provenance(from_text(attributes["provenance"])),
+        subject=from_text(attributes["subject"]),
     )
+
+
+def _read_provenance(values: dict[str, Any]) -> Provenance:
+    settings = values.pop("settings")
+    tracing = TraceSettings(**settings.pop("tracing"))
+    return Provenance(**values, settings=SearchSettings(**settings, tracing=tracing))
 
 
 def _read_form(get: dict[str, np.ndarray], i: int) -> Form:
@@ -229,8 +244,13 @@ def _read_form(get: dict[str, np.ndarray], i: int) -> Form:
         profile,
         float(get["min_singular_value"][i]),
         int(get["component"][i]),
+        _read_certificate(str(get["certificate"][i])),
         from_text(str(get["labels"][i])),
     )
+
+
+def _read_certificate(text: str) -> Certificate | None:
+    return Certificate.from_values(from_text(text)) if text else None
 
 
 def _read_point(get: dict[str, np.ndarray], i: int) -> MeetingPoint:

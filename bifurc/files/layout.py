@@ -51,6 +51,10 @@ def split_rows(values: np.ndarray, counts: np.ndarray) -> list[np.ndarray]:
     return np.split(values, np.cumsum(counts))[: len(counts)]
 
 
+def _certificate_text(form: Form) -> str:
+    return "" if form.certificate is None else to_text(form.certificate.as_values())
+
+
 def _form_variables(
     forms: Sequence[Form], n: int, joint: str, unit: str
 ) -> dict[str, Variable]:
@@ -124,6 +128,11 @@ def _form_variables(
             "form",
             texts(to_text(dict(f.labels)) for f in forms),
             "what was recognised, as JSON",
+        ),
+        "certificate": variable(
+            "form",
+            texts(_certificate_text(f) for f in forms),
+            "what is certified, as JSON; empty where nothing is",
         ),
         "outcome": variable(
             "form", texts(b.outcome.name for b in branches), "why tracing ended"

@@ -318,6 +318,7 @@ def _leg(
             1,
             form.branch(np.linspace(start, end, samples)),
         )
+    assert problem is not None  # without it no path over a surface is measured
     k, along = edge["surface"], edge["path"] if forwards else edge["path"][::-1]
     path = (
         resample(problem, charts[k], along, samples - 1) if samples > 1 else along[:1]

@@ -12,15 +12,11 @@ __all__ = ["certify_atlas"]
 
 
 def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
-    """The atlas with a certificate among the labels of every form; its located singular
-    points are handed over to."""
+    """The atlas with a certificate on every form; its located singular points are
+    handed over to."""
     forms = []
     for i, form in enumerate(atlas.forms):
         singular = [s for p in atlas.points for j, s in p.passes if j == i]
         certificate = certify_branch(problem, form.branch, form.profile, singular)
-        forms.append(
-            replace(
-                form, labels={**form.labels, "certificate": certificate.as_labels()}
-            )
-        )
+        forms.append(replace(form, certificate=certificate))
     return replace(atlas, forms=tuple(forms))

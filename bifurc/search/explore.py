@@ -5,11 +5,10 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import asdict
 
 import numpy as np
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, Provenance
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
@@ -55,8 +54,8 @@ def explore(
     and monitored; from every singular point the directions in which other branches
     leave become further starts. ``progress`` is called with what was found and how
     many. Ctrl-C ends the search early: the atlas holds what was found, and
-    ``info["interrupted"]`` is true. When the budget of time is used up, the
-    completeness says so, and ``info["out_of_time"]``.
+    its provenance says so. When the budget of time is used up, the
+    completeness and the provenance say so.
     """
     began = time.perf_counter()
     deadline = Deadline(settings.budget)
@@ -93,17 +92,15 @@ def explore(
     if gathered is None:
         nothing = np.empty((0, problem.n))
         gathered = Seeds(nothing, np.empty(0, dtype=bool), np.empty(0), nothing)
-    info = {
-        "seed": seed,
-        "starts": settings.starts,
-        "settings": asdict(settings.tracing),
-        "interrupted": interrupted,
-        "budget": settings.budget,
-        "out_of_time": deadline.passed,
-        "derivatives": problem.derivatives,
-        "seconds": time.perf_counter() - began,
-    }
-    return assemble_atlas(problem, found, gathered, interrupted, info)
+    provenance = Provenance(
+        seed=seed,
+        settings=settings,
+        interrupted=interrupted,
+        out_of_time=deadline.passed,
+        derivatives=problem.derivatives,
+        seconds=time.perf_counter() - began,
+    )
+    return assemble_atlas(problem, found, gathered, provenance)
 
 
 # --- the search ---------------------------------------------------------------------------------------

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
-from typing import Any
 
 import networkx as nx
 import numpy as np
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Surface
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.monitor import Profile, dead_points
 from bifurc.limits import Deadline
@@ -54,8 +53,7 @@ def assemble_atlas(
     problem: Problem,
     found: Findings,
     seeds: Seeds,
-    interrupted: bool,
-    info: dict[str, Any],
+    provenance: Provenance,
 ) -> Atlas:
     """The atlas of the findings, in an order that does not depend on the seeds."""
     order = sorted(
@@ -105,9 +103,9 @@ def assemble_atlas(
         dead_points=tuple(dead),
         rigid=np.array(found.rigid).reshape(-1, problem.n),
         surfaces=surfaces,
-        completeness=_completeness(found, seeds, interrupted),
+        completeness=_completeness(found, seeds, provenance.interrupted),
         closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found),
-        info=info,
+        provenance=provenance,
     )
 
 

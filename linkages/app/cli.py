@@ -387,7 +387,7 @@ def _problem(atlas: Atlas) -> Problem:
     from linkages.closure.loop_closure import LoopClosure
     from linkages.loop import Loop
 
-    linkage = atlas.info["linkage"]
+    linkage = atlas.subject
     return LoopClosure(Loop(linkage["lengths"], linkage["twists"], linkage["offsets"]))
 
 

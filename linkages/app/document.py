@@ -22,7 +22,7 @@ def make_document(atlas: Atlas) -> dict[str, Any]:
     surfaces = [_surface(atlas, k, surface) for k, surface in enumerate(atlas.surfaces)]
     sure = atlas.completeness
     return {
-        "linkage": dict(atlas.info["linkage"]),
+        "linkage": dict(atlas.subject),
         "forms": forms + surfaces,
         "bifurcations": [
             {
@@ -67,10 +67,10 @@ def make_document(atlas: Atlas) -> dict[str, Any]:
             "statement": sure.statement,
             "missed_probability": sure.missed_probability,
         },
-        "seconds": atlas.info["seconds"],
+        "seconds": atlas.provenance.seconds,
         "version": version("bifurc"),
-        "seed": atlas.info["seed"],
-        "tolerance": atlas.info["settings"]["tolerance"],
+        "seed": atlas.provenance.seed,
+        "tolerance": atlas.provenance.settings.tracing.tolerance,
     }
 
 

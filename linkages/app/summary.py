@@ -28,7 +28,7 @@ SHOWN = 12  # near misses and rigid assemblies beyond this number are only count
 def make_summary(atlas: Atlas) -> str:
     """What `bifurc map` shows: verdict, geometry, forms, singular points, completeness
     and time."""
-    linkage = atlas.info["linkage"]
+    linkage = atlas.subject
     parts = [
         f"{linkage['name']}\n{judge(atlas).sentence}",
         describe_geometry(linkage["lengths"], linkage["twists"], linkage["offsets"]),
@@ -50,21 +50,21 @@ def make_summary(atlas: Atlas) -> str:
         _rigid(atlas),
         _certificates(atlas),
         f"Completeness ({atlas.completeness.level}): {atlas.completeness.statement}.",
-        f"Explored in {atlas.info['seconds']:.3f} s, seed {atlas.info['seed']}.",
+        f"Explored in {atlas.provenance.seconds:.3f} s, seed {atlas.provenance.seed}.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
 def _certificates(atlas: Atlas) -> str:
-    certificates = [(form.name, form.labels.get("certificate")) for form in atlas.forms]
+    certificates = [(form.name, form.certificate) for form in atlas.forms]
     rows = [
         (
             name,
-            c["status"],
-            f"{c['points']}",
-            f"{c['bound']:.3g}",
-            f"{len(c['gaps'])}",
-            f"{len(c['reversals'])}",
+            c.status,
+            f"{c.points}",
+            f"{c.bound:.3g}",
+            f"{len(c.gaps)}",
+            f"{len(c.reversals)}",
         )
         for name, c in certificates
         if c

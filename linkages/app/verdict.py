@@ -28,7 +28,7 @@ class Verdict:
 def judge(atlas: Atlas) -> Verdict:
     """What the linkage of an atlas is. An interrupted search is said to be one,
     whatever it found."""
-    if atlas.info.get("interrupted"):
+    if atlas.provenance.interrupted:
         found = f"{counted(len(atlas.forms), 'form')} and {counted(len(atlas.bifurcations), 'bifurcation')}"
         return Verdict(
             f"The search was interrupted; {found} were found by then.",

@@ -105,7 +105,7 @@ class Pressed(LoopClosure):
 
 for delay in (0.001, 0.01, 0.03, 0.1):
     atlas = explore(Pressed(linkage.loop), settings=SearchSettings(starts=60000))
-    assert atlas.info["interrupted"], delay
+    assert atlas.provenance.interrupted, delay
     print(len(atlas.forms), "forms")
 """
 

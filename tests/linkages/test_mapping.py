@@ -26,7 +26,7 @@ def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
 def test_every_form_says_how_well_it_closes_and_the_atlas_what_was_mapped():
     atlas = map_linkage(load("parallelogram", b=3.0))
     assert all(0 < form.labels["max_residual"] < 1e-12 for form in atlas.forms)
-    assert atlas.info["linkage"] == {
+    assert atlas.subject == {
         "name": "parallelogram",
         "lengths": [1.0, 3.0, 1.0, 3.0],
         "twists": [0.0] * 4,
@@ -36,8 +36,8 @@ def test_every_form_says_how_well_it_closes_and_the_atlas_what_was_mapped():
 
 def test_a_loop_without_a_source_is_mapped_too():
     atlas = map_linkage(Loop((1, 2, 1, 2), (0, 0, 0, 0), (0, 0, 0, 0), "mine"), seed=3)
-    assert atlas.info["linkage"]["name"] == "mine"
-    assert atlas.info["seed"] == 3
+    assert atlas.subject["name"] == "mine"
+    assert atlas.provenance.seed == 3
     assert len(atlas.forms) == 2
 
 
@@ -52,4 +52,4 @@ def test_a_map_is_certified_on_request():
     atlas = map_linkage(
         entry("bennett").build(), settings=SearchSettings(starts=20), certify=True
     )
-    assert atlas.forms[0].labels["certificate"]["status"] == "certified"
+    assert atlas.forms[0].certificate.status == "certified"

@@ -129,7 +129,7 @@ def map_member(
             "status": int(Status.FAILED),
             "message": f"{type(error).__name__}: {error}",
         }
-    if atlas.info["interrupted"]:
+    if atlas.provenance.interrupted:
         raise KeyboardInterrupt  # what was found so far is not the member's map
     if atlas_path is not None:
         _save(atlas, Path(atlas_path))

@@ -72,21 +72,15 @@ def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configu
 def test_a_form_without_singular_points_is_certified_all_along():
     problem = LoopClosure(entry("bennett").build())
     (form,) = certify_atlas(problem, explore(problem)).forms
-    certificate = form.labels["certificate"]
-    assert (certificate["status"], certificate["gaps"], certificate["reversals"]) == (
-        "certified",
-        [],
-        [],
-    )
+    certificate = form.certificate
+    assert certificate.status == "certified"
+    assert not len(certificate.gaps) and not len(certificate.reversals)
 
 
 def test_forms_that_cross_are_certified_up_to_the_crossings():
     problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
     for form in certify_atlas(problem, explore(problem)).forms:
-        assert (
-            form.labels["certificate"]["status"]
-            == "certified up to the singular points"
-        )
+        assert form.certificate.status == "certified up to the singular points"
 
 
 def test_a_crossing_that_is_not_handed_over_is_named_as_singular_and_raises_the_alarm():

@@ -87,7 +87,7 @@ def atlas() -> Atlas:
         named,
         rigid=np.array([[0.1, 1 / 3]]),
         closure_gap=1e-300,
-        info={**named.info, "linkage": linkage},
+        subject=linkage,
         near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5),),
         dead_points=(
             Event(0, 2 / 3, np.array([0.3, -0.0]), index=1),
@@ -152,7 +152,8 @@ def test_the_provenance_is_in_the_attributes(atlas: Atlas) -> None:
     attributes = to_dataset(atlas).attrs
     assert (
         attributes["seed"] == 0
-        and attributes["settings_tolerance"] == atlas.info["settings"]["tolerance"]
+        and attributes["settings_tolerance"]
+        == atlas.provenance.settings.tracing.tolerance
     )
     assert attributes["version"] and attributes["derivatives"] == "complex step"
 
@@ -200,7 +201,7 @@ def test_a_file_of_an_older_layout_is_refused_with_both_versions(
     dataset.attrs["format_version"] = 1
     dataset.to_netcdf(tmp_path / "old.nc")
     with pytest.raises(
-        AtlasFileError, match=r"old\.nc: its format version is 1; this release reads 2"
+        AtlasFileError, match=r"old\.nc: its format version is 1; this release reads 3"
     ):
         load_atlas(tmp_path / "old.nc")
 

@@ -86,7 +86,7 @@ def test_central_differences_give_the_same_answer_and_say_so():
     atlas = explore(
         FunctionProblem(rounded, [(-2, 2)] * 2), settings=SearchSettings(starts=30)
     )
-    assert atlas.info["derivatives"] == "central differences"
+    assert atlas.provenance.derivatives == "central differences"
     assert len(atlas.forms) == 2
     assert [p.kind for p in atlas.points] == [Kind.BIFURCATION]
     # second derivatives are differences of differences: the place is known to their
@@ -278,7 +278,7 @@ def test_an_interrupted_search_keeps_what_was_found():
     atlas = explore(
         LoopClosure(entry("bricard-line-symmetric").build()), progress=interrupt
     )
-    assert atlas.info["interrupted"] is True
+    assert atlas.provenance.interrupted is True
     assert atlas.completeness.level == "interrupted"
     assert len(atlas.forms) == seen[0] == 1
     assert atlas.forms[0].branch.closed
@@ -294,7 +294,7 @@ def test_a_search_interrupted_before_anything_was_found_is_an_empty_atlas():
 
     problem.seeds = interrupted
     atlas = explore(problem)
-    assert atlas.info["interrupted"] is True
+    assert atlas.provenance.interrupted is True
     assert not atlas.forms
 
 
@@ -305,7 +305,7 @@ def test_the_same_seed_gives_the_same_atlas_to_the_last_bit():
     )
     for left, right in zip(one.forms, other.forms, strict=True):
         assert np.array_equal(left.branch.pieces, right.branch.pieces)
-    assert one.info["seed"] == 3
+    assert one.provenance.seed == 3
 
 
 def test_no_starts_are_refused():

@@ -500,14 +500,14 @@ def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
     began = time.perf_counter()
     atlas = explore(general(8), settings=SearchSettings(budget=1.0))
     assert time.perf_counter() - began < 5.0
-    assert atlas.info["out_of_time"] and atlas.completeness.level == "out of time"
+    assert atlas.provenance.out_of_time and atlas.completeness.level == "out of time"
     assert (
         atlas.surfaces[0].dimension == 2
         and atlas.surfaces[0].charts.outcome is Covering.OUT_OF_TIME
     )
     assert not explore(
         planar(1, 2, 1.4, 2.2), settings=SearchSettings(budget=60.0)
-    ).info["out_of_time"]
+    ).provenance.out_of_time
     with pytest.raises(ProblemError, match="budget"):
         explore(general(8), settings=SearchSettings(budget=0.0))
 

@@ -157,7 +157,7 @@ def test_the_map_of_a_coupled_loop_has_the_symmetric_forms_and_certifies_them():
     assert [np.sqrt(2) * f.branch.length for f in atlas.forms] == pytest.approx(
         [f.branch.length for f in whole.forms], rel=1e-10
     )
-    assert [f.labels["certificate"]["status"] for f in atlas.forms] == ["certified"] * 2
+    assert [f.certificate.status for f in atlas.forms] == ["certified"] * 2
 
 
 def test_an_unknown_comes_round_when_all_joints_that_it_turns_do():
