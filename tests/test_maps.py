@@ -333,6 +333,23 @@ def test_no_bifurcation_is_invented_next_to_a_parallelogram():
         assert 0.1 * np.sqrt(error) < smallest < 2.0 * np.sqrt(error)
 
 
+def test_no_near_miss_is_invented_where_the_singular_value_is_monotone_or_constant():
+    right_angled = Loop((0.0,) * 4, (np.pi / 2,) * 4, (0.0,) * 4)
+    for loop in (planar(1.0, 1.0, 1.0, 1.0), right_angled):
+        for seed in range(3):
+            atlas = explore(LoopClosure(loop), seed=seed)
+            assert len(atlas.points) > 2
+            assert not atlas.near_misses
+
+
+def test_near_misses_do_not_depend_on_the_start_of_the_curve():
+    linkage = entry("yu-baker-two-ratios").build()
+    for seed in range(4):
+        atlas = explore(LoopClosure(linkage), seed=seed)
+        values = [event.value for event in atlas.near_misses]
+        assert values == pytest.approx([0.0908601462117729] * 2, rel=1e-9)
+
+
 # --- the general line-symmetric Bricard -----------------------------------------------------------------
 
 

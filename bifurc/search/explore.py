@@ -361,6 +361,12 @@ def _add_branch(
         branch.outcome is Outcome.STALLED
     ):  # at a cusp the curve ends before the singular point is reached
         candidates += [(0.0, 10 * NEARLY), (branch.length, 10 * NEARLY)]
+    elif (
+        not branch.closed
+    ):  # an end is no minimum, and yet a singular point may lie there
+        ends = np.array([0.0, branch.length])
+        smallest = singular_values(problem, branch(ends))[:, profile.rank - 1]
+        candidates += [(float(at), NEARLY) for at in ends[smallest < NEARLY]]
     starts: list[tuple[np.ndarray, np.ndarray | None]] = []
     for at, small in candidates:
         if found.deadline.passed:

@@ -11,7 +11,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance, Surface
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.monitor import Profile, dead_points
+from bifurc.curves.monitor import Profile, dead_points, singular_values, stand_out
 from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.search.components import Components, lies_on
@@ -79,13 +79,17 @@ def assemble_atlas(
     forms, near, dead = [], [], []
     for i, k in enumerate(order):
         branch, profile, minima = found.branches[k], found.profiles[k], found.minima[k]
-        seen = float(min(minima[1].min(initial=np.inf), profile.smallest.min()))
-        smallest = 0.0 if i in passing else seen
+        smallest = (
+            0.0
+            if i in passing
+            else _smallest_value(problem, branch, profile, minima[1])
+        )
         forms.append(Form(f"Form {i + 1}", branch, profile, smallest, component[i]))
+        low = stand_out(problem, branch, profile, minima[1])
         near += [
             Event(i, float(s), branch(s), float(v))
-            for s, v in zip(*minima, strict=True)
-            if float(s) not in found.located[k] and v < 0.5 * profile.smallest.max()
+            for s, v, is_low in zip(*minima, low, strict=True)
+            if is_low and float(s) not in found.located[k]
         ]
         dead += [
             Event(i, float(s), branch(s), index=j)
@@ -107,6 +111,17 @@ def assemble_atlas(
         closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found),
         provenance=provenance,
     )
+
+
+def _smallest_value(
+    problem: Problem, branch: Branch, profile: Profile, minima: np.ndarray
+) -> float:
+    """The smallest regular singular value along a branch: at its ``minima`` or its ends."""
+    values = [*minima, profile.smallest.min()]
+    if not branch.closed:
+        ends = branch(np.array([0.0, branch.length]))
+        values += [*singular_values(problem, ends)[:, profile.rank - 1]]
+    return float(min(values))
 
 
 def _closure_gap(problem: Problem, seeds: Seeds, found: Findings) -> float:

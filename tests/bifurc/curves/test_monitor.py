@@ -10,6 +10,7 @@ from bifurc.curves.monitor import (
     roots_along,
     singular_value_minima,
     singular_values,
+    stand_out,
 )
 from bifurc.function_problem import FunctionProblem
 
@@ -71,6 +72,84 @@ def test_a_curve_of_constant_singular_value_has_no_near_miss_below_it():
     profile = profile_branch(problem, branch)
     _, value = singular_value_minima(problem, branch, profile)
     assert not np.any(value < 0.999 * profile.smallest.max())
+
+
+def with_singular_values(*values, low=-1.0, high=1.3):
+    """A problem whose curve is the line of all z, where the ``values`` of z are singular."""
+    names = [f"x{i}" for i in range(len(values))]
+
+    def function(u):
+        return np.array(
+            [value(u[-1]) * x for value, x in zip(values, u[:-1], strict=True)]
+        )
+
+    bounds = [(low, high)] * (len(values) + 1)
+    problem = FunctionProblem(function, bounds, names=[*names, "z"])
+    return problem, trace_branch(problem, np.eye(len(names) + 1)[-1] * 0.05)
+
+
+def minima(problem, branch):
+    s, value = singular_value_minima(problem, branch, profile_branch(problem, branch))
+    return branch(s)[:, -1], value * problem.magnitude
+
+
+WITHOUT_MINIMUM = {
+    "constant": [lambda z: 0.7 + 0 * z],
+    "two constants": [lambda z: 0.7 + 0 * z, lambda z: 0.3 + 0 * z],
+    "monotone": [lambda z: 0.02 + 0.01 * z, lambda z: 0.7 + 0 * z],
+    "constant, falling from a kink on": [lambda z: 0.7 + 0 * z, lambda z: 1 - 0.6 * z],
+    "a tent": [lambda z: 1 - 0.4 * z, lambda z: 1 + 0.3 * z],
+}
+
+
+@pytest.mark.parametrize("functions", WITHOUT_MINIMUM.values(), ids=WITHOUT_MINIMUM)
+def test_a_constant_or_monotone_value_or_a_kink_upwards_has_no_minimum(functions):
+    _, value = minima(*with_singular_values(*functions))
+    assert not len(value)
+
+
+WITH_MINIMA = {
+    "a dip": ([lambda z: 0.02 + (z - 0.3) ** 2, lambda z: 1.5 + z], [(0.3, 0.02)]),
+    "a narrow dip": ([lambda z: np.sqrt(1e-12 + (z - 0.3) ** 2)], [(0.3, 1e-6)]),
+    "a dip and a kink": (
+        [lambda z: 0.2 + (z - 0.3) ** 2, lambda z: 0.8 - z],
+        [(0.3, 0.2), (0.8, 0.0)],
+    ),
+    "a dip and a zero": (
+        [lambda z: z - 0.3, lambda z: 0.1 + z * z],
+        [(0.0, 0.1), (0.3, 0.0)],
+    ),
+    "a flat zero": ([lambda z: (z - 0.3) ** 3], [(0.3, 0.0)]),
+    "two zeros": ([lambda z: (z - 0.3) * (z - 0.4)], [(0.3, 0.0), (0.4, 0.0)]),
+}
+
+
+@pytest.mark.parametrize("case", WITH_MINIMA.values(), ids=WITH_MINIMA)
+def test_minima_of_singular_values_are_converged(case):
+    functions, known = case
+    places, values = minima(*with_singular_values(*functions))
+    expected_places, expected_values = zip(*known, strict=True)
+    order = np.argsort(places)
+    assert values[order] == pytest.approx(expected_values, rel=1e-9, abs=1e-11)
+    assert places[order] == pytest.approx(expected_places, abs=1e-4)
+
+
+@pytest.mark.parametrize(("below", "stands_out"), [(0.0, False), (1e-5, True)])
+def test_a_minimum_at_half_of_the_largest_value_does_not_stand_out(below, stands_out):
+    low = 0.5 * (1 - below)
+    for begin in (
+        -0.83,
+        -0.79,
+        -0.71,
+        -0.67,
+    ):  # the largest value lies between the nodes
+        problem, branch = with_singular_values(
+            lambda z: 1 - (1 - low) * np.cos(np.pi * z) ** 2, low=begin, high=0.9
+        )
+        profile = profile_branch(problem, branch)
+        _, value = singular_value_minima(problem, branch, profile)
+        found = stand_out(problem, branch, profile, value)
+        assert list(found) == [stands_out]
 
 
 def test_dead_points_of_a_circle_are_where_a_coordinate_turns_back():
