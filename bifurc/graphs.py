@@ -10,6 +10,7 @@ import networkx as nx
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
+from bifurc.torus import wrap
 
 __all__ = ["ArcAttributes", "arc_attributes", "arc_graph", "transition_graph"]
 
@@ -79,7 +80,8 @@ def arc_graph(atlas: Atlas) -> nx.MultiGraph:
         stops = _singular_stops(atlas, index)
         for s, node in _free_ends(form, [s for s, _ in stops]):
             kind = "regular" if form.branch.closed else "end"
-            graph.add_node(node, kind=kind, u=form.branch(s))
+            u = wrap(form.branch(s), atlas.periods)
+            graph.add_node(node, kind=kind, u=u)
             stops.append((s, node))
         stops.sort()
         if form.branch.closed:

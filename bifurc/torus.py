@@ -10,8 +10,7 @@ import numpy as np
 
 __all__ = ["difference", "into_box", "tree_box", "wrap"]
 
-# A half turn that came out as -p/2 by rounding is shown as +p/2.
-HALF_TURN = 1e-9
+SEAM = 1e-12  # share of a period: what lies nearer to an end of it lies at the end
 
 
 def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
@@ -28,14 +27,18 @@ def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
     return gap
 
 
-def wrap(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
-    """``points`` (..., n) with periodic unknowns in (-period / 2, period / 2]."""
+def wrap(points: np.ndarray, periods: np.ndarray, within: float = SEAM) -> np.ndarray:
+    """``points`` (..., n) with periodic unknowns in (-period / 2, period / 2].
+
+    What lies nearer than the share ``within`` of a period to either end comes out at
+    + period / 2 exactly: on which side of the end it lies would be rounding.
+    """
     out = np.array(points, dtype=float)
     periodic = np.isfinite(periods)
     period = periods[periodic]
     turned = out[..., periodic] - period * np.round(out[..., periodic] / period)
-    at_the_seam = turned <= -0.5 * period + HALF_TURN
-    out[..., periodic] = np.where(at_the_seam, turned + period, turned)
+    at_the_seam = np.abs(turned) >= (0.5 - within) * period
+    out[..., periodic] = np.where(at_the_seam, 0.5 * period, turned)
     return out
 
 

@@ -31,6 +31,18 @@ def maps():
     return out
 
 
+def test_angles_of_points_events_and_rigid_assemblies_lie_within_half_a_turn(maps):
+    for _, _, atlas in maps.values():
+        events = [*atlas.near_misses, *atlas.dead_points]
+        angles = [
+            *atlas.rigid,
+            *(p.point.u for p in atlas.points),
+            *(e.u for e in events),
+        ]
+        assert np.all(np.array(angles) > -np.pi)
+        assert np.all(np.array(angles) <= np.pi)
+
+
 @pytest.fixture(params=NAMES)
 def known(request, maps):
     return maps[request.param]

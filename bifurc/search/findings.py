@@ -56,20 +56,19 @@ def assemble_atlas(
     provenance: Provenance,
 ) -> Atlas:
     """The atlas of the findings, in an order that does not depend on the seeds."""
+    periods = _turning(problem)
     order = sorted(
         range(len(found.branches)),
         key=lambda i: (-round(found.branches[i].length, 6), i),
     )
     branches = [found.branches[i] for i in order]
     surfaces = tuple(
-        replace(surface, name=f"surface {i}")
+        replace(surface, name=f"surface {i}", samples=wrap(surface.samples, periods))
         for i, surface in enumerate(found.components.surfaces(seeds.points), start=1)
     )
-    points = [_meeting_point(problem, p, branches, surfaces) for p in found.points]
-    points = sorted(
-        points,
-        key=lambda p: (p.kind.value, *np.round(wrap(p.point.u, problem.periods), 6)),
-    )
+    located = [replace(p, u=wrap(p.u, periods)) for p in found.points]
+    points = [_meeting_point(problem, p, branches, surfaces) for p in located]
+    points = sorted(points, key=lambda p: (p.kind.value, *_place(p.point.u, periods)))
     points = [
         replace(p, name=f"{INITIALS.get(p.kind, 'S')}{i}")
         for i, p in enumerate(points, start=1)
@@ -86,16 +85,21 @@ def assemble_atlas(
         )
         forms.append(Form(f"Form {i + 1}", branch, profile, smallest, component[i]))
         low = stand_out(problem, branch, profile, minima[1])
-        near += [
-            Event(i, float(s), branch(s), float(v))
-            for s, v, is_low in zip(*minima, low, strict=True)
-            if is_low and float(s) not in found.located[k]
-        ]
-        dead += [
-            Event(i, float(s), branch(s), index=j)
-            for j, roots in enumerate(dead_points(branch))
-            for s in roots
-        ]
+        is_near_miss = low & ~np.isin(minima[0], found.located[k])
+        for s, value in zip(
+            minima[0][is_near_miss], minima[1][is_near_miss], strict=True
+        ):
+            near.append(Event(i, float(s), wrap(branch(s), periods), float(value)))
+        for j, roots in enumerate(dead_points(branch)):
+            places = wrap(branch(roots), periods)
+            dead += [
+                Event(i, float(s), u, index=j)
+                for s, u in zip(roots, places, strict=True)
+            ]
+    rigid = wrap(np.array(found.rigid).reshape(-1, problem.n), periods)
+    rigid = np.array(sorted(rigid, key=lambda u: _place(u, periods))).reshape(
+        rigid.shape
+    )
     mobile = bool(found.branches or surfaces)
     return Atlas(
         names=problem.names,
@@ -105,12 +109,27 @@ def assemble_atlas(
         points=tuple(points),
         near_misses=tuple(near),
         dead_points=tuple(dead),
-        rigid=np.array(found.rigid).reshape(-1, problem.n),
+        rigid=rigid,
         surfaces=surfaces,
         completeness=_completeness(found, seeds, provenance.interrupted),
         closure_gap=0.0 if mobile else _closure_gap(problem, seeds, found),
         provenance=provenance,
     )
+
+
+def _turning(problem: Problem) -> np.ndarray:
+    """Periods (n,) of the unknowns to wrap; inf for those whose bounds reach farther."""
+    half = 0.5 * problem.periods
+    finite = np.isfinite(problem.bounds).any(axis=1)
+    low, high = problem.bounds.T
+    elsewhere = finite & ((low < -half) | (high > half))
+    return np.where(elsewhere, np.inf, problem.periods)
+
+
+def _place(point: np.ndarray, periods: np.ndarray) -> tuple[float, ...]:
+    """A point (n,) to six digits, those beside an end of a period at the same end."""
+    wrapped = wrap(point, periods, within=1e-6)
+    return tuple(float(x) + 0.0 for x in np.round(wrapped, 6))
 
 
 def _smallest_value(

@@ -22,6 +22,7 @@ __all__ = [
     "table",
 ]
 
+SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
 
 
@@ -296,7 +297,8 @@ def _more(count: int) -> str:
 
 
 def _configuration(atlas: Atlas, theta: np.ndarray) -> str:
-    return " ".join(f"{_degrees(x):>9}" for x in wrap(theta, atlas.periods))
+    wrapped = wrap(theta, atlas.periods, within=SHOWN_SHARE)
+    return " ".join(f"{_degrees(x):>9}" for x in wrapped)
 
 
 def _degrees(angle: float) -> str:

@@ -40,6 +40,17 @@ def polygon(*corners: tuple[float, float], closed: bool = True) -> Branch:
     )
 
 
+def test_wrapped_angles_lie_within_half_a_period_and_its_ends_are_one():
+    periods = np.array([2 * np.pi, np.inf])
+    angles = np.pi * np.array([-1, -1 + 1e-14, -1 - 1e-14, 1 + 1e-14, 3, -5, 1])
+    points = np.stack([angles, angles], axis=1)
+    wrapped = wrap(points, periods)
+    assert np.all(wrapped[:, 0] == np.pi)
+    assert np.all(wrapped[:, 1] == angles)
+    beside = wrap(np.array([-np.pi + 1e-9, 7.0]), periods)
+    assert beside == pytest.approx([-np.pi + 1e-9, 7.0], abs=1e-15)
+
+
 def draw(
     branches: dict[str, Branch],
     points: dict[str, list[tuple[str, float]]],

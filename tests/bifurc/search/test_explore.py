@@ -78,6 +78,21 @@ def test_redundant_equations_change_nothing(name, copy):
         assert np.abs([function(*u) for u in form.branch.sample(500)]).max() < 1e-11
 
 
+@pytest.mark.parametrize("shift", [0.0, 1e-15, -1e-15, 4e-14, -4e-14])
+def test_angles_lie_within_half_a_turn_and_those_beside_its_end_at_the_end(shift):
+    # zeros at 0, 120 and 240 degrees, and at 60, 180 and 300: all are rigid assemblies
+    problem = FunctionProblem(
+        lambda u: np.array([np.sin(3 * (u[0] - shift)), u[1] - 0.5]),
+        [(-np.inf, np.inf), (0, 1)],
+        periods=[2 * np.pi, np.inf],
+    )
+    expected = np.array([-120, -60, 0, 60, 120, 180]) * np.pi / 180
+    for seed in range(2):
+        atlas = explore(problem, settings=SearchSettings(starts=60), seed=seed)
+        assert atlas.rigid[:, 0] == pytest.approx(expected, abs=1e-12)
+        assert atlas.rigid[-1, 0] == np.pi
+
+
 def test_central_differences_give_the_same_answer_and_say_so():
     def rounded(u):  # np.float64 refuses complex numbers
         x, y = (np.float64(v) for v in u)
