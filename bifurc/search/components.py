@@ -14,6 +14,7 @@ from bifurc.singular.dimension import NULL, local_dimensions, null_spaces
 from bifurc.singular.locate import locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.covering import cover_surface
+from bifurc.surfaces.crossing_sheets import is_on_singular_curve
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.walk import reached_charts
 
@@ -26,9 +27,6 @@ SMALL = 0.2
 MOST_POINTS = 200  # singular points of surfaces that are located
 # those among them that are samples of curves of singular points, which have no end
 MOST_SAMPLES = 24
-# distance from a singular point, over the scale, at which others on a curve with it are
-# looked for
-NEXT = 0.02
 
 
 @dataclass
@@ -169,7 +167,7 @@ def singular_points_of(
         located = locate_singular_point(problem, charts.centers[c], 3, reach)
         if located is None:
             continue
-        on_curve = located[2] > 0.1 * reach or _is_on_singular_curve(problem, *located)
+        on_curve = located[2] > 0.1 * reach or is_on_singular_curve(problem, *located)
         point, null_space, error = located
         if (
             on_curve
@@ -184,23 +182,6 @@ def singular_points_of(
             on_curves += [int(c)] if on_curve else []
     components.take_note(candidates[looked_at:], np.array(on_curves, dtype=int))
     return found
-
-
-def _is_on_singular_curve(
-    problem: Problem, point: np.ndarray, null_space: np.ndarray, error: float
-) -> bool:
-    """Whether there are other singular points of the same kind near one (n,), whatever
-    the direction."""
-    away = NEXT * problem.scale + 100 * error
-    for start in point + away * np.concatenate([null_space.T, -null_space.T]):
-        other = locate_singular_point(problem, start, null_space.shape[1], 2.0 * away)
-        if (
-            other is not None
-            and np.linalg.norm(problem.difference(other[0], point))
-            > 0.2 * away + 10 * other[2]
-        ):
-            return True
-    return False
 
 
 def lies_on(

@@ -23,7 +23,10 @@ class Covering(Enum):
     """Why no more charts were made, with what to do next."""
 
     COMPLETE = "complete: every part of the surface inside the bounds is covered"
-    SINGULAR = "incomplete: no chart fits at some places; look for singular points of the surface there"
+    SINGULAR = (
+        "incomplete: no chart fits at some places, or a sheet that is not covered crosses; "
+        "look for singular points of the surface there"
+    )
     CHART_LIMIT = "incomplete: the largest number of charts is reached; allow more of them, or a larger radius"
     OUT_OF_TIME = (
         "incomplete: the time is over; allow more of it and continue from these charts"

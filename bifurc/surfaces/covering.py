@@ -15,6 +15,8 @@ both charts are cut along the same line up to fourth order.
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
+from enum import Enum
 
 import numpy as np
 
@@ -25,6 +27,7 @@ from bifurc.problem import Problem
 from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import assemble_charts
+from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.polygon import clip, octagon
 
 __all__ = ["cover_surface"]
@@ -35,6 +38,9 @@ BEND = 0.12  # largest height of the surface above a chart's disk, over its radi
 SMOOTH = 0.9
 AGREE = 0.8  # smallest cosine between tangent planes of charts that may be neighbours
 SMALLEST = 1.0 / 64  # radius over the largest one below which no chart is made
+TOWARDS = 0.97  # cosine from which a vertex lies in a given direction
+# share of a radius by which a vertex outside the disk shows a hole at the end
+GAP = 1e-3
 BORDER = -2  # label of the edges along the bounds
 
 
@@ -70,11 +76,13 @@ def cover_surface(
     deadline = Deadline(seconds)
     outcome = cover.grow(charts, deadline)
     for seed in seeds:
-        if outcome in (Covering.CHART_LIMIT, Covering.OUT_OF_TIME):
+        if outcome is not Covering.COMPLETE:
             break
         if not cover.holds(seed) and cover.start(seed):
             outcome = cover.grow(charts, deadline)
-    return assemble_charts(
+    if outcome is Covering.COMPLETE and cover.has_holes():
+        outcome = Covering.SINGULAR
+    made = assemble_charts(
         problem,
         cover.centers,
         cover.bases,
@@ -83,11 +91,27 @@ def cover_surface(
         cover.labels,
         outcome,
     )
+    if made.complete and has_uncovered_crossing(problem, made, AGREE):
+        return replace(made, outcome=Covering.SINGULAR)
+    return made
+
+
+class Placement(Enum):
+    """What became of a place at which a chart was wanted."""
+
+    MADE = "there is a chart now"
+    COVERED = "charts cover it already, although the polygon does not show it"
+    UNFIT = "no chart fits there: others may cover it later, else it is a hole"
 
 
 class _Cover:
     """The charts made so far, their polygons in the tangent planes, and the charts
-    whose polygons may be open."""
+    whose polygons may be open.
+
+    ``dead`` lists for each chart the directions in which no chart could be made,
+    ``unfit`` those (chart, direction) in which none fits, ``lost`` the seeds about which
+    none fits.
+    """
 
     def __init__(self, problem: Problem, largest: float):
         self.problem, self.largest = problem, largest
@@ -96,11 +120,10 @@ class _Cover:
         self.radii = np.empty(0)
         self.polygons: list[np.ndarray] = []
         self.labels: list[np.ndarray] = []
-        self.dead: list[
-            list[np.ndarray]
-        ] = []  # directions of each chart in which no chart could be made
+        self.dead: list[list[np.ndarray]] = []
+        self.unfit: list[tuple[int, np.ndarray]] = []
+        self.lost: list[np.ndarray] = []
         self.open: deque[int] = deque()
-        self.stopped = False
 
     # --- growing --------------------------------------------------------------------------------------
 
@@ -119,14 +142,29 @@ class _Cover:
                 return Covering.CHART_LIMIT
             direction = y / np.linalg.norm(y)
             center = self.centers[i] + self.radii[i] * self.bases[i] @ direction
-            if not self._make(center, self.bases[i], 1.4 * self.radii[i]):
+            placement = self._make(center, self.bases[i], 1.4 * self.radii[i])
+            if placement is not Placement.MADE:
                 self.dead[i].append(direction)
-        return Covering.SINGULAR if self.stopped else Covering.COMPLETE
+            if placement is Placement.UNFIT:
+                self.unfit.append((i, direction))
+        return Covering.COMPLETE
 
     def start(self, seed: np.ndarray) -> bool:
         """Make the first chart of a surface about a regular solution (n,)."""
         _, right = null_spaces(self.problem, seed[None])
-        return self._make(seed, right[0, -2:].T, self.largest)
+        placement = self._make(seed, right[0, -2:].T, self.largest)
+        if placement is Placement.UNFIT:
+            self.lost.append(seed)
+        return placement is Placement.MADE
+
+    def has_holes(self) -> bool:
+        """Whether places at which no chart fits are still uncovered by the charts beside."""
+        for i, direction in self.unfit:
+            size = np.linalg.norm(self.polygons[i], axis=1)
+            there = self.polygons[i] @ direction >= TOWARDS * size
+            if np.any(there & (size > (1.0 + GAP) * self.radii[i])):
+                return True
+        return not all(self.holds(seed) for seed in self.lost)
 
     def _open_vertex(self, i: int) -> np.ndarray | None:
         """A vertex (2,) of polygon i outside the disk, in no direction known to lead
@@ -136,30 +174,27 @@ class _Cover:
             if size[k] <= self.radii[i] * (1.0 + 1e-9):
                 return None
             y = self.polygons[i][k]
-            if all(y @ d < 0.97 * size[k] for d in self.dead[i]):
+            if all(y @ d < TOWARDS * size[k] for d in self.dead[i]):
                 return y
         return None
 
-    def _make(self, start: np.ndarray, basis: np.ndarray, radius: float) -> bool:
+    def _make(self, start: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
         """Make the chart, of at most ``radius``, about the solution above ``start`` in
-        the plane ``basis``; False where none fits there."""
+        the plane ``basis``."""
         center, gap = correct_normal(self.problem, start[None], basis[None])
         turned = tangent_planes(self.problem, center, basis)[0]
         if gap[0] > 1e-10 or np.linalg.norm(center[0] - start) > 0.5 * self.largest:
-            self.stopped = True
-            return False
+            return Placement.UNFIT
         if np.linalg.svd(basis.T @ turned, compute_uv=False)[-1] < SMOOTH:
-            self.stopped = True
-            return False
+            return Placement.UNFIT
         near, x, _ = self._neighbours(center[0], turned, self.largest)
         if len(near) and np.min(np.linalg.norm(x, axis=1) / self.radii[near]) < 0.2:
-            return False  # covered already, although the polygon does not show it
+            return Placement.COVERED
         radius = self._fitting_radius(center[0], turned, min(radius, self.largest))
         if radius == 0.0:
-            self.stopped = True
-            return False
+            return Placement.UNFIT
         self.add(center[0], turned, radius)
-        return True
+        return Placement.MADE
 
     def _fitting_radius(
         self, center: np.ndarray, basis: np.ndarray, radius: float

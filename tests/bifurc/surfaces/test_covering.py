@@ -289,6 +289,24 @@ def test_the_charts_of_a_sphere_do_not_go_over_to_one_that_it_crosses() -> None:
     )
 
 
+@pytest.mark.parametrize("angle", [0.4, 1.1, 2.0])
+def test_a_sheet_that_crosses_is_missed_wherever_the_charts_begin(angle: float) -> None:
+    problem = spheres(0.4)
+    on_first = np.array([-0.4, 0, 0]) - 0.5 * np.array(
+        [np.cos(angle), np.sin(angle), 0]
+    )
+    charts = cover_surface(problem, on_first[None], radius=0.4)
+    assert charts.outcome is Covering.SINGULAR
+    assert charts.area == pytest.approx(np.pi, rel=0.02)
+
+
+def test_where_both_sheets_that_cross_are_covered_nothing_is_missed() -> None:
+    seeds_of_both = np.array([[-0.9, 0, 0], [1.0, 0, 0]])
+    charts = cover_surface(spheres(0.4), seeds_of_both, radius=0.4)
+    assert charts.outcome is Covering.COMPLETE
+    assert charts.area == pytest.approx(2.44 * np.pi, rel=0.02)
+
+
 def test_two_planes_that_cross_are_told_apart() -> None:
     problem = FunctionProblem(lambda u: np.array([u[1] * u[2]]), [(-1, 1)] * 3)
     parts = cover_surface(
