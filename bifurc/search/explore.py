@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +13,12 @@ from bifurc.atlas import Atlas, Provenance
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
-from bifurc.curves.monitor import profile_branch, singular_value_minima, singular_values
+from bifurc.curves.monitor import (
+    Profile,
+    profile_branch,
+    singular_value_minima,
+    singular_values,
+)
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.problem import Problem
 from bifurc.search.components import singular_points_of, sort_out
@@ -34,6 +40,8 @@ DEFAULT_SEARCH = SearchSettings()
 log = logging.getLogger(__name__)
 
 STUB = 2e-2  # length, in scales, below which a branch that stalls at both ends is none
+BESIDE_END = (0.0, 0.01, 0.02)  # of a stalled branch, in scales: starts for a cusp
+CUSP_REACH = 0.2  # how far from there the cusp may lie, in scales
 # singular value, over the problem's magnitude, below which a singular point is looked
 # for
 NEARLY = 1e-3
@@ -352,40 +360,78 @@ def _add_branch(
     found.profiles.append(profile)
     found.minima.append((s, value))
     located: list[float] = []
-    candidates = [
-        (float(at), max(NEARLY, 3 * small))
-        for at, small in zip(s, value, strict=True)
-        if small < NEARLY
+    starts: list[tuple[np.ndarray, np.ndarray | None]] = []
+    for candidate in _candidates(problem, branch, profile, s, value):
+        if found.deadline.passed:
+            break
+        known = len(found.points)
+        point = _singular_point_of(problem, branch, candidate, found)
+        if point is not None:
+            located.append(candidate.looks[0])
+        if point is not None and len(found.points) > known:
+            starts += [(point.u + point.radius * h, h) for h in point.half_branches]
+    found.located.append(located)
+    return starts
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """A place on a branch from which a singular point is looked for.
+
+    ``looks``: arclengths of the starts, of which the first one that leads to a singular
+    point counts, ``small``: singular values below it count as zero, ``reach``: how far away
+    the point may lie, in units of the problem's scale.
+    """
+
+    looks: tuple[float, ...]
+    small: float
+    reach: float = 0.05
+
+
+def _candidates(
+    problem: Problem,
+    branch: Branch,
+    profile: Profile,
+    s: np.ndarray,
+    values: np.ndarray,
+) -> list[_Candidate]:
+    """Where to look for singular points: at minima ``values`` (k,) at ``s`` (k,), and ends."""
+    minima = zip(s.tolist(), values.tolist(), strict=True)
+    out = [
+        _Candidate((at,), max(NEARLY, 3 * low)) for at, low in minima if low < NEARLY
     ]
-    if (
-        branch.outcome is Outcome.STALLED
-    ):  # at a cusp the curve ends before the singular point is reached
-        candidates += [(0.0, 10 * NEARLY), (branch.length, 10 * NEARLY)]
+    if branch.outcome is Outcome.STALLED:
+        # before a cusp or beyond it: how far hangs on rounding, and so does it whether the
+        # point is reached from one start
+        inwards = np.minimum(problem.scale * np.array(BESIDE_END), 0.5 * branch.length)
+        for looks in (inwards, branch.length - inwards):
+            out.append(_Candidate(tuple(looks.tolist()), 10 * NEARLY, CUSP_REACH))
     elif (
         not branch.closed
     ):  # an end is no minimum, and yet a singular point may lie there
         ends = np.array([0.0, branch.length])
         smallest = singular_values(problem, branch(ends))[:, profile.rank - 1]
-        candidates += [(float(at), NEARLY) for at in ends[smallest < NEARLY]]
-    starts: list[tuple[np.ndarray, np.ndarray | None]] = []
-    for at, small in candidates:
-        if found.deadline.passed:
-            break
-        nullity = int(
-            np.count_nonzero(singular_values(problem, branch(at)[None])[0] < small)
-        )
-        known = len(found.points)
-        point = (
-            _examine(problem, branch(at), nullity, found, reach=0.05)
-            if nullity > 1
-            else None
-        )
+        out += [_Candidate((float(at),), NEARLY) for at in ends[smallest < NEARLY]]
+    return out
+
+
+def _singular_point_of(
+    problem: Problem, branch: Branch, candidate: _Candidate, found: Findings
+) -> SingularPoint | None:
+    """The singular point, known or new, to which the looks of a candidate lead."""
+    for at in candidate.looks:
+        near = branch(at)
+        known = _known_point(problem, near, 0.0, found)
+        if known is not None and known.dimension == 1:
+            return known
+        values = singular_values(problem, near[None])[0]
+        nullity = int(np.count_nonzero(values < candidate.small))
+        if nullity < 2:
+            continue
+        point = _examine(problem, near, nullity, found, candidate.reach)
         if point is not None:
-            located.append(at)
-        if point is not None and len(found.points) > known:
-            starts += [(point.u + point.radius * h, h) for h in point.half_branches]
-    found.located.append(located)
-    return starts
+            return point
+    return None
 
 
 def _examine(
@@ -429,10 +475,11 @@ def _known_point(
     problem: Problem, u: np.ndarray, error: float, found: Findings
 ) -> SingularPoint | None:
     """The known singular point at ``u``, located to within ``error``, or None."""
-    number = _nearest(
-        problem, u, [p.u for p in found.points], SAME + 2 * error / problem.scale
-    )
-    return None if number is None else found.points[number]
+    for point in found.points:
+        within = SAME * problem.scale + 2 * max(error, point.error)
+        if np.linalg.norm(problem.difference(point.u, u)) < within:
+            return point
+    return None
 
 
 def _nearest(

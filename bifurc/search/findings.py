@@ -186,19 +186,12 @@ def _meeting_point(
 ) -> MeetingPoint:
     """A singular point with the branches that pass it or end there, and the surfaces on
     which it lies; where the branches and the section disagree, a note."""
-    within = SAME * problem.scale + 2 * point.error
-    inner = 0.05 * problem.scale  # nearer to a stalled end it is the end that counts
-    through = [
-        (i, float(s))
-        for i, branch in enumerate(branches)
-        for s in branch.passes(point.u, within)
-        if branch.outcome is not Outcome.STALLED or inner < s < branch.length - inner
-    ]
-    ends = [
-        (i, s)
-        for i, branch in enumerate(branches)
-        for s in _ends_at(problem, branch, point)
-    ]
+    through: list[tuple[int, float]] = []
+    ends: list[tuple[int, float]] = []
+    for i, branch in enumerate(branches):
+        own_ends = _ends_at(problem, branch, point)
+        ends += [(i, s) for s in own_ends]
+        through += [(i, s) for s in _passes_at(problem, branch, point, own_ends)]
     tangents = np.array([branches[i](s, 1) for i, s in through + ends]).reshape(
         -1, problem.n
     )
@@ -213,20 +206,58 @@ def _meeting_point(
 
 
 def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
-    """Arclengths of the ends of a branch that stalled before a cusp: near the point,
-    along a half-branch."""
-    near, found = 0.02 * problem.scale, []
+    """Arclengths of the ends of a branch that stalled at a cusp, along a half-branch.
+
+    Where it stalled hangs on rounding: before a sharp cusp, about where the section tells
+    the half-branches apart, or beyond it, where nothing but rounding looks like solutions.
+    Up to a few times the radius of the section an end belongs to the point if the branch
+    came along a half-branch, and does not go on along another.
+    """
     if branch.outcome is not Outcome.STALLED or not len(point.half_branches):
         return []
-    for s, inside in ((0.0, near), (branch.length, branch.length - near)):
-        gap = np.linalg.norm(problem.difference(branch(s), point.u))
-        offset = problem.difference(branch(inside), point.u)
-        along = float((point.half_branches @ offset).max()) / max(
-            float(np.linalg.norm(offset)), 1e-300
-        )
-        if gap < near and along > 0.95:
-            found.append(s)
-    return found
+    farthest = max(5 * point.radius, 4 * point.error)
+    ends = []
+    for s, sense in ((0.0, 1.0), (branch.length, -1.0)):
+        end = problem.difference(branch(s), point.u)
+        gap = float(np.linalg.norm(end))
+        if gap > farthest:
+            continue
+        clear = max(1.5 * gap, point.radius)
+        inwards = np.linspace(0.0, min(4 * clear, branch.length), 33)
+        offsets = problem.difference(branch(s + sense * inwards), point.u)
+        outside = np.flatnonzero(np.linalg.norm(offsets, axis=1) >= clear)
+        if not len(outside):
+            continue
+        origin = offsets[outside[0]]
+        came_along = _is_along(point, origin)
+        goes_on = end @ origin < 0 and gap > 2 * point.error and _is_along(point, end)
+        if came_along and not goes_on:
+            ends.append(s)
+    return ends
+
+
+def _is_along(point: SingularPoint, offset: np.ndarray) -> bool:
+    """Whether an ``offset`` (n,) from a point has the direction of a half-branch."""
+    along = float((point.half_branches @ offset).max())
+    return along > 0.95 * float(np.linalg.norm(offset))
+
+
+def _passes_at(
+    problem: Problem, branch: Branch, point: SingularPoint, ends: list[float]
+) -> list[float]:
+    """Arclengths at which a branch passes a point, but for the ``ends`` that lie there."""
+    within = SAME * problem.scale + 2 * point.error
+    passes = [float(s) for s in branch.passes(point.u, within)]
+    if branch.outcome is not Outcome.STALLED:
+        return passes
+    for s in (0.0, branch.length):
+        # nearer to a stalled end it is the end that counts
+        taken = max(0.05 * problem.scale, 2 * within)
+        if s in ends:
+            gap = float(np.linalg.norm(problem.difference(branch(s), point.u)))
+            taken = max(taken, 2 * (gap + within))
+        passes = [other for other in passes if abs(other - s) > taken]
+    return passes
 
 
 def _components(count: int, points: list[MeetingPoint]) -> list[int]:

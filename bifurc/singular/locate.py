@@ -306,20 +306,23 @@ def classify_singular_point(
 
     The section is made at the first of ``radii`` and at half of it (in units of the
     problem's scale); where the two disagree, at the next: at a larger one branches that
-    touch separate, at a smaller one other singular points stay outside. One in doubt
-    counts only where all are. Tangents of second order are kept where their number
-    agrees with the section.
+    touch separate, at a smaller one other singular points stay outside. A sphere smaller
+    than the ``error`` of the point says nothing. One in doubt counts only where all are.
+    Tangents of second order are kept where their number agrees with the section.
     """
     k = null_space.shape[1]
     tangents = second_order_tangents(problem, point, null_space)
     agreed, radius, outer = False, 0.0, None
     for share in radii:
         size = share * problem.scale
+        if outer is not None and size / 2 < error:
+            continue  # the point may lie outside of that sphere
         pair = [section(problem, point, null_space, r) for r in (size, size / 2)]
         agree = pair[0].dimension == pair[1].dimension and len(pair[0].points) == len(
             pair[1].points
         )
         clear = not any(s.doubtful for s in pair)
+        agree = agree and size / 2 > error
         if outer is None or (agree and (clear or not agreed)):
             agreed, radius, outer = agree, size, pair[0]
         if agree and clear:

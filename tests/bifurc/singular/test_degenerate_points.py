@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 
-from bifurc.branch import Outcome
+from bifurc.atlas import Provenance
+from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
+from bifurc.search.findings import Findings, assemble_atlas
 from bifurc.search.settings import SearchSettings
-from bifurc.singular.locate import Kind
+from bifurc.seeds import Seeds
+from bifurc.singular.locate import Kind, SingularPoint
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
@@ -33,6 +36,83 @@ AT_THE_ORIGIN = {  # polynomial, its kind, number of half-branches, number of fo
     "cusp of the second kind": (lambda x, y: y**2 - x**5, Kind.CUSP, 2, 2),
     "isolated point": (lambda x, y: x**2 + 2 * y**2, Kind.ISOLATED, 0, 0),
 }
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_sharp_cusp_is_one_in_every_direction_and_with_other_rounding(seed):
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(0, 2 * np.pi)
+    across, along = np.array(
+        [[-np.sin(angle), np.cos(angle)], [np.cos(angle), np.sin(angle)]]
+    )
+
+    def function(u):
+        noise = 1 + 2e-16 * rng.normal(size=2)
+        return np.array([noise @ [(across @ u) ** 2, -((along @ u) ** 5)]])
+
+    settings = SearchSettings(starts=40)
+    atlas = explore(FunctionProblem(function, BOX), settings=settings, seed=seed)
+    (point,) = atlas.points
+    assert (point.kind, point.note) == (Kind.CUSP, "")
+    assert len(point.passes) == 2
+
+
+def stalled(start, end):
+    """The straight branch between two points of the plane that stalled at both ends."""
+    pieces = np.array([[(start + end) / 2, (end - start) / 2]])
+    length = float(np.linalg.norm(end - start))
+    half, breaks = np.array([length / 2]), np.array([0.0, length])
+    return Branch(
+        pieces, half, half, breaks, np.zeros(1), np.full(2, np.inf), Outcome.STALLED
+    )
+
+
+def meeting_point(problem, singular_point, branches):
+    """The only point of the atlas of a singular point and two branches."""
+    nothing = np.empty(0)
+    found = Findings(
+        branches=branches,
+        profiles=[profile_branch(problem, branch) for branch in branches],
+        minima=[(nothing, nothing)] * 2,
+        located=[[], []],
+        points=[singular_point],
+    )
+    seeds = Seeds(np.empty((0, 2)), np.empty(0, dtype=bool), nothing, np.empty((0, 2)))
+    (point,) = assemble_atlas(problem, found, seeds, Provenance()).points
+    return point
+
+
+@pytest.mark.parametrize(
+    "gap", [-0.03, -0.01, -1e-9, 1e-9, 0.003, 0.0199, 0.0201, 0.032, 0.05]
+)
+def test_a_cusp_has_its_two_ends_wherever_before_or_beyond_it_the_branches_stalled(gap):
+    problem = FunctionProblem(lambda u: np.array([u[1] ** 2 - u[0] ** 5]), BOX)
+    halves = np.array([[1.0, 1e-4], [1.0, -1e-4]])
+    cusp = SingularPoint(
+        np.zeros(2),
+        0,
+        np.eye(2),
+        1e-3,
+        halves,
+        np.empty((0, 2)),
+        1,
+        0,
+        0.02 * problem.scale,
+    )
+    branches = [stalled(gap * half, 0.9 * half) for half in halves]
+    point = meeting_point(problem, cusp, branches)
+    assert (point.kind, point.note, len(point.passes)) == (Kind.CUSP, "", 2)
+
+
+def test_a_branch_that_passes_a_singular_point_and_stalls_beyond_it_passes():
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1]]), BOX)
+    halves = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    crossing = SingularPoint(
+        np.zeros(2), 0, np.eye(2), 1e-12, halves, np.empty((0, 2)), 1, 0, 0.02
+    )
+    branches = [stalled(-0.07 * half, 0.9 * half) for half in halves[::2]]
+    point = meeting_point(problem, crossing, branches)
+    assert (point.kind, point.note, len(point.passes)) == (Kind.BIFURCATION, "", 2)
 
 
 @pytest.mark.parametrize("longest", [0.1, 2.0])
