@@ -118,9 +118,9 @@ class Atlas:
     """All that `bifurc.search.explore.explore` found of a problem.
 
     Periodic unknowns of points, events, rigid assemblies and samples of surfaces lie
-    within (-period / 2, period / 2], but for those whose bounds reach farther. What lies
-    nearer to either end than 1e-12 of the period comes out at + period / 2. The branches
-    of the forms are continuous instead.
+    within (-period / 2, period / 2], but for those whose bounds reach farther. What
+    lies nearer to either end than 1e-12 of the period comes out at + period / 2. The
+    branches of the forms are continuous instead.
 
     ``closure_gap``: where there is no form, the median relative residual along the
     valley in which the system is nearly solved (0 where there are forms). ``provenance`` says

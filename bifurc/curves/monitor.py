@@ -100,11 +100,11 @@ def singular_value_minima(
     """Arclengths (k,) and values (k,) of the local minima of the smallest regular one.
 
     They are converged: the slope of the exact singular value changes from falling to
-    rising there. Where two singular values cross the smaller one has its kink upwards, so
-    that a minimum with a kink is a zero, and the square is smooth there. Where a value
-    rises to no side by more than rounding there is no minimum, and the ends of an open
-    curve are none. Where the curve crosses a singular point the value found is small but
-    not zero; `bifurc.singular.locate` decides.
+    rising there. Where two singular values cross the smaller one has its kink upwards,
+    so that a minimum with a kink is a zero, and the square is smooth there. Where a
+    value rises to no side by more than rounding there is no minimum, and the ends of an
+    open curve are none. Where the curve crosses a singular point the value found is
+    small but not zero; `bifurc.singular.locate` decides.
     """
     rank = profile.rank
     s = _places_to_look(branch, profile)
@@ -139,10 +139,11 @@ def singular_value_minima(
 def stand_out(
     problem: Problem, branch: Branch, profile: Profile, values: np.ndarray
 ) -> np.ndarray:
-    """Which of the minima ``values`` (k,) are below half the largest value on the curve.
+    """Which of the minima ``values`` (k,) are below half the largest value on the
+    curve.
 
-    The largest at the nodes is a little too small. Where that might decide, the largest is
-    converged, and a value at half of it, but for rounding, does not stand out.
+    The largest at the nodes is a little too small. Where that might decide, the largest
+    is converged, and a value at half of it, but for rounding, does not stand out.
     """
     half = 0.5 * profile.smallest.max()
     doubtful = (values > (1.0 - 2 * TIE) * half) & (values < 1.1 * half)
@@ -176,9 +177,10 @@ def _largest_value(problem: Problem, branch: Branch, profile: Profile) -> float:
 def _places_to_look(branch: Branch, profile: Profile) -> np.ndarray:
     """Arclengths (k,), sorted, between which the slope is to be compared.
 
-    Every minimum of the values at the nodes is between two of them, and on both sides of
-    every minimum of two interpolants there is one: of the square of the value, and of the
-    product of the squares of all regular ones, which is smooth even where they meet.
+    Every minimum of the values at the nodes is between two of them, and on both sides
+    of every minimum of two interpolants there is one: of the square of the value, and
+    of the product of the squares of all regular ones, which is smooth even where they
+    meet.
     """
     _, fine, onto = _nodes()
     nodes = profile.arclength.ravel()
@@ -209,7 +211,8 @@ def _places_to_look(branch: Branch, profile: Profile) -> np.ndarray:
 
 
 def _minima_in_row(values: np.ndarray, closed: bool) -> np.ndarray:
-    """Numbers (k,) of the local minima in a row of values, whose ends meet if closed."""
+    """Numbers (k,) of the local minima in a row of values, whose ends meet if
+    closed."""
     before, after = (values[-1], values[0]) if closed else (np.inf, np.inf)
     left = np.concatenate([[before], values[:-1]])
     right = np.concatenate([values[1:], [after]])
@@ -221,8 +224,8 @@ def _value_and_slope(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Singular value number ``rank`` at arclengths (k,), and its derivative there (k,).
 
-    With l and r the singular vectors d sigma/ds = l^T F''(r, du/ds): F'' along the tangent
-    is a central difference of F'.
+    With l and r the singular vectors d sigma/ds = l^T F''(r, du/ds): F'' along the
+    tangent is a central difference of F'.
     """
     points = branch(s)
     step = DIFFERENCE * problem.scale
@@ -240,7 +243,8 @@ def _value_and_slope(
 def _valleys(
     branch: Branch, s: np.ndarray, slope: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Brackets (low, high) between which the ``slope`` (k,) at ``s`` (k,) turns to rising."""
+    """Brackets (low, high) between which the ``slope`` (k,) at ``s`` (k,) turns to
+    rising."""
     steep = np.abs(slope) > LEVEL
     s, slope = s[steep], slope[steep]
     if branch.closed and len(s):
@@ -252,7 +256,8 @@ def _valleys(
 def _highest_between(
     samples: np.ndarray, heights: np.ndarray, stops: np.ndarray
 ) -> np.ndarray:
-    """Largest of the ``heights`` of ``samples`` before, between and after ``stops`` (k,).
+    """Largest of the ``heights`` of ``samples`` before, between and after ``stops``
+    (k,).
 
     That makes k + 1 numbers, -inf where there is no sample.
     """
@@ -263,7 +268,8 @@ def _highest_between(
 
 
 def _with_walls(values: np.ndarray, walls: np.ndarray) -> np.ndarray:
-    """Numbers of the minima ``values`` (k,) that ``walls`` (k + 1,) beside them stand above.
+    """Numbers of the minima ``values`` (k,) that ``walls`` (k + 1,) beside them stand
+    above.
 
     Of two minima without a wall between them, as rounding makes them, the lower one.
     """

@@ -379,8 +379,8 @@ class _Candidate:
     """A place on a branch from which a singular point is looked for.
 
     ``looks``: arclengths of the starts, of which the first one that leads to a singular
-    point counts, ``small``: singular values below it count as zero, ``reach``: how far away
-    the point may lie, in units of the problem's scale.
+    point counts, ``small``: singular values below it count as zero, ``reach``: how far
+    away the point may lie, in units of the problem's scale.
     """
 
     looks: tuple[float, ...]
@@ -395,20 +395,20 @@ def _candidates(
     s: np.ndarray,
     values: np.ndarray,
 ) -> list[_Candidate]:
-    """Where to look for singular points: at minima ``values`` (k,) at ``s`` (k,), and ends."""
+    """Where to look for singular points: at minima ``values`` (k,) at ``s`` (k,), and
+    ends."""
     minima = zip(s.tolist(), values.tolist(), strict=True)
     out = [
         _Candidate((at,), max(NEARLY, 3 * low)) for at, low in minima if low < NEARLY
     ]
     if branch.outcome is Outcome.STALLED:
-        # before a cusp or beyond it: how far hangs on rounding, and so does it whether the
-        # point is reached from one start
+        # before a cusp or beyond it: how far hangs on rounding, and so does it whether
+        # the point is reached from one start
         inwards = np.minimum(problem.scale * np.array(BESIDE_END), 0.5 * branch.length)
         for looks in (inwards, branch.length - inwards):
             out.append(_Candidate(tuple(looks.tolist()), 10 * NEARLY, CUSP_REACH))
-    elif (
-        not branch.closed
-    ):  # an end is no minimum, and yet a singular point may lie there
+    elif not branch.closed:
+        # an end is no minimum, and yet a singular point may lie there
         ends = np.array([0.0, branch.length])
         smallest = singular_values(problem, branch(ends))[:, profile.rank - 1]
         out += [_Candidate((float(at),), NEARLY) for at in ends[smallest < NEARLY]]

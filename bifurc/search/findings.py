@@ -118,7 +118,8 @@ def assemble_atlas(
 
 
 def _turning(problem: Problem) -> np.ndarray:
-    """Periods (n,) of the unknowns to wrap; inf for those whose bounds reach farther."""
+    """Periods (n,) of the unknowns to wrap; inf for those whose bounds reach
+    farther."""
     half = 0.5 * problem.periods
     finite = np.isfinite(problem.bounds).any(axis=1)
     low, high = problem.bounds.T
@@ -135,7 +136,8 @@ def _place(point: np.ndarray, periods: np.ndarray) -> tuple[float, ...]:
 def _smallest_value(
     problem: Problem, branch: Branch, profile: Profile, minima: np.ndarray
 ) -> float:
-    """The smallest regular singular value along a branch: at its ``minima`` or its ends."""
+    """The smallest regular singular value along a branch: at its ``minima`` or its
+    ends."""
     values = [*minima, profile.smallest.min()]
     if not branch.closed:
         ends = branch(np.array([0.0, branch.length]))
@@ -208,10 +210,10 @@ def _meeting_point(
 def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
     """Arclengths of the ends of a branch that stalled at a cusp, along a half-branch.
 
-    Where it stalled hangs on rounding: before a sharp cusp, about where the section tells
-    the half-branches apart, or beyond it, where nothing but rounding looks like solutions.
-    Up to a few times the radius of the section an end belongs to the point if the branch
-    came along a half-branch, and does not go on along another.
+    Where it stalled hangs on rounding: before a sharp cusp, about where the section
+    tells the half-branches apart, or beyond it, where nothing but rounding looks like
+    solutions. Up to a few times the radius of the section an end belongs to the point
+    if the branch came along a half-branch, and does not go on along another.
     """
     if branch.outcome is not Outcome.STALLED or not len(point.half_branches):
         return []
@@ -245,7 +247,8 @@ def _is_along(point: SingularPoint, offset: np.ndarray) -> bool:
 def _passes_at(
     problem: Problem, branch: Branch, point: SingularPoint, ends: list[float]
 ) -> list[float]:
-    """Arclengths at which a branch passes a point, but for the ``ends`` that lie there."""
+    """Arclengths at which a branch passes a point, but for the ``ends`` that lie
+    there."""
     within = SAME * problem.scale + 2 * point.error
     passes = [float(s) for s in branch.passes(point.u, within)]
     if branch.outcome is not Outcome.STALLED:

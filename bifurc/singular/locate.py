@@ -306,9 +306,10 @@ def classify_singular_point(
 
     The section is made at the first of ``radii`` and at half of it (in units of the
     problem's scale); where the two disagree, at the next: at a larger one branches that
-    touch separate, at a smaller one other singular points stay outside. A sphere smaller
-    than the ``error`` of the point says nothing. One in doubt counts only where all are.
-    Tangents of second order are kept where their number agrees with the section.
+    touch separate, at a smaller one other singular points stay outside. A sphere
+    smaller than the ``error`` of the point says nothing. One in doubt counts only where
+    all are. Tangents of second order are kept where their number agrees with the
+    section.
     """
     k = null_space.shape[1]
     tangents = second_order_tangents(problem, point, null_space)

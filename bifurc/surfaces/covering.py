@@ -109,8 +109,8 @@ class _Cover:
     whose polygons may be open.
 
     ``dead`` lists for each chart the directions in which no chart could be made,
-    ``unfit`` those (chart, direction) in which none fits, ``lost`` the seeds about which
-    none fits.
+    ``unfit`` those (chart, direction) in which none fits, ``lost`` the seeds about
+    which none fits.
     """
 
     def __init__(self, problem: Problem, largest: float):
@@ -158,7 +158,8 @@ class _Cover:
         return placement is Placement.MADE
 
     def has_holes(self) -> bool:
-        """Whether places at which no chart fits are still uncovered by the charts beside."""
+        """Whether places at which no chart fits are still uncovered by the charts
+        beside."""
         for i, direction in self.unfit:
             size = np.linalg.norm(self.polygons[i], axis=1)
             there = self.polygons[i] @ direction >= TOWARDS * size

@@ -1,9 +1,9 @@
 """Where another sheet of solutions crosses a surface that charts cover.
 
-Charts pass over a curve in which another sheet crosses: the tangent plane is smooth there.
-One regular singular value passes through zero and changes its sign, if signs are followed
-from chart to chart. That happens between the charts wherever these lie, while a chart that
-happens to fail beside the curve depends on the place of all others.
+Charts pass over a curve in which another sheet crosses: the tangent plane is smooth
+there. One regular singular value passes through zero and changes its sign, if signs are
+followed from chart to chart. That happens between the charts wherever these lie, while
+a chart that happens to fail beside the curve depends on the place of all others.
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ NEXT = 0.02  # distance, over the scale, at which other singular points are look
 def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -> bool:
     """Whether a sheet crosses the covered surface, and no chart lies on it.
 
-    Charts whose tangent planes turn by a cosine below ``agree`` lie on different sheets.
+    Charts whose tangent planes turn by a cosine below ``agree`` lie on different
+    sheets.
     """
     pairs, places = _sign_changes(problem, charts)
     uncovered = [
@@ -47,10 +48,11 @@ def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -
 def _sign_changes(
     problem: Problem, charts: ChartAtlas
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Neighbours (k, 2) between which F' changes its orientation, and places (k, n) there.
+    """Neighbours (k, 2) between which F' changes its orientation, and places (k, n)
+    there.
 
-    With F' = L S R^T of rank n - 2 at two charts, the determinant of F' at the second one,
-    in the bases L and R of the first, has the sign of det(L1^T L2) det(R1^T R2).
+    With F' = L S R^T of rank n - 2 at two charts, the determinant of F' at the second
+    one, in the bases L and R of the first, has the sign of det(L1^T L2) det(R1^T R2).
     """
     rank = problem.n - 2
     left, sigma, right = np.linalg.svd(
@@ -88,8 +90,8 @@ def is_on_singular_curve(
 ) -> bool:
     """Whether other singular points of the same kind are near one (n,).
 
-    They are looked for from starts to all sides in its ``null_space`` (n, k); ``error`` is
-    that of its place.
+    They are looked for from starts to all sides in its ``null_space`` (n, k); ``error``
+    is that of its place.
     """
     away = NEXT * problem.scale + 100 * error
     for start in point + away * np.concatenate([null_space.T, -null_space.T]):

@@ -75,7 +75,8 @@ def test_a_curve_of_constant_singular_value_has_no_near_miss_below_it():
 
 
 def with_singular_values(*values, low=-1.0, high=1.3):
-    """A problem whose curve is the line of all z, where the ``values`` of z are singular."""
+    """A problem whose curve is the line of all z, where the ``values`` of z are
+    singular."""
     names = [f"x{i}" for i in range(len(values))]
 
     def function(u):
