@@ -1,152 +1,147 @@
-"""Surfaces and their charts as variables of a dataset, and back."""
+"""What of a surface and its charts goes into which variable of a dataset, and back."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
 from bifurc.atlas import Surface
+from bifurc.files.table import JOINT, UNIT, Column, Row, Table
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 
-__all__ = ["read_surfaces", "surface_variables"]
-
-RAGGED = {
-    "chart": "centers",
-    "neighbour": "neighbours",
-    "vertex": "vertices",
-    "corner": "polygons",
-}
+__all__ = ["SURFACES", "read_surface"]
 
 
-def surface_variables(
-    surfaces: Sequence[Surface],
-    n: int,
-    joint: str,
-    unit: str,
-    variable: Callable[..., Any],
-) -> dict[str, Any]:
-    """Names, coverings, charts and vertices of the surfaces; rows of different surfaces
-    stand one behind the other."""
-    charts = [surface.charts for surface in surfaces]
+def _of_charts(
+    take: Callable[[ChartAtlas], np.ndarray],
+) -> Callable[[Surface], np.ndarray]:
+    """The same of the charts of a surface; nothing where it has none."""
 
-    def rows(name: str, shape: tuple[int, ...], dtype: type = float) -> np.ndarray:
-        found: list[np.ndarray] = [
-            np.asarray(getattr(c, name), dtype=dtype) for c in charts if c is not None
-        ]
-        return np.concatenate([np.empty((0, *shape), dtype=dtype), *found])
+    def values(surface: Surface) -> np.ndarray:
+        return np.empty(0) if surface.charts is None else take(surface.charts)
 
-    outcomes = np.array(
-        [c.outcome.name if c is not None else "" for c in charts], dtype=str
-    )
-    out = {
-        "surface_name": variable(
-            "surface",
-            np.array([s.name for s in surfaces], dtype=str),
-            "name of the surface",
-        ),
-        "surface_note": variable(
-            "surface", np.array([s.note for s in surfaces], dtype=str), "remark"
-        ),
-        "covering": variable(
-            "surface",
-            outcomes,
+    return values
+
+
+def _covering(surface: Surface) -> str:
+    return "" if surface.charts is None else surface.charts.outcome.name
+
+
+SURFACES: Table[Surface] = Table(
+    "surface",
+    lambda atlas: atlas.surfaces,
+    (
+        Column("surface_dimension", lambda s: s.dimension, "dimension", dtype=int),
+        Column("surface_name", lambda s: s.name, "name of the surface", dtype=str),
+        Column("surface_note", lambda s: s.note, "remark", dtype=str),
+        Column(
+            "covering",
+            _covering,
             "why no more charts were made; empty where there are none",
+            dtype=str,
         ),
-        "chart_center": variable(
-            ("chart", joint), rows("centers", (n,)), "centre of a chart", unit
+        Column(
+            "surface_configuration",
+            lambda s: s.samples,
+            "solution on a surface",
+            UNIT,
+            dimensions=(JOINT,),
+            along="surface_sample",
         ),
-        "chart_basis": variable(
-            ("chart", joint, "axis"),
-            rows("bases", (n, 2)),
+        Column(
+            "chart_center",
+            _of_charts(lambda charts: charts.centers),
+            "centre of a chart",
+            UNIT,
+            dimensions=(JOINT,),
+            along="chart",
+        ),
+        Column(
+            "chart_basis",
+            _of_charts(lambda charts: charts.bases),
             "basis of its tangent plane",
             "1",
+            dimensions=(JOINT, "axis"),
+            along="chart",
         ),
-        "chart_radius": variable(
-            "chart", rows("radii", ()), "radius of its disk", unit
+        Column(
+            "chart_radius",
+            _of_charts(lambda charts: charts.radii),
+            "radius of its disk",
+            UNIT,
+            along="chart",
         ),
-        "polygon_size": variable(
-            "chart", rows("polygon_sizes", (), int), "number of corners of its polygon"
+        Column(
+            "polygon_size",
+            _of_charts(lambda charts: charts.polygon_sizes),
+            "number of corners of its polygon",
+            dtype=int,
+            along="chart",
         ),
-        "chart_pair": variable(
-            ("neighbour", "end"),
-            rows("neighbours", (2,), int),
+        Column(
+            "chart_pair",
+            _of_charts(lambda charts: charts.neighbours),
             "charts with an edge in common",
+            dtype=int,
+            dimensions=("end",),
+            along="neighbour",
         ),
-        "chart_vertex": variable(
-            ("vertex", joint), rows("vertices", (n,)), "vertex of the polygons", unit
+        Column(
+            "chart_vertex",
+            _of_charts(lambda charts: charts.vertices),
+            "vertex of the polygons",
+            UNIT,
+            dimensions=(JOINT,),
+            along="vertex",
         ),
-        "polygon_corner": variable(
-            "corner", rows("polygons", (), int), "number of the vertex at each corner"
+        Column(
+            "polygon_corner",
+            _of_charts(lambda charts: charts.polygons),
+            "number of the vertex at each corner",
+            dtype=int,
+            along="corner",
         ),
-    }
-    for dimension, name in RAGGED.items():
-        sizes = np.array(
-            [len(getattr(c, name)) if c is not None else 0 for c in charts], dtype=int
-        )
-        names, values, attributes = variable(
-            "surface", sizes, f"number of {dimension} entries"
-        )
-        out[f"{dimension}_count"] = (
-            names,
-            values,
-            attributes | {"sample_dimension": dimension},
-        )
-    return out
+    ),
+)
 
 
-def read_surfaces(
-    get: dict[str, np.ndarray], samples: Sequence[np.ndarray]
-) -> tuple[Surface, ...]:
-    """The surfaces that `surface_variables` stored, with the solutions (k, n) seen on
-    each."""
-
-    def parts(name: str, dimension: str) -> list[np.ndarray]:
-        counts = get[f"{dimension}_count"]
-        return np.split(get[name], np.cumsum(counts))[: len(counts)]
-
-    columns = [
-        parts("chart_center", "chart"),
-        parts("chart_basis", "chart"),
-        parts("chart_radius", "chart"),
-        parts("chart_pair", "neighbour"),
-        parts("chart_vertex", "vertex"),
-        parts("polygon_corner", "corner"),
-        parts("polygon_size", "chart"),
-    ]
-    out = []
-    for i, (dimension, seen) in enumerate(
-        zip(get["surface_dimension"], samples, strict=True)
-    ):
-        outcome = str(get["covering"][i])
-        charts = (
-            _charts([c[i] for c in columns], get["period"], outcome)
-            if outcome
-            else None
-        )
-        out.append(
-            Surface(
-                int(dimension),
-                seen,
-                str(get["surface_name"][i]),
-                charts,
-                str(get["surface_note"][i]),
-            )
-        )
-    return tuple(out)
-
-
-def _charts(columns: list[np.ndarray], periods: np.ndarray, outcome: str) -> ChartAtlas:
-    centers, bases, radii, neighbours, vertices, polygons, sizes = columns
-    return ChartAtlas(
-        centers,
-        bases,
-        radii,
-        neighbours,
-        vertices,
-        polygons,
-        sizes,
-        periods,
-        Covering[outcome],
+def read_surface(row: Row, periods: np.ndarray) -> Surface:
+    """The surface of a row of `SURFACES`, of unknowns with ``periods`` (n,)."""
+    covering = str(row["covering"])
+    return Surface(
+        dimension=int(row["surface_dimension"]),
+        samples=row["surface_configuration"],
+        name=str(row["surface_name"]),
+        charts=_read_charts(row, periods, covering) if covering else None,
+        note=str(row["surface_note"]),
     )
+
+
+def _read_charts(row: Row, periods: np.ndarray, covering: str) -> ChartAtlas:
+    """Raises `ValueError` where an index is that of no chart or no vertex."""
+    centers = row["chart_center"]
+    neighbours = row["chart_pair"]
+    vertices = row["chart_vertex"]
+    polygons = row["polygon_corner"]
+    sizes = row["polygon_size"]
+    _check_indices("chart_pair", neighbours, len(centers))
+    _check_indices("polygon_corner", polygons, len(vertices))
+    if np.any(sizes < 0) or sizes.sum() != len(polygons):
+        raise ValueError(f"polygon_size does not add up to {len(polygons)} corners")
+    return ChartAtlas(
+        centers=centers,
+        bases=row["chart_basis"],
+        radii=row["chart_radius"],
+        neighbours=neighbours,
+        vertices=vertices,
+        polygons=polygons,
+        polygon_sizes=sizes,
+        periods=periods,
+        outcome=Covering[covering],
+    )
+
+
+def _check_indices(name: str, indices: np.ndarray, count: int) -> None:
+    if np.any((indices < 0) | (indices >= count)):
+        raise ValueError(f"{name} holds an index that none of {count} has")

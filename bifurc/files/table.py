@@ -1,0 +1,200 @@
+"""Tables of a dataset: which variables hold the records of one kind, to write and to
+read them.
+
+A table has a row for each record and a column for each variable. Where a record has
+several values in a column, those of all records are joined, one behind the other (CF:
+contiguous ragged array), or padded with NaN. How many values each record has stands in
+the variable ``..._count``; its attribute ``sample_dimension`` names what it counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from bifurc.atlas import Atlas
+
+__all__ = [
+    "JOINT",
+    "UNIT",
+    "Column",
+    "Frame",
+    "Row",
+    "Table",
+    "count_name",
+    "described",
+]
+
+Record = TypeVar("Record")
+Row = Mapping[str, np.ndarray]  # what a record has in each column, by its name
+
+# What differs from atlas to atlas, as it is called in a column; see `Frame`.
+JOINT = "joint"
+UNIT = "unit of the unknowns"
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What all variables of one dataset share.
+
+    ``joint`` is the name of the dimension of the unknowns, ``unit`` the unit that all of
+    them have. ``sizes`` are those of the dimensions of single values.
+    """
+
+    joint: str
+    unit: str
+    sizes: Mapping[str, int]
+
+    def name(self, name: str) -> str:
+        """What a variable or dimension is called in this dataset."""
+        return self.joint if name == JOINT else name
+
+
+@dataclass(frozen=True)
+class Column(Generic[Record]):
+    """One variable. ``take`` gives what a record has in it.
+
+    ``dimensions`` are those of a single value. With ``along`` a record has any number
+    of values, counted by that dimension; they are joined unless ``padded``. ``indexes``
+    names the dimension of which the values are indices.
+    """
+
+    name: str
+    take: Callable[[Record], ArrayLike]
+    long_name: str
+    units: str = ""
+    dtype: type = float
+    dimensions: tuple[str, ...] = ()
+    along: str = ""
+    padded: bool = False
+    indexes: str = ""
+
+    def cell(self, record: Record, frame: Frame) -> np.ndarray:
+        """What a record has: of the shape of a value, or (count, shape of a value).
+
+        A value that is smaller than its dimensions is filled up with 0.
+        """
+        shape = tuple(frame.sizes[name] for name in self.dimensions)
+        value: np.ndarray = np.asarray(self.take(record), dtype=self.dtype)
+        if not self.along:
+            return value.reshape(shape)
+        if not value.size:
+            return np.empty((len(value), *shape), dtype=self.dtype)
+        lacking = np.subtract(shape, value.shape[1:])
+        return np.pad(value, [(0, 0), *((0, int(width)) for width in lacking)])
+
+    def join(self, cells: Sequence[np.ndarray], frame: Frame) -> np.ndarray:
+        """The values of the variable from what each record has."""
+        shape = tuple(frame.sizes[name] for name in self.dimensions)
+        if self.padded:
+            longest = max((len(cell) for cell in cells), default=0)
+            out = np.full((len(cells), longest, *shape), np.nan)
+            for row, cell in zip(out, cells, strict=True):
+                row[: len(cell)] = cell
+            return out
+        if self.along:
+            nothing: np.ndarray = np.empty((0, *shape), dtype=self.dtype)
+            return np.concatenate([nothing, *cells])
+        return np.array(cells, dtype=self.dtype).reshape(len(cells), *shape)
+
+    def split(self, values: np.ndarray, counts: np.ndarray) -> list[np.ndarray]:
+        """What each record has, from the ``values`` of the variable; reverses `join`.
+
+        ``counts`` are the numbers of values of the records; not used where each record
+        has one.
+        """
+        if self.dtype is not str:
+            values = values.astype(self.dtype, copy=False)
+        if self.padded:
+            return [row[:count] for row, count in zip(values, counts, strict=True)]
+        if self.along:
+            return np.split(values, np.cumsum(counts))[: len(counts)]
+        return list(values)
+
+
+@dataclass(frozen=True)
+class Table(Generic[Record]):
+    """The variables of the records of one kind, which the dimension ``owner`` counts.
+
+    ``records`` takes them from an atlas.
+    """
+
+    owner: str
+    records: Callable[[Atlas], Sequence[Record]]
+    columns: tuple[Column[Record], ...]
+
+    @property
+    def counted(self) -> dict[str, bool]:
+        """The dimensions that count the values of a record, and whether these are
+        padded."""
+        return {column.along: column.padded for column in self.columns if column.along}
+
+    def names(self, frame: Frame) -> list[str]:
+        """Names of all variables."""
+        names = [frame.name(column.name) for column in self.columns]
+        return names + [count_name(dimension) for dimension in self.counted]
+
+    def dimensions(self, column: Column[Record], frame: Frame) -> tuple[str, ...]:
+        """Dimensions of the variable of a column."""
+        names = [self.owner, *column.dimensions]
+        if column.padded:
+            names = [self.owner, column.along, *column.dimensions]
+        elif column.along:
+            names = [column.along, *column.dimensions]
+        return tuple(frame.name(name) for name in names)
+
+    def variables(self, atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
+        """The variables of an atlas by their names."""
+        records = self.records(atlas)
+        variables = {}
+        for column in self.columns:
+            cells = [column.cell(record, frame) for record in records]
+            units = frame.unit if column.units == UNIT else column.units
+            variables[frame.name(column.name)] = described(
+                self.dimensions(column, frame),
+                column.join(cells, frame),
+                column.long_name,
+                units,
+            )
+            if column.along:
+                counts = np.array([len(cell) for cell in cells], dtype=int)
+                variable = described(
+                    (self.owner,), counts, f"number of {column.along} entries"
+                )
+                variable.attrs["sample_dimension"] = column.along
+                variables[count_name(column.along)] = variable
+        return variables
+
+    def rows(self, dataset: xr.Dataset, frame: Frame) -> list[Row]:
+        """What each record has, from a dataset whose variables fit the columns."""
+        cells = {}
+        for column in self.columns:
+            name = frame.name(column.name)
+            counts = np.empty(0, dtype=int)
+            if column.along:
+                counts = dataset[count_name(column.along)].values
+            cells[column.name] = column.split(dataset[name].values, counts)
+        count = dataset.sizes[frame.name(self.owner)]
+        return [{name: cells[name][i] for name in cells} for i in range(count)]
+
+
+def count_name(dimension: str) -> str:
+    """Name of the variable that holds how many entries of a dimension each record
+    has."""
+    return f"{dimension}_count"
+
+
+def described(
+    dimensions: tuple[str, ...], values: np.ndarray, long_name: str, units: str = ""
+) -> xr.Variable:
+    """A variable with its long name and its units; no value stands for a missing
+    one."""
+    attributes = {"long_name": long_name}
+    if units:
+        attributes["units"] = units
+    return xr.Variable(dimensions, values, attributes, encoding={"_FillValue": None})
