@@ -11,7 +11,8 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
-from linkages.app.files import staging, write_data, write_figures
+from bifurc.files.atomic import replace_files
+from linkages.app.files import write_data, write_figures
 from linkages.app.status import compilation_announced
 from linkages.app.summary import make_summary
 
@@ -68,10 +69,13 @@ class Redrawing:
         summary = make_summary(atlas) + "\n\nWhat the source says\n" + "\n".join(lines)
         click.echo(summary)
         written = write_data(atlas, out, summary) + write_figures(atlas, out)
-        with staging(out, written) as stage:
-            figure = plot_transition_map(atlas, joints=self.joints)
+        figure = plot_transition_map(atlas, joints=self.joints)
+
+        def write(stage: Path) -> None:
             for ending in ("png", "svg"):
                 figure.savefig(stage / f"{self.figure}.{ending}", dpi=150)
+
+        written += replace_files(out, write)
         click.echo(
             f"wrote {self.figure}.png and {len(written) - 1} more files to {out}",
             err=True,

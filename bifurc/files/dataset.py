@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from dataclasses import asdict
 from datetime import UTC, datetime
@@ -18,6 +19,7 @@ import xarray as xr
 from bifurc.atlas import Atlas, Provenance
 from bifurc.curves.continuation import TraceSettings
 from bifurc.files.atomic import replace_file
+from bifurc.files.checksum import checksum
 from bifurc.files.errors import AtlasFileError
 from bifurc.files.faults import missing_variables, table_faults
 from bifurc.files.form_layout import FORMS, read_form
@@ -45,6 +47,7 @@ __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dat
 
 FORMAT = "bifurc atlas"
 FORMAT_VERSION = 3
+CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 
 # Attributes of the dataset from which an atlas is read; the others are for the reader.
@@ -74,12 +77,14 @@ def save_atlas(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
     now = datetime.now(UTC).isoformat(timespec="seconds")
     dataset.attrs["date_created"] = now
     dataset.attrs["history"] = f"{now} written by {dataset.attrs['source']}"
+    dataset.attrs[CHECKSUM] = checksum(dataset, NEEDED_ATTRIBUTES)
 
     def write(part: Path) -> None:
         try:
             dataset.to_netcdf(part, engine="netcdf4", format="NETCDF4")
-        except RuntimeError as error:  # the NetCDF library's word for a full disk
-            raise OSError(f"{path}: it cannot be written ({error})") from error
+        except RuntimeError as error:  # the library's word for a full disk
+            reason = f"it cannot be written ({error})"
+            raise OSError(errno.EIO, reason) from error
 
     return replace_file(path, write)
 
@@ -91,17 +96,33 @@ def load_atlas(path: str | os.PathLike[str]) -> Atlas:
     NetCDF or holds no atlas.
     """
     source = Path(path)
-    if source.is_dir():
-        raise AtlasFileError(str(source), "it is a folder, not a file")
-    if not source.is_file():
+    if not source.exists():
         raise FileNotFoundError(f"{source}: there is no such file")
+    if not source.is_file():
+        raise AtlasFileError(str(source), "it is a folder or a device, not a file")
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as file:
             dataset = file.load()
-    except (OSError, ValueError, RuntimeError) as error:
+    except Exception as error:  # the libraries raise whatever damage leads them to
         reason = f"it cannot be read as NetCDF ({error})"
         raise AtlasFileError(str(source), reason) from error
+    _check_format(dataset, str(source))
+    _check_sum(dataset, str(source))
     return _read(dataset, str(source))
+
+
+def _check_sum(dataset: xr.Dataset, source: str) -> None:
+    """Raise `AtlasFileError` where the values are not those for which the checksum was
+    written, if one was."""
+    written = dataset.attrs.get(CHECKSUM)
+    if written is None:
+        return
+    if not np.array_equal(written, checksum(dataset, NEEDED_ATTRIBUTES)):
+        raise AtlasFileError(
+            source,
+            "its values are not those that were written: the file is damaged, or was "
+            f"edited (delete its attribute {CHECKSUM!r} to read it as it is)",
+        )
 
 
 # --- writing ------------------------------------------------------------------------------
@@ -195,11 +216,11 @@ def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
 def from_dataset(dataset: xr.Dataset) -> Atlas:
     """The atlas that `to_dataset` stored; raises `AtlasFileError` that says what is
     missing or wrong."""
+    _check_format(dataset, "dataset")
     return _read(dataset, "dataset")
 
 
 def _read(dataset: xr.Dataset, source: str) -> Atlas:
-    _check_format(dataset, source)
     frame = dataset_frame(dataset)
     _check_content(dataset, frame, source)
     try:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-import tempfile
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import networkx as nx
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.files.atomic import replace_file
 from bifurc.graphs import arc_graph, transition_graph
 
 __all__ = ["plain_graph", "write_graphml"]
@@ -20,19 +20,11 @@ def write_graphml(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
     """The path of the GraphML file just written, with both graphs of the atlas; see
     `plain_graph`.
 
-    Written under a temporary name beside it and renamed, so that no half-written file
-    is ever found there.
+    There is never a half-written file under ``path``. Raises `OSError` that names
+    ``path`` where it cannot be written.
     """
-    target = Path(path)
-    if not target.parent.is_dir():
-        raise NotADirectoryError(f"{target.parent}: there is no such folder")
-    with tempfile.TemporaryDirectory(
-        prefix=f".{target.name}.", dir=target.parent
-    ) as folder:
-        part = Path(folder) / target.name
-        nx.write_graphml_xml(plain_graph(atlas), part)
-        os.replace(part, target)
-    return target
+    graph = plain_graph(atlas)
+    return replace_file(path, lambda part: nx.write_graphml_xml(graph, part))
 
 
 def plain_graph(atlas: Atlas) -> nx.MultiGraph:
@@ -44,29 +36,34 @@ def plain_graph(atlas: Atlas) -> nx.MultiGraph:
     for each unknown, such as ``travel_theta1``.
     """
     out = nx.MultiGraph()
-    for name, data in transition_graph(atlas).nodes(data=True):
-        out.add_node(f"form/{name}", label=name, layer="forms", **_plain(data, atlas))
-    for a, b, data in transition_graph(atlas).edges(data=True):
-        out.add_edge(f"form/{a}", f"form/{b}", label=data["bifurcation"], layer="forms")
-    for name, data in arc_graph(atlas).nodes(data=True):
-        out.add_node(f"point/{name}", label=name, layer="arcs", **_plain(data, atlas))
-    for a, b, data in arc_graph(atlas).edges(data=True):
-        form = atlas.forms[data["form"]].name
-        out.add_edge(
-            f"point/{a}", f"point/{b}", label=form, layer="arcs", **_plain(data, atlas)
-        )
+    forms = transition_graph(atlas)
+    for name, data in forms.nodes(data=True):
+        plain = _plain_attributes(data, atlas.names)
+        out.add_node(f"form/{name}", label=name, layer="forms", **plain)
+    for a, b, bifurcation in forms.edges(data="bifurcation"):
+        out.add_edge(f"form/{a}", f"form/{b}", label=bifurcation, layer="forms")
+    arcs = arc_graph(atlas)
+    for name, data in arcs.nodes(data=True):
+        plain = _plain_attributes(data, atlas.names)
+        out.add_node(f"point/{name}", label=name, layer="arcs", **plain)
+    for a, b, data in arcs.edges(data=True):
+        label = atlas.forms[data["form"]].name
+        plain = _plain_attributes(data, atlas.names)
+        out.add_edge(f"point/{a}", f"point/{b}", label=label, layer="arcs", **plain)
     return out
 
 
-def _plain(data: dict[str, Any], atlas: Atlas) -> dict[str, Any]:
+def _plain_attributes(
+    data: Mapping[str, object], names: tuple[str, ...]
+) -> dict[str, object]:
     """Attributes with vectors taken apart and numpy's numbers made Python's."""
-    out: dict[str, Any] = {}
+    out: dict[str, object] = {}
     for key, value in data.items():
         if isinstance(value, np.ndarray):
-            out |= {
-                f"{key}_{name}": float(x)
-                for name, x in zip(atlas.names, value, strict=True)
-            }
+            for name, component in zip(names, value.tolist(), strict=True):
+                out[f"{key}_{name}"] = component
+        elif isinstance(value, np.generic):
+            out[key] = value.item()
         else:
-            out[key] = value.item() if isinstance(value, np.generic) else value
+            out[key] = value
     return out

@@ -68,13 +68,15 @@ def tolerance_command(
     text = describe(atlas, copies, ladder)
     click.echo(text)
     if out is not None:
-        from linkages.app.files import staging
+        from bifurc.files.atomic import replace_files
         from linkages.app.tolerance_figure import draw_tolerance
 
-        out.mkdir(parents=True, exist_ok=True)
-        with staging(out, []) as stage:
+        figure = draw_tolerance(atlas, copies[0], ladder)
+
+        def write(stage: Path) -> None:
             (stage / "tolerance.txt").write_text(text + "\n", encoding="utf-8")
-            draw_tolerance(atlas, copies[0], ladder).savefig(
-                stage / "tolerance.png", dpi=150
-            )
+            figure.savefig(stage / "tolerance.png", dpi=150)
+
+        out.mkdir(parents=True, exist_ok=True)
+        replace_files(out, write)
         click.echo(f"wrote tolerance.txt and tolerance.png to {out}", err=True)
