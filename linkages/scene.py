@@ -4,16 +4,25 @@ look from."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from linkages.loop import Loop
 
-__all__ = ["Scene", "best_view", "breadth", "clearance", "make_scene"]
+__all__ = [
+    "Clearance",
+    "Scene",
+    "View",
+    "best_view",
+    "breadth",
+    "clearance",
+    "make_scene",
+]
 
-# half the drawn length of an axis beyond its links, of the extent of the linkage
-REACH = 0.22
-DIRECTIONS = 400
+REACH = 0.22  # of the extent: half the drawn length of an axis beyond its links
+DIRECTIONS = 400  # from which a scene is looked at
+CONCURRENT = 1e-12  # feet that are closer are one: the axes meet in a point
 
 
 @dataclass(frozen=True)
@@ -37,104 +46,119 @@ class Scene:
         return float(np.linalg.norm(self.normals.reshape(-1, 3), axis=1).max())
 
 
+class View(NamedTuple):
+    """Where to look from, in degrees."""
+
+    elevation: float
+    azimuth: float
+
+
+class Clearance(NamedTuple):
+    """How well the joints of a scene are told apart: the least distance between two
+    ``joints``, and that of a joint from one of the ``links`` that it is not on."""
+
+    joints: float
+    links: float
+
+
 def make_scene(loop: Loop, theta: np.ndarray) -> Scene:
     """The scene of the configuration ``theta`` (n,), rad. Links of a spherical loop are
     chords of the unit sphere."""
     frames = loop.frames(theta)
-    direction, arrive = frames[:-1, :3, 2], frames[:-1, :3, 3]
-    leave = arrive + loop.arrays[2][:, None] * direction
-    if np.ptp(np.concatenate([arrive, leave]), axis=0).max() < 1e-12:
-        return _spherical(frames[:, :3, 2])
-    centre = (arrive + leave).mean(axis=0) / 2
-    arrive, leave, following = (
-        arrive - centre,
-        leave - centre,
-        frames[1:, :3, 3] - centre,
-    )
-    middle = (arrive + leave) / 2
-    half = np.abs(loop.arrays[2]) / 2 + REACH * float(
-        np.linalg.norm(middle, axis=1).max()
-    )
-    axes = np.stack(
-        [middle - half[:, None] * direction, middle + half[:, None] * direction], axis=1
-    )
+    offsets = loop.arrays[2]
+    directions = frames[:-1, :3, 2]
+    # feet on each axis of the normals before and after it
+    before = frames[:-1, :3, 3]
+    after = before + offsets[:, None] * directions
+    if np.ptp(np.concatenate([before, after]), axis=0).max() < CONCURRENT:
+        return _spherical_scene(frames[:, :3, 2])
+    centre = (before + after).mean(axis=0) / 2
+    following = frames[1:, :3, 3] - centre  # feet on the next axis
+    before = before - centre
+    after = after - centre
+    joints = (before + after) / 2
+    extent = float(np.linalg.norm(joints, axis=1).max())
+    half = (np.abs(offsets) / 2 + REACH * extent)[:, None] * directions
     return Scene(
-        axes,
-        np.stack([leave, following], axis=1),
-        np.stack([arrive, leave], axis=1),
-        middle,
+        axes=np.stack([joints - half, joints + half], axis=1),
+        normals=np.stack([after, following], axis=1),
+        offsets=np.stack([before, after], axis=1),
+        joints=joints,
     )
 
 
-def _spherical(directions: np.ndarray) -> Scene:
+def _spherical_scene(directions: np.ndarray) -> Scene:
     """The scene of axes through the origin along ``directions`` (n + 1, 3), the last
     being the first again."""
-    ends = directions[:-1]
-    axes = np.stack([0 * ends, (1 + REACH) * ends], axis=1)
+    joints = directions[:-1]
     return Scene(
-        axes,
-        np.stack([ends, directions[1:]], axis=1),
-        np.stack([ends, ends], axis=1),
-        ends,
+        axes=np.stack([0 * joints, (1 + REACH) * joints], axis=1),
+        normals=np.stack([joints, directions[1:]], axis=1),
+        offsets=np.stack([joints, joints], axis=1),
+        joints=joints,
     )
 
 
-def best_view(scene: Scene) -> tuple[float, float]:
-    """Elevation and azimuth, in degrees, from which joints lie furthest apart and no
-    axis is seen end on."""
+# --- where to look from ---------------------------------------------------------------
+
+
+def best_view(scene: Scene) -> View:
+    """The view in which joints lie furthest apart and no axis is seen end on."""
+    look = max(_looks(), key=lambda look: _clarity(scene, look))
+    elevation = np.degrees(np.arcsin(look[2]))
+    azimuth = np.degrees(np.arctan2(look[1], look[0]))
+    return View(float(elevation), float(azimuth))
+
+
+def _looks() -> np.ndarray:
+    """Unit vectors (k, 3) on a spiral over the upper half of the sphere, the pole left
+    out."""
     k = np.arange(DIRECTIONS)
-    z = (
-        (k + 0.5) / DIRECTIONS * 0.9
-    )  # a spiral over the upper half of the sphere, the pole left out
+    z = (k + 0.5) / DIRECTIONS * 0.9
     turn = k * np.pi * (3 - np.sqrt(5))
     ring = np.sqrt(1 - z**2)
-    looks = np.column_stack([ring * np.cos(turn), ring * np.sin(turn), z])
-    best = max(looks, key=lambda look: _clarity(scene, look))
-    return float(np.degrees(np.arcsin(best[2]))), float(
-        np.degrees(np.arctan2(best[1], best[0]))
-    )
-
-
-def clearance(joints: np.ndarray, normals: np.ndarray) -> tuple[float, float]:
-    """The least distance of two joints (n, k), and of a joint from a link (n, 2, k)
-    that it is not on."""
-    n = len(joints)
-    first, second = np.triu_indices(n, 1)
-    apart = np.linalg.norm(joints[first] - joints[second], axis=1).min()
-    start, along = normals[:, 0], normals[:, 1] - normals[:, 0]
-    to = joints[:, None] - start[None]
-    part = np.clip(
-        np.einsum("ijk,jk->ij", to, along) / np.maximum((along**2).sum(axis=1), 1e-300),
-        0,
-        1,
-    )
-    away = np.linalg.norm(to - part[..., None] * along, axis=-1)
-    others = ~(
-        np.eye(n, dtype=bool)
-        | np.eye(n, k=-1, dtype=bool)
-        | np.eye(n, k=n - 1, dtype=bool)
-    )
-    return float(apart), float(away[others].min())
-
-
-def breadth(points: np.ndarray) -> float:
-    """The lesser extent of points (n, k) in the plane in which they spread most: 0 for
-    points on one line."""
-    return float(
-        np.linalg.svd(points - points.mean(axis=0), compute_uv=False)[1]
-        / len(points) ** 0.5
-    )
+    return np.column_stack([ring * np.cos(turn), ring * np.sin(turn), z])
 
 
 def _clarity(scene: Scene, look: np.ndarray) -> float:
     """Projected distances of joints and of joints from links, and how much is seen of
     every axis."""
-    flat = np.eye(3) - np.outer(look, look)
-    apart, away = clearance(scene.joints @ flat, scene.normals @ flat)
+    projection = np.eye(3) - np.outer(look, look)
+    joints = scene.joints @ projection
+    distances = clearance(joints, scene.normals @ projection)
     unit = max(scene.extent, 1e-12)
-    drawn = scene.axes[:, 1] - scene.axes[:, 0]
-    shown = np.linalg.norm(drawn @ flat, axis=1) / np.linalg.norm(drawn, axis=1)
-    return float(
-        (4 * apart + 4 * away + 2 * breadth(scene.joints @ flat)) / unit
-        + min(shown.min(), 0.5)
-    )
+    axes = scene.axes[:, 1] - scene.axes[:, 0]
+    visible_lengths = np.linalg.norm(axes @ projection, axis=1)
+    visible_share = (visible_lengths / np.linalg.norm(axes, axis=1)).min()
+    spread = 4 * distances.joints + 4 * distances.links + 2 * breadth(joints)
+    return float(spread / unit + min(visible_share, 0.5))
+
+
+def clearance(joints: np.ndarray, normals: np.ndarray) -> Clearance:
+    """How far the joints (n, k) are from each other, and from the links (n, 2, k) that
+    they are not on."""
+    n = len(joints)
+    first, second = np.triu_indices(n, 1)
+    between_joints = np.linalg.norm(joints[first] - joints[second], axis=1)
+    own = np.eye(n, dtype=bool)
+    following = np.eye(n, k=-1, dtype=bool) | np.eye(n, k=n - 1, dtype=bool)
+    to_links = _distances_to_segments(joints, normals)[~(own | following)]
+    return Clearance(float(between_joints.min()), float(to_links.min()))
+
+
+def _distances_to_segments(points: np.ndarray, segments: np.ndarray) -> np.ndarray:
+    """Distances (p, q) of points (p, k) from line segments (q, 2, k)."""
+    starts = segments[:, 0]
+    along = segments[:, 1] - starts
+    squares = np.maximum((along**2).sum(axis=1), 1e-300)
+    to_points = points[:, None] - starts[None]
+    fractions = np.einsum("ijk,jk->ij", to_points, along) / squares
+    feet = np.clip(fractions, 0, 1)[..., None] * along
+    return np.asarray(np.linalg.norm(to_points - feet, axis=-1))
+
+
+def breadth(points: np.ndarray) -> float:
+    """The lesser extent of points (n, k) in the plane in which they spread most: 0 for
+    points on one line."""
+    extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    return float(extents[1] / len(points) ** 0.5)

@@ -7,11 +7,14 @@ python -m studies.relations_figure --out out/relations
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import click
 import networkx as nx
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
@@ -20,21 +23,31 @@ from linkages.relations import RelationKind, relation_graph
 
 __all__ = ["draw_relations"]
 
-STYLES = {
-    RelationKind.SPECIAL_CASE: ("#0072B2", "-"),
-    RelationKind.ISOMER: ("#D55E00", "--"),
-    RelationKind.DEGENERATE: ("#CC79A7", "-."),
-    RelationKind.CONSTRUCTED: ("#9ACD9A", "-"),
+
+class Line(NamedTuple):
+    """How the arrows of one kind of relation look."""
+
+    colour: str
+    dashes: str
+
+
+LINES = {
+    RelationKind.SPECIAL_CASE: Line("#0072B2", "-"),
+    RelationKind.ISOMER: Line("#D55E00", "--"),
+    RelationKind.DEGENERATE: Line("#CC79A7", "-."),
+    RelationKind.CONSTRUCTED: Line("#9ACD9A", "-"),
 }
-BENDS = {
-    RelationKind.DEGENERATE: 0.15
-}  # beside the straight line of what was constructed from it
-WIDTH, ROW, COLUMN, HALF = (
-    28,
-    1.25,
-    4.2,
-    1.05,
-)  # letters of a line; distances of nodes, half width of a box
+# How far arrows bend: those of degenerate cases run beside the straight line of what was
+# constructed, those between boxes of one column around the boxes.
+DEGENERATE_BEND = 0.15
+COLUMN_BEND = 0.5
+
+LETTERS = 28  # of a line in a box
+ROW = 1.25  # distance of two rows
+COLUMN = 4.2  # distance of two columns
+HALF_BOX = 1.05  # half the width of a box
+ROUNDS = 12  # of moving linkages towards their neighbours
+TORI = "torus-5r (16 variants)"
 
 
 def draw_relations() -> Figure:
@@ -42,117 +55,159 @@ def draw_relations() -> Figure:
     stand in one box."""
     graph = _merged(relation_graph())
     places = _places(graph)
-    columns, rows = (max(place[axis] for place in places.values()) for axis in (0, 1))
-    figure = Figure(
-        figsize=(2.9 * (columns / COLUMN + 1), 0.42 * rows + 2), layout="constrained"
-    )
+    columns, rows = np.array(list(places.values())).max(axis=0)
+    size = (2.9 * (columns / COLUMN + 1), 0.42 * rows + 2)
+    figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     axes.set_axis_off()
     axes.set_xlim(-0.5 * COLUMN, columns + 0.5 * COLUMN)
     axes.set_ylim(rows + 1, -1)
-    for first, second, data in graph.edges(data=True):
-        colour, line = STYLES[data["kind"]]
-        (x, y), (u, v) = places[first], places[second]
-        side = float(
-            (u > x) - (u < x)
-        )  # arrows go from side to side of the boxes, in one column around them
-        start, end = (x + (side or 1) * HALF, y), (u - (side or -1) * HALF, v)
-        bend = BENDS.get(data["kind"], 0.0) if side else 0.5
-        axes.add_patch(
-            FancyArrowPatch(
-                start,
-                end,
-                connectionstyle=f"arc3,rad={bend}",
-                shrinkA=0,
-                shrinkB=0,
-                color=colour,
-                arrowstyle="-|>",
-                linestyle=line,
-                mutation_scale=9,
-                zorder=1,
-            )
-        )
+    for first, second, kind in graph.edges(data="kind"):
+        axes.add_patch(_arrow(places[first], places[second], kind))
     for name, place in places.items():
-        lines = [name, *(f"= {other}" for other in graph.nodes[name]["others"])]
-        text = "\n".join(
-            textwrap.fill(part, WIDTH, break_on_hyphens=True) for part in lines
-        )
-        axes.text(
-            *place,
-            text,
-            ha="center",
-            va="center",
-            fontsize=7,
-            zorder=2,
-            bbox={"boxstyle": "round", "facecolor": "white", "edgecolor": "#bbbbbb"},
-        )
-    for kind, (colour, line) in STYLES.items():
-        axes.plot([], [], color=colour, linestyle=line, label=kind.value)
-    axes.legend(loc="upper center", ncols=len(STYLES), frameon=False, fontsize=8)
+        _draw_box(axes, place, [name, *graph.nodes[name]["others"]])
+    for kind, line in LINES.items():
+        axes.plot([], [], color=line.colour, linestyle=line.dashes, label=kind.value)
+    axes.legend(loc="upper center", ncols=len(LINES), frameon=False, fontsize=8)
     return figure
+
+
+def _arrow(
+    start: tuple[float, float], end: tuple[float, float], kind: RelationKind
+) -> FancyArrowPatch:
+    """An arrow from side to side of two boxes, in one column around them."""
+    x, y = start
+    u, v = end
+    line = LINES[kind]
+    side = float(np.sign(u - x))
+    if side:
+        ends = (x + side * HALF_BOX, y), (u - side * HALF_BOX, v)
+        bend = DEGENERATE_BEND if kind is RelationKind.DEGENERATE else 0.0
+    else:
+        ends = (x + HALF_BOX, y), (u + HALF_BOX, v)
+        bend = COLUMN_BEND
+    return FancyArrowPatch(
+        *ends,
+        connectionstyle=f"arc3,rad={bend}",
+        shrinkA=0,
+        shrinkB=0,
+        color=line.colour,
+        arrowstyle="-|>",
+        linestyle=line.dashes,
+        mutation_scale=9,
+        zorder=1,
+    )
+
+
+def _draw_box(axes: Axes, place: tuple[float, float], names: list[str]) -> None:
+    """A linkage with its other names below its first."""
+    paragraphs = []
+    for i, name in enumerate(names):
+        paragraphs.append(textwrap.fill(f"= {name}" if i else name, LETTERS))
+    axes.text(
+        *place,
+        "\n".join(paragraphs),
+        ha="center",
+        va="center",
+        fontsize=7,
+        zorder=2,
+        bbox={"boxstyle": "round", "facecolor": "white", "edgecolor": "#bbbbbb"},
+    )
+
+
+# --- linkages that are the same -------------------------------------------------------
 
 
 def _merged(graph: nx.MultiDiGraph) -> nx.MultiDiGraph:
     """The graph with linkages that are the same in one node, whose ``others`` are their
     names."""
-    same = {
-        u: v
-        for u, v, data in graph.edges(data=True)
-        if data["kind"] is RelationKind.SAME
-    }
-    same |= {
-        name: "torus-5r (16 variants)" for name in graph if name.startswith("torus-5r")
-    }
+    first_names = _first_names(graph)
     merged = nx.MultiDiGraph()
     for first, second, key, data in graph.edges(keys=True, data=True):
-        ends = same.get(first, first), same.get(second, second)
-        if ends[0] != ends[1]:
-            merged.add_edge(*ends, key, **data)
-        merged.add_node(ends[1])
-    for name in merged:
-        merged.nodes[name]["others"] = [
-            u for u, v in same.items() if v == name and v in graph
-        ]
+        start = first_names.get(first, first)
+        end = first_names.get(second, second)
+        if start != end:
+            merged.add_edge(start, end, key, **data)
+        merged.add_node(end)
+    for node in merged:
+        others = [name for name, first in first_names.items() if first == node]
+        # the name of all the tori says by itself how many they are
+        merged.nodes[node]["others"] = [] if node == TORI else others
     return merged
+
+
+def _first_names(graph: nx.MultiDiGraph) -> dict[str, str]:
+    """The name in whose box a linkage stands, of those that do not stand in their
+    own."""
+    names = {}
+    for first, second, kind in graph.edges(data="kind"):
+        if kind is RelationKind.SAME:
+            names[first] = second
+    for name in graph:
+        if name.startswith("torus-5r"):
+            names[name] = TORI
+    return names
+
+
+# --- where they stand -----------------------------------------------------------------
 
 
 def _places(graph: nx.MultiDiGraph) -> dict[str, tuple[float, float]]:
     """Columns by how many steps of specialisation or construction lie before a linkage;
     rows by its neighbours."""
-    order = nx.DiGraph()
-    order.add_nodes_from(graph)
-    for kind in (RelationKind.SPECIAL_CASE, RelationKind.CONSTRUCTED):
-        for first, second, data in graph.edges(data=True):
-            if data["kind"] is kind and not (
-                first in order and nx.has_path(order, first, second)
-            ):
-                order.add_edge(second, first)
-    level = {
-        name: depth
-        for depth, layer in enumerate(nx.topological_generations(order))
-        for name in layer
-    }
+    levels = _levels(graph)
     columns: dict[int, list[str]] = {}
     for part in sorted(nx.weakly_connected_components(graph), key=len, reverse=True):
         for name in sorted(part):
-            columns.setdefault(level[name], []).append(name)
-    height = {
-        name: float(row) for names in columns.values() for row, name in enumerate(names)
-    }
-    tallest = max(map(len, columns.values()))
-    for _ in range(12):  # barycentres, then even spacing in the order they give
-        for names in columns.values():
-            mean = {
-                n: np.mean(
-                    [height[n], *(height[m] for m in nx.all_neighbors(graph, n))]
-                )
-                for n in names
-            }
-            names.sort(key=lambda n: mean[n])
+            columns.setdefault(levels[name], []).append(name)
+    heights = _heights(graph, list(columns.values()))
+    return {name: (COLUMN * levels[name], ROW * heights[name]) for name in graph}
+
+
+def _levels(graph: nx.MultiDiGraph) -> dict[str, int]:
+    """The column of every linkage. Constructions count where they do not contradict
+    the special cases."""
+    order = nx.DiGraph()
+    order.add_nodes_from(graph)
+    for kind in (RelationKind.SPECIAL_CASE, RelationKind.CONSTRUCTED):
+        for first, second in _edges_of(graph, kind):
+            if not nx.has_path(order, first, second):
+                order.add_edge(second, first)
+    levels = {}
+    for level, names in enumerate(nx.topological_generations(order)):
+        for name in names:
+            levels[name] = level
+    return levels
+
+
+def _edges_of(graph: nx.MultiDiGraph, kind: RelationKind) -> Iterator[tuple[str, str]]:
+    for first, second, own_kind in graph.edges(data="kind"):
+        if own_kind is kind:
+            yield first, second
+
+
+def _heights(graph: nx.MultiDiGraph, columns: list[list[str]]) -> dict[str, float]:
+    """Linkages move to the mean height of their neighbours, which gives their order in
+    a column, and are spaced evenly in that order."""
+    heights: dict[str, float] = {}
+    for names in columns:
+        for row, name in enumerate(names):
+            heights[name] = float(row)
+    tallest = max(len(names) for names in columns)
+    for _ in range(ROUNDS):
+        for names in columns:
+            means = {name: _mean_height(graph, name, heights) for name in names}
+            names.sort(key=means.__getitem__)
             for row, name in enumerate(names):
-                height[name] = (row + 0.5) * tallest / len(names)
-    return {name: (COLUMN * level[name], ROW * height[name]) for name in graph}
+                heights[name] = (row + 0.5) * tallest / len(names)
+    return heights
+
+
+def _mean_height(graph: nx.MultiDiGraph, name: str, heights: dict[str, float]) -> float:
+    """Mean height of a linkage and its neighbours."""
+    around = [heights[other] for other in nx.all_neighbors(graph, name)]
+    return float(np.mean([heights[name], *around]))
 
 
 @click.command()
@@ -166,8 +221,8 @@ def main(out: Path) -> None:
     relations.png."""
     out.mkdir(parents=True, exist_ok=True)
     figure = draw_relations()
-    for kind in ("svg", "png"):
-        figure.savefig(out / f"relations.{kind}", dpi=110)
+    for ending in ("svg", "png"):
+        figure.savefig(out / f"relations.{ending}", dpi=110)
     click.echo(f"wrote relations.svg and relations.png to {out}")
 
 

@@ -4,46 +4,70 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Literal, NamedTuple, Protocol, TypeAlias, TypeVar
 
-import matplotlib
 import numpy as np
-
-matplotlib.use("Agg")
 from matplotlib import colormaps
-from matplotlib import pyplot as plt
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from studies.work_precision import Run
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 __all__ = ["draw_case", "draw_ratios", "unbeaten"]
 
-SHOWN = (4, 8, 16, 24)  # orders drawn; all are in runs.csv
-SOLID, DASHED = "-", (0, (4, 2))
-STYLES: dict[
-    str, tuple[str, str, Any]
-] = {  # colour, marker, line; two variants of one method share a colour
-    "pseudo-arclength, tangent": ("#cc3311", "o", SOLID),
-    "pseudo-arclength, secant": ("#cc3311", "v", DASHED),
-    "SVD predictor-corrector": ("#000000", "s", SOLID),
-    "natural parameter": ("#997700", "D", SOLID),
-    "solve_ivp RK45": ("#228833", "x", DASHED),
-    "solve_ivp RK45, projected": ("#228833", "x", SOLID),
-    "solve_ivp DOP853": ("#aa3377", "+", DASHED),
-    "solve_ivp DOP853, projected": ("#aa3377", "+", SOLID),
-    "solve_ivp LSODA": ("#888888", "1", SOLID),
-    "pycont-lite": ("#ccaa00", "*", SOLID),
-    "AUTO-07p": ("#ee7733", "^", SOLID),
+
+class Run(Protocol):
+    """What is shown of a run; `studies.work_precision.Run` says what it is."""
+
+    @property
+    def method(self) -> str: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def seconds(self) -> float: ...
+    @property
+    def error(self) -> float: ...
+    @property
+    def note(self) -> str: ...
+
+
+AnyRun = TypeVar("AnyRun", bound=Run)
+Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
+
+
+class Style(NamedTuple):
+    """How the line of a method looks."""
+
+    colour: str | tuple[float, ...]
+    marker: str
+    dashes: Dashes
+    width: float = 1.0
+
+
+SOLID: Dashes = "-"
+DASHED: Dashes = (0, (4, 2))
+ORDERS = (4, 8, 16, 24)  # orders drawn; all are in runs.csv
+DEFAULT_ORDER = 16
+STYLES = {  # two variants of one method share a colour
+    "pseudo-arclength, tangent": Style("#cc3311", "o", SOLID),
+    "pseudo-arclength, secant": Style("#cc3311", "v", DASHED),
+    "SVD predictor-corrector": Style("#000000", "s", SOLID),
+    "natural parameter": Style("#997700", "D", SOLID),
+    "solve_ivp RK45": Style("#228833", "x", DASHED),
+    "solve_ivp RK45, projected": Style("#228833", "x", SOLID),
+    "solve_ivp DOP853": Style("#aa3377", "+", DASHED),
+    "solve_ivp DOP853, projected": Style("#aa3377", "+", SOLID),
+    "solve_ivp LSODA": Style("#888888", "1", SOLID),
+    "pycont-lite": Style("#ccaa00", "*", SOLID),
+    "AUTO-07p": Style("#ee7733", "^", SOLID),
 }
+OTHER_STYLE = Style("#555555", ".", SOLID)
 TARGETS = ("1e-04", "1e-08")
-GENERIC = {
-    "circle": "^",
-    "pitchfork": "v",
-    "bratu-50": "s",
-    "bratu-1000": "D",
-}  # markers; linkages are dots
+# Markers of curves that are no linkages, which are dots.
+GENERIC_MARKERS = {"circle": "^", "pitchfork": "v", "bratu-50": "s", "bratu-1000": "D"}
+LINKAGE_COLOUR = "#4477aa"
+GENERIC_COLOUR = "#ee7733"
+
+
+# --- one curve ------------------------------------------------------------------------
 
 
 def draw_case(title: str, runs: Sequence[Run], path: Path) -> None:
@@ -51,30 +75,17 @@ def draw_case(title: str, runs: Sequence[Run], path: Path) -> None:
 
     Of each method those runs alone that no other of it beats in both.
     """
-    figure, axes = plt.subplots(figsize=(8.6, 5.0), layout="constrained")
-    shades = colormaps["Blues"](np.linspace(0.45, 1.0, len(SHOWN)))
-    for order, shade in zip(SHOWN, shades, strict=True):
-        width = 2.4 if order == 16 else 1.0
-        _line(
-            axes,
-            [r for r in runs if r.order == order],
-            f"this project, order {order}",
-            shade,
-            ".",
-            width,
-            SOLID,
-        )
+    figure = Figure(figsize=(8.6, 5.0), layout="constrained")
+    axes = figure.subplots()
+    shades = colormaps["Blues"](np.linspace(0.45, 1.0, len(ORDERS)))
+    for order, shade in zip(ORDERS, shades, strict=True):
+        own = [run for run in runs if run.order == order]
+        width = 2.4 if order == DEFAULT_ORDER else 1.0
+        style = Style(tuple(shade), ".", SOLID, width)
+        _draw_line(axes, own, f"this project, order {order}", style)
     for method in dict.fromkeys(run.method for run in runs if not run.order):
-        colour, marker, line = STYLES.get(method, ("#555555", ".", SOLID))
-        _line(
-            axes,
-            [r for r in runs if r.method == method],
-            method,
-            colour,
-            marker,
-            1.0,
-            line,
-        )
+        own = [run for run in runs if run.method == method]
+        _draw_line(axes, own, method, STYLES.get(method, OTHER_STYLE))
     axes.set(xscale="log", yscale="log", title=title)
     axes.set(xlabel="largest distance to the exact curve", ylabel="processor time (ms)")
     axes.invert_xaxis()
@@ -87,102 +98,71 @@ def draw_case(title: str, runs: Sequence[Run], path: Path) -> None:
         handlelength=3,
     )
     figure.savefig(path, dpi=150)
-    plt.close(figure)
 
 
-def _line(
-    axes: Axes,
-    runs: Sequence[Run],
-    label: str,
-    colour: Any,
-    marker: str,
-    width: float,
-    line: Any,
-) -> None:
-    good = unbeaten(runs)
-    style = {"color": colour, "marker": marker, "lw": width, "ls": line, "ms": 5}
-    if good:
-        axes.plot(
-            [run.error for run in good],
-            [1e3 * run.seconds for run in good],
-            label=label,
-            **style,
-        )
-        return
-    tried = any(np.isfinite(run.seconds) or "not tried" not in run.note for run in runs)
-    axes.plot([], [], label=f"{label} ({'fails' if tried else 'not tried'})", **style)
-
-
-def unbeaten(runs: Sequence[Run]) -> list[Run]:
-    """The runs that no other comes as near in less time, from large to small errors."""
-    good = sorted(
-        (run for run in runs if np.isfinite(run.error)),
-        key=lambda run: (run.seconds, run.error),
+def _draw_line(axes: Axes, runs: Sequence[Run], label: str, style: Style) -> None:
+    """A method without a result stands in the legend, which says so."""
+    best = unbeaten(runs)
+    if not best:
+        is_tried = any(_is_tried(run) for run in runs)
+        label = f"{label} ({'fails' if is_tried else 'not tried'})"
+    axes.plot(
+        [run.error for run in best],
+        [1e3 * run.seconds for run in best],
+        label=label,
+        color=style.colour,
+        marker=style.marker,
+        lw=style.width,
+        ls=style.dashes,
+        ms=5,
     )
-    out: list[Run] = []
-    for run in good:
-        if not out or run.error < out[-1].error:
-            out.append(run)
-    return out
+
+
+def _is_tried(run: Run) -> bool:
+    return bool(np.isfinite(run.seconds)) or "not tried" not in run.note
+
+
+def unbeaten(runs: Sequence[AnyRun]) -> list[AnyRun]:
+    """The runs that no other comes as near in less time, from large to small errors."""
+    finite = [run for run in runs if np.isfinite(run.error)]
+    finite.sort(key=lambda run: (run.seconds, run.error))
+    best: list[AnyRun] = []
+    for run in finite:
+        if not best or run.error < best[-1].error:
+            best.append(run)
+    return best
+
+
+# --- all curves -----------------------------------------------------------------------
 
 
 def draw_ratios(
-    table: Sequence[Mapping[str, Any]], titles: Mapping[str, str], path: Path
+    table: Sequence[Mapping[str, str | float]], titles: Mapping[str, str], path: Path
 ) -> None:
     """How many times longer each method takes than this project to come within 1e-4 and
     1e-8 of each curve.
 
     Linkages as dots, each in its place within the row, and their median as a bar.
     """
-    methods = list(dict.fromkeys(row["method"] for row in table))
-    linkages = [case for case in titles if case not in GENERIC]
-    figure, panels = plt.subplots(
-        1,
-        len(TARGETS),
+    methods = list(dict.fromkeys(str(row["method"]) for row in table))
+    figure = Figure(
         figsize=(11.0, 0.36 * len(methods) + 1.4),
         layout="constrained",
-        sharey=True,
-        sharex=True,
     )
+    panels = figure.subplots(1, len(TARGETS), sharey=True, sharex=True)
     for axes, target in zip(panels, TARGETS, strict=True):
         for row, method in enumerate(methods):
-            found = {
-                r["case"]: float(r[target]) for r in table if r["method"] == method
+            ratios = {
+                str(entry["case"]): float(entry[target])
+                for entry in table
+                if entry["method"] == method
             }
-            ours = [found.get(case, np.nan) for case in linkages]
-            height = row + np.linspace(-0.25, 0.25, len(ours))
-            axes.plot(
-                ours,
-                height,
-                "o",
-                ms=4,
-                color="#4477aa",
-                label="linkages" if not row else None,
-            )
-            if np.isfinite(ours).any():
-                axes.plot(
-                    [np.nanmedian(ours)] * 2,
-                    [row - 0.36, row + 0.36],
-                    color="#4477aa",
-                    lw=2,
-                )
-            for case, marker in GENERIC.items():
-                label = titles.get(case) if not row else None
-                axes.plot(
-                    found.get(case, np.nan),
-                    row,
-                    marker,
-                    ms=6,
-                    color="#ee7733",
-                    mec="w",
-                    mew=0.5,
-                    label=label,
-                )
+            _draw_linkages(axes, row, ratios, titles)
+            _draw_generic(axes, row, ratios, titles)
         axes.axvline(1.0, color="0.3", lw=1)
-        axes.set(
-            xscale="log",
-            title=f"to come within $10^{{{round(np.log10(float(target)))}}}$ of the whole curve",
-        )
+        exponent = round(np.log10(float(target)))
+        title = f"to come within $10^{{{exponent}}}$ of the whole curve"
+        axes.set(xscale="log", title=title)
         axes.grid(alpha=0.3, axis="x")
     panels[0].set_yticks(range(len(methods)), methods)
     panels[0].set_ylim(len(methods) - 0.5, -0.5)
@@ -193,4 +173,36 @@ def draw_ratios(
         fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False
     )
     figure.savefig(path, dpi=150)
-    plt.close(figure)
+
+
+def _draw_linkages(
+    axes: Axes, row: int, ratios: Mapping[str, float], titles: Mapping[str, str]
+) -> None:
+    """The ratios of a method on the linkages, and their median; the first row is in
+    the legend."""
+    linkages = [case for case in titles if case not in GENERIC_MARKERS]
+    values = np.array([ratios.get(case, np.nan) for case in linkages])
+    heights = row + np.linspace(-0.25, 0.25, len(values))
+    label = None if row else "linkages"
+    axes.plot(values, heights, "o", ms=4, color=LINKAGE_COLOUR, label=label)
+    if np.isfinite(values).any():
+        median = np.nanmedian(values)
+        ends = [row - 0.36, row + 0.36]
+        axes.plot([median, median], ends, color=LINKAGE_COLOUR, lw=2)
+
+
+def _draw_generic(
+    axes: Axes, row: int, ratios: Mapping[str, float], titles: Mapping[str, str]
+) -> None:
+    """The ratios of a method on the other curves; the first row is in the legend."""
+    for case, marker in GENERIC_MARKERS.items():
+        axes.plot(
+            ratios.get(case, np.nan),
+            row,
+            marker,
+            ms=6,
+            color=GENERIC_COLOUR,
+            mec="w",
+            mew=0.5,
+            label=None if row else titles.get(case),
+        )

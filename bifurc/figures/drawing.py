@@ -1,100 +1,89 @@
-"""How curves, marks and names look in every figure."""
+"""What figures are made of: forms and singular points in a plane, the legend, and a
+word where there is nothing to draw."""
 
 from __future__ import annotations
 
 import textwrap
 from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MultipleLocator
 
 from bifurc.atlas import Atlas
-from bifurc.figures.planes import copies_in_frame, place_in_frame, scale_of
-from bifurc.singular.locate import Kind
+from bifurc.figures.planes import (
+    Plane,
+    Scale,
+    curve_points,
+    cut_to_frame,
+    place_in_frame,
+)
+from bifurc.figures.style import Mark, Style, form_style, mark_of
 
 __all__ = [
-    "SETTINGS",
-    "Style",
+    "LegendSize",
+    "PanelSettings",
     "draw_curve",
+    "draw_forms",
     "draw_legend",
     "draw_marks",
-    "form_style",
-    "label_groups",
     "legend_size",
     "note_emptiness",
 ]
 
-# settings that the user's own must not disturb
-SETTINGS: Any = {
-    "font.family": "DejaVu Sans",
-    "font.size": 8.5,
-    "axes.labelsize": 9,
-    "axes.titlesize": 9,
-    "axes.linewidth": 0.8,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "legend.fontsize": 8.5,
-    "axes.unicode_minus": True,
-    "grid.color": "0.9",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "savefig.bbox": None,
-    "svg.hashsalt": "bifurc",
-    "svg.fonttype": "path",
-    "text.usetex": False,
-    "path.simplify": True,
-    "lines.dash_capstyle": "butt",
-    "lines.solid_capstyle": "butt",
-    "axes.edgecolor": "0.4",
-    "figure.constrained_layout.w_pad": 0.08,
-    "figure.constrained_layout.h_pad": 0.08,
-}
-
-# Okabe and Ito (2008), without the yellow that is too light on white
-COLORS = (
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#CC79A7",
-    "#56B4E9",
-    "#E69F00",
-    "#000000",
-    "#7F3C8D",
-)
-DASHES = (
-    "-",
-    (0, (6, 2)),
-    (0, (6, 2, 1.2, 2)),
-    (0, (1.2, 1.2)),
-    (0, (9, 2, 3, 2)),
-    (0, (3, 1.5)),
-)
-LABEL_REACH = 11.0  # points from a mark to its name
-DIRECTIONS = [
-    np.array([np.cos(a), np.sin(a)])
-    for a in np.deg2rad([45, 135, 315, 225, 0, 180, 90, 270])
-]
-MARKS = {Kind.BIFURCATION: ("o", 6.5), Kind.RANK_DROP: ("D", 5.0)}
-OTHER_MARK = ("s", 5.0)
+NAME_WIDTH = 24  # letters of a line of the legend
+RIGID_LABEL = "rigid assembly"
+SURFACE_LABEL = "mobility 2 or more"
 
 
 @dataclass(frozen=True)
-class Style:
-    """Colour and dashes of a form."""
+class PanelSettings:
+    """How forms and points are drawn in one panel: ``line_width`` and ``mark_size`` in
+    points, each mark in its own size unless that is given."""
 
-    color: str
-    dashes: Any
+    line_width: float = 1.8
+    mark_size: float | None = None
 
 
-def form_style(index: int) -> Style:
-    """Style of form number ``index``: colours and dashes repeat, but not together
-    before 24 forms."""
-    return Style(COLORS[index % len(COLORS)], DASHES[index % len(DASHES)])
+DEFAULT_PANEL = PanelSettings()
+
+
+# --- forms ----------------------------------------------------------------------------
+
+
+def draw_forms(
+    axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
+) -> None:
+    """All forms in a plane, with axes to match."""
+    for i, form in enumerate(atlas.forms):
+        points = plane.project(curve_points(form.branch))
+        if len(points):
+            rows = cut_to_frame(points, plane.scales)
+            draw_curve(axes, rows, form_style(i), settings.line_width)
+    horizontal, vertical = plane.scales
+    _label_axis(axes.xaxis, horizontal)
+    _label_axis(axes.yaxis, vertical)
+    if horizontal.is_periodic:
+        axes.set_xlim(-horizontal.half, horizontal.half)
+    if vertical.is_periodic:
+        axes.set_ylim(-vertical.half, vertical.half)
+    if horizontal.is_periodic and vertical.is_periodic:
+        axes.set_box_aspect(1)
+    axes.grid(True)
+    for spine in axes.spines.values():
+        spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
+
+
+def _label_axis(axis: Axis, scale: Scale) -> None:
+    """Name and ticks; a whole turn is divided by right angles."""
+    axis.set_label_text(scale.label)
+    if scale.half == 180.0:
+        axis.set_major_locator(MultipleLocator(90))
+        axis.set_minor_locator(MultipleLocator(30))
 
 
 def draw_curve(
@@ -113,239 +102,148 @@ def draw_curve(
     )
 
 
+# --- marks ----------------------------------------------------------------------------
+
+
 def draw_marks(
-    axes: Axes, atlas: Atlas, plane: tuple[int, ...], size: float | None = None
+    axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
     """Singular points, isolated solutions and surfaces in a plane, on both edges where
     they lie on one."""
-    scales = (scale_of(atlas, plane[0]), scale_of(atlas, plane[-1]))
-    pick = [plane[0], plane[-1]]
     for surface in atlas.surfaces:
-        shown = place_in_frame(surface.samples[:, pick], scales)
-        axes.plot(shown[:, 0], shown[:, 1], ".", color="0.6", markersize=2, zorder=1)
+        _draw_surface(axes, plane, surface.samples)
     for solution in atlas.rigid:
-        shown = copies_in_frame(place_in_frame(solution[None, pick], scales)[0], scales)
-        axes.plot(
-            shown[:, 0],
-            shown[:, 1],
-            "x",
-            color="0.3",
-            markersize=size or 5.5,
-            clip_on=False,
-            zorder=3,
-        )
+        _draw_assembly(axes, plane.copies(solution), settings.mark_size or 5.5)
     for point in atlas.points:
-        marker, usual = MARKS.get(point.kind, OTHER_MARK)
-        shown = copies_in_frame(
-            place_in_frame(point.point.u[None, pick], scales)[0], scales
-        )
-        axes.plot(
-            shown[:, 0],
-            shown[:, 1],
-            marker,
-            markersize=size or usual,
-            markerfacecolor="white",
-            markeredgecolor="black",
-            markeredgewidth=1.1,
-            clip_on=False,
-            zorder=4,
-        )
+        symbol, usual_size = mark_of(point.kind)
+        mark = Mark(symbol, settings.mark_size or usual_size)
+        _draw_singular_point(axes, plane.copies(point.point.u), mark)
+
+
+def _draw_surface(axes: Axes, plane: Plane, samples: np.ndarray) -> None:
+    spots = place_in_frame(plane.project(samples), plane.scales)
+    axes.plot(spots[:, 0], spots[:, 1], ".", color="0.6", markersize=2, zorder=1)
+
+
+def _draw_assembly(axes: Axes, spots: np.ndarray, size: float) -> None:
+    axes.plot(
+        spots[:, 0],
+        spots[:, 1],
+        "x",
+        color="0.3",
+        markersize=size,
+        clip_on=False,
+        zorder=3,
+    )
+
+
+def _draw_singular_point(axes: Axes, spots: np.ndarray, mark: Mark) -> None:
+    axes.plot(
+        spots[:, 0],
+        spots[:, 1],
+        mark.symbol,
+        markersize=mark.size,
+        markerfacecolor="white",
+        markeredgecolor="black",
+        markeredgewidth=1.1,
+        clip_on=False,
+        zorder=4,
+    )
+
+
+# --- the legend -----------------------------------------------------------------------
 
 
 def draw_legend(figure: Figure, atlas: Atlas) -> None:
     """Names of the forms and of the marks, at the right of the figure."""
-    marks = [
-        (MARKS.get(kind, OTHER_MARK), kind.value)
-        for kind in dict.fromkeys(p.kind for p in atlas.points)
-    ]
-    entries = [
-        Line2D(
-            [],
-            [],
-            color=form_style(i).color,
-            linestyle=form_style(i).dashes,
-            linewidth=1.8,
-            label=name,
-        )
-        for i, name in enumerate(_wrapped_names(atlas))
-    ]
-    entries += [
-        Line2D(
-            [],
-            [],
-            linestyle="",
-            marker=marker,
-            markersize=size,
-            markerfacecolor="white",
-            markeredgecolor="black",
-            label=label,
-        )
-        for (marker, size), label in marks
-    ]
-    if len(atlas.rigid):
-        entries.append(
-            Line2D(
-                [], [], linestyle="", marker="x", color="0.3", label="rigid assembly"
-            )
-        )
-    if atlas.surfaces:
-        entries.append(
-            Line2D(
-                [],
-                [],
-                linestyle="",
-                marker=".",
-                color="0.6",
-                label="mobility 2 or more",
-            )
-        )
+    entries = _form_entries(atlas) + _mark_entries(atlas)
     if entries:
         figure.legend(
             handles=entries, loc="outside right upper", frameon=False, handlelength=3.2
         )
 
 
-def legend_size(atlas: Atlas) -> tuple[float, float]:
-    """Width and height that the legend takes, in inches."""
+def _form_entries(atlas: Atlas) -> list[Line2D]:
+    entries = []
+    for i, name in enumerate(_wrapped_names(atlas)):
+        style = form_style(i)
+        entries.append(
+            Line2D(
+                [],
+                [],
+                color=style.color,
+                linestyle=style.dashes,
+                linewidth=1.8,
+                label=name,
+            )
+        )
+    return entries
+
+
+def _mark_entries(atlas: Atlas) -> list[Line2D]:
+    """Entries of the singular points, kind by kind, of isolated solutions and of
+    surfaces, as far as there are any."""
+    entries = []
+    for kind in dict.fromkeys(point.kind for point in atlas.points):
+        mark = mark_of(kind)
+        entries.append(
+            Line2D(
+                [],
+                [],
+                linestyle="",
+                marker=mark.symbol,
+                markersize=mark.size,
+                markerfacecolor="white",
+                markeredgecolor="black",
+                label=kind.value,
+            )
+        )
+    if len(atlas.rigid):
+        entries.append(_plain_entry("x", "0.3", RIGID_LABEL))
+    if atlas.surfaces:
+        entries.append(_plain_entry(".", "0.6", SURFACE_LABEL))
+    return entries
+
+
+def _plain_entry(symbol: str, color: str, label: str) -> Line2D:
+    return Line2D([], [], linestyle="", marker=symbol, color=color, label=label)
+
+
+class LegendSize(NamedTuple):
+    """Room that the legend takes, in inches."""
+
+    width: float
+    height: float
+
+
+def legend_size(atlas: Atlas) -> LegendSize:
+    """Room that the legend of an atlas takes."""
     lines = [line for name in _wrapped_names(atlas) for line in name.splitlines()]
-    longest = max([len("rigid assembly"), *map(len, lines)])
-    return 0.75 + 0.072 * longest, 0.17 * (len(lines) + 4)
+    longest = max(len(line) for line in [RIGID_LABEL, *lines])
+    return LegendSize(0.75 + 0.072 * longest, 0.17 * (len(lines) + 4))
 
 
 def _wrapped_names(atlas: Atlas) -> list[str]:
-    return [textwrap.fill(form.name, 24) for form in atlas.forms]
+    return [textwrap.fill(form.name, NAME_WIDTH) for form in atlas.forms]
+
+
+# --- nothing to draw ------------------------------------------------------------------
 
 
 def note_emptiness(axes: Axes, atlas: Atlas) -> None:
     """Say so in the middle of the frame where there is no form."""
-    if not atlas.forms:
-        said = "no form" + (
-            f"\nclosure gap {atlas.closure_gap:.1e}"
-            if 0 < atlas.closure_gap < np.inf
-            else ""
-        )
-        axes.text(
-            0.5,
-            0.5,
-            said,
-            transform=axes.transAxes,
-            ha="center",
-            va="center",
-            color="0.4",
-            fontsize=11,
-        )
-
-
-# --- names beside their marks -------------------------------------------------------------------------
-
-
-def label_groups(axes: Axes, atlas: Atlas, plane: tuple[int, ...]) -> None:
-    """Names beside the singular points, one label for those on one spot, where curves
-    and other names leave room."""
-    figure = axes.figure.get_figure(root=True)
-    assert figure is not None
-    figure.draw_without_rendering()
-    to_points = 72.0 / figure.dpi
-
-    def place(spots: np.ndarray) -> np.ndarray:
-        return axes.transData.transform(np.atleast_2d(spots)) * to_points
-
-    frame = axes.get_window_extent()
-    corners = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]]) * to_points
-    lines = [np.asarray(line.get_xydata()) for line in axes.lines]
-    occupied = np.concatenate(
-        [np.empty((0, 2))] + [_filled(place(rows)) for rows in lines]
+    if atlas.forms:
+        return
+    note = "no form"
+    if 0 < atlas.closure_gap < np.inf:
+        note += f"\nclosure gap {atlas.closure_gap:.1e}"
+    axes.text(
+        0.5,
+        0.5,
+        note,
+        transform=axes.transAxes,
+        ha="center",
+        va="center",
+        color="0.4",
+        fontsize=11,
     )
-    groups = _groups(atlas, plane)
-    scales = (scale_of(atlas, plane[0]), scale_of(atlas, plane[-1]))
-    marks = [
-        mark for _, spot in groups for mark in place(copies_in_frame(spot, scales))
-    ]
-    taken = [(mark, np.full(2, 3.5)) for mark in marks]
-    for names, spot in groups:
-        at = place(spot)[0]
-        half = np.array([2.8 * len(names) + 1, 4.5])
-        candidates = [
-            at + (LABEL_REACH * reach - 4 + half * np.abs(push)) * push
-            for reach in (1.0, 1.5, 2.2)
-            for push in DIRECTIONS
-        ]
-        costs = [
-            _cost(middle, half, occupied, taken, corners) + 0.1 * k
-            for k, middle in enumerate(candidates)
-        ]
-        best = candidates[int(np.argmin(costs))]
-        taken.append((best, half))
-        axes.annotate(
-            names,
-            (spot[0], spot[1]),
-            (best[0] - at[0], best[1] - at[1]),
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=9,
-            fontweight="bold",
-            zorder=6,
-            bbox={
-                "boxstyle": "square,pad=0.1",
-                "facecolor": "white",
-                "alpha": 0.75,
-                "linewidth": 0,
-            },
-        )
-
-
-def _groups(atlas: Atlas, plane: tuple[int, ...]) -> list[tuple[str, np.ndarray]]:
-    """Joined names and spot of the singular points that fall on one spot of the
-    plane."""
-    scales = (scale_of(atlas, plane[0]), scale_of(atlas, plane[-1]))
-    pick = [plane[0], plane[-1]]
-    span = np.array([s.half if np.isfinite(s.half) else np.inf for s in scales])
-    every = np.concatenate(
-        [curve.branch.sample(50)[:, pick] for curve in atlas.forms]
-        or [np.zeros((1, 2))]
-    )
-    near = 0.01 * np.where(
-        np.isfinite(span), 2 * span, np.maximum(np.ptp(every, axis=0), 1e-6)
-    )
-    groups: list[tuple[list[str], np.ndarray]] = []
-    for point in atlas.points:
-        spot = place_in_frame(point.point.u[None, pick], scales)[0]
-        for names, other in groups:
-            gap = np.abs(spot - other)
-            if np.all(np.minimum(gap, np.abs(2 * span - gap)) < near):
-                names.append(point.name)
-                break
-        else:
-            groups.append(([point.name], spot))
-    return [(", ".join(names), spot) for names, spot in groups]
-
-
-def _filled(rows: np.ndarray) -> np.ndarray:
-    """A polyline with points added so that none are more than about 3 apart."""
-    parts = [rows]
-    steps = np.linalg.norm(np.diff(rows, axis=0), axis=1)
-    for i in np.flatnonzero(steps > 3.0):
-        parts.append(np.linspace(rows[i], rows[i + 1], int(steps[i] / 3) + 2))
-    out = np.concatenate(parts)
-    return out[np.all(np.isfinite(out), axis=1)]
-
-
-def _cost(
-    middle: np.ndarray,
-    half: np.ndarray,
-    occupied: np.ndarray,
-    taken: list[tuple[np.ndarray, np.ndarray]],
-    corners: np.ndarray,
-) -> float:
-    """How bad a place for a label is: what it covers, and how far it sticks out of the
-    frame."""
-    covered = np.count_nonzero(np.all(np.abs(occupied - middle) < half, axis=1))
-    clash = sum(
-        100 for other, size in taken if np.all(np.abs(other - middle) < half + size)
-    )
-    outside = (
-        np.maximum(corners[0] - (middle - half), 0).sum()
-        + np.maximum(middle + half - corners[1], 0).sum()
-    )
-    return float(covered + clash + 20 * outside)

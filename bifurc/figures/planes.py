@@ -1,5 +1,5 @@
 """Curves in a plane of two unknowns, a torus where these are angles: which plane shows
-most, where lines break."""
+most, and where lines break."""
 
 from __future__ import annotations
 
@@ -8,20 +8,27 @@ from itertools import combinations
 
 import numpy as np
 
+from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 
 __all__ = [
+    "Plane",
     "Scale",
     "choose_plane",
     "copies_in_frame",
     "curve_points",
     "cut_to_frame",
     "place_in_frame",
+    "plane_of",
     "scale_of",
 ]
 
 SAMPLES = 72  # points on each form by which planes are compared
+PIECE_POINTS = 12  # points drawn on each piece of a branch, at least
+BRANCH_POINTS = 400  # points drawn on each branch, at least
+CELLS = 24  # of the grid that measures coverage, along each axis
+ON_EDGE = 1e-6  # of half a period, within which a point lies on an edge of the frame
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -34,61 +41,91 @@ class Scale:
     half: float
     label: str
 
+    @property
+    def is_periodic(self) -> bool:
+        """Whether the frame ends where the period does."""
+        return bool(np.isfinite(self.half))
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Two unknowns by their indices, with their scales."""
+
+    horizontal: int
+    vertical: int
+    scales: tuple[Scale, Scale]
+
+    def project(self, points: np.ndarray) -> np.ndarray:
+        """The two unknowns (k, 2) of points (k, n), in their own units."""
+        columns = points[:, self.horizontal], points[:, self.vertical]
+        return np.stack(columns, axis=1)
+
+    def spot(self, point: np.ndarray) -> np.ndarray:
+        """Where in the frame (2,) a point (n,) is shown."""
+        shown = place_in_frame(self.project(point[None]), self.scales)
+        return np.asarray(shown[0])
+
+    def copies(self, point: np.ndarray) -> np.ndarray:
+        """All places (k, 2) where a point (n,) is shown: more than one on an edge."""
+        return copies_in_frame(self.spot(point), self.scales)
+
+
+def plane_of(atlas: Atlas, horizontal: int, vertical: int) -> Plane:
+    """The plane of two unknowns, given by their indices."""
+    scales = scale_of(atlas, horizontal), scale_of(atlas, vertical)
+    return Plane(horizontal, vertical, scales)
+
 
 def scale_of(atlas: Atlas, index: int) -> Scale:
     """Angles with a period are shown in degrees, everything else as it is."""
-    name, unit, period = (
-        atlas.names[index],
-        atlas.units[index],
-        float(atlas.periods[index]),
-    )
-    pretty = "θ" + name[5:].translate(SUBSCRIPTS) if name.startswith("theta") else name
+    name = atlas.names[index]
+    unit = atlas.units[index]
+    period = float(atlas.periods[index])
+    if name.startswith("theta"):
+        name = "θ" + name.removeprefix("theta").translate(SUBSCRIPTS)
     if unit == "rad" and np.isfinite(period):
-        return Scale(180.0 / np.pi, 90.0 * period / np.pi, f"{pretty} (deg)")
-    return Scale(1.0, 0.5 * period, f"{pretty} ({unit})" if unit else pretty)
+        return Scale(180.0 / np.pi, 90.0 * period / np.pi, f"{name} (deg)")
+    return Scale(1.0, 0.5 * period, f"{name} ({unit})" if unit else name)
 
 
 def curve_points(branch: Branch) -> np.ndarray:
     """Points (k, n) along a whole branch, dense where its pieces are short; a closed
     one comes back to its start."""
-    inner = [
-        np.linspace(a, b, 12, endpoint=False)
-        for a, b in zip(branch.breaks[:-1], branch.breaks[1:], strict=True)
-    ]
-    even = np.linspace(0.0, branch.length, 400)
-    return (
-        branch(np.union1d(np.concatenate(inner), even))
-        if inner
-        else np.empty((0, branch.n))
-    )
+    if len(branch.breaks) < 2:
+        return np.empty((0, branch.n))
+    grids = [np.linspace(0.0, branch.length, BRANCH_POINTS)]
+    for start, end in zip(branch.breaks[:-1], branch.breaks[1:], strict=True):
+        grids.append(np.linspace(start, end, PIECE_POINTS, endpoint=False))
+    return branch(np.unique(np.concatenate(grids)))
 
 
-# --- the frame ----------------------------------------------------------------------------------------
+# --- the frame ------------------------------------------------------------------------
 
 
 def place_in_frame(points: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
-    """Shown coordinates (k, 2) of points (k, 2), periodic ones within (-half, half]."""
-    out = points * [scale.factor for scale in scales]
-    for i, scale in enumerate(scales):
-        if np.isfinite(scale.half):
-            out[:, i] -= (
-                2
-                * scale.half
-                * np.ceil((out[:, i] - scale.half) / (2 * scale.half) - 1e-9)
-            )
-    return out
+    """Shown coordinates (k, 2) of points (k, 2), periodic ones within (-half, half].
+
+    A point on the lower edge, but for errors of its location, goes to the upper one.
+    """
+    periods = np.array([2 * scale.half for scale in scales])
+    shown = torus.wrap(points * [scale.factor for scale in scales], periods)
+    is_on_lower_edge = shown < -0.5 * periods * (1 - ON_EDGE)
+    return np.where(is_on_lower_edge, shown + periods, shown)
 
 
-def copies_in_frame(point: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
-    """A point (2,) of the frame and its copies (k, 2) on the opposite edges, where it
+def copies_in_frame(spot: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
+    """A place (2,) in the frame and its copies (k, 2) on the opposite edges, where it
     lies on an edge."""
-    choices = []
-    for x, scale in zip(point, scales, strict=True):
-        on_edge = (
-            np.isfinite(scale.half) and abs(abs(x) - scale.half) < 1e-6 * scale.half
-        )
-        choices.append([scale.half, -scale.half] if on_edge else [x])
-    return np.array([[x, y] for x in choices[0] for y in choices[1]])
+    abscissas = _copies(spot[0], scales[0])
+    ordinates = _copies(spot[1], scales[1])
+    return np.array([[x, y] for x in abscissas for y in ordinates])
+
+
+def _copies(x: float, scale: Scale) -> list[float]:
+    """A coordinate, or both ends of the frame where it lies on one."""
+    if scale.is_periodic and abs(abs(x) - scale.half) < ON_EDGE * scale.half:
+        return [scale.half, -scale.half]
+    return [x]
 
 
 def cut_to_frame(points: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
@@ -100,57 +137,62 @@ def cut_to_frame(points: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
     ``points`` are unwrapped, in the unknowns' own units.
     """
     shown = points * [scale.factor for scale in scales]
-    shifts: list[np.ndarray] = []
-    for x, scale in zip(shown.T, scales, strict=True):
-        if not np.isfinite(scale.half):
-            shifts.append(np.zeros(1))
-            continue
-        low, high = (np.round(edge / (2 * scale.half)) for edge in (x.min(), x.max()))
-        shifts.append(-2 * scale.half * np.arange(low - 1, high + 2))
     half = np.array([scale.half for scale in scales])
-    parts = [
-        _inside(shown + np.array([dx, dy]), half)
-        for dx in shifts[0]
-        for dy in shifts[1]
-    ]
+    parts = []
+    for dx in _shifts(shown[:, 0], scales[0]):
+        for dy in _shifts(shown[:, 1], scales[1]):
+            parts.append(_inside(shown + np.array([dx, dy]), half))
     return np.concatenate(parts)
+
+
+def _shifts(x: np.ndarray, scale: Scale) -> np.ndarray:
+    """By how much the copies of a curve are shifted that may reach into the frame, from
+    one of its coordinates."""
+    if not scale.is_periodic:
+        return np.zeros(1)
+    period = 2 * scale.half
+    low = np.round(x.min() / period)
+    high = np.round(x.max() / period)
+    return np.asarray(-period * np.arange(low - 1, high + 2))
 
 
 def _inside(points: np.ndarray, half: np.ndarray) -> np.ndarray:
     """The parts of a polyline within [-half, half], separated by rows of NaN."""
-    edge = half * (1 + 1e-9)
-    start, step = points[:-1], np.diff(points, axis=0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        one, two = (-edge - start) / step, (edge - start) / step
-    still = step == 0
-    outside = still & (np.abs(start) > edge)
-    enter = (
-        np.where(still, np.where(outside, np.inf, -np.inf), np.fmin(one, two))
-        .max(axis=1)
-        .clip(0.0)
-    )
-    leave = (
-        np.where(still, np.where(outside, -np.inf, np.inf), np.fmax(one, two))
-        .min(axis=1)
-        .clip(max=1.0)
-    )
-    shortest = (
-        1e-7 * np.where(np.isfinite(half), half, 0.0).min()
-    )  # drops copies that touch the frame in a point
-    seen = np.flatnonzero(
-        np.maximum(leave - enter, 0.0) * np.linalg.norm(step, axis=1) > shortest
-    )
+    start = points[:-1]
+    step = np.diff(points, axis=0)
+    enter, leave = _crossings(start, step, half * (1 + 1e-9))
+    # a copy that touches the frame in a point only is not drawn
+    shortest = 1e-7 * np.where(np.isfinite(half), half, 0.0).min()
+    lengths = np.maximum(leave - enter, 0.0) * np.linalg.norm(step, axis=1)
     rows: list[np.ndarray] = []
-    last = -2
-    for i in seen.tolist():
-        if i != last + 1 or enter[i] > 0:
-            rows += [np.full(2, np.nan), start[i] + enter[i] * step[i]]
+    previous = -2
+    for i in np.flatnonzero(lengths > shortest).tolist():
+        if i != previous + 1 or enter[i] > 0:
+            rows.append(np.full(2, np.nan))
+            rows.append(start[i] + enter[i] * step[i])
         rows.append(start[i] + leave[i] * step[i])
-        last = i
+        previous = i
     return np.array(rows).reshape(-1, 2)
 
 
-# --- the choice of a plane ----------------------------------------------------------------------------
+def _crossings(
+    start: np.ndarray, step: np.ndarray, edge: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """At which fractions (k,) of each step a line comes into the frame [-edge, edge]
+    and leaves it; outside the first is not below the second."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        low = (-edge - start) / step
+        high = (edge - start) / step
+    # a step along an edge of the frame crosses neither of the two edges beside it
+    still = step == 0
+    outside = still & (np.abs(start) > edge)
+    never = np.where(outside, np.inf, -np.inf)
+    enter = np.where(still, never, np.fmin(low, high)).max(axis=1)
+    leave = np.where(still, -never, np.fmax(low, high)).min(axis=1)
+    return enter.clip(0.0), leave.clip(max=1.0)
+
+
+# --- the choice of a plane ------------------------------------------------------------
 
 
 def choose_plane(atlas: Atlas) -> tuple[int, int]:
@@ -166,50 +208,55 @@ def choose_plane(atlas: Atlas) -> tuple[int, int]:
         return 0, min(1, n - 1)
     samples = np.array([form.branch.sample(SAMPLES) for form in atlas.forms])
     points = np.array([point.point.u for point in atlas.bifurcations]).reshape(-1, n)
+    periodic = np.isfinite(atlas.periods)
     ranges = np.ptp(samples.reshape(-1, n), axis=0)
-    size = np.where(
-        np.isfinite(atlas.periods), atlas.periods, np.where(ranges > 0, ranges, 1.0)
-    )
+    size = np.where(periodic, atlas.periods, np.where(ranges > 0, ranges, 1.0))
+    periods = np.where(periodic, 1.0, np.inf)  # in units of ``size``
+    curves = samples / size
+    spots = points / size
     extents = np.minimum(np.ptp(samples, axis=1) / size, 1.0)  # (forms, n)
     merits = {}
     for plane in combinations(range(n), 2):
         pick = list(plane)
-        curves = samples[..., pick] / size[pick]
-        wraps = np.isfinite(atlas.periods[pick])
+        smallest_form = extents[:, pick].max(axis=1).min()
+        form_distance = _closest_forms(curves[..., pick], periods[pick])
+        point_distance = _closest_points(spots[:, pick], periods[pick])
         merits[plane] = (
-            min(_closest_forms(curves, wraps) / 0.12, 1.0)
-            + min(extents[:, pick].max(axis=1).min() / 0.3, 1.0)
-            + 0.5
-            * min(_closest_points(points[:, pick] / size[pick], wraps) / 0.05, 1.0)
-            + 0.5 * _coverage(curves)
+            min(form_distance / 0.12, 1.0)
+            + min(smallest_form / 0.3, 1.0)
+            + 0.5 * min(point_distance / 0.05, 1.0)
+            + 0.5 * _coverage(curves[..., pick])
         )
     best = max(merits.values())
     return next(plane for plane, merit in merits.items() if merit > best - 1e-3)
 
 
-def _gaps(a: np.ndarray, b: np.ndarray, wraps: np.ndarray) -> np.ndarray:
-    """Distances (p, q) between points (p, 2) and (q, 2), modulo 1 where ``wraps`` says
-    so."""
-    gap = a[:, None] - b
-    return np.linalg.norm(gap - wraps * np.round(gap), axis=-1)
+def _distances(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """Distances (p, q) between points (p, 2) and (q, 2), modulo ``periods`` (2,)."""
+    gaps = torus.difference(a[:, None], b, periods)
+    return np.asarray(np.linalg.norm(gaps, axis=-1))
 
 
-def _closest_forms(curves: np.ndarray, wraps: np.ndarray) -> float:
-    """Smallest mean distance from one curve to another."""
+def _closest_forms(curves: np.ndarray, periods: np.ndarray) -> float:
+    """Smallest mean distance from one curve to another, of curves (forms, k, 2)."""
     means = []
     for a, b in combinations(curves, 2):
-        gap = _gaps(a, b, wraps)
-        means.append(min(gap.min(axis=0).mean(), gap.min(axis=1).mean()))
+        distances = _distances(a, b, periods)
+        means.append(distances.min(axis=0).mean())
+        means.append(distances.min(axis=1).mean())
     return float(min(means, default=1.0))
 
 
-def _closest_points(points: np.ndarray, wraps: np.ndarray) -> float:
-    gap = _gaps(points, points, wraps)
-    return float(gap[np.triu_indices(len(points), 1)].min(initial=1.0))
+def _closest_points(points: np.ndarray, periods: np.ndarray) -> float:
+    """Smallest distance between two of the points (k, 2), at most 1."""
+    distances = _distances(points, points, periods)
+    pairs = np.triu_indices(len(points), 1)
+    return float(distances[pairs].min(initial=1.0))
 
 
 def _coverage(curves: np.ndarray) -> float:
     """Share of the cells of a coarse grid that the curves pass, at most 1 by their
     number of points."""
-    cells = np.unique(np.floor(24 * (curves.reshape(-1, 2) % 1.0)), axis=0)
+    fractions = curves.reshape(-1, 2) % 1.0
+    cells = np.unique(np.floor(CELLS * fractions), axis=0)
     return len(cells) / (len(curves) * SAMPLES)

@@ -25,25 +25,35 @@ def plot_charts(
     figure = figure or Figure(figsize=(5.0, 4.5), layout="constrained")
     axes = figure.add_subplot(aspect="equal")
     if directions is None:
-        directions = np.linalg.svd(
-            charts.centers - charts.centers.mean(axis=0), full_matrices=False
-        )[2][:2]
-    flat = charts.triangles @ np.asarray(directions, dtype=float).T  # (t, 3, 2)
-    a, b = (flat[:, k] - flat[:, 0] for k in (1, 2))
-    seen = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    shade = np.clip(seen / np.maximum(charts.triangle_areas, 1e-300), 0.0, 1.0)
+        directions = _widest_directions(charts.centers)
+    projection = np.asarray(directions, dtype=float).T
+    triangles = charts.triangles @ projection  # (t, 3, 2)
+    centers = charts.centers @ projection
+    shades = 0.25 + 0.6 * _flatness(charts, triangles)
     axes.add_collection(
         PolyCollection(
-            flat, array=0.25 + 0.6 * shade, cmap="Blues", clim=(0.0, 1.4), alpha=0.6
+            triangles, array=shades, cmap="Blues", clim=(0.0, 1.4), alpha=0.6
         )
     )
-    axes.add_collection(LineCollection(flat[:, 1:], colors="0.35", linewidths=0.4))
-    axes.plot(
-        *(charts.centers @ np.asarray(directions).T).T,
-        ".",
-        color="black",
-        markersize=1.5,
-    )
+    outlines = triangles[:, 1:]
+    axes.add_collection(LineCollection(outlines, colors="0.35", linewidths=0.4))
+    axes.plot(centers[:, 0], centers[:, 1], ".", color="black", markersize=1.5)
     axes.autoscale_view()
     axes.set(xlabel="along the first direction", ylabel="along the second direction")
     return figure
+
+
+def _widest_directions(points: np.ndarray) -> np.ndarray:
+    """The two directions (2, n) in which points (k, n) spread most."""
+    _, _, directions = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
+    return np.asarray(directions[:2])
+
+
+def _flatness(charts: ChartAtlas, triangles: np.ndarray) -> np.ndarray:
+    """Area (t,) of each projected triangle (t, 3, 2) over its own: 0 where it stands
+    upright."""
+    a = triangles[:, 1] - triangles[:, 0]
+    b = triangles[:, 2] - triangles[:, 0]
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    share = area / np.maximum(charts.triangle_areas, 1e-300)
+    return np.asarray(np.clip(share, 0.0, 1.0))

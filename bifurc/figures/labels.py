@@ -1,0 +1,180 @@
+"""Names beside the singular points, where curves and other names leave room."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from bifurc import torus
+from bifurc.atlas import Atlas
+from bifurc.figures.planes import Plane, copies_in_frame
+
+__all__ = ["label_points"]
+
+REACH = 11.0  # from a mark to its name
+REACH_FACTORS = (1.0, 1.5, 2.2)
+DIRECTIONS = [
+    np.array([np.cos(a), np.sin(a)])
+    for a in np.deg2rad([45, 135, 315, 225, 0, 180, 90, 270])
+]
+MARK_HALF = np.full(2, 3.5)  # half the sides of what a mark covers
+SPACING = 3.0  # of points on a line by which it is seen what a name covers
+SAME_SPOT = 0.01  # of the frame: points that are closer share a name
+
+# What a name costs in a place, over one point of a curve that it covers.
+OVERLAP_COST = 100  # for each other name or mark
+OUTSIDE_COST = 20  # for each point of length that it sticks out of the frame
+ORDER_COST = 0.1  # for each place that is tried before
+
+
+class _Box(NamedTuple):
+    """What a name or a mark covers, by its ``middle`` (2,) and ``half`` its sides (2,),
+    in points on the page."""
+
+    middle: np.ndarray
+    half: np.ndarray
+
+    def overlaps(self, other: _Box) -> bool:
+        """Whether two boxes cover some of the same."""
+        gap = np.abs(other.middle - self.middle)
+        return bool(np.all(gap < self.half + other.half))
+
+
+@dataclass
+class _Page:
+    """What is drawn already: ``corners`` (2, 2) of the frame, points (k, 2) on the
+    ``curves``, and the ``boxes`` of marks and names, all in points on the page."""
+
+    corners: np.ndarray
+    curves: np.ndarray
+    boxes: list[_Box] = field(default_factory=list)
+
+    def place(self, mark: np.ndarray, half: np.ndarray) -> _Box:
+        """The best box for a name beside a mark (2,), which is then occupied."""
+        candidates = []
+        for factor in REACH_FACTORS:
+            for direction in DIRECTIONS:
+                step = REACH * factor - 4 + half * np.abs(direction)
+                candidates.append(_Box(mark + step * direction, half))
+        costs = [
+            self._cost(box) + ORDER_COST * order for order, box in enumerate(candidates)
+        ]
+        best = candidates[int(np.argmin(costs))]
+        self.boxes.append(best)
+        return best
+
+    def _cost(self, box: _Box) -> float:
+        """What a name covers there, and how far it sticks out of the frame."""
+        under = np.all(np.abs(self.curves - box.middle) < box.half, axis=1)
+        overlaps = sum(box.overlaps(other) for other in self.boxes)
+        below = np.maximum(self.corners[0] - (box.middle - box.half), 0).sum()
+        above = np.maximum(box.middle + box.half - self.corners[1], 0).sum()
+        return float(
+            np.count_nonzero(under)
+            + OVERLAP_COST * overlaps
+            + OUTSIDE_COST * (below + above)
+        )
+
+
+class _Label(NamedTuple):
+    """The names of the singular points on one ``spot`` (2,) of the plane."""
+
+    text: str
+    spot: np.ndarray
+
+
+def label_points(axes: Axes, atlas: Atlas, plane: Plane) -> None:
+    """Names beside the singular points, one label for those on one spot, where curves
+    and other names leave room."""
+    figure = axes.figure.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()  # for the layout to be what it will be
+    scale = 72.0 / figure.dpi
+    labels = _labels(atlas, plane)
+    page = _page(axes, scale)
+    for label in labels:
+        for copy in copies_in_frame(label.spot, plane.scales):
+            page.boxes.append(_Box(_on_page(axes, copy, scale), MARK_HALF))
+    for label in labels:
+        mark = _on_page(axes, label.spot, scale)
+        half = np.array([2.8 * len(label.text) + 1, 4.5])
+        box = page.place(mark, half)
+        _draw_label(axes, label, box.middle - mark)
+
+
+def _draw_label(axes: Axes, label: _Label, offset: np.ndarray) -> None:
+    """A name at an ``offset`` (2,), in points, from its spot."""
+    axes.annotate(
+        label.text,
+        (label.spot[0], label.spot[1]),
+        (offset[0], offset[1]),
+        textcoords="offset points",
+        ha="center",
+        va="center",
+        fontsize=9,
+        fontweight="bold",
+        zorder=6,
+        bbox={
+            "boxstyle": "square,pad=0.1",
+            "facecolor": "white",
+            "alpha": 0.75,
+            "linewidth": 0,
+        },
+    )
+
+
+def _page(axes: Axes, scale: float) -> _Page:
+    """The frame and the curves that are drawn."""
+    frame = axes.get_window_extent()
+    corners = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]]) * scale
+    curves = [np.empty((0, 2))]
+    for line in axes.lines:
+        rows = np.asarray(line.get_xydata())
+        curves.append(_filled(_on_page(axes, rows, scale)))
+    return _Page(corners, np.concatenate(curves))
+
+
+def _on_page(axes: Axes, spots: np.ndarray, scale: float) -> np.ndarray:
+    """Where spots (..., 2) of the plane lie on the page, in points; ``scale`` is the
+    size of a pixel."""
+    return np.asarray(axes.transData.transform(spots)) * scale
+
+
+def _filled(rows: np.ndarray) -> np.ndarray:
+    """A polyline with points added so that none are more than about `SPACING` apart."""
+    parts = [rows]
+    lengths = np.linalg.norm(np.diff(rows, axis=0), axis=1)
+    for i in np.flatnonzero(lengths > SPACING):
+        count = int(lengths[i] / SPACING) + 2
+        parts.append(np.linspace(rows[i], rows[i + 1], count))
+    points = np.concatenate(parts)
+    return points[np.all(np.isfinite(points), axis=1)]
+
+
+def _labels(atlas: Atlas, plane: Plane) -> list[_Label]:
+    """The names of the singular points; those on one spot of the plane are joined."""
+    periods = np.array([2 * scale.half for scale in plane.scales])
+    near = SAME_SPOT * _extent(atlas, plane, periods)
+    labels: list[_Label] = []
+    for point in atlas.points:
+        spot = plane.spot(point.point.u)
+        for k, label in enumerate(labels):
+            gap = np.abs(torus.difference(spot, label.spot, periods))
+            if np.all(gap < near):
+                labels[k] = _Label(f"{label.text}, {point.name}", label.spot)
+                break
+        else:
+            labels.append(_Label(point.name, spot))
+    return labels
+
+
+def _extent(atlas: Atlas, plane: Plane, periods: np.ndarray) -> np.ndarray:
+    """Extent (2,) of the frame: the period, or what the forms take."""
+    samples = [np.zeros((1, 2))]
+    if atlas.forms:
+        samples = [plane.project(form.branch.sample(50)) for form in atlas.forms]
+    ranges = np.ptp(np.concatenate(samples), axis=0)
+    return np.where(np.isfinite(periods), periods, np.maximum(ranges, 1e-6))

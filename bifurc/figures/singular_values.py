@@ -1,0 +1,216 @@
+"""The picture of the singular values along the forms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullLocator
+
+from bifurc.atlas import Atlas, Event, Form
+from bifurc.figures.drawing import draw_curve, note_emptiness
+from bifurc.figures.style import RC, Style, form_style
+
+__all__ = ["plot_singular_values"]
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+STEEP = 1.3  # values of neighbours over each other, above which points are put between
+SAME_LABEL = 0.05  # of the length of a form: points that are closer share a label
+
+
+class _Range(NamedTuple):
+    """Limits of the logarithmic axis."""
+
+    low: float
+    high: float
+
+
+class _Stop(NamedTuple):
+    """A form passes a singular point: the arclength and the name of the point."""
+
+    s: float
+    name: str
+
+
+def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
+    """The regular singular values along each form on a logarithmic scale, in one panel
+    a form.
+
+    The smallest is drawn strongly. It vanishes at singular points (dashed, named); near
+    misses carry their value.
+    """
+    count = max(len(atlas.forms), 1)
+    columns = 1 if count == 1 else 2 if count <= 8 else 3
+    rows = -(-count // columns)
+    limits = _limits(atlas)
+    size = (4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4)
+    with rc_context(RC):
+        figure = figure or Figure(figsize=size)
+        panels = figure.subplots(rows, columns, squeeze=False, sharey=True).flat
+        _set_margins(figure, rows, columns)
+        for axes in panels[count:]:
+            axes.set_visible(False)
+        for i in range(len(atlas.forms)):
+            _draw_form(panels[i], atlas, i, limits)
+        figure.supxlabel(f"arclength{_unit(atlas)}", fontsize=9)
+        figure.supylabel("singular value", fontsize=9)
+        note_emptiness(panels[0], atlas)
+    return figure
+
+
+def _set_margins(figure: Figure, rows: int, columns: int) -> None:
+    """Margins in inches: no layout engine need measure the text."""
+    width, height = figure.get_size_inches()
+    figure.subplots_adjust(
+        left=0.85 / width,
+        right=1 - 0.2 / width,
+        bottom=0.6 / height,
+        top=1 - 0.45 / height,
+        wspace=0.3 / (width / columns - 0.3),
+        hspace=0.75 / (height / rows - 0.75),
+    )
+
+
+def _unit(atlas: Atlas) -> str:
+    """The unit that all unknowns share, in brackets, if there is one."""
+    if len(set(atlas.units)) == 1 and atlas.units[0]:
+        return f" ({atlas.units[0]})"
+    return ""
+
+
+def _limits(atlas: Atlas) -> _Range:
+    """A decade below everything that is not zero, and five decades at least."""
+    if not atlas.forms:
+        return _Range(1e-5, 1.0)
+    high = max(float(form.profile.values.max()) for form in atlas.forms)
+    small = [event.value for event in atlas.near_misses]
+    small += [float(form.profile.smallest.min()) for form in atlas.forms]
+    low = max(min(small) / 10, 1e-16 * high)
+    if atlas.points:
+        low = min(low, 1e-5 * high)
+    return _Range(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(2 * high)))
+
+
+# --- one form -------------------------------------------------------------------------
+
+
+def _draw_form(axes: Axes, atlas: Atlas, index: int, limits: _Range) -> None:
+    form = atlas.forms[index]
+    style = form_style(index)
+    stops = _stops(atlas, index)
+    misses = [event for event in atlas.near_misses if event.form == index]
+    _draw_values(axes, form, stops, misses, style, limits)
+    for event in misses:
+        _draw_near_miss(axes, event, form.branch.length)
+    _name_stops(axes, stops, form.branch.length)
+    axes.set(yscale="log", ylim=limits, xlim=(0.0, form.branch.length))
+    axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
+    axes.yaxis.set_minor_locator(NullLocator())
+    pad = 14 if stops else 6
+    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=pad)
+    axes.grid(True)
+
+
+def _stops(atlas: Atlas, index: int) -> list[_Stop]:
+    """The singular points on a form."""
+    stops = []
+    for point in atlas.points:
+        for form, s in point.passes:
+            if form == index:
+                stops.append(_Stop(s, point.name))
+    return stops
+
+
+def _draw_values(
+    axes: Axes,
+    form: Form,
+    stops: Sequence[_Stop],
+    misses: Sequence[Event],
+    style: Style,
+    limits: _Range,
+) -> None:
+    """All regular singular values along a form, the smallest strongly."""
+    s = form.profile.arclength.ravel()
+    values = form.profile.values.reshape(len(s), -1)[:, : form.rank]
+    axes.plot(s, values[:, :-1], color="0.75", linewidth=0.8, zorder=1)
+    length = form.branch.length
+    turns = (-length, 0.0, length) if form.branch.closed else (0.0,)
+    zeros = [stop.s + turn for stop in stops for turn in turns]
+    x = np.concatenate([s, [event.s for event in misses]])
+    y = np.concatenate([values[:, -1], [event.value for event in misses]])
+    x, y = _with_zeros(x, y, zeros)
+    rows = np.stack([x, np.maximum(y, 1e-3 * limits.low)], axis=1)
+    draw_curve(axes, rows, style, 1.6, cut=True)
+
+
+def _with_zeros(
+    s: np.ndarray, values: np.ndarray, zeros: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Samples and zeros, with steep stretches filled in linearly: drawn straight in
+    logarithms they would mislead."""
+    x = np.concatenate([s, zeros])
+    y = np.concatenate([values, np.zeros(len(zeros))])
+    order = np.argsort(x, kind="stable")
+    x = x[order]
+    y = y[order]
+    small = np.minimum(y[:-1], y[1:])
+    large = np.maximum(y[:-1], y[1:])
+    steep = np.flatnonzero(large > STEEP * small)
+    exponents = [np.arange(-8.0, -1.5, 0.25), np.arange(-1.5, -0.25, 0.1)]
+    near = 10.0 ** np.concatenate(exponents)
+    fractions = np.concatenate([near, 1.0 - near])
+    inner = x[steep, None] + fractions * np.diff(x)[steep, None]
+    dense = np.union1d(x, inner.ravel())
+    return dense, np.interp(dense, x, y)
+
+
+def _draw_near_miss(axes: Axes, event: Event, length: float) -> None:
+    """A mark with the value, on the side where there is room on a form of that
+    length."""
+    axes.plot([event.s], [event.value], "v", color="black", markersize=4, zorder=4)
+    on_the_left = event.s > 0.85 * length
+    axes.annotate(
+        f"{event.value:.1e}",
+        (event.s, event.value),
+        (-5 if on_the_left else 5, -3),
+        textcoords="offset points",
+        ha="right" if on_the_left else "left",
+        va="top",
+        fontsize=7,
+    )
+
+
+def _name_stops(axes: Axes, stops: Sequence[_Stop], length: float) -> None:
+    """Dashed lines at singular points, their names above the panel, those close
+    together in one label."""
+    groups: list[list[_Stop]] = []
+    for stop in sorted(stops, key=lambda stop: stop.s):
+        axes.axvline(
+            stop.s, color="0.35", linewidth=0.8, linestyle=(0, (3, 2)), zorder=0
+        )
+        if groups and stop.s - groups[-1][-1].s < SAME_LABEL * length:
+            groups[-1].append(stop)
+        else:
+            groups.append([stop])
+    for group in groups:
+        middle = float(np.mean([stop.s for stop in group]))
+        axes.annotate(
+            ", ".join(stop.name for stop in group),
+            (middle, 1.0),
+            (0, 2),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            fontsize=8,
+        )
+
+
+def _power_of_ten(value: float, _: int) -> str:
+    """A tick's label in plain characters: matplotlib's own needs a parser of formulas,
+    a fifth of a second to load."""
+    return "10" + str(round(np.log10(value))).translate(SUPERSCRIPTS)

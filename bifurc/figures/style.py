@@ -1,0 +1,89 @@
+"""How curves and marks look in every figure."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NamedTuple, TypeAlias
+
+from bifurc.singular.locate import Kind
+
+__all__ = ["RC", "Dashes", "Mark", "Style", "form_style", "mark_of"]
+
+Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
+
+# Settings of matplotlib for all figures, which the user's own must not disturb. Their
+# values are of the types that each of them takes.
+RC: dict[Any, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.5,
+    "axes.labelsize": 9,
+    "axes.titlesize": 9,
+    "axes.linewidth": 0.8,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "legend.fontsize": 8.5,
+    "axes.unicode_minus": True,
+    "grid.color": "0.9",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    "savefig.bbox": None,
+    "svg.hashsalt": "bifurc",
+    "svg.fonttype": "path",
+    "text.usetex": False,
+    "path.simplify": True,
+    "lines.dash_capstyle": "butt",
+    "lines.solid_capstyle": "butt",
+    "axes.edgecolor": "0.4",
+    "figure.constrained_layout.w_pad": 0.08,
+    "figure.constrained_layout.h_pad": 0.08,
+}
+
+# Okabe and Ito (2008), without the yellow that is too light on white
+COLORS = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#56B4E9",
+    "#E69F00",
+    "#000000",
+    "#7F3C8D",
+)
+DASHES: tuple[Dashes, ...] = (
+    "-",
+    (0, (6, 2)),
+    (0, (6, 2, 1.2, 2)),
+    (0, (1.2, 1.2)),
+    (0, (9, 2, 3, 2)),
+    (0, (3, 1.5)),
+)
+
+
+class Style(NamedTuple):
+    """Colour and dashes of a form."""
+
+    color: str
+    dashes: Dashes
+
+
+class Mark(NamedTuple):
+    """Symbol of a singular point, as matplotlib calls it, and its size in points."""
+
+    symbol: str
+    size: float
+
+
+MARKS = {Kind.BIFURCATION: Mark("o", 6.5), Kind.RANK_DROP: Mark("D", 5.0)}
+OTHER_MARK = Mark("s", 5.0)
+
+
+def form_style(index: int) -> Style:
+    """Style of form number ``index``: colours and dashes repeat, but not together
+    before 24 forms."""
+    return Style(COLORS[index % len(COLORS)], DASHES[index % len(DASHES)])
+
+
+def mark_of(kind: Kind) -> Mark:
+    """Mark of the singular points of a kind."""
+    return MARKS.get(kind, OTHER_MARK)
