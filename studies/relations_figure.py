@@ -37,8 +37,8 @@ LINES = {
     RelationKind.DEGENERATE: Line("#CC79A7", "-."),
     RelationKind.CONSTRUCTED: Line("#9ACD9A", "-"),
 }
-# How far arrows bend: those of degenerate cases run beside the straight line of what was
-# constructed, those between boxes of one column around the boxes.
+# How far arrows bend: those of degenerate cases run beside the straight line of what
+# was constructed, those between boxes of one column around the boxes.
 DEGENERATE_BEND = 0.15
 COLUMN_BEND = 0.5
 
@@ -206,8 +206,8 @@ def _heights(graph: nx.MultiDiGraph, columns: list[list[str]]) -> dict[str, floa
 
 def _mean_height(graph: nx.MultiDiGraph, name: str, heights: dict[str, float]) -> float:
     """Mean height of a linkage and its neighbours."""
-    around = [heights[other] for other in nx.all_neighbors(graph, name)]
-    return float(np.mean([heights[name], *around]))
+    neighbours = [heights[other] for other in nx.all_neighbors(graph, name)]
+    return float(np.mean([heights[name], *neighbours]))
 
 
 @click.command()

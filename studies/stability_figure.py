@@ -75,16 +75,16 @@ def draw_stability(runs: Sequence[Run]) -> Figure:
     cases = list(dict.fromkeys(run.case for run in ladder))
     figure = Figure(figsize=(5.2 * len(cases) + 5.4, 9.6), layout="constrained")
     halves = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.9, 1.0])
-    above, below = halves[:, 0]
+    upper, lower = halves[:, 0]
     widths = [1.0] * len(cases) + [1.05]
-    panels = above.subplots(1, len(cases) + 1, width_ratios=widths, squeeze=False)[0]
+    panels = upper.subplots(1, len(cases) + 1, width_ratios=widths, squeeze=False)[0]
     for k, case in enumerate(cases):
         own = [run for run in ladder if run.case == case]
-        _draw_ladder(panels[k], own, case, named=k == 0)
+        _draw_ladder(panels[k], own, case, show_names=k == 0)
     _draw_crossings(panels[-1], crossings)
-    _draw_legend(above)
+    _draw_legend(upper)
     certified = [run for run in ladder if run.certificate]
-    cost_panels = below.subplots(1, len(COSTS))
+    cost_panels = lower.subplots(1, len(COSTS))
     for axes, (title, cost) in zip(cost_panels, COSTS.items(), strict=True):
         _draw_cost(axes, certified, title, cost)
     cost_panels[-1].legend(
@@ -112,7 +112,7 @@ def _entry(look: Look, face: str, words: str) -> Line2D:
     )
 
 
-def _draw_ladder(axes: Axes, runs: Sequence[Run], title: str, named: bool) -> None:
+def _draw_ladder(axes: Axes, runs: Sequence[Run], title: str, show_names: bool) -> None:
     """A row for each method and step; the first step of a method carries its name."""
     rows = list(dict.fromkeys((run.method, run.step) for run in runs))
     for run in runs:
@@ -130,7 +130,7 @@ def _draw_ladder(axes: Axes, runs: Sequence[Run], title: str, named: bool) -> No
     labels = []
     for k, (method, step) in enumerate(rows):
         labels.append(f"{method}, {step}" if k % STEPS_OF_A_METHOD == 0 else step)
-    shown = labels if named else [""] * len(rows)
+    shown = labels if show_names else [""] * len(rows)
     axes.set_yticks(-np.arange(len(rows)), shown, fontsize=8)
     for k in range(STEPS_OF_A_METHOD, len(rows), STEPS_OF_A_METHOD):
         axes.axhline(0.5 - k, color="#dddddd", lw=0.8)

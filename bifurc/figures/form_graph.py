@@ -138,12 +138,12 @@ def _component_places(graph: nx.Graph, names: list[str]) -> np.ndarray:
 
 def _circle(graph: nx.Graph, first: str) -> dict[str, tuple[float, float]]:
     """Places on a circle, neighbours side by side, so that a cycle becomes a circle."""
-    around = list(nx.dfs_preorder_nodes(graph, first))
-    k = len(around)
+    ring = list(nx.dfs_preorder_nodes(graph, first))
+    k = len(ring)
     top = np.pi / 2 + (np.pi / k if k % 2 == 0 else 0.0)
     angles = top - 2 * np.pi * np.arange(k) / k
     places = zip(np.cos(angles), np.sin(angles), strict=True)
-    return dict(zip(around, places, strict=True))
+    return dict(zip(ring, places, strict=True))
 
 
 def _laid_flat(spots: np.ndarray) -> np.ndarray:
@@ -217,10 +217,10 @@ def _edge(start: np.ndarray, end: np.ndarray, number: int, count: int) -> np.nda
     if np.array_equal(start, end):
         return _loop(start, 0.4 + 0.15 * number, t)
     step = end - start
-    across = np.array([step[1], -step[0]]) / np.linalg.norm(step)
-    upward = np.sign(-across[1] or -across[0])
+    normal = np.array([step[1], -step[0]]) / np.linalg.norm(step)
+    upward = np.sign(-normal[1] or -normal[0])
     bow = 2 * BOW * (number - (count - 1) / 2)
-    bulge = 4 * t * (1 - t) * bow * upward * across
+    bulge = 4 * t * (1 - t) * bow * upward * normal
     return np.asarray(start + t * step + bulge)
 
 

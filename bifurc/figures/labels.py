@@ -68,14 +68,14 @@ class _Page:
 
     def _cost(self, box: _Box) -> float:
         """What a name covers there, and how far it sticks out of the frame."""
-        under = np.all(np.abs(self.curves - box.middle) < box.half, axis=1)
+        covers = np.all(np.abs(self.curves - box.middle) < box.half, axis=1)
         overlaps = sum(box.overlaps(other) for other in self.boxes)
-        below = np.maximum(self.corners[0] - (box.middle - box.half), 0).sum()
-        above = np.maximum(box.middle + box.half - self.corners[1], 0).sum()
+        low_overhang = np.maximum(self.corners[0] - (box.middle - box.half), 0).sum()
+        high_overhang = np.maximum(box.middle + box.half - self.corners[1], 0).sum()
         return float(
-            np.count_nonzero(under)
+            np.count_nonzero(covers)
             + OVERLAP_COST * overlaps
-            + OUTSIDE_COST * (below + above)
+            + OUTSIDE_COST * (low_overhang + high_overhang)
         )
 
 
@@ -157,13 +157,13 @@ def _filled(rows: np.ndarray) -> np.ndarray:
 def _labels(atlas: Atlas, plane: Plane) -> list[_Label]:
     """The names of the singular points; those on one spot of the plane are joined."""
     periods = np.array([2 * scale.half for scale in plane.scales])
-    near = SAME_SPOT * _extent(atlas, plane, periods)
+    tolerance = SAME_SPOT * _extent(atlas, plane, periods)
     labels: list[_Label] = []
     for point in atlas.points:
         spot = plane.spot(point.point.u)
         for k, label in enumerate(labels):
             gap = np.abs(torus.difference(spot, label.spot, periods))
-            if np.all(gap < near):
+            if np.all(gap < tolerance):
                 labels[k] = _Label(f"{label.text}, {point.name}", label.spot)
                 break
         else:

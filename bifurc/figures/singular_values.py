@@ -157,12 +157,12 @@ def _with_zeros(
     order = np.argsort(x, kind="stable")
     x = x[order]
     y = y[order]
-    small = np.minimum(y[:-1], y[1:])
-    large = np.maximum(y[:-1], y[1:])
-    steep = np.flatnonzero(large > STEEP * small)
+    lower = np.minimum(y[:-1], y[1:])
+    upper = np.maximum(y[:-1], y[1:])
+    steep = np.flatnonzero(upper > STEEP * lower)
     exponents = [np.arange(-8.0, -1.5, 0.25), np.arange(-1.5, -0.25, 0.1)]
-    near = 10.0 ** np.concatenate(exponents)
-    fractions = np.concatenate([near, 1.0 - near])
+    small = 10.0 ** np.concatenate(exponents)
+    fractions = np.concatenate([small, 1.0 - small])
     inner = x[steep, None] + fractions * np.diff(x)[steep, None]
     dense = np.union1d(x, inner.ravel())
     return dense, np.interp(dense, x, y)

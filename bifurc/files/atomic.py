@@ -85,8 +85,8 @@ def _errors_about(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        named = error.filename
-        if named is not None and HIDDEN not in str(named):
+        name = error.filename
+        if name is not None and HIDDEN not in str(name):
             raise
         if error.errno is None:
             raise OSError(f"{path}: {error}") from error

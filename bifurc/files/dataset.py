@@ -39,7 +39,7 @@ from bifurc.files.point_layout import (
     read_point,
 )
 from bifurc.files.surface_layout import SURFACES, read_surface
-from bifurc.files.table import JOINT, Frame, described
+from bifurc.files.table import JOINT, Frame, make_variable
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
 
@@ -64,7 +64,7 @@ NEEDED_ATTRIBUTES = (
 Attribute: TypeAlias = str | int | float
 
 
-# --- files --------------------------------------------------------------------------------
+# --- files ----------------------------------------------------------------------------
 
 
 def save_atlas(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
@@ -114,10 +114,10 @@ def load_atlas(path: str | os.PathLike[str]) -> Atlas:
 def _check_sum(dataset: xr.Dataset, source: str) -> None:
     """Raise `AtlasFileError` where the values are not those for which the checksum was
     written, if one was."""
-    written = dataset.attrs.get(CHECKSUM)
-    if written is None:
+    expected = dataset.attrs.get(CHECKSUM)
+    if expected is None:
         return
-    if not np.array_equal(written, checksum(dataset, NEEDED_ATTRIBUTES)):
+    if not np.array_equal(expected, checksum(dataset, NEEDED_ATTRIBUTES)):
         raise AtlasFileError(
             source,
             "its values are not those that were written: the file is damaged, or was "
@@ -125,7 +125,7 @@ def _check_sum(dataset: xr.Dataset, source: str) -> None:
         )
 
 
-# --- writing ------------------------------------------------------------------------------
+# --- writing --------------------------------------------------------------------------
 
 
 def to_dataset(atlas: Atlas) -> xr.Dataset:
@@ -201,7 +201,7 @@ def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
     variables = {}
     for key, value in atlas.subject.items():
         if np.shape(value) == (len(atlas.names),):
-            variables[f"linkage_{key}"] = described(
+            variables[f"linkage_{key}"] = make_variable(
                 (frame.joint,),
                 np.array(value, dtype=float),
                 f"{key} of the linkage",
@@ -210,7 +210,7 @@ def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
     return variables
 
 
-# --- reading ------------------------------------------------------------------------------
+# --- reading --------------------------------------------------------------------------
 
 
 def from_dataset(dataset: xr.Dataset) -> Atlas:

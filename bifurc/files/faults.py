@@ -46,8 +46,8 @@ def table_faults(
         else:
             yield from _size_faults(column, dataset, frame)
             yield from _index_faults(column, dataset, frame)
-    for dimension, padded in table.counted.items():
-        yield from _count_faults(table.owner, dimension, padded, dataset)
+    for dimension, is_padded in table.entry_dimensions.items():
+        yield from _count_faults(table.owner, dimension, is_padded, dataset)
 
 
 def _size_faults(
@@ -63,16 +63,16 @@ def _size_faults(
 def _index_faults(
     column: Column[Record], dataset: xr.Dataset, frame: Frame
 ) -> Iterator[str]:
-    if not column.indexes:
+    if not column.index_of:
         return
-    count = dataset.sizes[frame.name(column.indexes)]
+    count = dataset.sizes[frame.name(column.index_of)]
     indices = dataset[column.name].values
     if np.any((indices < 0) | (indices >= count)):
         yield f"{column.name} holds an index that none of {count} has"
 
 
 def _count_faults(
-    owner: str, dimension: str, padded: bool, dataset: xr.Dataset
+    owner: str, dimension: str, is_padded: bool, dataset: xr.Dataset
 ) -> Iterator[str]:
     name = count_name(dimension)
     counts = dataset.variables[name]
@@ -82,5 +82,5 @@ def _count_faults(
     size = dataset.sizes[dimension]
     if np.any(counts.values < 0) or np.any(counts.values > size):
         yield f"{name} holds a number that is not from 0 to {size}"
-    elif not padded and counts.values.sum() != size:
+    elif not is_padded and counts.values.sum() != size:
         yield f"{name} adds up to {counts.values.sum()} instead of {size}"

@@ -56,23 +56,23 @@ POINTS: Table[MeetingPoint] = Table(
             lambda p: p.surfaces,
             "index of a surface it lies on",
             dtype=int,
-            along="meeting",
-            indexes="surface",
+            entries="meeting",
+            index_of="surface",
         ),
         Column(
             "pass_form",
             lambda p: [form for form, _ in p.passes],
             "index of the form that passes, from 0",
             dtype=int,
-            along="pass",
-            indexes="form",
+            entries="pass",
+            index_of="form",
         ),
         Column(
             "pass_arclength",
             lambda p: [s for _, s in p.passes],
             "arclength at which it passes",
             UNIT,
-            along="pass",
+            entries="pass",
         ),
         Column(
             "pass_tangent",
@@ -80,7 +80,7 @@ POINTS: Table[MeetingPoint] = Table(
             "unit tangent of the form that passes",
             "1",
             dimensions=(JOINT,),
-            along="pass",
+            entries="pass",
         ),
         Column(
             "null_vector",
@@ -88,7 +88,7 @@ POINTS: Table[MeetingPoint] = Table(
             "orthonormal basis of the null space of F'",
             "1",
             dimensions=(JOINT,),
-            along="null",
+            entries="null",
         ),
         Column(
             "half_branch",
@@ -96,7 +96,7 @@ POINTS: Table[MeetingPoint] = Table(
             "unit direction in which solutions leave",
             "1",
             dimensions=(JOINT,),
-            along="half",
+            entries="half",
         ),
         Column(
             "cone_tangent",
@@ -104,7 +104,7 @@ POINTS: Table[MeetingPoint] = Table(
             "unit tangent from the second-order equations",
             "1",
             dimensions=(JOINT,),
-            along="cone",
+            entries="cone",
         ),
     ),
 )
@@ -136,7 +136,7 @@ def read_point(row: Row) -> MeetingPoint:
     )
 
 
-# --- events along the forms ---------------------------------------------------------------
+# --- events along the forms -----------------------------------------------------------
 
 
 def _event_columns(owner: str) -> tuple[Column[Event], ...]:
@@ -147,7 +147,7 @@ def _event_columns(owner: str) -> tuple[Column[Event], ...]:
             lambda e: e.form,
             "index of the form, from 0",
             dtype=int,
-            indexes="form",
+            index_of="form",
         ),
         Column(f"{owner}_arclength", lambda e: e.s, "arclength along the form", UNIT),
         Column(
@@ -184,7 +184,7 @@ DEAD_POINTS: Table[Event] = Table(
             lambda e: e.index,
             "index of the unknown that turns back, from 0",
             dtype=int,
-            indexes=JOINT,
+            index_of=JOINT,
         ),
     ),
 )

@@ -47,7 +47,7 @@ SURFACES: Table[Surface] = Table(
             "solution on a surface",
             UNIT,
             dimensions=(JOINT,),
-            along="surface_sample",
+            entries="surface_sample",
         ),
         Column(
             "chart_center",
@@ -55,7 +55,7 @@ SURFACES: Table[Surface] = Table(
             "centre of a chart",
             UNIT,
             dimensions=(JOINT,),
-            along="chart",
+            entries="chart",
         ),
         Column(
             "chart_basis",
@@ -63,21 +63,21 @@ SURFACES: Table[Surface] = Table(
             "basis of its tangent plane",
             "1",
             dimensions=(JOINT, "axis"),
-            along="chart",
+            entries="chart",
         ),
         Column(
             "chart_radius",
             _of_charts(lambda charts: charts.radii),
             "radius of its disk",
             UNIT,
-            along="chart",
+            entries="chart",
         ),
         Column(
             "polygon_size",
             _of_charts(lambda charts: charts.polygon_sizes),
             "number of corners of its polygon",
             dtype=int,
-            along="chart",
+            entries="chart",
         ),
         Column(
             "chart_pair",
@@ -85,7 +85,7 @@ SURFACES: Table[Surface] = Table(
             "charts with an edge in common",
             dtype=int,
             dimensions=("end",),
-            along="neighbour",
+            entries="neighbour",
         ),
         Column(
             "chart_vertex",
@@ -93,14 +93,14 @@ SURFACES: Table[Surface] = Table(
             "vertex of the polygons",
             UNIT,
             dimensions=(JOINT,),
-            along="vertex",
+            entries="vertex",
         ),
         Column(
             "polygon_corner",
             _of_charts(lambda charts: charts.polygons),
             "number of the vertex at each corner",
             dtype=int,
-            along="corner",
+            entries="corner",
         ),
     ),
 )

@@ -27,7 +27,7 @@ __all__ = [
     "Row",
     "Table",
     "count_name",
-    "described",
+    "make_variable",
 ]
 
 Record = TypeVar("Record")
@@ -42,8 +42,8 @@ UNIT = "unit of the unknowns"
 class Frame:
     """What all variables of one dataset share.
 
-    ``joint`` is the name of the dimension of the unknowns, ``unit`` the unit that all of
-    them have. ``sizes`` are those of the dimensions of single values.
+    ``joint`` is the name of the dimension of the unknowns, ``unit`` the unit that all
+    of them have. ``sizes`` are those of the dimensions of single values.
     """
 
     joint: str
@@ -59,9 +59,9 @@ class Frame:
 class Column(Generic[Record]):
     """One variable. ``take`` gives what a record has in it.
 
-    ``dimensions`` are those of a single value. With ``along`` a record has any number
-    of values, counted by that dimension; they are joined unless ``padded``. ``indexes``
-    names the dimension of which the values are indices.
+    ``dimensions`` are those of a single value. With ``entries`` a record has any number
+    of values, counted by that dimension; they are joined, or ``is_padded``.
+    ``index_of`` names the dimension of which the values are indices.
     """
 
     name: str
@@ -70,34 +70,34 @@ class Column(Generic[Record]):
     units: str = ""
     dtype: type = float
     dimensions: tuple[str, ...] = ()
-    along: str = ""
-    padded: bool = False
-    indexes: str = ""
+    entries: str = ""
+    is_padded: bool = False
+    index_of: str = ""
 
     def cell(self, record: Record, frame: Frame) -> np.ndarray:
         """What a record has: of the shape of a value, or (count, shape of a value).
 
         A value that is smaller than its dimensions is filled up with 0.
         """
-        shape = tuple(frame.sizes[name] for name in self.dimensions)
+        shape = self._shape(frame)
         value: np.ndarray = np.asarray(self.take(record), dtype=self.dtype)
-        if not self.along:
+        if not self.entries:
             return value.reshape(shape)
         if not value.size:
             return np.empty((len(value), *shape), dtype=self.dtype)
-        lacking = np.subtract(shape, value.shape[1:])
-        return np.pad(value, [(0, 0), *((0, int(width)) for width in lacking)])
+        padding = np.subtract(shape, value.shape[1:])
+        return np.pad(value, [(0, 0), *((0, int(width)) for width in padding)])
 
     def join(self, cells: Sequence[np.ndarray], frame: Frame) -> np.ndarray:
         """The values of the variable from what each record has."""
-        shape = tuple(frame.sizes[name] for name in self.dimensions)
-        if self.padded:
+        shape = self._shape(frame)
+        if self.is_padded:
             longest = max((len(cell) for cell in cells), default=0)
             out = np.full((len(cells), longest, *shape), np.nan)
             for row, cell in zip(out, cells, strict=True):
                 row[: len(cell)] = cell
             return out
-        if self.along:
+        if self.entries:
             nothing: np.ndarray = np.empty((0, *shape), dtype=self.dtype)
             return np.concatenate([nothing, *cells])
         return np.array(cells, dtype=self.dtype).reshape(len(cells), *shape)
@@ -110,11 +110,15 @@ class Column(Generic[Record]):
         """
         if self.dtype is not str:
             values = values.astype(self.dtype, copy=False)
-        if self.padded:
+        if self.is_padded:
             return [row[:count] for row, count in zip(values, counts, strict=True)]
-        if self.along:
+        if self.entries:
             return np.split(values, np.cumsum(counts))[: len(counts)]
         return list(values)
+
+    def _shape(self, frame: Frame) -> tuple[int, ...]:
+        """Shape of a single value."""
+        return tuple(frame.sizes[name] for name in self.dimensions)
 
 
 @dataclass(frozen=True)
@@ -129,23 +133,27 @@ class Table(Generic[Record]):
     columns: tuple[Column[Record], ...]
 
     @property
-    def counted(self) -> dict[str, bool]:
-        """The dimensions that count the values of a record, and whether these are
+    def entry_dimensions(self) -> dict[str, bool]:
+        """The dimensions that count the entries of a record, and whether these are
         padded."""
-        return {column.along: column.padded for column in self.columns if column.along}
+        return {
+            column.entries: column.is_padded
+            for column in self.columns
+            if column.entries
+        }
 
     def names(self, frame: Frame) -> list[str]:
         """Names of all variables."""
         names = [frame.name(column.name) for column in self.columns]
-        return names + [count_name(dimension) for dimension in self.counted]
+        return names + [count_name(dimension) for dimension in self.entry_dimensions]
 
     def dimensions(self, column: Column[Record], frame: Frame) -> tuple[str, ...]:
         """Dimensions of the variable of a column."""
         names = [self.owner, *column.dimensions]
-        if column.padded:
-            names = [self.owner, column.along, *column.dimensions]
-        elif column.along:
-            names = [column.along, *column.dimensions]
+        if column.is_padded:
+            names = [self.owner, column.entries, *column.dimensions]
+        elif column.entries:
+            names = [column.entries, *column.dimensions]
         return tuple(frame.name(name) for name in names)
 
     def variables(self, atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
@@ -155,19 +163,19 @@ class Table(Generic[Record]):
         for column in self.columns:
             cells = [column.cell(record, frame) for record in records]
             units = frame.unit if column.units == UNIT else column.units
-            variables[frame.name(column.name)] = described(
+            variables[frame.name(column.name)] = make_variable(
                 self.dimensions(column, frame),
                 column.join(cells, frame),
                 column.long_name,
                 units,
             )
-            if column.along:
+            if column.entries:
                 counts = np.array([len(cell) for cell in cells], dtype=int)
-                variable = described(
-                    (self.owner,), counts, f"number of {column.along} entries"
+                variable = make_variable(
+                    (self.owner,), counts, f"number of {column.entries} entries"
                 )
-                variable.attrs["sample_dimension"] = column.along
-                variables[count_name(column.along)] = variable
+                variable.attrs["sample_dimension"] = column.entries
+                variables[count_name(column.entries)] = variable
         return variables
 
     def rows(self, dataset: xr.Dataset, frame: Frame) -> list[Row]:
@@ -176,8 +184,8 @@ class Table(Generic[Record]):
         for column in self.columns:
             name = frame.name(column.name)
             counts = np.empty(0, dtype=int)
-            if column.along:
-                counts = dataset[count_name(column.along)].values
+            if column.entries:
+                counts = dataset[count_name(column.entries)].values
             cells[column.name] = column.split(dataset[name].values, counts)
         count = dataset.sizes[frame.name(self.owner)]
         return [{name: cells[name][i] for name in cells} for i in range(count)]
@@ -189,7 +197,7 @@ def count_name(dimension: str) -> str:
     return f"{dimension}_count"
 
 
-def described(
+def make_variable(
     dimensions: tuple[str, ...], values: np.ndarray, long_name: str, units: str = ""
 ) -> xr.Variable:
     """A variable with its long name and its units; no value stands for a missing

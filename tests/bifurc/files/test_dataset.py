@@ -3,15 +3,15 @@ refused by name."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
-from typing import Any
+import errno
+from dataclasses import replace
+from pathlib import Path
 
-import networkx as nx
 import numpy as np
 import pytest
+import xarray as xr
 
-from bifurc.atlas import Atlas, Event, Surface
+from bifurc.atlas import Atlas
 from bifurc.files.dataset import (
     AtlasFileError,
     from_dataset,
@@ -19,96 +19,24 @@ from bifurc.files.dataset import (
     save_atlas,
     to_dataset,
 )
-from bifurc.files.graphml import write_graphml
-from bifurc.files.json_values import from_text, to_text
 from bifurc.function_problem import FunctionProblem
-from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 
 
-def difference(a: Any, b: Any, where: str = "atlas") -> str:
-    """The first place where two nestings of records, arrays and plain values differ in
-    type or by one bit."""
-    if type(a) is not type(b):
-        return f"{where}: {type(a)} and {type(b)}"
-    if is_dataclass(a):
-        parts = [
-            (f".{f.name}", getattr(a, f.name), getattr(b, f.name)) for f in fields(a)
-        ]
-    elif isinstance(a, np.ndarray):
-        alike = a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
-        return "" if alike else f"{where}: {a!r} and {b!r}"
-    elif isinstance(a, tuple | list):
-        if len(a) != len(b):
-            return f"{where}: {len(a)} and {len(b)} entries"
-        parts = [(f"[{i}]", x, y) for i, (x, y) in enumerate(zip(a, b, strict=True))]
-    elif isinstance(a, Mapping):
-        if list(a) != list(b):
-            return f"{where}: keys {list(a)} and {list(b)}"
-        parts = [(f"[{key!r}]", a[key], b[key]) for key in a]
-    else:
-        return "" if a == b else f"{where}: {a!r} and {b!r}"
-    return next(
-        (found for name, x, y in parts if (found := difference(x, y, where + name))), ""
-    )
-
-
-@pytest.fixture(scope="module")
-def atlas() -> Atlas:
-    """Two lines that cross on a torus and in a box: a closed and an open form, with
-    everything an atlas can hold."""
-    problem = FunctionProblem(
-        lambda u: np.array([np.sin(u[0]) * np.sin(u[1])]),
-        [[-np.inf, np.inf], [-2.0, 2.0]],
-        names=("x", "y"),
-        units=("rad", "rad"),
-        periods=(2 * np.pi, np.inf),
-    )
-    found = explore(problem, settings=SearchSettings(starts=40))
-    assert {form.branch.closed for form in found.forms} == {True, False}
-    label = {
-        "inactive": ("x",),
-        "at": np.pi / 3,
-        "fixed": {1: np.float64(0.1)},
-        "free": [None, True],
-    }
-    named = found.renamed(
-        [f"Form {chr(945 + i)}, no. {i}" for i in range(3)],
-        [label, {}, {"symmetry": "none"}],
-    )
-    linkage = {
-        "name": "a pair",
-        "lengths": [1.0, 0.1 + 0.2],
-        "twists": np.array([0.1, -0.0]),
-        "offsets": (0, 1),
-    }
-    return replace(
-        named,
-        rigid=np.array([[0.1, 1 / 3]]),
-        closure_gap=1e-300,
-        subject=linkage,
-        near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5),),
-        dead_points=(
-            Event(0, 2 / 3, np.array([0.3, -0.0]), index=1),
-            Event(1, 0.0, np.zeros(2), index=0),
-        ),
-        surfaces=(
-            Surface(2, np.eye(2), note="not all of it"),
-            Surface(3, np.ones((3, 2)) / 7),
-        ),
-    )
-
-
-def test_a_dataset_gives_back_the_identical_atlas(atlas: Atlas) -> None:
+def test_a_dataset_gives_back_the_identical_atlas(atlas: Atlas, difference) -> None:
     assert difference(from_dataset(to_dataset(atlas)), atlas) == ""
 
 
-def test_a_file_gives_back_the_identical_atlas(atlas: Atlas, tmp_path) -> None:
+def test_a_file_gives_back_the_identical_atlas(
+    atlas: Atlas, tmp_path, difference
+) -> None:
     assert difference(load_atlas(save_atlas(atlas, tmp_path / "atlas.nc")), atlas) == ""
 
 
-def test_an_atlas_without_any_solution_comes_back_identical(tmp_path) -> None:
+def test_an_atlas_without_any_solution_comes_back_identical(
+    tmp_path, difference
+) -> None:
     nothing = explore(
         FunctionProblem(
             lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 1]), [[-1, 1], [-1, 1]]
@@ -166,7 +94,7 @@ def test_the_linkage_is_stored_along_the_joints(atlas: Atlas) -> None:
 
 
 def test_unknowns_of_mixed_units_have_a_dimension_of_their_own(
-    atlas: Atlas, tmp_path
+    atlas: Atlas, tmp_path, difference
 ) -> None:
     mixed = replace(atlas, units=("rad", "seconds"))
     dataset = to_dataset(mixed)
@@ -185,8 +113,6 @@ def test_a_missing_variable_is_named_with_the_file(atlas: Atlas, tmp_path) -> No
 
 
 def test_a_netcdf_file_of_something_else_is_refused(tmp_path) -> None:
-    import xarray as xr
-
     xr.Dataset({"rain": ("time", [1.0])}).to_netcdf(tmp_path / "rain.nc")
     with pytest.raises(
         AtlasFileError, match=r"rain\.nc: its attribute 'format' is None"
@@ -217,12 +143,10 @@ def test_a_file_that_is_not_netcdf_is_refused_by_name(tmp_path) -> None:
 def test_an_interrupted_run_leaves_the_old_file_and_nothing_else(
     atlas: Atlas, tmp_path, monkeypatch
 ) -> None:
-    import xarray as xr
-
     path = save_atlas(atlas, tmp_path / "atlas.nc")
     before = path.read_bytes()
 
-    def interrupted(self: xr.Dataset, target: Any, **options: Any) -> None:
+    def interrupted(self: xr.Dataset, target: Path, **options: object) -> None:
         target.write_bytes(b"half")
         raise KeyboardInterrupt
 
@@ -237,41 +161,232 @@ def test_a_folder_that_does_not_exist_is_named(atlas: Atlas, tmp_path) -> None:
         save_atlas(atlas, tmp_path / "nowhere" / "atlas.nc")
 
 
-def test_text_keeps_types_and_every_digit() -> None:
-    value = {
-        "a": (1, 2.5, [True, None]),
-        "b": np.array([[0.1, np.inf]]),
-        3: np.int64(4),
-        "nan": np.array(["x", "yz"]),
-        "__kind__": {"deep": (np.float64(0.1),)},
-        "empty": np.empty((0, 3)),
-    }
-    assert difference(from_text(to_text(value)), value) == ""
+# --- damage ---------------------------------------------------------------------------
 
 
-def test_text_refuses_what_it_cannot_give_back() -> None:
-    with pytest.raises(TypeError, match="type set cannot be stored"):
-        to_text({"a": {1, 2}})
+def test_a_folder_or_a_device_is_no_atlas(tmp_path) -> None:
+    for path in (tmp_path, Path("/dev/full")):
+        with pytest.raises(AtlasFileError, match="it is a folder or a device"):
+            load_atlas(path)
 
 
-def test_graphml_holds_both_graphs_with_plain_attributes(
+@pytest.fixture(scope="module")
+def content(atlas: Atlas, tmp_path_factory) -> bytes:
+    """The bytes of a whole file."""
+    return save_atlas(atlas, tmp_path_factory.mktemp("whole") / "a.nc").read_bytes()
+
+
+@pytest.mark.parametrize("count", [1, 20])
+def test_a_file_with_wrong_bytes_is_refused_or_gives_the_same_atlas(
+    atlas: Atlas, content: bytes, tmp_path, difference, count: int
+) -> None:
+    """Where the bytes mean nothing, such as between two variables, it is whole."""
+    path = tmp_path / "damaged.nc"
+    refused = 0
+    for seed in range(50):
+        rng = np.random.default_rng(seed)
+        damaged = np.frombuffer(content, dtype=np.uint8).copy()
+        places = rng.integers(len(damaged), size=count)
+        damaged[places] ^= rng.integers(1, 256, size=count, dtype=np.uint8)
+        path.write_bytes(damaged.tobytes())
+        try:
+            assert difference(load_atlas(path), atlas) == ""
+        except AtlasFileError as error:
+            assert error.source == str(path)
+            refused += 1
+    assert refused > 10
+
+
+def test_a_truncated_file_is_refused(content: bytes, tmp_path) -> None:
+    path = tmp_path / "short.nc"
+    for length in np.linspace(0, len(content) - 1, 30, dtype=int):
+        path.write_bytes(content[:length])
+        with pytest.raises(AtlasFileError, match=r"short\.nc: it cannot be read"):
+            load_atlas(path)
+
+
+def test_a_file_with_other_values_is_read_once_its_checksum_is_deleted(
     atlas: Atlas, tmp_path
 ) -> None:
-    graph = nx.read_graphml(
-        write_graphml(atlas, tmp_path / "graph.graphml"), force_multigraph=True
-    )
-    layers = {
-        layer: graph.edge_subgraph(
-            (a, b, k)
-            for a, b, k, e in graph.edges(keys=True, data="layer")
-            if e == layer
-        )
-        for layer in ("forms", "arcs")
-    }
-    assert (
-        layers["forms"].number_of_edges() == transition_graph(atlas).number_of_edges()
-    )
-    assert layers["arcs"].number_of_edges() == arc_graph(atlas).number_of_edges()
-    total = sum(length for *_, length in layers["arcs"].edges(data="length"))
-    assert total == pytest.approx(sum(form.branch.length for form in atlas.forms))
-    assert all("travel_x" in edge for *_, edge in layers["arcs"].edges(data=True))
+    path = save_atlas(atlas, tmp_path / "a.nc")
+    dataset = xr.load_dataset(path)
+    dataset["dead_point_arclength"][0] = 0.25
+    dataset.to_netcdf(tmp_path / "edited.nc")
+    with pytest.raises(AtlasFileError, match="was edited"):
+        load_atlas(tmp_path / "edited.nc")
+    del dataset.attrs["checksum"]
+    dataset.to_netcdf(tmp_path / "edited.nc")
+    assert load_atlas(tmp_path / "edited.nc").dead_points[0].s == 0.25
+
+
+def shortened(variable: xr.Variable) -> xr.Variable:
+    return xr.Variable(variable.dims[1:], np.zeros(variable.shape[1:], variable.dtype))
+
+
+def renamed(variable: xr.Variable) -> xr.Variable:
+    return xr.Variable([f"other_{name}" for name in variable.dims], variable.values)
+
+
+def as_text(variable: xr.Variable) -> xr.Variable:
+    return xr.Variable(variable.dims, np.full(variable.shape, "text"))
+
+
+def as_number(variable: xr.Variable) -> xr.Variable:
+    return xr.Variable(variable.dims, np.zeros(variable.shape))
+
+
+def as_complex(variable: xr.Variable) -> xr.Variable:
+    return xr.Variable(variable.dims, np.zeros(variable.shape, dtype=complex))
+
+
+@pytest.mark.parametrize("damage", [shortened, renamed, as_text, as_number, as_complex])
+def test_a_variable_of_a_wrong_shape_or_type_is_named(atlas: Atlas, damage) -> None:
+    whole = to_dataset(atlas)
+    count = 0
+    for name, array in whole.data_vars.items():
+        variable = damage(array.variable)
+        same_kind = variable.dtype.kind == array.dtype.kind
+        is_damaged = variable.dims != array.dims or not same_kind
+        if str(name).startswith("linkage") or not is_damaged:
+            continue
+        count += 1
+        with pytest.raises(AtlasFileError, match=f"dataset: {name} "):
+            from_dataset(whole.assign({name: variable}))
+    assert count > 20
+
+
+def test_every_missing_variable_is_named(atlas: Atlas) -> None:
+    whole = to_dataset(atlas)
+    for name in whole.variables:
+        if not str(name).startswith("linkage"):
+            with pytest.raises(AtlasFileError, match="it lacks") as caught:
+                from_dataset(whole.drop_vars(str(name)))
+            assert caught.value.missing == (name,)
+
+
+@pytest.mark.parametrize(
+    "name", ["piece_count", "pass_count", "sample_count", "corner_count"]
+)
+@pytest.mark.parametrize("number", [-1, 10**9])
+def test_numbers_of_entries_that_cannot_be_are_refused(
+    atlas: Atlas, name: str, number: int
+) -> None:
+    dataset = to_dataset(atlas)
+    dataset[name][0] = number
+    with pytest.raises(AtlasFileError, match=f"{name} holds a number that is not"):
+        from_dataset(dataset)
+
+
+def test_numbers_of_entries_that_do_not_add_up_are_refused(atlas: Atlas) -> None:
+    dataset = to_dataset(atlas)
+    dataset["piece_count"][0] -= 1
+    with pytest.raises(AtlasFileError, match="piece_count adds up to"):
+        from_dataset(dataset)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "pass_form",
+        "near_miss_form",
+        "dead_point_form",
+        "dead_point_index",
+        "chart_pair",
+        "polygon_corner",
+    ],
+)
+@pytest.mark.parametrize("index", [-1, 1000])
+def test_indices_of_nothing_are_refused(atlas: Atlas, name: str, index: int) -> None:
+    dataset = to_dataset(atlas)
+    dataset[name][(0,) * dataset[name].ndim] = index
+    with pytest.raises(AtlasFileError, match=f"{name} holds an index"):
+        from_dataset(dataset)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("outcome", "LOST"),
+        ("point_kind", "?"),
+        ("covering", "?"),
+        ("labels", "{"),
+        ("labels", "[1]"),
+        ("certificate", "{}"),
+        ("sample_nodes", 7),
+        ("sample_nodes", 0),
+        ("polygon_size", 5),
+    ],
+)
+def test_values_that_do_not_fit_together_are_refused(
+    atlas: Atlas, name: str, value: str | int
+) -> None:
+    dataset = to_dataset(atlas)
+    values = dataset[name].values.astype(object if isinstance(value, str) else int)
+    values[0] = value
+    dataset[name] = (dataset[name].dims, values)
+    with pytest.raises(AtlasFileError, match="does not fit together"):
+        from_dataset(dataset)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("format", 3),
+        ("format", np.array([1.0, 2.0])),
+        ("format_version", "three"),
+        ("format_version", np.array([3, 3])),
+        ("unknown_dimension", "nowhere"),
+        ("unknown_dimension", 1.0),
+        ("closure_gap", "small"),
+        ("missed_probability", np.array([0.1, 0.2])),
+        ("provenance", "{"),
+        ("provenance", "{}"),
+        ("provenance", '{"settings": 1}'),
+        ("provenance", '{"settings": {"tracing": {"order": "x"}}}'),
+        ("provenance", '{"settings": {"tracing": {}, "starts": -1}}'),
+        ("provenance", '{"settings": {"tracing": {}}, "colour": 1}'),
+        ("subject", "[1]"),
+        ("subject", 1.0),
+    ],
+)
+def test_an_attribute_of_a_wrong_kind_is_refused(
+    atlas: Atlas, name: str, value: object
+) -> None:
+    dataset = to_dataset(atlas)
+    dataset.attrs[name] = value
+    with pytest.raises(AtlasFileError):
+        from_dataset(dataset)
+
+
+def test_every_missing_attribute_that_is_read_is_named(atlas: Atlas) -> None:
+    for name in ("closure_gap", "provenance", "subject", "completeness_level"):
+        dataset = to_dataset(atlas)
+        del dataset.attrs[name]
+        with pytest.raises(AtlasFileError, match=f"it lacks {name}"):
+            from_dataset(dataset)
+
+
+# --- writing --------------------------------------------------------------------------
+
+
+def test_a_disk_that_is_full_for_netcdf_is_told_with_the_name_of_the_file(
+    atlas: Atlas, tmp_path, monkeypatch
+) -> None:
+    path = save_atlas(atlas, tmp_path / "atlas.nc")
+    before = path.read_bytes()
+
+    def full(self: xr.Dataset, target: Path, **options: object) -> None:
+        target.write_bytes(b"half")
+        raise RuntimeError("NetCDF: HDF error")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", full)
+    with pytest.raises(OSError, match=r"cannot be written.*atlas\.nc") as caught:
+        save_atlas(atlas, path)
+    assert caught.value.errno == errno.EIO
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_folder_in_place_of_the_file_is_named(atlas: Atlas, tmp_path) -> None:
+    with pytest.raises(IsADirectoryError, match=str(tmp_path)):
+        save_atlas(atlas, tmp_path)
