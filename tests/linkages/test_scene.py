@@ -56,9 +56,8 @@ def test_a_square_seen_from_the_best_direction_keeps_its_corners_apart():
         ]
     )
     flat = np.eye(3) - np.outer(look, look)
-    assert (
-        clearance(scene.joints @ flat, scene.normals @ flat)[0] > 0.6
-    )  # of links of length 1
+    distances = clearance(scene.joints @ flat, scene.normals @ flat)
+    assert distances.joints > 0.6  # of links of length 1
     assert clearance(scene.joints, scene.normals) == pytest.approx((1.0, 1.0))
 
 
