@@ -9,11 +9,12 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
+from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure, locked_joints
 from linkages.closure.loop_closure import LoopClosure
 from linkages.closure.precise import precise_residual
-from linkages.loop import GeometryError, Loop, loop_from_axes
+from linkages.loop import GeometryError, Loop
 
 DIGITS = 50
 

@@ -4,7 +4,8 @@ list must have."""
 import numpy as np
 import pytest
 
-from linkages.loop import GeometryError, Loop, loop_from_axes
+from linkages.axes import loop_from_axes
+from linkages.loop import GeometryError, Loop
 from linkages.slices.elimination import slice_configurations
 
 DEGREE = np.pi / 180
