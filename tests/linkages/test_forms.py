@@ -67,20 +67,20 @@ def test_inactive_joints_come_with_their_angles(traced):
                 case["linkage"] == "special-double-subtractive-goldberg"
                 and "Bennett" in form["name"]
             ):
-                assert identity.inactive_joints == (3, 6)
-                assert identity.inactive_angles == pytest.approx(
+                assert identity.labels.inactive_joints == (3, 6)
+                assert identity.labels.inactive_angles == pytest.approx(
                     (np.pi, np.pi), abs=1e-9
                 )
             if (
                 case["linkage"].startswith("reconfigurable")
                 and "Bennett" in form["name"]
             ):
-                assert identity.inactive_joints == (2, 5)
-                assert identity.inactive_angles == pytest.approx(
+                assert identity.labels.inactive_joints == (2, 5)
+                assert identity.labels.inactive_angles == pytest.approx(
                     np.radians([-70, -70]), abs=1e-9
                 )
             if "6R" in form["name"] or "original" in form["name"]:
-                assert identity.inactive_joints == ()
+                assert identity.labels.inactive_joints == ()
 
 
 def test_symmetries_are_recognised(traced):
@@ -96,7 +96,10 @@ def test_symmetries_are_recognised(traced):
         for form, samples in zip(case["forms"], forms, strict=True):
             if form["name"] in expected:
                 seen.add(form["name"])
-                assert identify_form(samples, loop).symmetry == expected[form["name"]]
+                assert (
+                    identify_form(samples, loop).labels.symmetry
+                    == expected[form["name"]]
+                )
     assert seen == set(expected)
 
 
@@ -118,7 +121,7 @@ def test_relabelled_joints_move_the_inactive_ones(reference_cases, trace_form):
     loop, _ = _loop_and_patterns(case)
     form = next(f for f in case["forms"] if "Bennett" in f["name"])
     samples = np.roll(trace_form(loop, form["theta"]), -1, axis=1)
-    assert identify_form(samples, loop.relabelled(1)).inactive_joints == (2, 5)
+    assert identify_form(samples, loop.relabelled(1)).labels.inactive_joints == (2, 5)
 
 
 def test_forms_of_one_pattern_are_lettered_and_unknown_ones_numbered(
