@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
@@ -51,7 +52,9 @@ def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:
     finds."""
     problem = LoopClosure(loop)
     seeds = problem.seeds(np.random.default_rng(seed), starts)
-    atlas = explore(problem, seeds=seeds, seed=seed)
+    # whether a motion is missing is not asked
+    settings = SearchSettings(prove=False)
+    atlas = explore(problem, settings=settings, seeds=seeds, seed=seed)
     gaps = seeds.gaps[seeds.gaps > CLOSED]
     return Survey(
         atlas=atlas,
