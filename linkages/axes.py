@@ -96,7 +96,7 @@ def loop_from_axes(
     return loop, _joint_angles(axes, across)
 
 
-# --- what is given ----------------------------------------------------------------------
+# --- what is given --------------------------------------------------------------------
 
 
 def _axes(points: Vectors, directions: Vectors) -> Axes:
@@ -134,7 +134,7 @@ def _vector(name: str, row: Iterable[float]) -> list[float]:
     return [float(coordinate) for coordinate in coordinates]
 
 
-# --- common normals ---------------------------------------------------------------------
+# --- common normals -------------------------------------------------------------------
 
 
 def _common_normals(axes: Axes) -> list[CommonNormal]:
@@ -197,7 +197,7 @@ def _normal_of_parallel_axes(axes: Axes, i: int, foot: np.ndarray) -> CommonNorm
     return CommonNormal(foot, foot + across, across / length, length)
 
 
-# --- what the normals give --------------------------------------------------------------
+# --- what the normals give ------------------------------------------------------------
 
 
 def _twists(axes: Axes, across: np.ndarray) -> np.ndarray:

@@ -112,7 +112,7 @@ def read_precisely(path: Path | str) -> Loop:
     return Loop(lengths, twists, offsets, loop.name)
 
 
-# --- the file and its keys --------------------------------------------------------------
+# --- the file and its keys ------------------------------------------------------------
 
 
 def _parse(path: Path) -> Content:
@@ -157,7 +157,7 @@ def _is_of_axes(content: Content) -> bool:
     return any(key in content for key in AXES)
 
 
-# --- the two formats --------------------------------------------------------------------
+# --- the two formats ------------------------------------------------------------------
 
 
 def _read_table(content: Content, name: str) -> Loop:

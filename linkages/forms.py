@@ -109,7 +109,7 @@ def _distinct_name(name: str, rank: int, count: int) -> str:
     return f"{head} {letter}{bracket}{tail}"
 
 
-# --- labels -----------------------------------------------------------------------------
+# --- labels ---------------------------------------------------------------------------
 
 
 def _labels(theta: np.ndarray) -> FormLabels:
@@ -148,7 +148,7 @@ def _symmetry(theta: np.ndarray) -> Symmetry:
     return Symmetry.NONE
 
 
-# --- names ------------------------------------------------------------------------------
+# --- names ----------------------------------------------------------------------------
 
 
 def _name_by_pattern(theta: np.ndarray, patterns: Sequence[FormPattern]) -> str:

@@ -27,8 +27,8 @@ Number: TypeAlias = Any
 
 
 class LinkTable(NamedTuple):
-    """The geometry of n links in floats: ``lengths`` a_{i,i+1}, ``twists`` alpha_{i,i+1}
-    (rad) and ``offsets`` R_i, each (n,)."""
+    """The geometry of n links in floats, each (n,): ``lengths`` a_{i,i+1}, ``twists``
+    alpha_{i,i+1} (rad) and ``offsets`` R_i."""
 
     lengths: np.ndarray
     twists: np.ndarray
@@ -62,20 +62,19 @@ def joint_frames(table: LinkTable, theta: np.ndarray) -> np.ndarray:
 
     Entry 0 is I, entry n the product of all: I when closed.
     """
-    n = len(table.lengths)
-    batch = theta.shape[:-1]
+    turns = Direction(np.cos(theta), np.sin(theta))
+    twists = Direction(np.cos(table.twists), np.sin(table.twists))
+    rows = link_transform(turns, twists, table.lengths, table.offsets)
+    steps = np.zeros((*theta.shape, 4, 4))
+    steps[..., 3, 3] = 1.0
+    for r, row in enumerate(rows):
+        for k, entries in enumerate(row):
+            steps[..., r, k] = entries
+    *batch, n = theta.shape
     frames = np.empty((*batch, n + 1, 4, 4))
     frames[..., 0, :, :] = np.eye(4)
     for i in range(n):
-        turn = Direction(np.cos(theta[..., i]), np.sin(theta[..., i]))
-        twist = Direction(np.cos(table.twists[i]), np.sin(table.twists[i]))
-        rows = link_transform(turn, twist, table.lengths[i], table.offsets[i])
-        step = np.zeros((*batch, 4, 4))
-        step[..., 3, 3] = 1.0
-        for r, row in enumerate(rows):
-            for k, entry in enumerate(row):
-                step[..., r, k] = entry
-        frames[..., i + 1, :, :] = frames[..., i, :, :] @ step
+        frames[..., i + 1, :, :] = frames[..., i, :, :] @ steps[..., i, :, :]
     return frames
 
 

@@ -33,6 +33,7 @@ __all__ = [
 
 MIN_JOINTS = 4
 MAX_JOINTS = 12
+FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or become one
 
 
 class GeometryError(BifurcError, ValueError):
@@ -47,21 +48,28 @@ class GeometryError(BifurcError, ValueError):
 
 
 def check_number(name: str, value: object) -> None:
-    """Raises `GeometryError` unless ``value`` is a real number and, where floats can
-    tell, a finite one: a float, an integer, an mpmath number, a sympy expression or an
-    exact number."""
-    if not _is_real(value):
-        raise GeometryError(name, quoted(value), "a number")
-    if isinstance(value, int | float | np.integer | np.floating):
-        try:
-            is_finite = math.isfinite(value)
-        except OverflowError:  # an integer beyond all floats
-            is_finite = False
-        if not is_finite:
+    """Raises `GeometryError` unless ``value`` is a real number and, where it is a float
+    or an integer, finite.
+
+    Mpmath numbers, sympy expressions and exact numbers are real numbers, too.
+    """
+    if isinstance(value, FLOATS) and not isinstance(value, bool):
+        if not _is_finite(value):
             raise GeometryError(name, value, "a finite number")
+    elif not _is_number_of_library(value):
+        raise GeometryError(name, quoted(value), "a number")
 
 
-def _is_real(value: object) -> bool:
+def _is_finite(value: float | np.integer | np.floating) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond all floats
+        return False
+
+
+def _is_number_of_library(value: object) -> bool:
+    """Whether a value that is no float is a real number of mpmath, sympy or
+    `linkages.construction.exact`."""
     if isinstance(value, bool | np.bool_ | np.ndarray):
         return False
     if isinstance(value, numbers.Complex):

@@ -134,7 +134,7 @@ class SliceAudit:
                 halts.append(halted)
         return Following(room=sorted(waiting), closed=sorted(closed), halts=halts)
 
-    # --- statements ---------------------------------------------------------------------
+    # --- statements -------------------------------------------------------------------
 
     def _incompleteness(self) -> str:
         degenerate = sum(int(np.count_nonzero(cut.degenerate)) for cut in self.slices)
@@ -184,7 +184,7 @@ class Following:
     halts: list[np.ndarray]
 
 
-# --- the motions that were traced -------------------------------------------------------
+# --- the motions that were traced -----------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -258,7 +258,7 @@ def _ends_of_stretches(branch: Branch, dead: np.ndarray) -> np.ndarray:
     return np.append(first, first[0] + branch.length)
 
 
-# --- following configurations that are not real -----------------------------------------
+# --- following configurations that are not real ---------------------------------------
 
 
 @dataclass(frozen=True)
@@ -391,7 +391,7 @@ def _angles_between(critical: np.ndarray, angles: np.ndarray) -> np.ndarray:
     return np.array(middles)
 
 
-# --- small questions --------------------------------------------------------------------
+# --- small questions ------------------------------------------------------------------
 
 
 def _following_angles(angles: np.ndarray) -> np.ndarray:

@@ -6,7 +6,8 @@ their axes (one of them is the pair of links at joint k). In unit dual quaternio
 closure reads ``Z_1 G_1 ... Z_m G_m = +-1``, Z = cos(theta/2) + k sin(theta/2), m = n -
 1. Split it as
 
-    Z_a G_a Z_b  =  +- conj(G_v) conj(Z_v) [conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b)]
+    Z_a G_a Z_b  =  +- conj(G_v) conj(Z_v)
+                       [conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b)]
 
 Either side runs through a space of only four dimensions (of eight): with G = G' + G'',
 the parts that commute and anticommute with k, ``Z_a G Z_b = exp(k (a + b)/2) G' + exp(k
