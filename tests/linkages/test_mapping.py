@@ -18,12 +18,8 @@ def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
     labels = FormLabels.of(bennett)
     assert labels.inactive_joints == (3, 6)
     assert np.abs(labels.inactive_angles) == pytest.approx(np.pi)
-    assert sorted(form.name.split(" (")[0] for form in atlas.forms) == [
-        "Form I",
-        "Form II",
-        "Form III",
-        "Form IV",
-    ]
+    names = sorted(form.name.split(" (")[0] for form in atlas.forms)
+    assert names == ["Form I", "Form II", "Form III", "Form IV"]
 
 
 def test_every_form_says_how_well_it_closes_and_the_atlas_what_was_mapped():
@@ -57,7 +53,6 @@ def test_a_name_in_place_of_a_linkage_is_refused():
 
 
 def test_a_map_is_certified_on_request():
-    atlas = map_linkage(
-        entry("bennett").build(), settings=SearchSettings(starts=20), certify=True
-    )
+    loop = entry("bennett").build()
+    atlas = map_linkage(loop, settings=SearchSettings(starts=20), certify=True)
     assert atlas.forms[0].certificate.status == "certified"

@@ -71,10 +71,8 @@ def test_second_derivatives_agree_with_differences_of_the_product_of_exponential
     rng = np.random.default_rng(0)
     real = slice_configurations(loop, 1, np.array([0.7])).configurations.astype(complex)
     for at in np.concatenate([found[:3], real[:1]]):
-        screws, inverse = (
-            np.zeros((6, loop.n), dtype=complex),
-            np.eye(loop.n, 7, dtype=complex),
-        )
+        screws = np.zeros((6, loop.n), dtype=complex)
+        inverse = np.eye(loop.n, 7, dtype=complex)
         inverse[:, :6] = rng.normal(size=(loop.n, 6))
         sheets._screws_and_error(
             at, loop.link_geometry[:4], screws, np.zeros(6, dtype=complex)
