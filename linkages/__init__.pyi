@@ -1,6 +1,11 @@
+from .axes import loop_from_axes as loop_from_axes
 from .catalogue import UnknownLinkageError as UnknownLinkageError
 from .closure.loop_closure import LoopClosure as LoopClosure
 from .file import LinkageFileError as LinkageFileError
+from .labels import FormLabels as FormLabels
+from .labels import NoLinkageError as NoLinkageError
+from .labels import Symmetry as Symmetry
+from .labels import loop_of as loop_of
 from .linkage import Linkage as Linkage
 from .linkage import load as load
 from .loop import GeometryError as GeometryError

@@ -22,28 +22,48 @@ import logging
 import math
 import tomllib
 from collections.abc import Mapping
+from enum import StrEnum
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias, cast
 
 import numpy as np
 
 from bifurc.errors import BifurcError
-from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop, loop_from_axes
+from linkages.axes import Vectors, loop_from_axes
+from linkages.loop import (
+    MAX_JOINTS,
+    MIN_JOINTS,
+    GeometryError,
+    Loop,
+    check_number,
+    quoted,
+)
 
 __all__ = ["LinkageFileError", "read_linkage", "read_precisely"]
 
 log = logging.getLogger(__name__)
 
-TABLE, AXES = ("lengths", "twists", "offsets"), ("points", "directions")
-KNOWN = ("name", "angles", *TABLE, *AXES)
+Content: TypeAlias = Mapping[str, object]
+
+TABLE = ("lengths", "twists", "offsets")
+AXES = ("points", "directions")
+KEYS = ("name", "angles", *TABLE, *AXES)
 FULL_TURN = 2 * math.pi
+
+
+class AngleUnit(StrEnum):
+    """The unit of the twists in a file."""
+
+    DEGREES = "deg"
+    RADIANS = "rad"
 
 
 class LinkageFileError(BifurcError, ValueError):
     """A linkage file that cannot be used: which file, and what in it must be what."""
 
     def __init__(self, path: Path | str, message: str):
-        self.path, self.message = str(path), message
+        self.path = str(path)
+        self.message = message
         super().__init__(f"{path}: {message}")
 
 
@@ -61,10 +81,10 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
         _check_keys(content)
         name = content.get("name", path.stem)
         if not isinstance(name, str):
-            raise GeometryError("name", _shown(name), "a text in quotes")
-        if any(key in content for key in AXES):
-            return loop_from_axes(*_axes(content), name)
-        return _table(content, name), None
+            raise GeometryError("name", quoted(name), "a text in quotes")
+        if _is_of_axes(content):
+            return _read_axes(content, name)
+        return _read_table(content, name), None
     except GeometryError as error:
         raise LinkageFileError(path, str(error)) from None
 
@@ -82,18 +102,22 @@ def read_precisely(path: Path | str) -> Loop:
     loop, configuration = read_linkage(path)
     if configuration is not None:
         return loop
-    content = tomllib.loads(
-        Path(path).read_text(encoding="utf-8"), parse_float=mpmath.mpf
-    )
-    lengths, twists, offsets = (
-        tuple(mpmath.mpf(x) for x in content[key]) for key in TABLE
-    )
-    if content["angles"] == "deg":
+    text = Path(path).read_text(encoding="utf-8")
+    content = tomllib.loads(text, parse_float=mpmath.mpf)
+    lengths = tuple(mpmath.mpf(length) for length in content["lengths"])
+    twists = tuple(mpmath.mpf(twist) for twist in content["twists"])
+    offsets = tuple(mpmath.mpf(offset) for offset in content["offsets"])
+    if content["angles"] == AngleUnit.DEGREES:
         twists = tuple(twist * mpmath.pi / 180 for twist in twists)
     return Loop(lengths, twists, offsets, loop.name)
 
 
-def _parse(path: Path) -> dict[str, Any]:
+# --- the file and its keys ------------------------------------------------------------
+
+
+def _parse(path: Path) -> Content:
+    if path.is_dir():
+        raise LinkageFileError(path, "is a folder, and a linkage is a file")
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -101,119 +125,98 @@ def _parse(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
-        raise LinkageFileError(
-            path, f"is not UTF-8 text: byte {error.start} is wrong"
-        ) from None
-    except (
-        tomllib.TOMLDecodeError
-    ) as error:  # its message ends with the line and the column
+        message = f"is not UTF-8 text: byte {error.start} is wrong"
+        raise LinkageFileError(path, message) from None
+    except tomllib.TOMLDecodeError as error:
+        # its message ends with the line and the column
         raise LinkageFileError(path, f"is not valid TOML: {error}") from None
 
 
-def _check_keys(content: Mapping[str, Any]) -> None:
+def _check_keys(content: Content) -> None:
     """Every key is known, and they make one of the two formats, whole."""
     for key in content:
-        if key not in KNOWN:
-            near = difflib.get_close_matches(key, KNOWN, n=1, cutoff=0.0)[0]
-            allowed = "one of " + ", ".join(KNOWN)
-            raise GeometryError("key", f"{key!r} (the nearest is {near!r})", allowed)
-    both = [[key for key in group if key in content] for group in (TABLE, AXES)]
-    if all(both):
+        if key not in KEYS:
+            near = difflib.get_close_matches(key, KEYS, n=1, cutoff=0.0)[0]
+            value = f"{key!r} (the nearest is {near!r})"
+            raise GeometryError("key", value, "one of " + ", ".join(KEYS))
+    of_table = [key for key in TABLE if key in content]
+    of_axes = [key for key in AXES if key in content]
+    if of_table and of_axes:
+        value = f"{of_table[0]} with {of_axes[0]}"
         raise GeometryError(
-            "keys",
-            f"{both[0][0]} with {both[1][0]}",
-            "those of a table or those of axes, not both",
+            "keys", value, "those of a table or those of axes, not both"
         )
-    wanted = AXES if both[1] else TABLE
+    wanted = AXES if of_axes else TABLE
     for key in wanted:
         if key not in content:
-            raise GeometryError(
-                key, "a missing list", f"given together with {_others(wanted, key)}"
-            )
+            others = " and ".join(other for other in wanted if other != key)
+            raise GeometryError(key, "a missing list", f"given together with {others}")
 
 
-def _others(group: tuple[str, ...], key: str) -> str:
-    return " and ".join(other for other in group if other != key)
+def _is_of_axes(content: Content) -> bool:
+    return any(key in content for key in AXES)
 
 
-def _table(content: Mapping[str, Any], name: str) -> Loop:
-    lengths, twists, offsets = (_numbers(content, key) for key in TABLE)
+# --- the two formats ------------------------------------------------------------------
+
+
+def _read_table(content: Content, name: str) -> Loop:
+    lengths = _numbers(content, "lengths")
+    twists = _numbers(content, "twists")
+    offsets = _numbers(content, "offsets")
     for key, values in (("twists", twists), ("offsets", offsets)):
         if len(values) != len(lengths):
-            raise GeometryError(
-                f"number of {key}",
-                len(values),
-                f"{len(lengths)}, the number of lengths",
-            )
-    if _in_degrees(content):
+            allowed = f"{len(lengths)}, the number of lengths"
+            raise GeometryError(f"number of {key}", len(values), allowed)
+    if _angle_unit(content) is AngleUnit.DEGREES:
         twists = [math.radians(twist) for twist in twists]
     else:
-        for i, twist in enumerate(twists, start=1):
-            if abs(twist) > FULL_TURN:
-                log.warning(
-                    'twists[%d] is %g with angles = "rad", more than a full turn; if it is in degrees, write '
-                    'angles = "deg"',
-                    i,
-                    twist,
-                )
+        _warn_of_degrees(twists)
     return Loop(tuple(lengths), tuple(twists), tuple(offsets), name)
 
 
-def _in_degrees(content: Mapping[str, Any]) -> bool:
+def _read_axes(content: Content, name: str) -> tuple[Loop, np.ndarray]:
+    points, directions = (_list(content, key, "vectors [x, y, z]") for key in AXES)
+    # `loop_from_axes` checks every vector
+    return loop_from_axes(cast(Vectors, points), cast(Vectors, directions), name)
+
+
+def _angle_unit(content: Content) -> AngleUnit:
+    allowed = '"deg" or "rad"'
     if "angles" not in content:
         raise GeometryError(
-            "angles", "a missing key", '"deg" or "rad", the unit of the twists'
+            "angles", "a missing key", f"{allowed}, the unit of the twists"
         )
     unit = content["angles"]
-    if unit not in ("deg", "rad"):
-        raise GeometryError("angles", _shown(unit), '"deg" or "rad"')
-    return bool(unit == "deg")
+    if unit not in tuple(AngleUnit):
+        raise GeometryError("angles", quoted(unit), allowed)
+    return AngleUnit(str(unit))
 
 
-def _list(content: Mapping[str, Any], key: str, of: str) -> list[Any]:
+def _warn_of_degrees(twists: list[float]) -> None:
+    for i, twist in enumerate(twists, start=1):
+        if abs(twist) > FULL_TURN:
+            log.warning(
+                'twists[%d] is %g with angles = "rad", more than a full turn; '
+                'if it is in degrees, write angles = "deg"',
+                i,
+                twist,
+            )
+
+
+def _list(content: Content, key: str, items: str) -> list[object]:
     values = content[key]
     if not isinstance(values, list):
-        raise GeometryError(key, _shown(values), f"a list of {of}")
+        raise GeometryError(key, quoted(values), f"a list of {items}")
     if not MIN_JOINTS <= len(values) <= MAX_JOINTS:
         allowed = f"one for each joint, {MIN_JOINTS} to {MAX_JOINTS} joints"
         raise GeometryError(f"number of {key}", len(values), allowed)
     return values
 
 
-def _numbers(content: Mapping[str, Any], key: str) -> list[float]:
-    return [
-        _number(value, f"{key}[{i}]")
-        for i, value in enumerate(_list(content, key, "numbers"), start=1)
-    ]
-
-
-def _number(value: Any, what: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise GeometryError(what, _shown(value), "a number")
-    if not math.isfinite(value):
-        raise GeometryError(what, value, "a finite number")
-    return float(value)
-
-
-def _axes(content: Mapping[str, Any]) -> tuple[list[list[float]], list[list[float]]]:
-    points, directions = (_vectors(content, key) for key in AXES)
-    if len(points) != len(directions):
-        raise GeometryError(
-            "number of directions",
-            len(directions),
-            f"{len(points)}, the number of points",
-        )
-    return points, directions
-
-
-def _vectors(content: Mapping[str, Any], key: str) -> list[list[float]]:
-    out = []
-    for i, row in enumerate(_list(content, key, "vectors [x, y, z]"), start=1):
-        if not isinstance(row, list) or len(row) != 3:
-            raise GeometryError(f"{key}[{i}]", _shown(row), "a vector [x, y, z]")
-        out.append([_number(x, f"{key}[{i}][{j}]") for j, x in enumerate(row, start=1)])
-    return out
-
-
-def _shown(value: Any) -> str:
-    return f'"{value}"' if isinstance(value, str) else str(value)
+def _numbers(content: Content, key: str) -> list[float]:
+    numbers = []
+    for i, value in enumerate(_list(content, key, "numbers"), start=1):
+        check_number(f"{key}[{i}]", value)
+        numbers.append(float(cast(float, value)))
+    return numbers

@@ -13,30 +13,45 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bifurc import torus
+from linkages.axes import loop_from_axes
 from linkages.entry import FormPattern
 from linkages.families.four_bar import form_patterns
-from linkages.loop import GeometryError, Loop, loop_from_axes
+from linkages.labels import FormLabels, Symmetry
+from linkages.loop import GeometryError, Loop
 
 __all__ = ["FormIdentity", "identify_form", "name_forms"]
 
 RESIDUAL_TOLERANCE = 1e-8
 ANGLE_TOLERANCE = 1e-7  # rad
 GEOMETRY_TOLERANCE = 1e-7  # relative to the characteristic length
+RATIO_DECIMALS = 9  # of the lengths of a planar four-bar, over their mean
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
 @dataclass(frozen=True)
 class FormIdentity:
-    """What a form is: its name, the joints that stand still (from 1) and their angles
-    (rad), its symmetry.
-
-    ``name`` is empty where nothing is recognised; ``symmetry`` is an equation such as
-    "theta_i = theta_{i+3}", or empty.
-    """
+    """What a form is: its ``name``, empty where nothing is recognised, and its
+    ``labels``, in which the closure error is left open."""
 
     name: str
-    inactive_joints: tuple[int, ...]
-    inactive_angles: tuple[float, ...]
-    symmetry: str
+    labels: FormLabels
+
+
+@dataclass(frozen=True)
+class FourBarKind:
+    """Which 4R four joints make, such as "Bennett", and its ``setup`` where it has
+    two; empty words where it is none with a name."""
+
+    word: str = ""
+    setup: str = ""
+
+    def form_name(self, inactive: str) -> str:
+        """The name of a form that moves as this 4R, ``inactive`` being the words for
+        the joints that stand still."""
+        kind = f"{self.word} 4R" if self.word else "4R"
+        name = f"{kind} form ({inactive})"
+        return f"{name} {self.setup}" if self.setup else name
 
 
 def identify_form(
@@ -50,17 +65,13 @@ def identify_form(
     """
     theta = np.asarray(samples, dtype=float)
     if theta.ndim != 2 or theta.shape[1] != loop.n or not len(theta):
-        raise GeometryError(
-            "shape of the samples", theta.shape, f"(m, {loop.n}) with m >= 1"
-        )
-    inactive, angles = _inactive_joints(theta)
+        allowed = f"(m, {loop.n}) with m >= 1"
+        raise GeometryError("shape of the samples", theta.shape, allowed)
+    labels = _labels(theta)
     name = _name_by_pattern(theta, (*patterns, *_planar_patterns(loop)))
-    return FormIdentity(
-        name or _name_by_inactive_joints(theta, loop, inactive),
-        inactive,
-        angles,
-        _symmetry(theta),
-    )
+    if not name:
+        name = _name_by_inactive_joints(theta, loop, labels.inactive_joints)
+    return FormIdentity(name, labels)
 
 
 def name_forms(
@@ -73,54 +84,71 @@ def name_forms(
     a name "Form 1", "Form 2"; letters and numbers follow the mean directions of the
     joint angles along the form.
     """
-    found = [identify_form(samples, loop, patterns) for samples in forms]
-    keys = [_signature(np.asarray(samples, dtype=float)) for samples in forms]
-    for name in {identity.name for identity in found}:
-        members = sorted(
-            (i for i, f in enumerate(found) if f.name == name), key=lambda i: keys[i]
-        )
-        for rank, i in enumerate(members):
-            if not name:
-                found[i] = replace(found[i], name=f"Form {rank + 1}")
-            elif len(members) > 1:
-                found[i] = replace(found[i], name=_lettered(name, rank))
-    return found
+    identities = [identify_form(samples, loop, patterns) for samples in forms]
+    signatures = [_signature(np.asarray(samples, dtype=float)) for samples in forms]
+    in_order = sorted(range(len(forms)), key=lambda i: signatures[i])
+    names = [identity.name for identity in identities]
+    distinct = list(identities)
+    for name in set(names):
+        alike = [i for i in in_order if names[i] == name]
+        for rank, i in enumerate(alike):
+            own = _distinct_name(name, rank, len(alike))
+            distinct[i] = replace(identities[i], name=own)
+    return distinct
 
 
-def _lettered(name: str, rank: int) -> str:
-    letter = chr(ord("a") + rank) if rank < 26 else str(rank + 1)
+def _distinct_name(name: str, rank: int, count: int) -> str:
+    """The name of form number ``rank`` (from 0) of the ``count`` that share ``name``:
+    with a letter, or with a number where it is empty."""
+    if not name:
+        return f"Form {rank + 1}"
+    if count == 1:
+        return name
+    letter = LETTERS[rank] if rank < len(LETTERS) else str(rank + 1)
     head, bracket, tail = name.partition(" (")
     return f"{head} {letter}{bracket}{tail}"
 
 
-def _wrapped(angle: np.ndarray) -> np.ndarray:
-    """``angle`` in (-pi, pi], with -pi and its rounding errors turned to pi."""
-    out = np.arctan2(np.sin(angle), np.cos(angle))
-    return np.where(out < -np.pi + 1e-9, out + 2 * np.pi, out)
+# --- labels ---------------------------------------------------------------------------
 
 
-def _inactive_joints(theta: np.ndarray) -> tuple[tuple[int, ...], tuple[float, ...]]:
-    """Joints (from 1) that keep their angle modulo 2 pi, and these angles in (-pi,
-    pi]."""
+def _labels(theta: np.ndarray) -> FormLabels:
+    """The joints that keep their angle modulo 2 pi, these angles in (-pi, pi], and the
+    symmetry."""
+    full_turns = _full_turns(theta)
     mean = np.angle(np.exp(1j * theta).mean(axis=0))
-    still = np.all(np.abs(_wrapped(theta - mean)) < ANGLE_TOLERANCE, axis=0)
-    at = _wrapped(mean)
-    return tuple(int(i) + 1 for i in np.flatnonzero(still)), tuple(
-        float(at[i]) for i in np.flatnonzero(still)
+    deviation = np.abs(torus.difference(theta, mean, full_turns))
+    is_still = np.all(deviation < ANGLE_TOLERANCE, axis=0)
+    still = np.flatnonzero(is_still)
+    angles = torus.wrap(mean, full_turns)[still]
+    return FormLabels(
+        inactive_joints=tuple(int(i) + 1 for i in still),
+        inactive_angles=tuple(float(angle) for angle in angles),
+        symmetry=_symmetry(theta),
     )
 
 
-def _symmetry(theta: np.ndarray) -> str:
-    """The equation between all angles and those some joints further on, or nothing;
-    half the loop first."""
+def _full_turns(theta: np.ndarray) -> np.ndarray:
+    """The periods (n,) of joint angles (..., n)."""
+    return np.full(theta.shape[-1], 2 * np.pi)
+
+
+def _symmetry(theta: np.ndarray) -> Symmetry:
+    """The equation between all angles and those some joints further on; half the loop
+    first."""
     n = theta.shape[1]
-    shifts = [k for k in range(n // 2, 0, -1) if n % k == 0 or 2 * k == n]
-    for k in shifts:
-        for sign, mark in ((1, ""), (-1, "-")):
-            difference = np.sin((theta - sign * np.roll(theta, -k, axis=1)) / 2)
+    for step in range(n // 2, 0, -1):
+        if n % step:
+            continue
+        for sign in (1, -1):
+            further = np.roll(theta, -step, axis=1)
+            difference = np.sin((theta - sign * further) / 2)
             if np.abs(difference).max() < ANGLE_TOLERANCE:
-                return f"theta_i = {mark}theta_{{i+{k}}}"
-    return ""
+                return Symmetry.of_step(step, sign)
+    return Symmetry.NONE
+
+
+# --- names ----------------------------------------------------------------------------
 
 
 def _name_by_pattern(theta: np.ndarray, patterns: Sequence[FormPattern]) -> str:
@@ -136,68 +164,71 @@ def _planar_patterns(loop: Loop) -> tuple[FormPattern, ...]:
     lengths, twists, offsets = loop.arrays
     if loop.n != 4 or np.any(twists != 0) or np.any(offsets != 0):
         return ()
-    mean = lengths.mean()
-    a, b, c, d = (float(x) for x in np.round(lengths / mean, 9))
+    ratios = np.round(lengths / lengths.mean(), RATIO_DECIMALS)
+    a, b, c, d = (float(ratio) for ratio in ratios)
     return form_patterns(a, b, c, d)
 
 
 def _name_by_inactive_joints(
     theta: np.ndarray, loop: Loop, inactive: tuple[int, ...]
 ) -> str:
-    moving = loop.n - len(inactive)
     if not inactive:
         return ""
-    if not moving:
+    moving = loop.n - len(inactive)
+    if moving == 0:
         return "rigid assembly"
-    where = f"joint{'s' * (len(inactive) > 1)} {','.join(map(str, inactive))} inactive"
+    noun = "joint" if len(inactive) == 1 else "joints"
+    numbers = ",".join(str(joint) for joint in inactive)
+    words = f"{noun} {numbers} inactive"
     if moving != 4:
-        return f"{moving}R form ({where})"
-    kind, set_up = _four_bar_kind(theta, loop, inactive)
-    return f"{kind}4R form ({where}){set_up}"
+        return f"{moving}R form ({words})"
+    return _four_bar_kind(theta, loop, inactive).form_name(words)
 
 
 def _four_bar_kind(
     theta: np.ndarray, loop: Loop, inactive: tuple[int, ...]
-) -> tuple[str, str]:
-    """Which 4R the four moving joints make, ("Bennett ", " asymmetric") for one, or two
-    empty words."""
+) -> FourBarKind:
+    """Which 4R the four moving joints make."""
     frames = loop.frames(theta[0])[:-1]
     active = [i for i in range(loop.n) if i + 1 not in inactive]
     try:
-        reduced, _ = loop_from_axes(
-            frames[active, :3, 3].tolist(), frames[active, :3, 2].tolist()
-        )
+        four_bar, _ = loop_from_axes(frames[active, :3, 3], frames[active, :3, 2])
     except GeometryError:  # two of the axes coincide
-        return "", ""
-    lengths, twists, offsets = reduced.arrays
+        return FourBarKind()
+    lengths, twists, offsets = four_bar.arrays
     small = GEOMETRY_TOLERANCE * loop.characteristic_length
     if np.all(np.abs(np.sin(twists)) < GEOMETRY_TOLERANCE):
-        return "planar ", ""
+        return FourBarKind("planar")
     if np.all(np.abs(np.concatenate([lengths, offsets])) < small):
-        return "spherical ", ""
-    opposite = [np.abs(v[:2] - v[2:]).max() for v in (lengths, np.exp(1j * twists))]
-    if (
-        np.abs(offsets).max() > small
-        or opposite[0] > small
-        or opposite[1] > GEOMETRY_TOLERANCE
-    ):
-        return "", ""
-    cross = lengths[1] * np.sin(twists[0]), lengths[0] * np.sin(twists[1])
-    for sign, set_up in ((1, " asymmetric"), (-1, " line-symmetric")):
-        if abs(cross[0] - sign * cross[1]) < small:
-            return "Bennett ", set_up
-    return "", ""
+        return FourBarKind("spherical")
+    directions = np.exp(1j * twists)
+    has_opposite_lengths = np.abs(lengths[:2] - lengths[2:]).max() <= small
+    has_opposite_twists = (
+        np.abs(directions[:2] - directions[2:]).max() <= GEOMETRY_TOLERANCE
+    )
+    has_offsets = np.abs(offsets).max() > small
+    if has_offsets or not has_opposite_lengths or not has_opposite_twists:
+        return FourBarKind()
+    # the condition of Bennett (1903): a12 sin(alpha23) = +-a23 sin(alpha12)
+    first = lengths[1] * np.sin(twists[0])
+    second = lengths[0] * np.sin(twists[1])
+    if abs(first - second) < small:
+        return FourBarKind("Bennett", "asymmetric")
+    if abs(first + second) < small:
+        return FourBarKind("Bennett", "line-symmetric")
+    return FourBarKind()
 
 
 def _signature(theta: np.ndarray) -> tuple[float, ...]:
     """Means of cosines and sines along the closed form, weighted by arc length, to four
     decimals."""
-    step = np.linalg.norm(_wrapped(np.roll(theta, -1, axis=0) - theta), axis=1)
-    weight = step + np.roll(step, 1)
-    weight = (
-        weight / weight.sum()
-        if weight.sum() > 0
-        else np.full(len(theta), 1 / len(theta))
+    following = np.roll(theta, -1, axis=0)
+    step = np.linalg.norm(
+        torus.difference(following, theta, _full_turns(theta)), axis=1
     )
-    means = np.concatenate([weight @ np.cos(theta), weight @ np.sin(theta)])
-    return tuple(float(-x) + 0.0 for x in np.round(means, 4))
+    weight = step + np.roll(step, 1)
+    total = weight.sum()
+    share = weight / total if total > 0 else np.full(len(theta), 1 / len(theta))
+    means = np.concatenate([share @ np.cos(theta), share @ np.sin(theta)])
+    rounded = np.round(means, 4)
+    return tuple(float(-mean) + 0.0 for mean in rounded)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import FormPattern
-from linkages.file import read_linkage
-from linkages.loop import GeometryError, Loop
+from linkages.file import LinkageFileError, read_linkage
+from linkages.geometry_table import geometry_html, geometry_rows
+from linkages.loop import GeometryError, Loop, check_number
 
 __all__ = ["Linkage", "is_linkage_file", "load"]
 
@@ -25,6 +27,25 @@ class Linkage:
         """What the linkage is called, in the catalogue or in its file."""
         return self.loop.name
 
+    def __repr__(self) -> str:
+        if not self.patterns:
+            return repr(self.loop)
+        return f"{self.loop!r}\n  {self._named_forms()}"
+
+    def _repr_html_(self) -> str:
+        """The linkage as notebooks show it."""
+        loop = self.loop
+        title = f"{loop.name or 'Linkage'}: {loop.n} joints"
+        rows = geometry_rows(loop.lengths, loop.twists, loop.offsets)
+        parts = [f"<p><b>{escape(title)}</b></p>", geometry_html(rows)]
+        if self.patterns:
+            parts.append(f"<p>{escape(self._named_forms())}</p>")
+        return "".join(parts)
+
+    def _named_forms(self) -> str:
+        names = [pattern.name for pattern in self.patterns]
+        return f"forms named by the source: {', '.join(names)}"
+
 
 def load(source: str | Path, **parameters: float) -> Linkage:
     """The linkage called ``source`` in the catalogue, or read from a TOML file.
@@ -34,29 +55,48 @@ def load(source: str | Path, **parameters: float) -> Linkage:
     `LinkageFileError` for a file that cannot be used, and `GeometryError` for
     parameters that make no linkage.
     """
+    if not isinstance(source, str | Path):
+        allowed = "a name of the catalogue or the path of a TOML file"
+        raise GeometryError("linkage", repr(source), allowed)
     if is_linkage_file(source):
         if parameters:
-            raise GeometryError(
-                f"parameters of {source}",
-                ", ".join(parameters),
-                "left out with a file, which holds the whole geometry",
-            )
+            names = ", ".join(parameters)
+            allowed = "left out with a file, which holds the whole geometry"
+            raise GeometryError(f"parameters of {source}", names, allowed)
         loop, _ = read_linkage(source)
         return Linkage(loop)
-    name = str(source)
-    try:
-        family = entry(name)
-    except UnknownLinkageError as error:
-        file = f"{name}.toml"
-        if Path(file).is_file():
-            raise UnknownLinkageError(name, (file, *error.nearest)) from None
-        raise
-    values = family.complete(parameters)
-    loop = family.build(**values)
-    patterns = family.patterns(**values) if family.patterns is not None else ()
-    return Linkage(loop, patterns)
+    return _load_entry(str(source), parameters)
 
 
 def is_linkage_file(source: str | Path) -> bool:
-    """Whether ``source`` names a file: it ends with .toml, or there is a file."""
-    return str(source).endswith(".toml") or Path(source).is_file()
+    """Whether ``source`` names a file: it is a path, it ends with .toml, or there is a
+    file."""
+    if isinstance(source, Path):
+        return True
+    return source.endswith(".toml") or Path(source).is_file()
+
+
+def _load_entry(name: str, parameters: dict[str, float]) -> Linkage:
+    """The member of the family ``name`` with these parameters."""
+    try:
+        family = entry(name)
+    except UnknownLinkageError as error:
+        _check_for_files(name, error)
+        raise
+    values = family.complete(parameters)
+    for key, value in parameters.items():
+        check_number(f"parameter {key} of {name}", value)
+    loop = family.build(**values)
+    if family.patterns is None:
+        return Linkage(loop)
+    return Linkage(loop, family.patterns(**values))
+
+
+def _check_for_files(name: str, error: UnknownLinkageError) -> None:
+    """Raises an error that names the file or the folder that may be meant by a name
+    that is not in the catalogue."""
+    file = f"{name}.toml"
+    if Path(file).is_file():
+        raise UnknownLinkageError(name, (file, *error.nearest)) from None
+    if name and Path(name).is_dir():
+        raise LinkageFileError(name, "is a folder, and a linkage is a file") from None

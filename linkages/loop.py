@@ -10,28 +10,76 @@ joins joint n to joint 1.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import numbers
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from bifurc.errors import BifurcError
+from linkages import kinematics
+from linkages.geometry_table import geometry_rows, geometry_text
+from linkages.kinematics import LinkTable, Number
 
-__all__ = ["MAX_JOINTS", "MIN_JOINTS", "GeometryError", "Loop", "loop_from_axes"]
+__all__ = [
+    "MAX_JOINTS",
+    "MIN_JOINTS",
+    "GeometryError",
+    "Loop",
+    "check_number",
+    "quoted",
+]
 
-MIN_JOINTS, MAX_JOINTS = 4, 12
-NUMBERS = (int, float, np.integer, np.floating)
+MIN_JOINTS = 4
+MAX_JOINTS = 12
+FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or become one
 
 
 class GeometryError(BifurcError, ValueError):
     """A linkage that cannot be built: ``name`` is the offending quantity, ``value``
     what was given and ``allowed`` what it may be."""
 
-    def __init__(self, name: str, value: Any, allowed: str):
-        self.name, self.value, self.allowed = name, value, allowed
+    def __init__(self, name: str, value: object, allowed: str):
+        self.name = name
+        self.value = value
+        self.allowed = allowed
         super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
+
+
+def check_number(name: str, value: object) -> None:
+    """Raises `GeometryError` unless ``value`` is a real number and, where it is a float
+    or an integer, finite.
+
+    Mpmath numbers, sympy expressions and exact numbers are real numbers, too.
+    """
+    if isinstance(value, FLOATS) and not isinstance(value, bool):
+        if not _is_finite(value):
+            raise GeometryError(name, value, "a finite number")
+    elif not _is_number_of_library(value):
+        raise GeometryError(name, quoted(value), "a number")
+
+
+def _is_finite(value: float | np.integer | np.floating) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond all floats
+        return False
+
+
+def _is_number_of_library(value: object) -> bool:
+    """Whether a value that is no float is a real number of mpmath, sympy or
+    `linkages.construction.exact`."""
+    if isinstance(value, bool | np.bool_ | np.ndarray):
+        return False
+    if isinstance(value, numbers.Complex):
+        return isinstance(value, numbers.Real)
+    return hasattr(value, "__float__")
+
+
+def quoted(value: object) -> str:
+    """``value`` as error messages show it, texts in quotes."""
+    return f'"{value}"' if isinstance(value, str) else str(value)
 
 
 @dataclass(frozen=True)
@@ -39,36 +87,34 @@ class Loop:
     """A closed chain of n revolute joints, 4 <= n <= 12.
 
     ``lengths`` a_{i,i+1} and ``offsets`` R_i share one unit of length, ``twists``
-    alpha_{i,i+1} are in radians. Entries may be floats, mpmath numbers or sympy
-    expressions; `arrays` gives the floats that the compiled kernels read. Raises
-    `GeometryError` for unequal or wrong numbers of entries and for values that are not
-    finite.
+    alpha_{i,i+1} are in radians. Entries may be floats, mpmath numbers, sympy
+    expressions or exact numbers; `arrays` gives the floats. Raises `GeometryError` for
+    unequal or wrong numbers of entries and for entries that are not finite numbers.
     """
 
-    lengths: tuple[Any, ...]
-    twists: tuple[Any, ...]
-    offsets: tuple[Any, ...]
+    lengths: tuple[Number, ...]
+    twists: tuple[Number, ...]
+    offsets: tuple[Number, ...]
     name: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
-        for which in ("lengths", "twists", "offsets"):
-            object.__setattr__(self, which, tuple(getattr(self, which)))
+        for column in ("lengths", "twists", "offsets"):
+            values = getattr(self, column)
+            if not isinstance(values, Iterable):
+                raise GeometryError(column, quoted(values), "a list of numbers")
+            object.__setattr__(self, column, tuple(values))
         n = len(self.lengths)
         if not MIN_JOINTS <= n <= MAX_JOINTS:
-            raise GeometryError(
-                "number of joints", n, f"from {MIN_JOINTS} to {MAX_JOINTS}"
-            )
-        for which in ("twists", "offsets"):
-            if len(getattr(self, which)) != n:
-                raise GeometryError(
-                    f"number of {which}",
-                    len(getattr(self, which)),
-                    f"{n}, the number of lengths",
-                )
-        for which in ("lengths", "twists", "offsets"):
-            for i, value in enumerate(getattr(self, which), start=1):
-                if isinstance(value, NUMBERS) and not math.isfinite(value):
-                    raise GeometryError(f"{which}[{i}]", value, "a finite number")
+            allowed = f"from {MIN_JOINTS} to {MAX_JOINTS}"
+            raise GeometryError("number of joints", n, allowed)
+        for column in ("twists", "offsets"):
+            count = len(getattr(self, column))
+            if count != n:
+                allowed = f"{n}, the number of lengths"
+                raise GeometryError(f"number of {column}", count, allowed)
+        for column in ("lengths", "twists", "offsets"):
+            for i, value in enumerate(getattr(self, column), start=1):
+                check_number(f"{column}[{i}]", value)
 
     @property
     def n(self) -> int:
@@ -76,13 +122,13 @@ class Loop:
         return len(self.lengths)
 
     @cached_property
-    def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(lengths, twists, offsets) as float arrays of shape (n,)."""
-        a, b, c = (
-            np.array([float(x) for x in v])
-            for v in (self.lengths, self.twists, self.offsets)
+    def arrays(self) -> LinkTable:
+        """Lengths, twists (rad) and offsets as float arrays of shape (n,)."""
+        return LinkTable(
+            np.array([float(length) for length in self.lengths]),
+            np.array([float(twist) for twist in self.twists]),
+            np.array([float(offset) for offset in self.offsets]),
         )
-        return a, b, c
 
     @cached_property
     def characteristic_length(self) -> float:
@@ -92,59 +138,55 @@ class Loop:
         Residuals and Jacobians measure translations in it, so that results do not
         depend on the unit.
         """
-        a, _, offsets = self.arrays
-        extent = np.abs(a) + np.abs(offsets)
-        return float(extent[extent > 0].mean()) if np.any(extent > 0) else 1.0
+        extent = np.abs(self.arrays.lengths) + np.abs(self.arrays.offsets)
+        if not np.any(extent > 0):
+            return 1.0
+        return float(extent[extent > 0].mean())
+
+    @cached_property
+    def link_geometry(self) -> np.ndarray:
+        """What compiled kernels read of the links, (6, n): lengths and offsets in
+        characteristic lengths, cosines and sines of the twists and of half the
+        twists."""
+        return kinematics.link_geometry(self.arrays, self.characteristic_length)
 
     def frames(self, theta: np.ndarray) -> np.ndarray:
         """Homogeneous transforms (..., n + 1, 4, 4) from the base to frame i before
         joint i is turned.
 
         ``theta`` has shape (..., n), rad. Entry 0 is I, entry n the product of all: I
-        when closed.
+        when closed. Raises `GeometryError` for another number of angles.
         """
-        theta = np.asarray(theta, dtype=float)
-        if theta.shape[-1:] != (self.n,):
-            raise GeometryError("number of joint angles", theta.shape[-1:], f"{self.n}")
-        a, alpha, offset = self.arrays
-        out = np.empty((*theta.shape[:-1], self.n + 1, 4, 4))
-        out[..., 0, :, :] = np.eye(4)
-        for i in range(self.n):
-            c, s = np.cos(theta[..., i]), np.sin(theta[..., i])
-            ca, sa = np.cos(alpha[i]), np.sin(alpha[i])
-            step = np.zeros((*theta.shape[:-1], 4, 4))
-            step[..., 0, 0], step[..., 0, 1], step[..., 0, 2], step[..., 0, 3] = (
-                c,
-                -s * ca,
-                s * sa,
-                a[i] * c,
+        angles = np.asarray(theta, dtype=float)
+        if angles.shape[-1:] != (self.n,):
+            raise GeometryError(
+                "number of joint angles", angles.shape[-1:], f"{self.n}"
             )
-            step[..., 1, 0], step[..., 1, 1], step[..., 1, 2], step[..., 1, 3] = (
-                s,
-                c * ca,
-                -c * sa,
-                a[i] * s,
-            )
-            step[..., 2, 1], step[..., 2, 2], step[..., 2, 3] = sa, ca, offset[i]
-            step[..., 3, 3] = 1.0
-            out[..., i + 1, :, :] = out[..., i, :, :] @ step
-        return out
+        return kinematics.joint_frames(self.arrays, angles)
 
     def joint_screws(self, theta: np.ndarray) -> np.ndarray:
         """Joint screws (..., 6, n) in the base frame: unit direction over moment, in
         the loop's unit."""
-        frames = self.frames(theta)[..., :-1, :, :]
-        direction, point = frames[..., :3, 2], frames[..., :3, 3]
-        return np.moveaxis(
-            np.concatenate([direction, np.cross(point, direction)], axis=-1), -1, -2
-        )
+        return kinematics.joint_screws(self.frames(theta))
+
+    def closure_error(self, theta: np.ndarray) -> np.ndarray:
+        """The largest entry (...,) of T_1 ... T_n - I at joint angles (..., n), rad,
+        translations in characteristic lengths: 0 where the loop is closed."""
+        gap = self.frames(theta)[..., -1, :, :] - np.eye(4)
+        gap[..., :3, 3] /= self.characteristic_length
+        largest: np.ndarray = np.abs(gap).max(axis=(-2, -1))
+        return largest
 
     def relabelled(self, shift: int) -> Loop:
         """The same linkage with joint 1 + shift called joint 1; a configuration is
         ``np.roll(theta, -shift)``."""
-        k = shift % self.n
-        a, b, c = (v[k:] + v[:k] for v in (self.lengths, self.twists, self.offsets))
-        return Loop(a, b, c, self.name)
+        first = shift % self.n
+        return Loop(
+            self.lengths[first:] + self.lengths[:first],
+            self.twists[first:] + self.twists[:first],
+            self.offsets[first:] + self.offsets[:first],
+            self.name,
+        )
 
     def reversed(self) -> Loop:
         """The same linkage read the other way round; a configuration is
@@ -153,93 +195,24 @@ class Loop:
         Reversing order inverts every factor; half turns about x and z turn the signs
         back, so that only the order of the entries changes, the last link staying last.
         """
-        a, b = (v[-2::-1] + v[-1:] for v in (self.lengths, self.twists))
-        return Loop(a, b, self.offsets[::-1], self.name)
+        lengths = self.lengths[-2::-1] + self.lengths[-1:]
+        twists = self.twists[-2::-1] + self.twists[-1:]
+        return Loop(lengths, twists, self.offsets[::-1], self.name)
 
     def mirrored(self) -> Loop:
         """The mirror image; a configuration keeps its angles."""
-        twists, offsets = (tuple(-x for x in v) for v in (self.twists, self.offsets))
+        twists = tuple(-twist for twist in self.twists)
+        offsets = tuple(-offset for offset in self.offsets)
         return Loop(self.lengths, twists, offsets, self.name)
 
     def scaled(self, factor: float) -> Loop:
         """The linkage with all lengths and offsets times ``factor``; a configuration
         keeps its angles."""
-        a, c = (tuple(factor * x for x in v) for v in (self.lengths, self.offsets))
-        return Loop(a, self.twists, c, self.name)
+        lengths = tuple(factor * length for length in self.lengths)
+        offsets = tuple(factor * offset for offset in self.offsets)
+        return Loop(lengths, self.twists, offsets, self.name)
 
-
-def loop_from_axes(
-    points: Sequence[Sequence[float]],
-    directions: Sequence[Sequence[float]],
-    name: str = "",
-) -> tuple[Loop, np.ndarray]:
-    """The loop whose joint axes, in one configuration, pass through ``points`` along
-    ``directions``.
-
-    Both are (n, 3), in loop order, any unit and frame; directions need not be unit
-    vectors. Returns the loop and the joint angles (n,) of that configuration. Where
-    neighbouring axes are parallel, the common normal is drawn through the foot of the
-    previous one. Raises `GeometryError` for wrong shapes, values that are not finite, a
-    zero direction, or neighbouring axes that coincide.
-    """
-    p, d = np.asarray(points, dtype=float), np.asarray(directions, dtype=float)
-    for what, v in (("points", p), ("directions", d)):
-        if v.ndim != 2 or v.shape[1] != 3 or v.shape != p.shape:
-            raise GeometryError(
-                f"shape of {what}",
-                v.shape,
-                "(n, 3), the same for points and directions",
-            )
-        if not np.all(np.isfinite(v)):
-            raise GeometryError(what, v[~np.isfinite(v)][0], "finite numbers")
-    n = len(p)
-    size = np.linalg.norm(d, axis=1)
-    if np.any(size == 0):
-        raise GeometryError(
-            f"directions[{int(np.argmin(size)) + 1}]", "0, 0, 0", "a non-zero vector"
-        )
-    z = d / size[:, None]
-    extent = max(float(np.ptp(p, axis=0).max()), 1e-300)
-
-    crossing = [np.cross(z[i], z[(i + 1) % n]) for i in range(n)]
-    oblique = [i for i in range(n) if np.linalg.norm(crossing[i]) > 1e-9]
-    start = oblique[-1] if oblique else n - 1
-    lengths, twists, x = np.zeros(n), np.zeros(n), np.zeros((n, 3))
-    out_foot, in_foot = (
-        np.zeros((n, 3)),
-        np.zeros((n, 3)),
-    )  # feet of the normals to the next and from the previous axis
-    in_foot[(start + 1) % n] = p[(start + 1) % n]
-    for step in range(start, start + n):
-        i, j = step % n, (step + 1) % n
-        gap = p[j] - p[i]
-        if i in oblique:
-            normal = crossing[i] / np.linalg.norm(crossing[i])
-            # p_i + u z_i and p_j + v z_j are the nearest points of the two lines
-            u, v = np.linalg.lstsq(np.column_stack([z[i], -z[j]]), gap, rcond=None)[0]
-            out_foot[i], in_foot[j] = p[i] + u * z[i], p[j] + v * z[j]
-            across = in_foot[j] - out_foot[i]
-            x[i] = normal if across @ normal >= 0 else -normal
-            lengths[i] = across @ x[i]
-        else:
-            out_foot[i] = in_foot[i] if step > start else p[i]
-            across = gap + p[i] - out_foot[i]
-            across -= (across @ z[i]) * z[i]
-            lengths[i] = np.linalg.norm(across)
-            if lengths[i] < 1e-12 * extent:
-                raise GeometryError(
-                    f"axes {i + 1} and {j + 1}", "the same line", "different lines"
-                )
-            x[i], in_foot[j] = across / lengths[i], out_foot[i] + across
-        twists[i] = np.arctan2(np.cross(z[i], z[j]) @ x[i], z[i] @ z[j])
-    offsets = np.einsum("ij,ij->i", out_foot - in_foot, z)
-    rounding = 1e-13 * float(
-        np.abs(p).max()
-    )  # of axes that meet: a loop of nothing else would be measured by it
-    for values in (lengths, offsets):
-        values[np.abs(values) < rounding] = 0.0
-    before = np.roll(x, 1, axis=0)
-    theta = np.arctan2(
-        np.einsum("ij,ij->i", np.cross(before, x), z), np.einsum("ij,ij->i", before, x)
-    )
-    return Loop(tuple(lengths), tuple(twists), tuple(offsets), name), theta
+    def __repr__(self) -> str:
+        rows = geometry_rows(self.lengths, self.twists, self.offsets)
+        title = f"{self.name or 'Loop'}: {self.n} joints"
+        return f"{title}\n{geometry_text(rows)}"

@@ -13,18 +13,18 @@ from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
-from linkages.forms import name_forms
+from linkages.forms import FormIdentity, name_forms
+from linkages.labels import subject_of
 from linkages.linkage import Linkage
-from linkages.loop import Loop
+from linkages.loop import GeometryError, Loop
 
 __all__ = ["largest_residual", "map_linkage"]
 
 DEFAULT_SEARCH = SearchSettings()
 
 NAMING = 400  # samples of a form for its name
-CLOSING = np.linspace(
-    0.0, 1.0, 24, endpoint=False
-)  # where on every piece of a form its closure is checked
+# where on every piece of a form its closure is checked
+CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)
 
 
 def map_linkage(
@@ -39,46 +39,52 @@ def map_linkage(
     every near miss.
 
     ``seed`` is that of the random starts; ``progress`` is called with what was found
-    and how many. ``labels`` of a form hold its ``inactive_joints`` (from 1) and their
-    ``inactive_angles`` (rad), its ``symmetry``, and ``max_residual``, the largest
-    closure error seen along it relative to the characteristic length;
-    the ``subject`` of the atlas holds the geometry, twists in rad. With ``certify``
-    every form has its ``certificate``.
+    and how many. `linkages.labels.FormLabels` reads what a form is,
+    `linkages.labels.loop_of` the loop that an atlas is of. With ``certify`` every form
+    has its ``certificate``. Raises `GeometryError` for anything but a linkage.
     """
-    if isinstance(linkage, Loop):
-        linkage = Linkage(linkage)
-    loop = linkage.loop
-    problem = LoopClosure(loop)
+    linkage = _as_linkage(linkage)
+    problem = LoopClosure(linkage.loop)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
-    samples = [form.branch.sample(NAMING) for form in atlas.forms]
-    identities = name_forms(samples, loop, linkage.patterns)
-    labels = [
-        {
-            "inactive_joints": list(identity.inactive_joints),
-            "inactive_angles": list(identity.inactive_angles),
-            "symmetry": identity.symmetry,
-            "max_residual": largest_residual(problem, form.branch),
-        }
-        for identity, form in zip(identities, atlas.forms, strict=True)
-    ]
-    lengths, twists, offsets = (values.tolist() for values in loop.arrays)
-    geometry = {
-        "name": loop.name,
-        "lengths": lengths,
-        "twists": twists,
-        "offsets": offsets,
-    }
-    named = atlas.renamed([identity.name for identity in identities], labels)
-    named = replace(named, subject=geometry)
-    return certify_atlas(problem, named) if certify else named
+    identities = _recognise(atlas, linkage)
+    atlas = _label(atlas, identities, problem)
+    if certify:
+        atlas = certify_atlas(problem, atlas)
+    return atlas
 
 
 def largest_residual(problem: LoopClosure, branch: Branch) -> float:
     """The largest closure error at places all along a branch: the norm over rotation
     and translation."""
-    places = branch.breaks[:-1, None] + np.diff(branch.breaks)[:, None] * CLOSING
-    return float(
-        np.linalg.norm(problem.residuals(branch(places.ravel())), axis=1).max(
-            initial=0.0
-        )
-    )
+    lengths = np.diff(branch.breaks)
+    places = branch.breaks[:-1, None] + lengths[:, None] * CLOSING
+    residuals = problem.residuals(branch(places.ravel()))
+    return float(np.linalg.norm(residuals, axis=1).max(initial=0.0))
+
+
+def _as_linkage(linkage: Linkage | Loop) -> Linkage:
+    if isinstance(linkage, Loop):
+        return Linkage(linkage)
+    if not isinstance(linkage, Linkage):
+        allowed = "a `Linkage`, which `linkages.load` returns, or a `Loop`"
+        raise GeometryError("linkage", repr(linkage), allowed)
+    return linkage
+
+
+def _recognise(atlas: Atlas, linkage: Linkage) -> list[FormIdentity]:
+    """What every form is, from samples along it."""
+    samples = [form.branch.sample(NAMING) for form in atlas.forms]
+    return name_forms(samples, linkage.loop, linkage.patterns)
+
+
+def _label(atlas: Atlas, identities: list[FormIdentity], problem: LoopClosure) -> Atlas:
+    """The atlas with the names of its forms, their labels, and the loop as its
+    subject."""
+    names = []
+    labels = []
+    for form, identity in zip(atlas.forms, identities, strict=True):
+        residual = largest_residual(problem, form.branch)
+        names.append(identity.name)
+        labels.append(replace(identity.labels, max_residual=residual).as_values())
+    named = atlas.renamed(names, labels)
+    return replace(named, subject=subject_of(problem.loop))

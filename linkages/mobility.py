@@ -9,16 +9,24 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 __all__ = ["Survey", "held_gap", "survey"]
 
+CLOSED = 1e-10  # closure residual at which a start is taken to have closed
+STEPS = 60  # of damped Gauss-Newton
+LONGEST_STEP = 1.0  # rad, of one joint
+# damping, over the squared residual, while that is large, and at the end
+DAMPING = 0.1
+LEAST_DAMPING = 1e-14
+
 
 @dataclass(frozen=True)
 class Survey:
-    """What exploring found: motion ``forms``, ``surfaces`` of mobility 2 or more,
-    ``rigid`` assemblies.
+    """What exploring found: an ``atlas`` of motion forms and of surfaces of mobility 2
+    or more, and the number of ``rigid`` assemblies.
 
     ``stiffness`` is the smallest singular value number n at the rigid assemblies,
     ``gap`` the smallest closure residual at which a start got stuck, relative to the
@@ -34,27 +42,35 @@ class Survey:
     def mobility(self) -> int:
         """0 for a rigid loop or one without real configurations, 1 for motion curves, 2
         for surfaces (2 or more)."""
-        return 2 if self.atlas.surfaces else 1 if self.atlas.forms else 0
+        if self.atlas.surfaces:
+            return 2
+        return 1 if self.atlas.forms else 0
 
 
 def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:
-    """Explore ``loop`` from complete slices and from ``starts`` random starts."""
+    """What exploring ``loop`` from complete slices and from ``starts`` random starts
+    finds."""
     problem = LoopClosure(loop)
     seeds = problem.seeds(np.random.default_rng(seed), starts)
-    atlas = explore(problem, seeds=seeds, seed=seed)
-    stiffness = float("nan")
-    if len(atlas.rigid):
-        jacobians = problem.jacobians(np.array(atlas.rigid))
-        stiffness = float(
-            np.linalg.svd(jacobians, compute_uv=False)[:, problem.n - 1].min()
-        )
-    gaps = seeds.gaps[seeds.gaps > 1e-10]
+    # whether a motion is missing is not asked
+    settings = SearchSettings(prove=False)
+    atlas = explore(problem, settings=settings, seeds=seeds, seed=seed)
+    gaps = seeds.gaps[seeds.gaps > CLOSED]
     return Survey(
-        atlas,
-        len(atlas.rigid),
-        stiffness,
-        float(gaps.min()) if len(gaps) else float("nan"),
+        atlas=atlas,
+        rigid=len(atlas.rigid),
+        stiffness=_stiffness(problem, atlas.rigid),
+        gap=float(gaps.min()) if len(gaps) else float("nan"),
     )
+
+
+def _stiffness(problem: LoopClosure, assemblies: np.ndarray) -> float:
+    """The smallest singular value number n at configurations (k, n), nan for none."""
+    if not len(assemblies):
+        return float("nan")
+    jacobians = problem.jacobians(np.array(assemblies))
+    singular_values = np.linalg.svd(jacobians, compute_uv=False)
+    return float(singular_values[:, problem.n - 1].min())
 
 
 def held_gap(loop: Loop, angle: float = 1.0, starts: int = 60, seed: int = 0) -> float:
@@ -65,20 +81,26 @@ def held_gap(loop: Loop, angle: float = 1.0, starts: int = 60, seed: int = 0) ->
     converge slowly, from one that moves. Damped Gauss-Newton from random starts of the
     other joints.
     """
-    problem, rng = LoopClosure(loop), np.random.default_rng(seed)
+    problem = LoopClosure(loop)
+    rng = np.random.default_rng(seed)
     theta = rng.uniform(-np.pi, np.pi, (starts, loop.n))
     theta[:, 0] = angle
-    for _ in range(60):
-        residual, jacobian = (
-            problem.residuals(theta),
-            problem.jacobians(theta)[:, :, 1:],
-        )
-        damping = 0.1 * np.minimum(1.0, np.sum(residual**2, axis=1)) + 1e-14
-        normal = np.einsum("kij,kil->kjl", jacobian, jacobian) + damping[
-            :, None, None
-        ] * np.eye(loop.n - 1)
-        step = np.linalg.solve(
-            normal, -np.einsum("kij,ki->kj", jacobian, residual)[..., None]
-        )[..., 0]
-        theta[:, 1:] += np.clip(step, -1.0, 1.0)
-    return float(np.linalg.norm(problem.residuals(theta), axis=1).min())
+    for _ in range(STEPS):
+        step = _damped_step(problem, theta)
+        theta[:, 1:] += np.clip(step, -LONGEST_STEP, LONGEST_STEP)
+    residuals = problem.residuals(theta)
+    return float(np.linalg.norm(residuals, axis=1).min())
+
+
+def _damped_step(problem: LoopClosure, theta: np.ndarray) -> np.ndarray:
+    """Steps (k, n - 1) of Gauss-Newton from configurations (k, n), joint 1 held."""
+    residual = problem.residuals(theta)
+    jacobian = problem.jacobians(theta)[:, :, 1:]
+    size = np.sum(residual**2, axis=1)
+    damping = DAMPING * np.minimum(1.0, size) + LEAST_DAMPING
+    identity = np.eye(problem.n - 1)
+    square = np.einsum("kij,kil->kjl", jacobian, jacobian)
+    normal = square + damping[:, None, None] * identity
+    descent = -np.einsum("kij,ki->kj", jacobian, residual)
+    step: np.ndarray = np.linalg.solve(normal, descent[..., None])[..., 0]
+    return step

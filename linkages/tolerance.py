@@ -20,9 +20,14 @@ def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop
     if not (np.isfinite(error) and error >= 0.0):
         raise GeometryError("error", error, "a finite number, not negative")
     size = error * loop.characteristic_length
-    units = (size, error, size)
-    lengths, twists, offsets = (
-        tuple((values + unit * rng.normal(size=loop.n)).tolist())
-        for values, unit in zip(loop.arrays, units, strict=True)
+    nominal = loop.arrays
+    # in this order, so that a seed keeps its meaning
+    lengths = nominal.lengths + size * rng.normal(size=loop.n)
+    twists = nominal.twists + error * rng.normal(size=loop.n)
+    offsets = nominal.offsets + size * rng.normal(size=loop.n)
+    return Loop(
+        tuple(lengths.tolist()),
+        tuple(twists.tolist()),
+        tuple(offsets.tolist()),
+        loop.name,
     )
-    return Loop(lengths, twists, offsets, loop.name)

@@ -23,6 +23,7 @@ from linkages.loop import GeometryError, Loop
 __all__ = ["CoupledClosure", "locked_joints"]
 
 LARGEST_DENOMINATOR = 1000  # of a gear ratio whose angles come back to where they were
+RATIO_ROUNDING = 1e-12  # by which a gear ratio may differ from a fraction, of itself
 
 
 class CoupledClosure(NumericalProblem):
@@ -42,7 +43,8 @@ class CoupledClosure(NumericalProblem):
         self, loop: Loop, matrix: np.ndarray, offset: np.ndarray | None = None
     ):
         self.loop = loop
-        self.matrix, self.offset = _checked(loop.n, matrix, offset)
+        self.matrix = _coupling_matrix(loop.n, matrix)
+        self.offset = _coupling_offset(loop.n, offset)
         count = self.matrix.shape[1]
         self.names = tuple(f"v{j + 1}" for j in range(count))
         self.units = ("rad",) * count
@@ -53,7 +55,8 @@ class CoupledClosure(NumericalProblem):
 
     def angles(self, points: np.ndarray) -> np.ndarray:
         """Joint angles (..., n), rad, of unknowns (..., k)."""
-        return points @ self.matrix.T + self.offset
+        theta: np.ndarray = points @ self.matrix.T + self.offset
+        return theta
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """Closure residuals (m, 6) at points (m, k)."""
@@ -61,18 +64,21 @@ class CoupledClosure(NumericalProblem):
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """Derivatives (m, 6, k) of `residuals`."""
-        return self._closure.jacobians(self.angles(points)) @ self.matrix
+        of_angles = self._closure.jacobians(self.angles(points))
+        jacobians: np.ndarray = of_angles @ self.matrix
+        return jacobians
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, k, k) of the residual."""
-        return self.matrix.T @ self._closure.hessian(self.angles(point)) @ self.matrix
+        of_angles = self._closure.hessian(self.angles(point))
+        hessian: np.ndarray = self.matrix.T @ of_angles @ self.matrix
+        return hessian
 
     def curvature_bound(self) -> float:
         """That of the loop times |M|^2: once for the distance, once for the chain
         rule."""
-        return (
-            self._closure.curvature_bound() * float(np.linalg.norm(self.matrix, 2)) ** 2
-        )
+        stretch = float(np.linalg.norm(self.matrix, 2))
+        return self._closure.curvature_bound() * stretch**2
 
     def march(
         self,
@@ -89,7 +95,7 @@ class CoupledClosure(NumericalProblem):
         status, pieces, steps, radii, residuals, _ = kernels.march(
             np.ascontiguousarray(start),
             np.ascontiguousarray(tangent),
-            self._closure._geometry,
+            self.loop.link_geometry,
             order,
             tolerance,
             shortest,
@@ -113,48 +119,53 @@ def locked_joints(
         if not 1 <= joint <= joints:
             raise GeometryError("locked joint", joint, f"from 1 to {joints}")
         offset[joint - 1] = angle
-    return np.delete(np.eye(joints), [joint - 1 for joint in angles], axis=1), offset
+    locked = [joint - 1 for joint in angles]
+    return np.delete(np.eye(joints), locked, axis=1), offset
 
 
-def _checked(
-    n: int, matrix: np.ndarray, offset: np.ndarray | None
-) -> tuple[np.ndarray, np.ndarray]:
-    """M and c as float arrays."""
-    m, c = (
-        np.array(matrix, dtype=float),
-        np.zeros(n) if offset is None else np.array(offset, dtype=float),
-    )
+def _coupling_matrix(n: int, matrix: np.ndarray) -> np.ndarray:
+    """M (n, k) as floats; raises `GeometryError` for a wrong shape, values that are not
+    finite and dependent columns."""
+    m = np.array(matrix, dtype=float)
     if m.ndim != 2 or m.shape[0] != n or not 1 <= m.shape[1] <= n:
-        raise GeometryError(
-            "shape of the coupling matrix", m.shape, f"({n}, k) with k from 1 to {n}"
-        )
-    if c.shape != (n,):
-        raise GeometryError("shape of the coupling offset", c.shape, f"({n},)")
-    for what, values in (("coupling matrix", m), ("coupling offset", c)):
-        if not np.all(np.isfinite(values)):
-            raise GeometryError(what, values[~np.isfinite(values)][0], "finite numbers")
+        allowed = f"({n}, k) with k from 1 to {n}"
+        raise GeometryError("shape of the coupling matrix", m.shape, allowed)
+    _check_finite("coupling matrix", m)
     rank = int(np.linalg.matrix_rank(m))
     if rank < m.shape[1]:
-        raise GeometryError(
-            "rank of the coupling matrix",
-            rank,
-            f"{m.shape[1]}, the number of its columns",
-        )
-    return m, c
+        allowed = f"{m.shape[1]}, the number of its columns"
+        raise GeometryError("rank of the coupling matrix", rank, allowed)
+    return m
+
+
+def _coupling_offset(n: int, offset: np.ndarray | None) -> np.ndarray:
+    """c (n,) as floats, 0 where none is given; raises `GeometryError` for a wrong shape
+    and values that are not finite."""
+    if offset is None:
+        return np.zeros(n)
+    c = np.array(offset, dtype=float)
+    if c.shape != (n,):
+        raise GeometryError("shape of the coupling offset", c.shape, f"({n},)")
+    _check_finite("coupling offset", c)
+    return c
+
+
+def _check_finite(name: str, values: np.ndarray) -> None:
+    is_wrong = ~np.isfinite(values)
+    if np.any(is_wrong):
+        raise GeometryError(name, values[is_wrong][0], "finite numbers")
 
 
 def _period(ratios: np.ndarray) -> float:
-    """The smallest turn (rad) of an unknown that brings all joints it turns round, inf
-    where none is short."""
-    found = [Fraction(float(r)).limit_denominator(LARGEST_DENOMINATOR) for r in ratios]
-    if any(
-        abs(float(f) - r) > 1e-12 * abs(r) for f, r in zip(found, ratios, strict=True)
-    ):
-        return math.inf
-    turning = [f for f in found if f]
-    return (
-        2
-        * math.pi
-        * math.lcm(*(f.denominator for f in turning))
-        / math.gcd(*(f.numerator for f in turning))
-    )
+    """The smallest turn (rad) of an unknown that brings all joints round that it turns
+    at these ``ratios`` (n,); inf where none is short."""
+    turning = []
+    for ratio in ratios:
+        fraction = Fraction(float(ratio)).limit_denominator(LARGEST_DENOMINATOR)
+        if abs(float(fraction) - ratio) > RATIO_ROUNDING * abs(ratio):
+            return math.inf
+        if fraction:
+            turning.append(fraction)
+    denominator = math.lcm(*(fraction.denominator for fraction in turning))
+    numerator = math.gcd(*(fraction.numerator for fraction in turning))
+    return 2 * math.pi * denominator / numerator

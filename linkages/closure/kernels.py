@@ -15,6 +15,9 @@ array [M c] where there are k of them: theta = M v + c. numba compiles one varia
 each, and a plain loop does not pay for the other.
 """
 
+# mypy: allow-untyped-defs, allow-untyped-calls
+# (numba infers the types of compiled functions)
+
 from __future__ import annotations
 
 import numpy as np

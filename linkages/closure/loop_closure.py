@@ -3,6 +3,8 @@ interface."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from bifurc.function_problem import NumericalProblem
@@ -12,7 +14,7 @@ from bifurc.seeds import Seeds
 from linkages.closure import kernels
 from linkages.loop import Loop
 from linkages.slices.completeness import SliceAudit
-from linkages.slices.elimination import slice_configurations
+from linkages.slices.elimination import Slice, slice_configurations
 
 __all__ = ["LoopClosure"]
 
@@ -21,6 +23,8 @@ SLICES = 24
 LARGEST_SLICED = 6  # joints of the longest loop with complete slices
 NEARLY_REAL = 0.2  # rad: imaginary parts of configurations whose real part is a start
 ROUNDING = 4e-16  # below this residual norm a projection has nothing left to gain
+PROJECTION_STEPS = 60
+SPHERE_STEPS = 25
 
 
 class LoopClosure(NumericalProblem):
@@ -34,42 +38,29 @@ class LoopClosure(NumericalProblem):
     curvature_residual = 0.2
 
     def __init__(self, loop: Loop):
+        n = loop.n
         self.loop = loop
-        self.names = tuple(f"theta{i + 1}" for i in range(loop.n))
-        self.units = ("rad",) * loop.n
-        self.periods = np.full(loop.n, 2 * np.pi)
-        self.bounds = np.full((loop.n, 2), [-np.inf, np.inf])
-        a, alpha, offset = loop.arrays
-        size = loop.characteristic_length
-        self._geometry = np.array(
-            [
-                a / size,
-                offset / size,
-                np.cos(alpha),
-                np.sin(alpha),
-                np.cos(alpha / 2),
-                np.sin(alpha / 2),
-            ]
-        )
+        self.names = tuple(f"theta{i + 1}" for i in range(n))
+        self.units = ("rad",) * n
+        self.periods = np.full(n, 2 * np.pi)
+        self.bounds = np.full((n, 2), [-np.inf, np.inf])
+        self._geometry = loop.link_geometry
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """Closure residuals (k, 6): rotation, then translation over the characteristic
         length."""
-        return kernels.residuals(
-            np.ascontiguousarray(points, dtype=float), self._geometry
-        )
+        residuals: np.ndarray = kernels.residuals(_contiguous(points), self._geometry)
+        return residuals
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """Derivatives (k, 6, n) of `residuals`."""
-        return kernels.jacobians(
-            np.ascontiguousarray(points, dtype=float), self._geometry
-        )
+        jacobians: np.ndarray = kernels.jacobians(_contiguous(points), self._geometry)
+        return jacobians
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
-        return kernels.hessians(
-            np.ascontiguousarray(point, dtype=float), self._geometry
-        )
+        hessian: np.ndarray = kernels.hessians(_contiguous(point), self._geometry)
+        return hessian
 
     def curvature_bound(self) -> float:
         """K with |J(x) - J(y)| <= K |x - y| near closed configurations, from the
@@ -82,13 +73,22 @@ class LoopClosure(NumericalProblem):
         ``curvature_residual`` to spare. K is the largest eigenvalue of the matrix of
         these bounds.
         """
-        a, _, offset = np.abs(self.loop.arrays) / self.loop.characteristic_length
-        link = a + np.roll(offset, -1)  # along link j and the axis after it
-        before = np.concatenate([[0.0], np.cumsum(link)[:-1]]) - offset + offset[0]
-        after = np.cumsum((a + offset)[::-1])[::-1] - offset
-        distance = np.minimum(np.maximum(before, 0.0) + self.curvature_residual, after)
-        later = np.maximum.outer(np.arange(self.n), np.arange(self.n))
-        return float(np.linalg.eigvalsh(np.sqrt(0.25 + distance[later] ** 2))[-1])
+        table = self.loop.arrays
+        size = self.loop.characteristic_length
+        lengths = np.abs(table.lengths) / size
+        offsets = np.abs(table.offsets) / size
+        # along the axis of joint 1, a link, the next axis, and so on, up to axis j
+        link = lengths + np.roll(offsets, -1)
+        links_before = np.concatenate([[0.0], np.cumsum(link)[:-1]])
+        before = links_before - offsets + offsets[0]
+        # from axis j on to the end of the loop
+        after = np.cumsum((lengths + offsets)[::-1])[::-1] - offsets
+        reach_before = np.maximum(before, 0.0) + self.curvature_residual
+        distance = np.minimum(reach_before, after)
+        joints = np.arange(self.n)
+        later = np.maximum.outer(joints, joints)
+        bounds = np.sqrt(0.25 + distance[later] ** 2)
+        return float(np.linalg.eigvalsh(bounds)[-1])
 
     def march(
         self,
@@ -120,45 +120,59 @@ class LoopClosure(NumericalProblem):
         drawn = random_seeds(self, rng, count)
         if self.loop.n > LARGEST_SLICED:
             return drawn
+        slices = self._slices(rng)
+        constructed = np.concatenate(
+            [*(cut.configurations for cut in slices), self._near_nonreal(slices)]
+        )
+        random = np.repeat([False, True], [len(constructed), len(drawn.points)])
+        return Seeds(
+            points=np.concatenate([constructed, drawn.points]),
+            random=random,
+            gaps=drawn.gaps,
+            missed=drawn.missed,
+            audit=SliceAudit(self.loop, slices),
+        )
+
+    def _slices(self, rng: np.random.Generator) -> tuple[Slice, ...]:
+        """Slices of every joint at evenly spaced angles from a random one."""
         first = rng.uniform(-np.pi, np.pi, self.n)
         steps = 2 * np.pi / SLICES * np.arange(SLICES)
-        slices = [
-            slice_configurations(self.loop, j + 1, first[j] + steps)
-            for j in range(self.n)
-        ]
-        hidden = np.concatenate([s.nonreal for s in slices])
-        nearly = hidden[
-            np.abs(hidden.imag).max(axis=1, initial=0.0) < NEARLY_REAL
-        ].real  # a small motion may be near
-        reached, gaps = self.project(nearly)
-        points = np.concatenate(
-            [*(s.configurations for s in slices), reached[gaps < CLOSED], drawn.points]
+        return tuple(
+            slice_configurations(self.loop, joint + 1, first[joint] + steps)
+            for joint in range(self.n)
         )
-        random = np.repeat(
-            [False, True], [len(points) - len(drawn.points), len(drawn.points)]
-        )
-        return Seeds(
-            points,
-            random,
-            drawn.gaps,
-            drawn.missed,
-            SliceAudit(self.loop, tuple(slices)),
-        )
+
+    def _near_nonreal(self, slices: Sequence[Slice]) -> np.ndarray:
+        """Closed configurations (k, n) reached from the real parts of those in the
+        slices that are nearly real: a small motion may be near."""
+        nonreal = np.concatenate([cut.nonreal for cut in slices])
+        largest = np.abs(nonreal.imag).max(axis=1, initial=0.0)
+        points, gaps = self.project(nonreal[largest < NEARLY_REAL].real)
+        return points[gaps < CLOSED]
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
         each."""
-        return kernels.project(
-            np.ascontiguousarray(starts, dtype=float), self._geometry, ROUNDING, 60
+        points, gaps = kernels.project(
+            _contiguous(starts), self._geometry, ROUNDING, PROJECTION_STEPS
         )
+        return points, gaps
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Closed configurations at distance ``radius`` from ``center``, residuals and
-        last steps."""
-        starts, center = (
-            np.ascontiguousarray(starts, dtype=float),
-            np.ascontiguousarray(center, dtype=float),
+        """Closed configurations (k, n) at distance ``radius`` from ``center`` (n,),
+        residuals (k,) and last steps (k,)."""
+        points, gaps, last_steps = kernels.project_to_sphere(
+            _contiguous(starts),
+            _contiguous(center),
+            radius,
+            self._geometry,
+            SPHERE_STEPS,
         )
-        return kernels.project_to_sphere(starts, center, radius, self._geometry, 25)
+        return points, gaps, last_steps
+
+
+def _contiguous(values: np.ndarray) -> np.ndarray:
+    """``values`` as the floats in one block of memory that compiled kernels take."""
+    return np.ascontiguousarray(values, dtype=float)

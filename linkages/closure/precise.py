@@ -4,16 +4,68 @@ at any precision."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import NamedTuple
 
 import mpmath
 
+from linkages.kinematics import Number
 from linkages.loop import Loop
 
 __all__ = ["precise_residual"]
 
 
-def precise_residual(loop: Loop) -> Callable[[Sequence[Any]], list[Any]]:
+class Quaternion(NamedTuple):
+    """The unit quaternion w + x i + y j + z k of a rotation."""
+
+    w: Number
+    x: Number
+    y: Number
+    z: Number
+
+    def turned_about_x(self, cosine: Number, sine: Number) -> Quaternion:
+        """The rotation, and after it one about its own x axis, by cosine and sine of
+        half the angle."""
+        w, x, y, z = self
+        return Quaternion(
+            w * cosine - x * sine,
+            x * cosine + w * sine,
+            y * cosine + z * sine,
+            z * cosine - y * sine,
+        )
+
+    def turned_about_z(self, cosine: Number, sine: Number) -> Quaternion:
+        """The rotation, and after it one about its own z axis, by cosine and sine of
+        half the angle."""
+        w, x, y, z = self
+        return Quaternion(
+            w * cosine - z * sine,
+            x * cosine + y * sine,
+            y * cosine - x * sine,
+            z * cosine + w * sine,
+        )
+
+    def x_axis(self) -> tuple[Number, Number, Number]:
+        """The first column of the rotation."""
+        w, x, y, z = self
+        return 1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)
+
+    def z_axis(self) -> tuple[Number, Number, Number]:
+        """The third column of the rotation."""
+        w, x, y, z = self
+        return 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
+
+
+class Link(NamedTuple):
+    """A link: length and offset in characteristic lengths, cosine and sine of half its
+    twist."""
+
+    length: Number
+    offset: Number
+    cosine: Number
+    sine: Number
+
+
+def precise_residual(loop: Loop) -> Callable[[Sequence[Number]], list[Number]]:
     """The six closure equations of a loop as a function of its n joint angles (rad),
     mpmath numbers.
 
@@ -21,43 +73,35 @@ def precise_residual(loop: Loop) -> Callable[[Sequence[Any]], list[Any]]:
     sign(q_0) q_v, p / characteristic length), with q the quaternion and p the
     translation of the loop product. Floats in the geometry are taken as exact.
     """
-    size = mpmath.mpf(loop.characteristic_length)
-    lengths, twists, offsets = (
-        [mpmath.mpf(x) for x in v] for v in (loop.lengths, loop.twists, loop.offsets)
-    )
-    links = [
-        (a / size, r / size, mpmath.cos(alpha / 2), mpmath.sin(alpha / 2))
-        for a, alpha, r in zip(lengths, twists, offsets, strict=True)
-    ]
+    links = _links(loop)
 
-    def residual(theta: Sequence[Any]) -> list[Any]:
-        q = (mpmath.mpf(1), mpmath.mpf(0), mpmath.mpf(0), mpmath.mpf(0))
-        p = [mpmath.mpf(0)] * 3
-        for angle, (length, offset, cosine, sine) in zip(theta, links, strict=True):
-            c, s = mpmath.cos(angle / 2), mpmath.sin(angle / 2)
-            q = (
-                q[0] * c - q[3] * s,
-                q[1] * c + q[2] * s,
-                q[2] * c - q[1] * s,
-                q[3] * c + q[0] * s,
-            )
-            x, z = _axes(q)
-            p = [p[i] + offset * z[i] + length * x[i] for i in range(3)]
-            q = (
-                q[0] * cosine - q[1] * sine,
-                q[1] * cosine + q[0] * sine,
-                q[2] * cosine + q[3] * sine,
-                q[3] * cosine - q[2] * sine,
-            )
-        sign = 1 if q[0] >= 0 else -1
-        return [2 * sign * q[1], 2 * sign * q[2], 2 * sign * q[3], *p]
+    def residual(theta: Sequence[Number]) -> list[Number]:
+        zero = mpmath.mpf(0)
+        rotation = Quaternion(mpmath.mpf(1), zero, zero, zero)
+        translation = [zero, zero, zero]
+        for angle, link in zip(theta, links, strict=True):
+            half = angle / 2
+            rotation = rotation.turned_about_z(mpmath.cos(half), mpmath.sin(half))
+            x_axis = rotation.x_axis()
+            z_axis = rotation.z_axis()
+            for k in range(3):
+                along = translation[k] + link.offset * z_axis[k]
+                translation[k] = along + link.length * x_axis[k]
+            rotation = rotation.turned_about_x(link.cosine, link.sine)
+        sign = 1 if rotation.w >= 0 else -1
+        vector = (rotation.x, rotation.y, rotation.z)
+        return [*(2 * sign * part for part in vector), *translation]
 
     return residual
 
 
-def _axes(q: tuple[Any, ...]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-    """The first and the third column of the rotation of a unit quaternion."""
-    w, x, y, z = q
-    first = (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y))
-    third = (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
-    return first, third
+def _links(loop: Loop) -> list[Link]:
+    size = mpmath.mpf(loop.characteristic_length)
+    links = []
+    for i in range(loop.n):
+        length = mpmath.mpf(loop.lengths[i]) / size
+        offset = mpmath.mpf(loop.offsets[i]) / size
+        half_twist = mpmath.mpf(loop.twists[i]) / 2
+        cosine, sine = mpmath.cos(half_twist), mpmath.sin(half_twist)
+        links.append(Link(length, offset, cosine, sine))
+    return links

@@ -30,6 +30,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from bifurc import torus
 from bifurc.branch import Branch
 from bifurc.curves.monitor import dead_points
 from bifurc.limits import Deadline
@@ -44,6 +45,7 @@ FEWEST = 4  # joints that move on a motion, at least
 SAME = 1e-7  # rad: dead points at angles that agree to this are taken together
 CUT = 0.3819660112501051  # of its length: where a curve without dead points is cut
 TURN = 2 * np.pi
+SAMPLES = 64  # of a motion, to see whether it turns a joint
 
 
 @dataclass(frozen=True)
@@ -60,82 +62,133 @@ class SliceAudit:
         for numbers alone."""
         deadline = Deadline(seconds)
         nowhere = np.empty((0, self.loop.n))
-        degenerate = sum(int(np.count_nonzero(s.degenerate)) for s in self.slices)
-        if degenerate:
-            reason, total = (
-                next(s.reason for s in self.slices if s.reason),
-                sum(len(s.angles) for s in self.slices),
-            )
+        if not all(cut.is_complete for cut in self.slices):
+            return Audit("estimated", self._incompleteness(), nowhere)
+        passes = self._passes(branches)
+        differing = self._differing_joints(passes)
+        if differing:
             text = (
-                f"{degenerate} of {total} slices could not be made complete ({reason})"
+                f"at some angles of {_joint_names(differing)} the slices and the "
+                "motions hold different configurations"
             )
             return Audit("estimated", text, nowhere)
+        if not branches and not any(_number(cut) for cut in self.slices):
+            text = (
+                "there is no motion: no angle of any joint but a few has a "
+                "configuration"
+            )
+            return Audit("proved", text, nowhere)
+        room = self._room(passes)
+        following = self._follow_nonreal(passes, room, deadline)
+        starts = np.concatenate([nowhere, *following.halts])
+        if len(following.room) >= FEWEST:
+            return Audit("certified", self._what_is_certified(following.room), starts)
+        return Audit("proved", self._what_is_proved(following), starts)
+
+    def _passes(self, branches: Sequence[Branch]) -> list[Passes]:
+        """How the motions pass the angles of every joint."""
         dead = [dead_points(branch) for branch in branches]
-        passes = [
-            _Passes.of(joint, branches, [d[joint] for d in dead])
-            for joint in range(self.loop.n)
-        ]
-        unlike = [
-            j
-            for j, s in enumerate(self.slices)
-            if np.any(passes[j].count(s.angles) != _real(s))
-        ]
-        if unlike:
-            text = f"at some angles of {_joints(unlike)} the slices and the motions hold different configurations"
-            return Audit("estimated", text, nowhere)
-        width = [p.room(_number(s)) for p, s in zip(passes, self.slices, strict=True)]
-        room = sorted(
-            (j for j in range(self.loop.n) if width[j] > 0), key=lambda j: (width[j], j)
-        )
-        starts, closed, open_still = [nowhere], [], 0
-        while len(room) >= FEWEST and open_still < FEWEST and not deadline.passed:
-            joint = room.pop(0)
-            halted = _follow(
-                self.loop, self.slices[joint], passes[joint], deadline.left
-            )
-            if halted is None or len(halted):
-                room.append(joint)
-                open_still += 1
-                starts += [] if halted is None else [halted]
-            else:
+        passes = []
+        for joint in range(self.loop.n):
+            turning = [of_branch[joint] for of_branch in dead]
+            passes.append(Passes.of_motions(self.loop.n, joint, branches, turning))
+        return passes
+
+    def _differing_joints(self, passes: Sequence[Passes]) -> list[int]:
+        """Joints (from 0) at some of whose angles the motions hold another number of
+        configurations than the slices."""
+        joints = []
+        for of_joint, cut in zip(passes, self.slices, strict=True):
+            if np.any(of_joint.count(cut.angles) != _real_numbers(cut)):
+                joints.append(of_joint.joint)
+        return joints
+
+    def _room(self, passes: Sequence[Passes]) -> list[int]:
+        """Joints (from 0) with room for one more motion, those with the narrowest room
+        first."""
+        widths = []
+        for of_joint, cut in zip(passes, self.slices, strict=True):
+            widths.append(of_joint.room(_number(cut)))
+        joints = [joint for joint, width in enumerate(widths) if width > 0]
+        return sorted(joints, key=lambda joint: (widths[joint], joint))
+
+    def _follow_nonreal(
+        self, passes: Sequence[Passes], room: Sequence[int], deadline: Deadline
+    ) -> Following:
+        """What following the configurations that are not real says of the joints with
+        ``room``, one joint after the other, until too few are left for a motion, too
+        many stay open or the time is over."""
+        waiting = list(room)
+        closed: list[int] = []
+        halts: list[np.ndarray] = []
+        open_count = 0
+        while len(waiting) >= FEWEST and open_count < FEWEST and not deadline.passed:
+            joint = waiting.pop(0)
+            halted = _follow(self.loop, self.slices[joint], passes[joint], deadline)
+            if halted is not None and not len(halted):
                 closed.append(joint)
-        if not branches and not any(_number(s) for s in self.slices):
-            return Audit(
-                "proved",
-                "there is no motion: no angle of any joint but a few has a configuration",
-                nowhere,
-            )
-        return Audit(
-            "certified" if len(room) >= FEWEST else "proved",
-            self._says(room, closed),
-            np.concatenate(starts),
+                continue
+            waiting.append(joint)
+            open_count += 1
+            if halted is not None:
+                halts.append(halted)
+        return Following(room=sorted(waiting), closed=sorted(closed), halts=halts)
+
+    # --- statements -------------------------------------------------------------------
+
+    def _incompleteness(self) -> str:
+        degenerate = sum(int(np.count_nonzero(cut.degenerate)) for cut in self.slices)
+        total = sum(len(cut.angles) for cut in self.slices)
+        reason = next(cut.reason for cut in self.slices if cut.reason)
+        return f"{degenerate} of {total} slices could not be made complete ({reason})"
+
+    def _what_is_certified(self, room: Sequence[int]) -> str:
+        degrees = 360 // min(len(cut.angles) for cut in self.slices)
+        return (
+            f"complete slices of all {self.loop.n} joints every {degrees} degrees: "
+            f"every motion in which some joint turns by more than {degrees} degrees is "
+            f"here; a smaller one has room in {_joint_names(room)}"
         )
 
-    def _says(self, room: list[int], closed: list[int]) -> str:
-        """What is proved when there is room for the joints ``room``, after others were
-        ``closed`` by following."""
-        degrees = 360 // min(len(s.angles) for s in self.slices)
-        if len(room) >= FEWEST:
-            return (
-                f"complete slices of all {self.loop.n} joints every {degrees} degrees: every motion in which some "
-                f"joint turns by more than {degrees} degrees is here; a smaller one has room in {_joints(sorted(room))}"
-            )
-        counted = [j for j in range(self.loop.n) if j not in room and j not in closed]
+    def _what_is_proved(self, following: Following) -> str:
+        decided = {*following.room, *following.closed}
+        counted = [joint for joint in range(self.loop.n) if joint not in decided]
         parts = []
         if counted:
             parts.append(
-                f"of {_joints(counted)} all configurations, real or not, lie on motions listed here"
+                f"of {_joint_names(counted)} all configurations, real or not, lie on "
+                "motions listed here"
             )
-        if closed:
+        if following.closed:
             parts.append(
-                f"of {_joints(sorted(closed))} those that do not lie on one never become real"
+                f"of {_joint_names(following.closed)} those that do not lie on one "
+                "never become real"
             )
-        rest = f"; no motion turns {_joints(sorted(room))} alone" if room else ""
+        rest = ""
+        if following.room:
+            rest = f"; no motion turns {_joint_names(following.room)} alone"
         return f"no motion is missing: at every angle {', and '.join(parts)}{rest}"
 
 
 @dataclass(frozen=True)
-class _Passes:
+class Following:
+    """What came of following configurations that are not real.
+
+    ``room``: joints (from 0) that still have room for one more motion; ``closed``:
+    joints of which it is proved that they have none; ``halts``: configurations (k, n)
+    at which those of the others came to a halt.
+    """
+
+    room: list[int]
+    closed: list[int]
+    halts: list[np.ndarray]
+
+
+# --- the motions that were traced -----------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Passes:
     """How the traced motions pass the angles of one joint: stretches from ``low`` to
     ``high`` (k,), rad, between ``folds``, the configurations (q, n) at the dead
     points."""
@@ -146,60 +199,118 @@ class _Passes:
     folds: np.ndarray
 
     @classmethod
-    def of(
-        cls, joint: int, branches: Sequence[Branch], turning: Sequence[np.ndarray]
-    ) -> _Passes:
-        """From the motions and the arclengths ``turning`` of their dead points in the
-        joint."""
-        low, high, folds = [], [], [np.empty((0, branches[0].n if branches else 0))]
+    def of_motions(
+        cls,
+        n: int,
+        joint: int,
+        branches: Sequence[Branch],
+        turning: Sequence[np.ndarray],
+    ) -> Passes:
+        """From the motions of a loop of ``n`` joints and the arclengths ``turning`` of
+        their dead points in the joint."""
+        low = [np.empty(0)]
+        high = [np.empty(0)]
+        folds = [np.empty((0, n))]
         for branch, dead in zip(branches, turning, strict=True):
-            if np.ptp(branch.sample(64)[:, joint]) < SAME:
+            if np.ptp(branch.sample(SAMPLES)[:, joint]) < SAME:
                 continue
-            # a closed curve is cut at its dead points alone: its start is on a slice,
-            # as a rule
-            first = dead if len(dead) else np.array([CUT * branch.length])
-            ends = (
-                np.append(first, first[0] + branch.length)
-                if branch.closed
-                else [0.0, *dead, branch.length]
-            )
-            angles = branch(np.asarray(ends))[:, joint]
+            angles = branch(_ends_of_stretches(branch, dead))[:, joint]
             low.append(np.minimum(angles[1:], angles[:-1]))
             high.append(np.maximum(angles[1:], angles[:-1]))
             folds.append(branch(dead))
         return cls(
-            joint,
-            np.concatenate([[], *low]),
-            np.concatenate([[], *high]),
-            np.concatenate(folds),
+            joint, np.concatenate(low), np.concatenate(high), np.concatenate(folds)
         )
 
     def count(self, angles: np.ndarray) -> np.ndarray:
         """Number (m,) of configurations on the motions at each of ``angles`` (m,)."""
         at = np.asarray(angles)[:, None]
-        times = np.floor((self.high - at) / TURN) - np.ceil((self.low - at) / TURN) + 1
-        return times.sum(axis=1).astype(int)
+        last = np.floor((self.high - at) / TURN)
+        first = np.ceil((self.low - at) / TURN)
+        times: np.ndarray = (last - first + 1).sum(axis=1).astype(int)
+        return times
 
     @property
     def critical(self) -> np.ndarray:
         """Angles in [0, 2 pi) between which the number is constant, in order."""
         angles = np.sort(np.concatenate([self.low, self.high]) % TURN)
-        return (
-            angles[np.diff(angles, prepend=angles[-1:] - TURN) > SAME]
-            if len(angles) > 1
-            else angles
-        )
+        if len(angles) < 2:
+            return angles
+        steps = np.diff(angles, prepend=angles[-1:] - TURN)
+        return angles[steps > SAME]
 
     def room(self, number: int) -> float:
         """Total width (rad) of the arcs in which fewer than ``number`` configurations
         lie on the motions."""
         ends = self.critical if len(self.critical) else np.zeros(1)
-        after = np.append(ends[1:], ends[0] + TURN)
-        return float((after - ends)[self.count(0.5 * (ends + after)) < number].sum())
+        after = _following_angles(ends)
+        counts = self.count(0.5 * (ends + after))
+        return float((after - ends)[counts < number].sum())
+
+
+def _ends_of_stretches(branch: Branch, dead: np.ndarray) -> np.ndarray:
+    """Arclengths (k + 1,) between which a motion passes every angle of a joint once:
+    its ``dead`` points and its ends."""
+    if not branch.closed:
+        return np.array([0.0, *dead, branch.length])
+    # a closed curve is cut at its dead points alone: its start is on a slice, as a rule
+    first = dead if len(dead) else np.array([CUT * branch.length])
+    return np.append(first, first[0] + branch.length)
+
+
+# --- following configurations that are not real ---------------------------------------
+
+
+@dataclass(frozen=True)
+class Nonreal:
+    """Slices of one joint at ``angles`` (m,) in [0, 2 pi), and their ``configurations``
+    (q, n) that are not real, one of every conjugate pair; ``index`` (q,) is the entry
+    of ``angles`` each belongs to."""
+
+    angles: np.ndarray
+    configurations: np.ndarray
+    index: np.ndarray
+
+    @classmethod
+    def of_slices(cls, slices: Sequence[Slice]) -> Nonreal:
+        """From the slices at several lists of angles of one joint."""
+        angles = []
+        configurations = []
+        index = []
+        count = 0
+        for cut in slices:
+            # of every conjugate pair one is enough
+            is_upper = _largest_imaginary_parts(cut.nonreal) > 0
+            angles.append(cut.angles % TURN)
+            configurations.append(cut.nonreal[is_upper])
+            index.append(count + cut.nonreal_index[is_upper])
+            count += len(cut.angles)
+        return cls(
+            np.concatenate(angles),
+            np.concatenate(configurations),
+            np.concatenate(index),
+        )
+
+    def at(self, i: int, joint: int, angle: float) -> np.ndarray:
+        """The configurations (k, n) of slice ``i``, with the joint at ``angle``, which
+        is that of the slice but for full turns."""
+        configurations: np.ndarray = self.configurations[self.index == i]
+        configurations[:, joint] = angle
+        return configurations
+
+
+@dataclass(frozen=True)
+class Sheets:
+    """Configurations ``starts`` (k, n), complex, to be followed until the joint is at
+    ``ends`` (k,), rad, with the folds, one list each, that they may join there."""
+
+    starts: np.ndarray
+    ends: np.ndarray
+    folds: list[list[Fold]]
 
 
 def _follow(
-    loop: Loop, cut: Slice, passes: _Passes, seconds: float
+    loop: Loop, cut: Slice, passes: Passes, deadline: Deadline
 ) -> np.ndarray | None:
     """Where (k, n) the followed configurations that are not real come to a halt,
     besides the known dead points.
@@ -208,74 +319,94 @@ def _follow(
     points in between. None where the slices do not hold equal numbers, so that some
     came from infinity.
     """
-    critical = passes.critical
-    cuts = [
-        cut,
-        slice_configurations(loop, cut.joint, _between(critical, cut.angles % TURN)),
-    ]
-    if any(np.any(s.n_complex != _number(cut)) for s in cuts):
+    more = _angles_between(passes.critical, cut.angles % TURN)
+    slices = [cut, slice_configurations(loop, cut.joint, more)]
+    number = _number(cut)
+    if any(np.any(each.n_complex != number) for each in slices):
         return None
-    angles = np.concatenate([s.angles for s in cuts]) % TURN
-    index = np.concatenate(
-        [cuts[0].nonreal_index, len(cut.angles) + cuts[1].nonreal_index]
-    )
-    nonreal = np.concatenate([s.nonreal for s in cuts])
-    largest = np.take_along_axis(
-        nonreal, np.abs(nonreal.imag).argmax(axis=1)[:, None], axis=1
-    )[:, 0]
-    index, nonreal = (
-        index[largest.imag > 0],
-        nonreal[largest.imag > 0],
-    )  # of every conjugate pair one is enough
-    order = np.argsort(angles)
-    edges = np.append(angles[order], angles[order[0]] + TURN)
-    found = [find_fold(loop, passes.joint, u) for u in passes.folds]
-    starts: list[np.ndarray] = []
-    ends: list[float] = []
-    folds: list[list[Fold]] = []
-    for number, (a, b) in enumerate(pairwise(edges)):
-        inside = critical[(critical - a) % TURN < b - a]
-        stop = a + (inside[0] - a) % TURN if len(inside) else b
-        near, sides = [], [(order[number], a)]
-        if len(inside):
-            near = [
-                f
-                for f in found
-                if f is not None and _apart(f.configuration[passes.joint], stop) < SAME
-            ]
-            sides.append((order[(number + 1) % len(order)], b))
-        for which, edge in sides:
-            for z in nonreal[index == which]:
-                z = z.copy()
-                z[passes.joint] = edge
-                starts.append(z)
-                ends.append(stop)
-                folds.append(near)
-    begun = np.array(starts).reshape(-1, loop.n)
+    nonreal = Nonreal.of_slices(slices)
+    sheets = _sheets(nonreal, passes, _known_folds(loop, passes), loop.n)
     cleared, last = follow_sheets(
-        loop, passes.joint, begun, np.array(ends), folds, seconds
+        loop, passes.joint, sheets.starts, sheets.ends, sheets.folds, deadline.left
     )
-    return last[~cleared].real
+    halts: np.ndarray = last[~cleared].real
+    return halts
 
 
-def _between(critical: np.ndarray, angles: np.ndarray) -> np.ndarray:
+def _known_folds(loop: Loop, passes: Passes) -> list[Fold]:
+    """The folds of the traced motions whose neighbourhood is proved."""
+    folds = []
+    for configuration in passes.folds:
+        fold = find_fold(loop, passes.joint, configuration)
+        if fold is not None:
+            folds.append(fold)
+    return folds
+
+
+def _sheets(nonreal: Nonreal, passes: Passes, folds: Sequence[Fold], n: int) -> Sheets:
+    """What is to be followed from every slice to the next one, or from both sides to
+    the critical angle in between."""
+    order = np.argsort(nonreal.angles)
+    in_order = nonreal.angles[order]
+    edges = np.append(in_order, in_order[0] + TURN)
+    starts = [np.empty((0, n), dtype=complex)]
+    ends: list[float] = []
+    folds_of_starts: list[list[Fold]] = []
+    for k, (low, high) in enumerate(pairwise(edges)):
+        from_low = nonreal.at(order[k], passes.joint, low)
+        is_inside = (passes.critical - low) % TURN < high - low
+        if np.any(is_inside):
+            critical = passes.critical[is_inside][0]
+            end = low + (critical - low) % TURN
+            near = _folds_at(end, passes.joint, folds)
+            from_high = nonreal.at(order[(k + 1) % len(order)], passes.joint, high)
+            sides = [from_low, from_high]
+        else:
+            end = high
+            near = []
+            sides = [from_low]
+        for side in sides:
+            starts.append(side)
+            ends += [end] * len(side)
+            folds_of_starts += [near] * len(side)
+    return Sheets(np.concatenate(starts), np.array(ends), folds_of_starts)
+
+
+def _folds_at(angle: float, joint: int, folds: Sequence[Fold]) -> list[Fold]:
+    """The folds at which the joint has the ``angle``."""
+    angles = np.array([fold.configuration[joint] for fold in folds])
+    gaps = torus.difference(angles[:, None], np.array([angle]), np.array([TURN]))
+    is_near = np.abs(gaps[:, 0]) < SAME
+    return [fold for fold, near in zip(folds, is_near, strict=True) if near]
+
+
+def _angles_between(critical: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """Angles that, with ``angles``, keep the ``critical`` ones apart."""
     if len(critical) < 2:
         return np.empty(0)
-    after = np.append(critical[1:], critical[0] + TURN)
-    apart = [
-        not np.any((angles - a) % TURN < b - a)
-        for a, b in zip(critical, after, strict=True)
-    ]
-    return (0.5 * (critical + after))[apart]
+    middles = []
+    for low, high in zip(critical, _following_angles(critical), strict=True):
+        if not np.any((angles - low) % TURN < high - low):
+            middles.append(0.5 * (low + high))
+    return np.array(middles)
 
 
-def _apart(a: float, b: float) -> float:
-    """Distance of two angles."""
-    return abs((a - b + np.pi) % TURN - np.pi)
+# --- small questions ------------------------------------------------------------------
 
 
-def _real(cut: Slice) -> np.ndarray:
+def _following_angles(angles: np.ndarray) -> np.ndarray:
+    """The next one (m,) of every one of the ``angles`` (m,) on the circle, in order."""
+    return np.append(angles[1:], angles[0] + TURN)
+
+
+def _largest_imaginary_parts(configurations: np.ndarray) -> np.ndarray:
+    """Of every configuration (q, n) the imaginary part (q,) that is largest in size."""
+    which = np.abs(configurations.imag).argmax(axis=1)[:, None]
+    largest: np.ndarray = np.take_along_axis(configurations.imag, which, axis=1)[:, 0]
+    return largest
+
+
+def _real_numbers(cut: Slice) -> np.ndarray:
     """Number (m,) of real configurations at each angle of a slice."""
     return np.bincount(cut.index, minlength=len(cut.angles))
 
@@ -285,11 +416,9 @@ def _number(cut: Slice) -> int:
     return int(cut.n_complex.max(initial=0))
 
 
-def _joints(numbers: Sequence[int]) -> str:
+def _joint_names(joints: Sequence[int]) -> str:
     """Joints, counted from 0, in words."""
-    names = [str(j + 1) for j in numbers]
-    return (
-        f"joint {names[0]}"
-        if len(names) == 1
-        else f"joints {', '.join(names[:-1])} and {names[-1]}"
-    )
+    names = [str(joint + 1) for joint in joints]
+    if len(names) == 1:
+        return f"joint {names[0]}"
+    return f"joints {', '.join(names[:-1])} and {names[-1]}"

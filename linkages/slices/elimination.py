@@ -6,7 +6,8 @@ their axes (one of them is the pair of links at joint k). In unit dual quaternio
 closure reads ``Z_1 G_1 ... Z_m G_m = +-1``, Z = cos(theta/2) + k sin(theta/2), m = n -
 1. Split it as
 
-    Z_a G_a Z_b  =  +- conj(G_v) conj(Z_v) [conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b)]
+    Z_a G_a Z_b  =  +- conj(G_v) conj(Z_v)
+                       [conj(G_d) conj(Z_d) conj(G_c) conj(Z_c) conj(G_b)]
 
 Either side runs through a space of only four dimensions (of eight): with G = G' + G'',
 the parts that commute and anticommute with k, ``Z_a G Z_b = exp(k (a + b)/2) G' + exp(k
@@ -21,9 +22,13 @@ of them singular for every slice, so the most regular one is taken. A 5R loop ne
 v, a 4R loop has a single joint on the right.
 """
 
+# mypy: allow-untyped-defs, allow-untyped-calls
+# (numba infers the types of compiled functions)
+
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -45,12 +50,21 @@ EQUAL = 1e-6  # rad: two configurations that agree to this are one
 ROOM = 40
 CANDIDATES = 64  # of one slice: twelve, more only where a continuum is sampled
 STARTS = 48  # starts of Gauss-Newton in a slice that the elimination cannot decide
-COMPLETE, CONTINUUM, UNDECIDED = 0, 1, 2
+# what came of one slice, as the compiled functions write it
+COMPLETE = 0
+CONTINUUM = 1
+UNDECIDED = 2
 REASONS = {
-    CONTINUUM: "a whole motion lies in the slice; some of its configurations are returned",
-    UNDECIDED: "every elimination is singular (axes all parallel, concurrent or coincident, or a whole "
-    "motion in the slice); what Gauss-Newton found is returned",
+    CONTINUUM: (
+        "a whole motion lies in the slice; some of its configurations are returned"
+    ),
+    UNDECIDED: (
+        "every elimination is singular (axes all parallel, concurrent or coincident, "
+        "or a whole motion in the slice); what Gauss-Newton found is returned"
+    ),
 }
+SHORTEST = 4  # joints of a loop that is sliced
+LONGEST = 6
 
 
 @dataclass(frozen=True)
@@ -86,7 +100,20 @@ class Slice:
 
     def at(self, i: int) -> np.ndarray:
         """Configurations (q, n), rad, of ``angles[i]``."""
-        return self.configurations[self.index == i]
+        of_angle: np.ndarray = self.configurations[self.index == i]
+        return of_angle
+
+
+class Solutions(NamedTuple):
+    """What the compiled functions find at m angles: real configurations (m, ROOM, n)
+    and their ``counts`` (m,), those that are not real, too, and ``statuses`` (m,),
+    `COMPLETE` or one of `REASONS`."""
+
+    configurations: np.ndarray
+    counts: np.ndarray
+    nonreal: np.ndarray
+    nonreal_counts: np.ndarray
+    statuses: np.ndarray
 
 
 def slice_configurations(loop: Loop, joint: int, angles: np.ndarray) -> Slice:
@@ -97,52 +124,69 @@ def slice_configurations(loop: Loop, joint: int, angles: np.ndarray) -> Slice:
     have, and angles that are not a list of finite numbers.
     """
     angles = np.atleast_1d(np.asarray(angles, dtype=float))
-    if not 4 <= loop.n <= 6:
+    _check(loop, joint, angles)
+    solutions = _solve_slices(_link_quaternions(loop), joint - 1, angles)
+    counts, nonreal_counts = solutions.counts, solutions.nonreal_counts
+    places = np.arange(ROOM)
+    entries = np.arange(len(angles))
+    configurations = solutions.configurations[places < counts[:, None]]
+    is_complete = solutions.statuses == COMPLETE
+    return Slice(
+        joint=joint,
+        angles=angles,
+        configurations=configurations,
+        index=np.repeat(entries, counts),
+        closure=loop.closure_error(configurations),
+        n_complex=np.where(is_complete, counts + nonreal_counts, -1),
+        degenerate=~is_complete,
+        reason=_reason(solutions.statuses),
+        nonreal=solutions.nonreal[places < nonreal_counts[:, None]],
+        nonreal_index=np.repeat(entries, nonreal_counts),
+    )
+
+
+def _check(loop: Loop, joint: int, angles: np.ndarray) -> None:
+    if not SHORTEST <= loop.n <= LONGEST:
         raise GeometryError("number of joints of a sliced loop", loop.n, "4, 5 or 6")
     if not 1 <= joint <= loop.n:
         raise GeometryError("joint", joint, f"from 1 to {loop.n}")
     if angles.ndim != 1 or not np.all(np.isfinite(angles)):
         raise GeometryError("angles", angles, "a list of finite numbers")
-    lengths, twists, offsets = loop.arrays
-    scale = loop.characteristic_length
-    links = _link_quaternions(lengths / scale, twists, offsets / scale)
-    found, count, others, n_others, status = _solve_slices(links, joint - 1, angles)
-    each = np.arange(len(angles))
-    kept, hidden = (np.arange(ROOM) < number[:, None] for number in (count, n_others))
-    index, configurations = np.repeat(each, count), found[kept]
-    gap = loop.frames(configurations)[:, -1] - np.eye(4)
-    gap[:, :3, 3] /= scale
-    reasons = [
-        f"{np.sum(status == s)} of {len(angles)} slices: {text}"
-        for s, text in REASONS.items()
-        if s in status
-    ]
-    return Slice(
-        joint,
-        angles,
-        configurations,
-        index,
-        np.abs(gap).max(axis=(1, 2)),
-        np.where(status == COMPLETE, count + n_others, -1),
-        status != COMPLETE,
-        "; ".join(reasons),
-        others[hidden],
-        np.repeat(each, n_others),
-    )
 
 
-def _link_quaternions(
-    lengths: np.ndarray, twists: np.ndarray, offsets: np.ndarray
-) -> np.ndarray:
+def _reason(statuses: np.ndarray) -> str:
+    """Why slices are not complete, and how many; empty where all are."""
+    reasons = []
+    for status, text in REASONS.items():
+        count = np.sum(statuses == status)
+        if count:
+            reasons.append(f"{count} of {len(statuses)} slices: {text}")
+    return "; ".join(reasons)
+
+
+def _link_quaternions(loop: Loop) -> np.ndarray:
     """Unit dual quaternions (n, 8), real part first, of the links Tz(R) Tx(a)
-    Rx(alpha)."""
-    c, s = np.cos(twists / 2), np.sin(twists / 2)
+    Rx(alpha), lengths in characteristic lengths."""
+    lengths, offsets, _, _, c, s = loop.link_geometry
     zero = np.zeros_like(c)
     dual = 0.5 * np.array([-lengths * s, lengths * c, offsets * s, offsets * c])
     return np.concatenate([[c, s, zero, zero], dual]).T.copy()
 
 
-# --- dual quaternions (w, x, y, z, and the same of the dual part) -------------------------------------------
+def _solve_slices(links: np.ndarray, joint: int, angles: np.ndarray) -> Solutions:
+    """The configurations with ``joint`` (from 0) at each of ``angles`` (m,)."""
+    m, n = len(angles), len(links)
+    turns = np.ones((m, CANDIDATES, max(n - 1, 4)), np.complex128)
+    defects = np.zeros((m, CANDIDATES))
+    # number of candidates, of those that sample a continuum, undecided
+    outcome = np.zeros((m, 3), np.int64)
+    fill_candidates = {4: _candidates_4r, 5: _candidates_5r, 6: _candidates_6r}[n]
+    fill_candidates(links, joint, angles, turns, defects, outcome)
+    solutions = _configurations(links, joint, angles, turns, defects, outcome)
+    return Solutions(*solutions)
+
+
+# --- dual quaternions (w, x, y, z, and the same of the dual part) ---------------------
 
 
 @register_jitable
@@ -208,7 +252,7 @@ def _turn_by_left(q):
     return out
 
 
-# --- the space of a 2R chain --------------------------------------------------------------------------------
+# --- the space of a 2R chain ----------------------------------------------------------
 
 
 @register_jitable
@@ -291,7 +335,7 @@ def _projected(complement, rows):
     return out
 
 
-# --- candidates: null vectors that satisfy the moduli -------------------------------------------------------
+# --- candidates: null vectors that satisfy the moduli ---------------------------------
 
 
 @register_jitable
@@ -511,7 +555,7 @@ def _record_null_space(
     return count, 8, False
 
 
-# --- the three sizes of chain -------------------------------------------------------------------------------
+# --- the three sizes of chain ---------------------------------------------------------
 
 
 @register_jitable
@@ -676,7 +720,7 @@ def _reorder(turns, count, m, first):
             turns[i, (first + j) % m] = row[j]
 
 
-# --- from candidates to configurations ----------------------------------------------------------------------
+# --- from candidates to configurations ------------------------------------------------
 
 
 @register_jitable
@@ -881,7 +925,8 @@ def _sample(links, found, count):
     return count
 
 
-# --- compiled entries: one for each number of joints, so that only what is used is compiled ------------------
+# --- compiled entries: one for each number of joints ----------------------------------
+# only the one that is used is compiled
 
 
 @register_jitable
@@ -965,19 +1010,3 @@ def _configurations(links, joint, angles, turns, defects, outcome):
             for j in range(n - 1):
                 others[k, i, (joint + 1 + j) % n] = hidden[i, j]
     return found, count, others, n_others, status
-
-
-def _solve_slices(links, joint, angles):
-    """What `_configurations` returns, from the candidates of the right number of
-    joints."""
-    m, n = len(angles), len(links)
-    turns, defects = (
-        np.ones((m, CANDIDATES, max(n - 1, 4)), np.complex128),
-        np.zeros((m, CANDIDATES)),
-    )
-    outcome = np.zeros(
-        (m, 3), np.int64
-    )  # number of candidates, of those that sample a continuum, undecided
-    candidates = {4: _candidates_4r, 5: _candidates_5r, 6: _candidates_6r}[n]
-    candidates(links, joint, angles, turns, defects, outcome)
-    return _configurations(links, joint, angles, turns, defects, outcome)

@@ -24,6 +24,9 @@ point. Around a fold that is known the complex solutions in a ball are one curve
 along its tangent, on which one pair meets: a sheet that comes so close is of that pair.
 """
 
+# mypy: allow-untyped-defs, allow-untyped-calls
+# (numba infers the types of compiled functions)
+
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -38,9 +41,8 @@ from linkages.loop import Loop
 
 __all__ = ["Fold", "find_fold", "follow_sheets"]
 
-SHORTEST = (
-    1e-9  # rad: a sheet that advances by less than this in a step has come to a halt
-)
+# rad: a sheet that advances by less than this in a step has come to a halt
+SHORTEST = 1e-9
 # rad: where steps in the angle of the joint are shorter, the sheet is followed along
 # its curve
 SLOW = 1e-5
@@ -49,6 +51,7 @@ MOST_ALONG = 500  # along the curve
 # rad: what is proved around a fold must reach farther than the rounding of its angle
 SMALLEST = 1e-9
 COEFFICIENTS = 32  # of the angle as a power series about a fold
+CIRCLES = 60  # on which the terms of that series are compared
 
 
 @dataclass(frozen=True)
@@ -84,20 +87,13 @@ def follow_sheets(
     becoming real or joins one of its ``folds``. Returns which do (k,), and where each
     one stopped (k, n): all do when the ``seconds`` are over.
     """
-    deadline, geometry = Deadline(seconds), _geometry(loop)
-    z, cleared = np.array(starts, dtype=complex), np.zeros(len(starts), dtype=bool)
+    deadline = Deadline(seconds)
+    tracker = SheetTracker(loop.link_geometry[:4], joint)
+    sheets = np.array(starts, dtype=complex)
+    cleared = np.zeros(len(starts), dtype=bool)
     for i, near in enumerate(folds):
-        at = np.array([[f.configuration, f.tangent, f.weight] for f in near]).reshape(
-            -1, 3, loop.n
-        )
-        limits = np.array([[f.away, f.along, f.across] for f in near]).reshape(-1, 3)
-        for _ in range(MOST_ALONG):
-            if deadline.passed:
-                break
-            cleared[i] = _follow(geometry, joint, z[i], float(ends[i]), at, limits)
-            if cleared[i] or not _advance_along(geometry, joint, z[i], float(ends[i])):
-                break
-    return cleared, z
+        cleared[i] = tracker.follow(sheets[i], float(ends[i]), near, deadline)
+    return cleared, sheets
 
 
 def find_fold(loop: Loop, joint: int, configuration: np.ndarray) -> Fold | None:
@@ -107,69 +103,87 @@ def find_fold(loop: Loop, joint: int, configuration: np.ndarray) -> Fold | None:
     Where the second term of the series of the angle exceeds the rest by m on a circle,
     every angle nearer than m to that of the dead point is taken twice within (Rouche).
     """
-    curve = _curve_through(
-        _geometry(loop), joint, np.array(configuration, dtype=complex)
-    )
+    at = np.array(configuration, dtype=complex)
+    curve = _curve_through(loop.link_geometry[:4], joint, at)
     if curve is None:
         return None
-    t, margin = curve.margin(2)
-    best = int(np.argmax(margin))
-    if not margin[best] > SMALLEST:
+    radii, margins = curve.margins(2)
+    best = int(np.argmax(margins))
+    if not margins[best] > SMALLEST:
         return None
     return Fold(
-        curve.at.real,
-        curve.tangent.real,
-        curve.weight,
-        curve.radius,
-        float(t[best]),
-        float(margin[best]),
+        configuration=curve.at.real,
+        tangent=curve.tangent.real,
+        weight=curve.weight,
+        away=curve.radius,
+        along=float(radii[best]),
+        across=float(margins[best]),
     )
-
-
-def _advance_along(geometry: np.ndarray, joint: int, z: np.ndarray, end: float) -> bool:
-    """Move a sheet ``z`` (n,) towards ``end`` in place by one step along its curve;
-    False where none can be proved.
-
-    Near a fold the steps in the angle of the joint get short. The coordinate along the
-    tangent does not mind: where the first term of the series exceeds the rest by m on a
-    circle, every angle nearer than m is taken once within.
-    """
-    curve = _curve_through(geometry, joint, z)
-    if curve is None:
-        return False
-    t, margin = curve.margin(1)
-    strayed = (
-        0.5
-        * curve.bound
-        * (4.0 / 3.0 * t * np.linalg.norm(curve.tangent / curve.weight)) ** 2
-    )
-    least = (
-        np.abs(z.imag)[:, None]
-        - np.abs(curve.tangent)[:, None] * t
-        - curve.weight[:, None] * strayed
-    )
-    margin = np.where(np.any(least > 0, axis=0), margin, -np.inf)
-    best, left = int(np.argmax(margin)), end - z[joint].real
-    size = min(0.9 * float(margin[best]), abs(left))
-    if not size >= min(SHORTEST, abs(left)):
-        return False
-    step = np.copysign(size, left)
-    after, row = (
-        z + step / curve.slope * curve.tangent,
-        np.eye(len(z), dtype=complex)[joint],
-    )
-    after[joint] = z[joint].real + step
-    if (
-        not _correct(geometry, after, row)
-        or abs(np.conj(curve.tangent) @ (after - z)) >= t[best]
-    ):
-        return False
-    z[:] = after
-    return True
 
 
 @dataclass(frozen=True)
-class _Curve:
+class SheetTracker:
+    """Follows sheets of the loop with this ``geometry`` (4, n) as ``joint`` (from 0)
+    turns."""
+
+    geometry: np.ndarray
+    joint: int
+
+    def follow(
+        self, z: np.ndarray, end: float, folds: Sequence[Fold], deadline: Deadline
+    ) -> bool:
+        """Whether a sheet ``z`` (n,), moved in place, gets to ``end`` without becoming
+        real, or joins one of the ``folds``."""
+        shapes, limits = _fold_arrays(folds, len(z))
+        for _ in range(MOST_ALONG):
+            if deadline.passed:
+                return False
+            if _follow(self.geometry, self.joint, z, end, shapes, limits):
+                return True
+            if not self.advance_along(z, end):
+                return False
+        return False
+
+    def advance_along(self, z: np.ndarray, end: float) -> bool:
+        """Move a sheet ``z`` (n,) towards ``end`` in place by one step along its curve;
+        False where none can be proved.
+
+        Near a fold the steps in the angle of the joint get short. The coordinate along
+        the tangent does not mind: where the first term of the series exceeds the rest
+        by m on a circle, every angle nearer than m is taken once within.
+        """
+        curve = _curve_through(self.geometry, self.joint, z)
+        if curve is None:
+            return False
+        radii, margins = curve.margins(1)
+        margins = np.where(curve.stays_nonreal(radii), margins, -np.inf)
+        best = int(np.argmax(margins))
+        left = end - z[self.joint].real
+        size = min(0.9 * float(margins[best]), abs(left))
+        if not size >= min(SHORTEST, abs(left)):
+            return False
+        step = np.copysign(size, left)
+        after = z + step / curve.slope * curve.tangent
+        after[self.joint] = z[self.joint].real + step
+        of_joint = np.eye(len(z), dtype=complex)[self.joint]
+        if not _correct(self.geometry, after, of_joint):
+            return False
+        if abs(np.conj(curve.tangent) @ (after - z)) >= radii[best]:
+            return False
+        z[:] = after
+        return True
+
+
+def _fold_arrays(folds: Sequence[Fold], n: int) -> tuple[np.ndarray, np.ndarray]:
+    """What the kernel reads of folds: configuration, tangent and weight (k, 3, n), and
+    the three limits (k, 3)."""
+    shapes = [[fold.configuration, fold.tangent, fold.weight] for fold in folds]
+    limits = [[fold.away, fold.along, fold.across] for fold in folds]
+    return np.array(shapes).reshape(-1, 3, n), np.array(limits).reshape(-1, 3)
+
+
+@dataclass(frozen=True)
+class Curve:
     """The complex curve of solutions through ``at`` (n,), t the coordinate along its
     unit ``tangent`` (n,).
 
@@ -189,66 +203,77 @@ class _Curve:
     slope: complex
     largest: float
 
-    def margin(self, k: int) -> tuple[np.ndarray, np.ndarray]:
+    def margins(self, k: int) -> tuple[np.ndarray, np.ndarray]:
         """Radii t of circles, and by how much term k exceeds the rest on each: Cauchy
         bounds what follows the last."""
-        t = self.reach * np.geomspace(1e-3, 0.5, 60)
+        t = self.reach * np.geomspace(1e-3, 0.5, CIRCLES)
         powers = np.arange(len(self.terms))
-        size = self.terms[:, None] * t ** powers[:, None]
-        beyond = self.largest * (t / self.reach) ** len(powers) / (1.0 - t / self.reach)
+        sizes = self.terms[:, None] * t ** powers[:, None]
+        ratio = t / self.reach
+        beyond = self.largest * ratio ** len(powers) / (1.0 - ratio)
         # the terms themselves are off by as little as what comes after the last
-        return t, 2.0 * size[k] - size.sum(axis=0) - 2.0 * beyond
+        return t, 2.0 * sizes[k] - sizes.sum(axis=0) - 2.0 * beyond
+
+    def stays_nonreal(self, t: np.ndarray) -> np.ndarray:
+        """Whether the imaginary part of some joint keeps its sign where the coordinate
+        is at most ``t`` (k,)."""
+        speed = np.linalg.norm(self.tangent / self.weight)
+        strayed = 0.5 * self.bound * (4.0 / 3.0 * t * speed) ** 2
+        imaginary = np.abs(self.at.imag)[:, None]
+        along = np.abs(self.tangent)[:, None] * t
+        least = imaginary - along - self.weight[:, None] * strayed
+        is_kept: np.ndarray = np.any(least > 0, axis=0)
+        return is_kept
 
 
-def _curve_through(geometry: np.ndarray, joint: int, at: np.ndarray) -> _Curve | None:
+def _curve_through(geometry: np.ndarray, joint: int, at: np.ndarray) -> Curve | None:
     """The curve through a configuration (n,), its series from values on a circle; None
     where no ball is proved."""
-    screws = np.zeros((6, len(at)), dtype=complex)
-    _screws_and_error(at, geometry, screws, np.zeros(6, dtype=complex))
-    tangent = np.linalg.svd(screws)[2][-1].conj()
-    if np.all(at.imag == 0):
-        tangent = np.linalg.svd(screws.real)[2][-1].astype(complex)
+    tangent = _tangent(geometry, at)
     weight, radius, bound = _ball_around(geometry, at, tangent.conj())
     if not radius > 0:
         return None
     reach = 0.75 * radius / float(np.linalg.norm(tangent / weight))
     powers = np.arange(COEFFICIENTS)
-    around = (
-        at + 0.5 * reach * np.exp(2j * np.pi * powers / COEFFICIENTS)[:, None] * tangent
-    )
+    circle = 0.5 * reach * np.exp(2j * np.pi * powers / COEFFICIENTS)
+    around = at + circle[:, None] * tangent
     converged = [_correct(geometry, point, tangent.conj()) for point in around]
     if not all(converged):
         return None
-    if not np.linalg.norm((around - at) / weight, axis=1).max() <= radius:
+    distance = np.linalg.norm((around - at) / weight, axis=1)
+    if not distance.max() <= radius:
         return None
-    terms = (
-        np.fft.fft(around[:, joint] - at[joint])
-        / COEFFICIENTS
-        / (0.5 * reach) ** powers
-    )
+    turned = around[:, joint] - at[joint]
+    terms = np.fft.fft(turned) / COEFFICIENTS / (0.5 * reach) ** powers
     largest = reach * abs(tangent[joint]) + weight[joint] * 0.5 * bound * radius**2
-    return _Curve(
-        at.copy(),
-        tangent,
-        weight,
-        float(radius),
-        float(bound),
-        reach,
-        np.abs(terms),
-        complex(terms[1]),
-        float(largest),
+    return Curve(
+        at=at.copy(),
+        tangent=tangent,
+        weight=weight,
+        radius=float(radius),
+        bound=float(bound),
+        reach=reach,
+        terms=np.abs(terms),
+        slope=complex(terms[1]),
+        largest=float(largest),
     )
 
 
-def _geometry(loop: Loop) -> np.ndarray:
-    """Lengths and offsets over the characteristic length, cosines and sines of the
-    twists: (4, n)."""
-    lengths, twists, offsets = loop.arrays
-    size = loop.characteristic_length
-    return np.array([lengths / size, offsets / size, np.cos(twists), np.sin(twists)])
+def _tangent(geometry: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """The unit tangent (n,), complex, of the solutions through a configuration (n,);
+    real where the configuration is."""
+    screws = np.zeros((6, len(at)), dtype=complex)
+    error = np.zeros(6, dtype=complex)
+    _screws_and_error(at, geometry, screws, error)
+    if np.all(at.imag == 0):
+        null_vectors = np.linalg.svd(screws.real)[2].astype(complex)
+    else:
+        null_vectors = np.linalg.svd(screws)[2].conj()
+    tangent: np.ndarray = null_vectors[-1]
+    return tangent
 
 
-# --- kernels: complex configurations ----------------------------------------------------------------------------
+# --- kernels: complex configurations --------------------------------------------------
 
 
 @njit(cache=True, error_model="numpy")

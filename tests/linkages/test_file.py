@@ -37,10 +37,8 @@ def test_a_table_in_degrees_becomes_a_loop_in_radians(write):
 
 
 def test_a_loop_without_a_name_is_called_after_the_file(write):
-    assert (
-        read_linkage(write(TABLE.replace('name = "my linkage"', "")))[0].name
-        == "linkage"
-    )
+    loop, _ = read_linkage(write(TABLE.replace('name = "my linkage"', "")))
+    assert loop.name == "linkage"
 
 
 def test_radians_stand_as_they_are_and_degrees_in_their_place_give_a_warning(
@@ -61,13 +59,13 @@ def test_axes_in_one_configuration_give_the_loop_and_its_angles(write):
     known = entry("bennett").build()
     closed = np.array([1.0, 0.0, -1.0, 0.0])
     alpha, beta = known.arrays[1][:2]
-    half = (
-        np.sin((beta + alpha) / 2) / np.sin((beta - alpha) / 2) / np.tan(closed[0] / 2)
-    )
-    closed[1] = 2 * np.arctan(half)
+    ratio = np.sin((beta + alpha) / 2) / np.sin((beta - alpha) / 2)
+    closed[1] = 2 * np.arctan(ratio / np.tan(closed[0] / 2))
     closed[3] = -closed[1]
     frames = known.frames(closed)[:-1]
-    text = f"points = {(25.4 * frames[:, :3, 3]).tolist()}\ndirections = {frames[:, :3, 2].tolist()}"
+    points = (25.4 * frames[:, :3, 3]).tolist()
+    directions = frames[:, :3, 2].tolist()
+    text = f"points = {points}\ndirections = {directions}"
     loop, theta = read_linkage(write(text))
     assert loop.lengths == pytest.approx([25.4 * a for a in known.lengths], rel=1e-12)
     assert np.abs(loop.frames(theta)[-1] - np.eye(4)).max() < 1e-12

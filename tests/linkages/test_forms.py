@@ -1,3 +1,5 @@
+"""Forms are recognised, labelled and named."""
+
 import numpy as np
 import pytest
 
@@ -7,17 +9,17 @@ from linkages.loop import GeometryError
 
 
 def _loop_and_patterns(case):
-    found = entry(case["linkage"])
-    values = found.complete(case["parameters"])
-    return found.build(**values), found.patterns(**values) if found.patterns else ()
+    linkage = entry(case["linkage"])
+    values = linkage.complete(case["parameters"])
+    patterns = linkage.patterns(**values) if linkage.patterns else ()
+    return linkage.build(**values), patterns
 
 
 def _case(reference_cases, linkage, parameters=0):
-    return next(
-        c
-        for c in reference_cases
-        if c["linkage"] == linkage and len(c["parameters"]) == parameters
-    )
+    for case in reference_cases:
+        if case["linkage"] == linkage and len(case["parameters"]) == parameters:
+            return case
+    raise LookupError(linkage)
 
 
 @pytest.fixture(scope="module")
@@ -26,14 +28,8 @@ def traced(reference_cases, trace_form):
     out = []
     for case in reference_cases:
         loop, patterns = _loop_and_patterns(case)
-        out.append(
-            (
-                case,
-                loop,
-                patterns,
-                [trace_form(loop, form["theta"]) for form in case["forms"]],
-            )
-        )
+        forms = [trace_form(loop, form["theta"]) for form in case["forms"]]
+        out.append((case, loop, patterns, forms))
     return out
 
 
@@ -49,38 +45,30 @@ def test_names_do_not_depend_on_start_direction_wrapping_or_order(traced):
     for case, loop, patterns, forms in traced:
         changed = []
         for samples in forms:
-            turned = np.roll(samples[:-1], rng.integers(len(samples)), axis=0)[
-                :: rng.choice([-1, 1])
-            ]
+            start = rng.integers(len(samples))
+            direction = rng.choice([-1, 1])
+            turned = np.roll(samples[:-1], start, axis=0)[::direction]
             changed.append(np.arctan2(np.sin(turned), np.cos(turned)))
-        names = [
-            identity.name for identity in name_forms(changed[::-1], loop, patterns)
-        ]
+        identities = name_forms(changed[::-1], loop, patterns)
+        names = [identity.name for identity in identities]
         assert names == [form["name"] for form in case["forms"]][::-1], case["linkage"]
 
 
 def test_inactive_joints_come_with_their_angles(traced):
     for case, loop, patterns, forms in traced:
+        linkage = case["linkage"]
         for form, samples in zip(case["forms"], forms, strict=True):
-            identity = identify_form(samples, loop, patterns)
-            if (
-                case["linkage"] == "special-double-subtractive-goldberg"
-                and "Bennett" in form["name"]
-            ):
-                assert identity.inactive_joints == (3, 6)
-                assert identity.inactive_angles == pytest.approx(
-                    (np.pi, np.pi), abs=1e-9
-                )
-            if (
-                case["linkage"].startswith("reconfigurable")
-                and "Bennett" in form["name"]
-            ):
-                assert identity.inactive_joints == (2, 5)
-                assert identity.inactive_angles == pytest.approx(
-                    np.radians([-70, -70]), abs=1e-9
-                )
-            if "6R" in form["name"] or "original" in form["name"]:
-                assert identity.inactive_joints == ()
+            name = form["name"]
+            labels = identify_form(samples, loop, patterns).labels
+            joints, angles = labels.inactive_joints, labels.inactive_angles
+            if linkage == "special-double-subtractive-goldberg" and "Bennett" in name:
+                assert joints == (3, 6)
+                assert angles == pytest.approx((np.pi, np.pi), abs=1e-9)
+            if linkage.startswith("reconfigurable") and "Bennett" in name:
+                assert joints == (2, 5)
+                assert angles == pytest.approx(np.radians([-70, -70]), abs=1e-9)
+            if "6R" in name or "original" in name:
+                assert joints == ()
 
 
 def test_symmetries_are_recognised(traced):
@@ -96,7 +84,8 @@ def test_symmetries_are_recognised(traced):
         for form, samples in zip(case["forms"], forms, strict=True):
             if form["name"] in expected:
                 seen.add(form["name"])
-                assert identify_form(samples, loop).symmetry == expected[form["name"]]
+                labels = identify_form(samples, loop).labels
+                assert labels.symmetry == expected[form["name"]]
     assert seen == set(expected)
 
 
@@ -118,7 +107,7 @@ def test_relabelled_joints_move_the_inactive_ones(reference_cases, trace_form):
     loop, _ = _loop_and_patterns(case)
     form = next(f for f in case["forms"] if "Bennett" in f["name"])
     samples = np.roll(trace_form(loop, form["theta"]), -1, axis=1)
-    assert identify_form(samples, loop.relabelled(1)).inactive_joints == (2, 5)
+    assert identify_form(samples, loop.relabelled(1)).labels.inactive_joints == (2, 5)
 
 
 def test_forms_of_one_pattern_are_lettered_and_unknown_ones_numbered(
@@ -127,24 +116,20 @@ def test_forms_of_one_pattern_are_lettered_and_unknown_ones_numbered(
     case = _case(reference_cases, "wohlhart-symmetric", 1)
     loop, patterns = _loop_and_patterns(case)
     forms = [trace_form(loop, form["theta"]) for form in case["forms"]]
-    assert {i.name for i in name_forms(forms, loop, patterns)} == {
-        "threefold form a",
-        "threefold form b",
-    }
-    assert {i.name for i in name_forms(forms, loop)} == {"Form 1", "Form 2"}
+    by_pattern = {identity.name for identity in name_forms(forms, loop, patterns)}
+    assert by_pattern == {"threefold form a", "threefold form b"}
+    by_number = {identity.name for identity in name_forms(forms, loop)}
+    assert by_number == {"Form 1", "Form 2"}
 
 
 def test_a_relabelled_parallelogram_keeps_its_names(reference_cases, trace_form):
     case = _case(reference_cases, "kite")
     loop, _ = _loop_and_patterns(case)
     turned = loop.relabelled(1)
-    forms = [
-        np.roll(trace_form(loop, form["theta"]), -1, axis=1) for form in case["forms"]
-    ]
-    assert [i.name for i in name_forms(forms, turned)] == [
-        "folded form (joints 2,4 inactive)",
-        "kite form",
-    ]
+    traced_forms = [trace_form(loop, form["theta"]) for form in case["forms"]]
+    forms = [np.roll(samples, -1, axis=1) for samples in traced_forms]
+    names = [identity.name for identity in name_forms(forms, turned)]
+    assert names == ["folded form (joints 2,4 inactive)", "kite form"]
 
 
 def test_a_single_configuration_is_a_rigid_assembly(reference_cases):

@@ -1,13 +1,15 @@
-"""Geometry of a loop: frames, screws, relabelling, axes."""
+"""Geometry of a loop: frames, screws, relabelling, refusals."""
 
+import mpmath
 import numpy as np
 import pytest
+import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import GeometryError, Loop, loop_from_axes
+from linkages.loop import GeometryError, Loop
 
 NAMES = [
     "bennett",
@@ -18,41 +20,45 @@ NAMES = [
 ]
 
 
-def closed(loop):
+def closed_configuration(loop):
     return LoopClosure(loop).seeds(np.random.default_rng(0), 1).points[0]
 
 
 def gap(loop, theta):
-    return np.abs(loop.frames(theta)[-1] - np.eye(4)).max() / max(
-        loop.characteristic_length, 1.0
-    )
+    """The largest entry of T_1 ... T_n - I, over the unit of length if that is long."""
+    unit = max(loop.characteristic_length, 1.0)
+    return np.abs(loop.frames(theta)[-1] - np.eye(4)).max() / unit
+
+
+def rotation_about(axis, angle):
+    """The homogeneous transform of a turn about the x (0) or the z (2) axis."""
+    first, second = (axis + 1) % 3, (axis + 2) % 3
+    out = np.eye(4)
+    out[first, first] = out[second, second] = np.cos(angle)
+    out[first, second] = -np.sin(angle)
+    out[second, first] = np.sin(angle)
+    return out
+
+
+def translation_along(axis, distance):
+    out = np.eye(4)
+    out[axis, 3] = distance
+    return out
 
 
 def test_a_frame_is_turn_offset_length_twist_in_that_order():
     loop = Loop((0.7, 1, 1, 1), (0.4, 0, 0, 0), (0.3, 0, 0, 0))
-    t, alpha = 0.9, 0.4
-    turn = np.array(
-        [
-            [np.cos(t), -np.sin(t), 0, 0],
-            [np.sin(t), np.cos(t), 0, 0],
-            [0, 0, 1, 0],
-            [0, 0, 0, 1],
-        ]
-    )
-    slide, length, twist = np.eye(4), np.eye(4), np.eye(4)
-    slide[2, 3], length[0, 3] = 0.3, 0.7
-    twist[1:3, 1:3] = [[np.cos(alpha), -np.sin(alpha)], [np.sin(alpha), np.cos(alpha)]]
-    assert loop.frames(np.array([t, 0, 0, 0]))[1] == pytest.approx(
-        turn @ slide @ length @ twist, abs=1e-15
-    )
+    turn, slide = rotation_about(2, 0.9), translation_along(2, 0.3)
+    length, twist = translation_along(0, 0.7), rotation_about(0, 0.4)
+    frame = loop.frames(np.array([0.9, 0, 0, 0]))[1]
+    assert frame == pytest.approx(turn @ slide @ length @ twist, abs=1e-15)
 
 
 def test_frames_of_many_configurations_are_those_of_each():
     loop = entry("bricard-line-symmetric").build()
     thetas = np.random.default_rng(0).uniform(-3, 3, (2, 3, 6))
-    assert loop.frames(thetas)[1, 2] == pytest.approx(
-        loop.frames(thetas[1, 2]), abs=1e-15
-    )
+    one = loop.frames(thetas[1, 2])
+    assert loop.frames(thetas)[1, 2] == pytest.approx(one, abs=1e-15)
 
 
 @settings(max_examples=50, derandomize=True, deadline=None)
@@ -63,21 +69,20 @@ def test_a_joint_screw_is_the_velocity_of_the_end_point(theta):
     for i in range(6):
         step = np.zeros(6)
         step[i] = 1e-6
-        rate = (loop.frames(theta + step)[-1] - loop.frames(theta - step)[-1]) / 2e-6
-        spin = rate[:3, :3] @ end[:3, :3].T
-        assert [spin[2, 1], spin[0, 2], spin[1, 0]] == pytest.approx(
-            screws[:3, i], abs=1e-8
-        )
+        forward, backward = loop.frames(theta + step)[-1], loop.frames(theta - step)[-1]
+        rate = (forward - backward) / 2e-6
+        skew = rate[:3, :3] @ end[:3, :3].T
+        spin = [skew[2, 1], skew[0, 2], skew[1, 0]]
+        assert spin == pytest.approx(screws[:3, i], abs=1e-8)
         velocity = screws[3:, i] + np.cross(screws[:3, i], end[:3, 3])
-        assert rate[:3, 3] == pytest.approx(
-            velocity, abs=1e-8
-        )  # lengths of some 10, steps of 1e-6
+        # lengths of some 10, steps of 1e-6
+        assert rate[:3, 3] == pytest.approx(velocity, abs=1e-8)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_same_linkage_under_other_labels_closes_at_the_same_angles(name):
     loop = entry(name).build()
-    theta = closed(loop)
+    theta = closed_configuration(loop)
     for shift in range(-1, loop.n + 1):
         assert gap(loop.relabelled(shift), np.roll(theta, -shift)) < 1e-13
     assert gap(loop.reversed(), theta[::-1]) < 1e-13
@@ -94,36 +99,18 @@ def test_labels_return_after_a_full_round_and_two_reversals():
 
 
 def test_the_characteristic_length_is_the_mean_extent_and_one_where_there_is_none():
-    assert Loop(
-        (1, 2, 0, 3), (0,) * 4, (0, -2, 0, 1)
-    ).characteristic_length == pytest.approx((1 + 4 + 4) / 3)
+    loop = Loop((1, 2, 0, 3), (0,) * 4, (0, -2, 0, 1))
+    assert loop.characteristic_length == pytest.approx((1 + 4 + 4) / 3)
     assert Loop((0,) * 4, (1,) * 4, (0,) * 4).characteristic_length == 1.0
 
 
-@pytest.mark.parametrize("name", NAMES[:-1])
-def test_axes_of_a_configuration_give_the_loop_back_in_any_frame_and_unit(name):
-    loop = entry(name).build()
-    theta = closed(loop)
-    frames = loop.frames(theta)[:-1]
-    rotation = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
-    rotation *= np.linalg.det(rotation)
-    along = np.random.default_rng(2).uniform(
-        -1, 1, (loop.n, 1)
-    )  # any point of an axis will do
-    points = 5.0 * (frames[:, :3, 3] + along * frames[:, :3, 2]) @ rotation.T + 3.0
-    again, angles = loop_from_axes(points, 2.0 * frames[:, :3, 2] @ rotation.T)
-    assert gap(again, angles) < 1e-12
-    # the common normal has two senses: a length and its neighbours' angles may change
-    # sign together
-    assert np.abs(again.arrays[0]) == pytest.approx(
-        5.0 * np.abs(loop.arrays[0]), abs=1e-12
-    )
-    assert np.abs(np.sin(again.arrays[1])) == pytest.approx(
-        np.abs(np.sin(loop.arrays[1])), abs=1e-12
-    )
-    assert np.abs(again.arrays[2]) == pytest.approx(
-        5.0 * np.abs(loop.arrays[2]), abs=1e-12
-    )
+@pytest.mark.parametrize("factor", [1e-3, 1.0, 1e3])
+def test_the_closure_error_is_the_largest_entry_in_characteristic_lengths(factor):
+    loop = Loop((1, 1, 1, 1), (0,) * 4, (0,) * 4).scaled(factor)
+    right_angles = np.full(4, np.pi / 2)
+    straight = np.zeros(4)  # four links of length 1 in line
+    errors = loop.closure_error(np.array([[right_angles, straight]]))
+    assert errors == pytest.approx(np.array([[0.0, 4.0]]), abs=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -133,9 +120,18 @@ def test_axes_of_a_configuration_give_the_loop_back_in_any_frame_and_unit(name):
         (((1,) * 13, (0,) * 13, (0,) * 13), "number of joints", 13),
         (((1,) * 4, (0,) * 5, (0,) * 4), "number of twists", 5),
         (((1,) * 4, (0,) * 4, (0,) * 3), "number of offsets", 3),
+        ((4, (0,) * 4, (0,) * 4), "lengths", 4),
+        ((None, (0,) * 4, (0,) * 4), "lengths", None),
         (((1, 1, float("nan"), 1), (0,) * 4, (0,) * 4), "lengths[3]", "nan"),
         (((1,) * 4, (0, float("inf"), 0, 0), (0,) * 4), "twists[2]", "inf"),
         (((1,) * 4, (0,) * 4, (0, 0, 0, -float("inf"))), "offsets[4]", "-inf"),
+        (((1, 10**400, 1, 1), (0,) * 4, (0,) * 4), "lengths[2]", 10**400),
+        (((1, "2", 1, 1), (0,) * 4, (0,) * 4), "lengths[2]", '"2"'),
+        (((1,) * 4, (None, 0, 0, 0), (0,) * 4), "twists[1]", None),
+        (((1,) * 4, (0,) * 4, (0, 1j, 0, 0)), "offsets[2]", "1j"),
+        ((np.full(4, 1 + 1j), (0,) * 4, (0,) * 4), "lengths[1]", "(1+1j)"),
+        ((np.ones((4, 1)), (0,) * 4, (0,) * 4), "lengths[1]", "[1.]"),
+        (((True, 1, 1, 1), (0,) * 4, (0,) * 4), "lengths[1]", True),
     ],
 )
 def test_a_loop_that_cannot_be_built_is_refused_by_name_and_value(
@@ -153,23 +149,23 @@ def test_a_configuration_of_another_number_of_angles_is_refused():
         entry("bennett").build().frames(np.zeros(5))
 
 
-@pytest.mark.parametrize(
-    ("points", "directions", "words"),
-    [
-        ([[0, 0, 0]] * 4, [[0, 0, 1]] * 3, "shape of directions"),
-        ([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, np.nan, 0]], [[0, 0, 1]] * 4, "points"),
-        (
-            [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
-            [[0, 0, 1], [0, 0, 0], [0, 0, 1], [0, 0, 1]],
-            "directions.*2.*non-zero",
-        ),
-        (
-            [[0, 0, 0], [0, 0, 1], [1, 1, 0], [0, 1, 0]],
-            [[0, 0, 1]] * 4,
-            "axes 1 and 2.*same line",
-        ),
-    ],
-)
-def test_axes_that_make_no_loop_are_refused_by_name(points, directions, words):
-    with pytest.raises(GeometryError, match=words):
-        loop_from_axes(points, directions)
+def test_a_loop_shows_its_name_and_its_table_in_degrees():
+    twists = np.radians([30, -45, 0, 90])
+    loop = Loop((1, 0.5, 2, 3), twists, (0, -0.25, 0, 0), "mine")
+    assert repr(loop).splitlines() == [
+        "mine: 4 joints",
+        "  joint  link  length  twist (deg)  offset",
+        "  1      12    1       30.0000      0",
+        "  2      23    0.5     -45.0000     -0.25",
+        "  3      34    2       0.0000       0",
+        "  4      41    3       90.0000      0",
+    ]
+
+
+def test_a_loop_of_other_number_types_is_shown_too():
+    a, alpha = sympy.symbols("a alpha")
+    loop = Loop((a, mpmath.mpf(2), 1, 1), (alpha, mpmath.pi, 0, 0), (0,) * 4)
+    lines = repr(loop).splitlines()
+    assert lines[0] == "Loop: 4 joints"
+    assert lines[2].split() == ["1", "12", "a", "alpha", "rad", "0"]
+    assert lines[3].split() == ["2", "23", "2", "180.0000", "0"]

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from bifurc.errors import BifurcError
 from bifurc.search.settings import SearchSettings
 from linkages.catalogue import UnknownLinkageError, entry
+from linkages.labels import FormLabels
 from linkages.linkage import load
 from linkages.loop import GeometryError, Loop
 from linkages.mapping import map_linkage
@@ -13,19 +15,16 @@ from linkages.mapping import map_linkage
 def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
     atlas = map_linkage(load("special-double-subtractive-goldberg"))
     bennett = atlas.forms[atlas.form("Form II (Bennett 4R)")]
-    assert bennett.labels["inactive_joints"] == [3, 6]
-    assert np.abs(bennett.labels["inactive_angles"]) == pytest.approx(np.pi)
-    assert sorted(form.name.split(" (")[0] for form in atlas.forms) == [
-        "Form I",
-        "Form II",
-        "Form III",
-        "Form IV",
-    ]
+    labels = FormLabels.of(bennett)
+    assert labels.inactive_joints == (3, 6)
+    assert np.abs(labels.inactive_angles) == pytest.approx(np.pi)
+    names = sorted(form.name.split(" (")[0] for form in atlas.forms)
+    assert names == ["Form I", "Form II", "Form III", "Form IV"]
 
 
 def test_every_form_says_how_well_it_closes_and_the_atlas_what_was_mapped():
     atlas = map_linkage(load("parallelogram", b=3.0))
-    assert all(0 < form.labels["max_residual"] < 1e-12 for form in atlas.forms)
+    assert all(0 < FormLabels.of(f).max_residual < 1e-12 for f in atlas.forms)
     assert atlas.subject == {
         "name": "parallelogram",
         "lengths": [1.0, 3.0, 1.0, 3.0],
@@ -44,12 +43,16 @@ def test_a_loop_without_a_source_is_mapped_too():
 def test_a_name_or_a_parameter_that_does_not_exist_is_refused():
     with pytest.raises(UnknownLinkageError, match="bennett"):
         map_linkage(load("benet"))
-    with pytest.raises(GeometryError, match="one of a, alpha, beta"):
+    with pytest.raises(BifurcError, match="one of a, alpha, beta"):
         map_linkage(load("bennett", gamma=1.0))
 
 
+def test_a_name_in_place_of_a_linkage_is_refused():
+    with pytest.raises(GeometryError, match=r"'bennett' .* `linkages\.load`"):
+        map_linkage("bennett")
+
+
 def test_a_map_is_certified_on_request():
-    atlas = map_linkage(
-        entry("bennett").build(), settings=SearchSettings(starts=20), certify=True
-    )
+    loop = entry("bennett").build()
+    atlas = map_linkage(loop, settings=SearchSettings(starts=20), certify=True)
     assert atlas.forms[0].certificate.status == "certified"

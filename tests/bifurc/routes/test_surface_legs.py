@@ -25,7 +25,8 @@ from bifurc.surfaces.geodesic import shortest_path
 from bifurc.torus import wrap
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.double_goldberg import double_subtractive_goldberg
-from linkages.loop import Loop, loop_from_axes
+from linkages.axes import loop_from_axes
+from linkages.loop import Loop
 
 
 def sarrus() -> LoopClosure:

@@ -9,22 +9,22 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
+from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure, locked_joints
 from linkages.closure.loop_closure import LoopClosure
 from linkages.closure.precise import precise_residual
-from linkages.loop import GeometryError, Loop, loop_from_axes
+from linkages.loop import GeometryError, Loop
 
 DIGITS = 50
 
 
 def general_loop(joints, seed):
     rng = np.random.default_rng(seed)
-    return Loop(
-        rng.uniform(0.5, 1.5, joints),
-        rng.uniform(0.6, 2.5, joints),
-        rng.uniform(0.0, 0.4, joints),
-    )
+    lengths = rng.uniform(0.5, 1.5, joints)
+    twists = rng.uniform(0.6, 2.5, joints)
+    offsets = rng.uniform(0.0, 0.4, joints)
+    return Loop(lengths, twists, offsets)
 
 
 def geared(joints, ratios=(-1.0, 1.0)):
@@ -33,71 +33,56 @@ def geared(joints, ratios=(-1.0, 1.0)):
     matrix = np.vstack([np.eye(7), np.zeros((joints - 7, 7))])
     for i in range(7, joints):
         matrix[i, i - 7] = ratios[i % len(ratios)]
-    return CoupledClosure(
-        general_loop(joints, joints), matrix, np.linspace(0.0, 1.0, joints)
-    )
+    phases = np.linspace(0.0, 1.0, joints)
+    return CoupledClosure(general_loop(joints, joints), matrix, phases)
 
 
 def closed_point(problem, seed=0):
-    points, gaps = problem.project(
-        np.random.default_rng(seed).uniform(-np.pi, np.pi, (20, problem.n))
-    )
+    starts = np.random.default_rng(seed).uniform(-np.pi, np.pi, (20, problem.n))
+    points, gaps = problem.project(starts)
     return points[gaps < 1e-12][0]
 
 
 def precisely(problem, v, *shifts):
     """The residual at 50 digits at v shifted along the unknowns: from M, c and the
     quaternions alone."""
-    moved = [
-        mpmath.mpf(float(x)) + sum(step for j, step in shifts if j == i)
-        for i, x in enumerate(v)
-    ]
-    theta = [
-        mpmath.mpf(float(c))
-        + sum(mpmath.mpf(float(m)) * x for m, x in zip(row, moved, strict=True))
-        for row, c in zip(problem.matrix, problem.offset, strict=True)
-    ]
-    return mpmath.matrix(precise_residual(problem.loop)(theta))
+    moved = mpmath.matrix([float(x) for x in v])
+    for j, step in shifts:
+        moved[j] += step
+    matrix = mpmath.matrix(problem.matrix.tolist())
+    theta = matrix * moved + mpmath.matrix(problem.offset.tolist())
+    return mpmath.matrix(precise_residual(problem.loop)(list(theta)))
 
 
-def as_floats(values):
-    return np.array([float(x) for x in values])
+def largest_difference(values, precise_values):
+    return np.abs(values - [float(x) for x in precise_values]).max()
+
+
+def sum_of(pair):
+    return pair[0] + pair[1]
 
 
 @pytest.mark.parametrize("joints", [8, 12])
 def test_residual_and_derivatives_agree_with_50_digits(joints):
     problem = geared(joints, ratios=(-0.7, 2.5))
     v = np.random.default_rng(3).uniform(-np.pi, np.pi, 7)
-    bound = (
-        1e-13 * joints
-    )  # rounding of theta = M v + c, up to 10 rad, and products of n rotations
+    residual = problem.residuals(v[None])[0]
+    jacobian = problem.jacobians(v[None])[0]
+    hessian = problem.hessian(v)
+    # rounding of theta = M v + c, up to 10 rad, and products of n rotations
+    bound = 1e-13 * joints
     with mpmath.workdps(DIGITS):
-        assert (
-            np.abs(
-                problem.residuals(v[None])[0] - as_floats(precisely(problem, v))
-            ).max()
-            < bound
-        )
+        assert largest_difference(residual, precisely(problem, v)) < bound
         h = mpmath.mpf(10) ** -15  # central differences: errors of 1e-30 and of 1e-20
         for j in range(7):
-            slope = (precisely(problem, v, (j, h)) - precisely(problem, v, (j, -h))) / (
-                2 * h
-            )
-            assert (
-                np.abs(problem.jacobians(v[None])[0][:, j] - as_floats(slope)).max()
-                < bound
-            )
+            ahead, back = precisely(problem, v, (j, h)), precisely(problem, v, (j, -h))
+            slope = (ahead - back) / (2 * h)
+            assert largest_difference(jacobian[:, j], slope) < bound
             for i in range(j + 1):
-                ends = [
-                    precisely(problem, v, (i, a * h), (j, b * h))
-                    for a in (1, -1)
-                    for b in (1, -1)
-                ]
-                second = (ends[0] - ends[1] - ends[2] + ends[3]) / (4 * h**2)
-                assert (
-                    np.abs(problem.hessian(v)[:, i, j] - as_floats(second)).max()
-                    < 10 * bound
-                )
+                alike = [precisely(problem, v, (i, a), (j, a)) for a in (h, -h)]
+                unlike = [precisely(problem, v, (i, a), (j, -a)) for a in (h, -h)]
+                second = (sum_of(alike) - sum_of(unlike)) / (4 * h**2)
+                assert largest_difference(hessian[:, i, j], second) < 10 * bound
 
 
 @pytest.mark.parametrize("joints", [8, 12])
@@ -122,10 +107,8 @@ def test_a_locked_joint_gives_the_curve_of_the_loop_with_its_two_links_made_one(
     frames = np.delete(loop.frames(problem.angles(start))[:8], locked - 1, axis=0)
     merged, angles = loop_from_axes(frames[:, :3, 3], frames[:, :3, 2])
     assert merged.n == 7
-    branch, other = (
-        trace_branch(problem, start),
-        trace_branch(LoopClosure(merged), angles),
-    )
+    branch = trace_branch(problem, start)
+    other = trace_branch(LoopClosure(merged), angles)
     assert branch.closed
     assert other.closed
     assert branch.length == pytest.approx(other.length, rel=1e-12)
@@ -143,9 +126,8 @@ def test_the_symmetric_motion_of_a_line_symmetric_bricard_needs_three_unknowns()
     assert branch.closed
     theta = problem.angles(branch(np.linspace(0.0, branch.length, 300)))
     whole = trace_branch(LoopClosure(loop), theta[0])
-    assert whole.length == pytest.approx(
-        np.sqrt(2) * branch.length, rel=1e-12
-    )  # every unknown turns two joints
+    # every unknown turns two joints
+    assert whole.length == pytest.approx(np.sqrt(2) * branch.length, rel=1e-12)
     assert whole.nearest(theta)[0].max() < 1e-10
 
 
@@ -154,23 +136,21 @@ def test_the_map_of_a_coupled_loop_has_the_symmetric_forms_and_certifies_them():
     problem = CoupledClosure(loop, np.vstack([np.eye(3), np.eye(3)]))
     atlas = certify_atlas(problem, explore(problem, settings=SearchSettings(starts=40)))
     whole = explore(LoopClosure(loop), settings=SearchSettings(starts=40))
-    assert [np.sqrt(2) * f.branch.length for f in atlas.forms] == pytest.approx(
-        [f.branch.length for f in whole.forms], rel=1e-10
-    )
+    lengths = [np.sqrt(2) * form.branch.length for form in atlas.forms]
+    whole_lengths = [form.branch.length for form in whole.forms]
+    assert lengths == pytest.approx(whole_lengths, rel=1e-10)
     assert [f.certificate.status for f in atlas.forms] == ["certified"] * 2
 
 
 def test_an_unknown_comes_round_when_all_joints_that_it_turns_do():
     ratios = [(1.0, 0.0), (1.0, 0.5), (2.0, -4.0), (1 / 3, 0.5), (np.sqrt(2.0), 1.0)]
-    turns = [
-        CoupledClosure(
-            general_loop(4, 0), np.array([[a, 0.0], [b, 0.0], [0.0, 1.0], [0.0, 0.0]])
-        ).periods
-        / (2 * np.pi)
-        for a, b in ratios
-    ]
-    assert [t[0] for t in turns] == [1.0, 2.0, 0.5, 6.0, np.inf]
-    assert all(t[1] == 1.0 for t in turns)
+    turns = []
+    for a, b in ratios:
+        matrix = np.array([[a, 0.0], [b, 0.0], [0.0, 1.0], [0.0, 0.0]])
+        problem = CoupledClosure(general_loop(4, 0), matrix)
+        turns.append(problem.periods / (2 * np.pi))
+    assert [first for first, _ in turns] == [1.0, 2.0, 0.5, 6.0, np.inf]
+    assert all(second == 1.0 for _, second in turns)
 
 
 @pytest.mark.parametrize(

@@ -16,13 +16,11 @@ LENGTHS = st.floats(0.0, 2.0)
 @st.composite
 def loops(draw):
     n = draw(st.integers(4, 8))
-    lengths, twists, offsets = (
-        draw(st.lists(kind, min_size=n, max_size=n))
-        for kind in (LENGTHS, ANGLES, st.floats(-1.0, 1.0))
-    )
-    return Loop(lengths, twists, offsets), np.array(
-        draw(st.lists(ANGLES, min_size=n, max_size=n))
-    )
+    lengths = draw(st.lists(LENGTHS, min_size=n, max_size=n))
+    twists = draw(st.lists(ANGLES, min_size=n, max_size=n))
+    offsets = draw(st.lists(st.floats(-1.0, 1.0), min_size=n, max_size=n))
+    theta = draw(st.lists(ANGLES, min_size=n, max_size=n))
+    return Loop(lengths, twists, offsets), np.array(theta)
 
 
 @settings(max_examples=200, derandomize=True, deadline=None)
@@ -35,12 +33,10 @@ def test_the_residual_measures_the_whole_rotation_and_the_translation(case):
     residual = LoopClosure(loop).residuals(theta[None])[0]
     # sqrt(1e-16) next to a half turn would not show here: the norm of q_v is exact to
     # rounding everywhere
-    assert np.linalg.norm(residual[:3]) == pytest.approx(
-        np.linalg.norm(gap[:3, :3]) / np.sqrt(2), abs=1e-13
-    )
-    assert residual[3:] == pytest.approx(
-        gap[:3, 3] / loop.characteristic_length, abs=1e-13
-    )
+    rotation = np.linalg.norm(gap[:3, :3]) / np.sqrt(2)
+    translation = gap[:3, 3] / loop.characteristic_length
+    assert np.linalg.norm(residual[:3]) == pytest.approx(rotation, abs=1e-13)
+    assert residual[3:] == pytest.approx(translation, abs=1e-13)
 
 
 def test_a_half_turn_is_no_closed_configuration():
@@ -49,10 +45,9 @@ def test_a_half_turn_is_no_closed_configuration():
     loop = Loop((0.0,) * 4, (0.0,) * 4, (0.0,) * 4)
     problem = LoopClosure(loop)
     half, whole = np.array([np.pi, 0.0, 0.0, 0.0]), np.array([np.pi, np.pi, 0.0, 0.0])
-    skew = loop.frames(half)[-1][:3, :3]
-    assert (
-        np.abs(skew - skew.T).max() < 1e-15
-    )  # the skew part, used in the sources, does not see it
+    # the skew part, used in the sources, does not see it
+    rotation = loop.frames(half)[-1][:3, :3]
+    assert np.abs(rotation - rotation.T).max() < 1e-15
     assert np.linalg.norm(problem.residuals(half[None])[0]) == pytest.approx(2.0)
     assert np.linalg.norm(problem.residuals(whole[None])[0]) < 1e-15
 
@@ -69,12 +64,10 @@ def test_a_half_turn_is_no_closed_configuration():
 def test_projection_ends_in_closed_configurations_or_says_the_gap(name):
     loop = entry(name).build()
     problem = LoopClosure(loop)
-    points, gaps = problem.project(
-        np.random.default_rng(0).uniform(-np.pi, np.pi, (400, loop.n))
-    )
-    assert np.allclose(
-        gaps, np.linalg.norm(problem.residuals(points), axis=1), rtol=0, atol=1e-14
-    )
+    starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (400, loop.n))
+    points, gaps = problem.project(starts)
+    residuals = np.linalg.norm(problem.residuals(points), axis=1)
+    assert np.allclose(gaps, residuals, rtol=0, atol=1e-14)
     closed = gaps < 1e-12
     assert closed.sum() > 50
     matrices = loop.frames(points[closed])[:, -1]
@@ -89,12 +82,9 @@ def test_nothing_depends_on_the_unit_of_length(case, factor):
     one, other = LoopClosure(loop), LoopClosure(loop.scaled(factor))
     # the characteristic length is scaled, too: only its rounding and that of the
     # lengths is left
-    assert other.residuals(theta[None]) == pytest.approx(
-        one.residuals(theta[None]), abs=1e-13
-    )
-    assert other.jacobians(theta[None]) == pytest.approx(
-        one.jacobians(theta[None]), abs=1e-13
-    )
+    residuals, jacobians = one.residuals(theta[None]), one.jacobians(theta[None])
+    assert other.residuals(theta[None]) == pytest.approx(residuals, abs=1e-13)
+    assert other.jacobians(theta[None]) == pytest.approx(jacobians, abs=1e-13)
 
 
 def test_the_jacobian_is_the_joint_screws_where_the_loop_is_closed():
@@ -110,9 +100,8 @@ def test_solutions_on_a_sphere_are_closed_and_at_the_radius():
     problem = LoopClosure(entry("bricard-line-symmetric").build())
     center = problem.seeds(np.random.default_rng(0), 5).points[0]
     tangent = np.linalg.svd(problem.jacobians(center[None])[0])[2][-1]
-    points, gaps, last = problem.project_to_sphere(
-        center + 0.05 * np.array([tangent, -tangent]), center, 0.05
-    )
+    starts = center + 0.05 * np.array([tangent, -tangent])
+    points, gaps, last = problem.project_to_sphere(starts, center, 0.05)
     assert gaps.max() < 1e-14
     assert last.max() < 1e-10
     assert np.linalg.norm(points - center, axis=1) == pytest.approx(0.05, abs=1e-14)
@@ -136,18 +125,18 @@ def test_solutions_on_a_sphere_of_a_loop_with_more_unknowns_than_equations_are_c
 def test_seeds_of_a_short_loop_are_closed_and_come_from_complete_slices_and_random_starts():
     problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
     seeds = problem.seeds(np.random.default_rng(4), 30)
-    assert (
-        seeds.audit([], 0.0).level == "estimated"
-    )  # the slices hold configurations, and there are no motions yet
+    # the slices hold configurations, and there are no motions yet
+    assert seeds.audit([], 0.0).level == "estimated"
     assert 0 < seeds.random.sum() <= 30 < len(seeds.points)
     assert np.linalg.norm(problem.residuals(seeds.points), axis=1).max() < 1e-12
 
 
 def test_seeds_of_a_long_loop_are_random_and_claim_nothing_complete():
     rng = np.random.default_rng(5)
-    problem = LoopClosure(
-        Loop(rng.uniform(0.5, 1, 7), rng.uniform(-3, 3, 7), rng.uniform(-0.5, 0.5, 7))
-    )
+    lengths = rng.uniform(0.5, 1, 7)
+    twists = rng.uniform(-3, 3, 7)
+    offsets = rng.uniform(-0.5, 0.5, 7)
+    problem = LoopClosure(Loop(lengths, twists, offsets))
     seeds = problem.seeds(rng, 40)
     assert seeds.random.all()
     assert seeds.audit is None
@@ -155,9 +144,8 @@ def test_seeds_of_a_long_loop_are_random_and_claim_nothing_complete():
 
 
 def test_seeds_of_a_surface_do_not_claim_completeness():
-    seeds = LoopClosure(Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5)).seeds(
-        np.random.default_rng(0), 10
-    )
+    planar = Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5)
+    seeds = LoopClosure(planar).seeds(np.random.default_rng(0), 10)
     audit = seeds.audit([], 1.0)
     assert audit.level == "estimated"
     assert "could not be made complete" in audit.statement

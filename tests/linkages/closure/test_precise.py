@@ -11,10 +11,9 @@ from linkages.closure.precise import precise_residual
 
 
 def precise_member(name):
-    found = entry(name)
-    return found.build(
-        **{key: mpmath.mpf(value) for key, value in found.defaults.items()}
-    )
+    linkage = entry(name)
+    parameters = {key: mpmath.mpf(value) for key, value in linkage.defaults.items()}
+    return linkage.build(**parameters)
 
 
 @pytest.mark.parametrize(
@@ -24,31 +23,23 @@ def precise_member(name):
 def test_residuals_agree_with_the_compiled_ones(name):
     theta = np.random.default_rng(0).uniform(-3, 3, entry(name).build().n)
     with mpmath.workdps(50):
-        precise = [
-            float(x)
-            for x in precise_residual(precise_member(name))(
-                [mpmath.mpf(t) for t in theta]
-            )
-        ]
+        residual = precise_residual(precise_member(name))
+        precise = [float(x) for x in residual([mpmath.mpf(t) for t in theta])]
     compiled = LoopClosure(entry(name).build()).residuals(theta[None])[0]
-    assert (
-        np.abs(compiled - precise).max() < 5e-15
-    )  # a few roundings of numbers of size one
+    # a few roundings of numbers of size one
+    assert np.abs(compiled - precise).max() < 5e-15
 
 
 def test_the_flat_bifurcation_of_the_special_linkage_is_exact():
+    name = "special-double-subtractive-goldberg"
     with mpmath.workdps(180):
-        residual = precise_residual(
-            precise_member("special-double-subtractive-goldberg")
-        )
+        residual = precise_residual(precise_member(name))
     flat = np.pi * np.array([0.0, 1, 0, 0, 1, 0])
-    null_space = np.linalg.svd(
-        LoopClosure(entry("special-double-subtractive-goldberg").build()).jacobians(
-            flat[None]
-        )[0]
-    )
-    found = confirm_singular_point(residual, flat, null_space[2][4:].T)
+    jacobian = LoopClosure(entry(name).build()).jacobians(flat[None])[0]
+    null_space = np.linalg.svd(jacobian)[2][4:].T
+    point = confirm_singular_point(residual, flat, null_space)
     with mpmath.workdps(60):
-        assert abs(found.u[1] - mpmath.pi) < mpmath.mpf(10) ** -49
-    assert found.convergence is Convergence.QUADRATIC and found.nullity == 2
-    assert found.angle < 1e-14
+        assert abs(point.u[1] - mpmath.pi) < mpmath.mpf(10) ** -49
+    assert point.convergence is Convergence.QUADRATIC
+    assert point.nullity == 2
+    assert point.angle < 1e-14

@@ -21,6 +21,8 @@ SMALL = {
     "R3": -0.267,
 }
 
+NUMBERS_ALONE = SearchSettings(prove=False)
+
 
 def small_and_large(twist):
     return LoopClosure(entry("bricard-plane-symmetric").build(alpha12=twist, **SMALL))
@@ -42,7 +44,7 @@ def extents(atlas):
     ],
 )
 def test_numbers_alone_prove_many_linkages_complete(name):
-    atlas = explore(LoopClosure(entry(name).build()))
+    atlas = explore(LoopClosure(entry(name).build()), settings=NUMBERS_ALONE)
     assert atlas.completeness.level == "proved"
     assert atlas.completeness.statement.startswith("no motion is missing")
 
@@ -57,10 +59,8 @@ def test_numbers_alone_prove_many_linkages_complete(name):
 )
 def test_following_proves_what_numbers_leave_open(name):
     problem = LoopClosure(entry(name).build())
-    counted, followed = (
-        explore(problem),
-        explore(problem, settings=SearchSettings(prove=True)),
-    )
+    counted = explore(problem, settings=NUMBERS_ALONE)
+    followed = explore(problem, settings=SearchSettings(prove=True))
     assert counted.completeness.level == "certified"
     assert "more than 15 degrees" in counted.completeness.statement
     assert followed.completeness.level == "proved"
@@ -68,13 +68,9 @@ def test_following_proves_what_numbers_leave_open(name):
 
 
 def test_sheets_that_run_to_infinity_leave_the_statement_at_certified():
-    assert (
-        explore(
-            LoopClosure(entry("wohlhart-symmetric").build()),
-            settings=SearchSettings(prove=True),
-        ).completeness.level
-        == "certified"
-    )
+    problem = LoopClosure(entry("wohlhart-symmetric").build())
+    atlas = explore(problem, settings=SearchSettings(prove=True))
+    assert atlas.completeness.level == "certified"
 
 
 @pytest.mark.parametrize(
@@ -90,14 +86,12 @@ def test_no_list_with_a_motion_left_out_is_called_complete(name):
         assert audit(branches[:i] + branches[i + 1 :], np.inf).level == "estimated"
 
 
-@pytest.mark.parametrize(
-    "twist", [2.264, 2.2643, 2.264327]
-)  # the small motion turns by 0.14, 0.039 and 0.0023 rad
+# the small motion turns by 0.14, 0.039 and 0.0023 rad
+@pytest.mark.parametrize("twist", [2.264, 2.2643, 2.264327])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_motion_smaller_than_the_gap_between_slices_is_found(twist, seed):
-    atlas = explore(
-        small_and_large(twist), settings=SearchSettings(starts=1, prove=True), seed=seed
-    )
+    settings = SearchSettings(starts=1, prove=True)
+    atlas = explore(small_and_large(twist), settings=settings, seed=seed)
     small, large = extents(atlas)
     assert small < 0.15 < 5 < large
     assert atlas.completeness.level == "proved"
@@ -110,9 +104,8 @@ def test_a_small_motion_that_no_slice_passes_is_not_denied_and_is_reached_from_t
 ):
     problem = small_and_large(twist)
     forms = explore(problem).forms
-    small, large = (
-        pick(forms, key=lambda form: form.branch.length).branch for pick in (min, max)
-    )
+    by_length = sorted(forms, key=lambda form: form.branch.length)
+    small, large = by_length[0].branch, by_length[-1].branch
     audit = problem.seeds(np.random.default_rng(seed), 1).audit
     blind = audit([large], np.inf)
     assert blind.level != "proved"
@@ -126,10 +119,9 @@ def test_a_small_motion_that_no_slice_passes_is_not_denied_and_is_reached_from_t
 def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
     # the longest bar is as long as the others together, but for a little: the motion is
     # an oval of its square root
-    atlas = explore(
-        LoopClosure(entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)),
-        settings=SearchSettings(starts=1, prove=True),
-    )
+    loop = entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)
+    settings = SearchSettings(starts=1, prove=True)
+    atlas = explore(LoopClosure(loop), settings=settings)
     assert len(atlas.forms) == 1
     assert 3 * np.sqrt(missing) < extents(atlas)[0] < 5 * np.sqrt(missing)
     assert atlas.completeness.level == "proved"
@@ -137,13 +129,10 @@ def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
 
 def test_a_loop_that_cannot_move_is_proved_not_to():
     rng = np.random.default_rng(3)
-    loop = Loop(
-        rng.uniform(0.5, 1, 6),
-        rng.uniform(0.5, 2.5, 6),
-        rng.uniform(-0.3, 0.3, 6),
-        "general 6R",
-    )
-    atlas = explore(LoopClosure(loop))
+    lengths = rng.uniform(0.5, 1, 6)
+    twists = rng.uniform(0.5, 2.5, 6)
+    offsets = rng.uniform(-0.3, 0.3, 6)
+    atlas = explore(LoopClosure(Loop(lengths, twists, offsets, "general 6R")))
     assert not atlas.forms
     assert atlas.completeness.level == "proved"
     assert atlas.completeness.statement.startswith("there is no motion")
@@ -151,9 +140,8 @@ def test_a_loop_that_cannot_move_is_proved_not_to():
 
 def test_surfaces_and_long_loops_are_estimated():
     planar = Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5, "planar 5R")
-    atlas = explore(
-        LoopClosure(planar), settings=SearchSettings(starts=20, charts=50, prove=True)
-    )
+    settings = SearchSettings(starts=20, charts=50, prove=True)
+    atlas = explore(LoopClosure(planar), settings=settings)
     assert atlas.completeness.level == "estimated"
     assert "could not be made complete" in atlas.completeness.statement
 
@@ -161,10 +149,8 @@ def test_surfaces_and_long_loops_are_estimated():
 def test_little_time_ends_at_numbers_alone():
     problem = LoopClosure(entry("bricard-plane-symmetric").build())
     branches = [form.branch for form in explore(problem).forms]
-    assert (
-        problem.seeds(np.random.default_rng(0), 10).audit(branches, 1e-6).level
-        == "certified"
-    )
+    audit = problem.seeds(np.random.default_rng(0), 10).audit
+    assert audit(branches, 1e-6).level == "certified"
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -181,10 +167,8 @@ def test_little_time_ends_at_numbers_alone():
 def test_random_members_are_proved_and_other_seeds_find_the_same(name, seed):
     found = entry(name)
     problem = LoopClosure(found.build(**found.draw(np.random.default_rng(seed))))
-    atlases = [
-        explore(problem, settings=SearchSettings(starts=20, prove=True), seed=k)
-        for k in range(2)
-    ]
+    settings = SearchSettings(starts=20, prove=True)
+    atlases = [explore(problem, settings=settings, seed=k) for k in range(2)]
     assert [a.completeness.level for a in atlases] == ["proved"] * 2
     lengths = [sorted(form.branch.length for form in a.forms) for a in atlases]
     np.testing.assert_allclose(lengths[0], lengths[1], rtol=1e-9)

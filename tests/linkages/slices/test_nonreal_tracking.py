@@ -26,7 +26,7 @@ def closure(loop, z, at):
     the screws at ``at``."""
     screws = np.zeros((6, loop.n), dtype=complex)
     sheets._screws_and_error(
-        at, sheets._geometry(loop), screws, np.zeros(6, dtype=complex)
+        at, loop.link_geometry[:4], screws, np.zeros(6, dtype=complex)
     )
     total = [np.array([1, 0, 0, 0], dtype=complex), np.zeros(4, dtype=complex)]
     for i in range(loop.n):
@@ -57,7 +57,7 @@ def test_configurations_that_are_not_real_close_and_come_in_conjugate_pairs(name
     for z in found:
         error = np.zeros(6, dtype=complex)
         sheets._screws_and_error(
-            z, sheets._geometry(loop), np.zeros((6, loop.n), dtype=complex), error
+            z, loop.link_geometry[:4], np.zeros((6, loop.n), dtype=complex), error
         )
         assert np.abs(error).max() < 1e-12 * np.exp(np.abs(z.imag).sum())
         assert (
@@ -71,13 +71,11 @@ def test_second_derivatives_agree_with_differences_of_the_product_of_exponential
     rng = np.random.default_rng(0)
     real = slice_configurations(loop, 1, np.array([0.7])).configurations.astype(complex)
     for at in np.concatenate([found[:3], real[:1]]):
-        screws, inverse = (
-            np.zeros((6, loop.n), dtype=complex),
-            np.eye(loop.n, 7, dtype=complex),
-        )
+        screws = np.zeros((6, loop.n), dtype=complex)
+        inverse = np.eye(loop.n, 7, dtype=complex)
         inverse[:, :6] = rng.normal(size=(loop.n, 6))
         sheets._screws_and_error(
-            at, sheets._geometry(loop), screws, np.zeros(6, dtype=complex)
+            at, loop.link_geometry[:4], screws, np.zeros(6, dtype=complex)
         )
         second = np.zeros((loop.n, loop.n, loop.n), dtype=complex)
         sheets._second(screws, inverse, second)
@@ -107,11 +105,11 @@ def test_nowhere_in_the_ball_does_the_map_stray_from_its_tangent_by_more_than_th
     rng = np.random.default_rng(1)
     for at in found[:6]:
         along = np.eye(loop.n)[1]
-        weight, radius, bound = sheets._ball_around(sheets._geometry(loop), at, along)
+        weight, radius, bound = sheets._ball_around(loop.link_geometry[:4], at, along)
         assert bound * radius <= 0.5
         screws = np.zeros((6, loop.n), dtype=complex)
         sheets._screws_and_error(
-            at, sheets._geometry(loop), screws, np.zeros(6, dtype=complex)
+            at, loop.link_geometry[:4], screws, np.zeros(6, dtype=complex)
         )
         p = np.linalg.pinv(np.concatenate([screws, along[None]]))[:, :6]
         for _ in range(40):
@@ -210,11 +208,11 @@ def test_following_stops_when_the_time_is_over():
 
 def test_a_step_along_the_curve_leads_to_where_steps_in_the_angle_do():
     loop, found = non_real("special-double-subtractive-goldberg", joint=3)
-    geometry, joint = sheets._geometry(loop), 3
+    tracker, joint = sheets.SheetTracker(loop.link_geometry[:4], 3), 3
     assert len(found)
     for start in found[:6]:
         along, end = start.copy(), start[joint].real + 0.3
-        assert sheets._advance_along(geometry, joint, along, end)
+        assert tracker.advance_along(along, end)
         reached = along[joint].real
         assert start[joint].real < reached <= end
         cleared, last = follow_sheets(

@@ -1,0 +1,49 @@
+"""`import linkages`: its names are there, explained, and cost nothing until they are
+used."""
+
+import inspect
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import linkages
+
+ROOT = Path(linkages.__file__).parents[1]
+
+
+def modules_imported_by(statement):
+    """Top-level packages in memory after a statement in a fresh interpreter."""
+    code = f"{statement}\nimport sys\nprint(*sys.modules)"
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return {name.split(".")[0] for name in run.stdout.split()}
+
+
+@pytest.mark.parametrize("name", linkages.__all__)
+def test_every_public_name_can_be_imported_and_says_what_it_is(name):
+    member = getattr(linkages, name)
+    assert inspect.getdoc(member)
+    assert member.__module__.split(".")[0] == "linkages"
+
+
+def test_the_public_names_are_those_that_are_declared():
+    assert {"Linkage", "Loop", "load", "loop_of", "map_linkage"} <= set(dir(linkages))
+    with pytest.raises(AttributeError, match="no_such_name"):
+        _ = linkages.no_such_name
+
+
+def test_the_import_alone_is_light():
+    heavy = {"numba", "networkx", "xarray", "matplotlib", "scipy", "sympy", "numpy"}
+    assert not modules_imported_by("import linkages") & heavy
+
+
+def test_loading_a_linkage_needs_no_symbols_figures_or_datasets():
+    statement = "import linkages; linkages.load('bennett')"
+    assert not modules_imported_by(statement) & {"sympy", "matplotlib", "xarray"}
