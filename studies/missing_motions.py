@@ -21,7 +21,7 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
-from linkages.app.summary import table
+from linkages.app.texts import table
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

@@ -26,7 +26,7 @@ from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.singular.locate import locate_singular_point
-from linkages.app.summary import table
+from linkages.app.texts import table
 from studies.near_misses import NearMiss, near_misses
 
 __all__ = [

@@ -40,7 +40,7 @@ from bifurc.curves.monitor import profile_branch
 from bifurc.problem import Problem
 from bifurc.search.explore import explore
 from bifurc.seeds import Seeds
-from linkages.app.summary import table
+from linkages.app.texts import table
 from studies.hard_cases import Crossing, Ladder, crossings, ladders
 from studies.methods import natural, null_field, peers, point_by_point
 from studies.methods.counted import Counted

@@ -1,7 +1,7 @@
 """What a sweep holds in memory: that of the sweep and of its largest worker, while more
 and more members are mapped.
 
-    python -m linkages.app.sweep.memory [--family bennett] [--members 500 --members 2000 ...] [--out DIR]
+    python -m studies.sweep_memory [--family bennett] [--members 500 --members 2000 ...] [--out DIR]
 
 Every sweep runs in a fresh process, once on the process pool and once on a Dask cluster
 on this machine, whose scheduler lives in the process of the sweep. Resident memory is
