@@ -96,7 +96,12 @@ def _usage(error: click.UsageError) -> str:
     return f"{error.format_message()} (see {error.ctx.command_path} --help)"
 
 
-@click.group(cls=Commands, invoke_without_command=True, epilog=exit_code_table())
+@click.group(
+    "bifurc",
+    cls=Commands,
+    invoke_without_command=True,
+    epilog=exit_code_table(),
+)
 @click.version_option(package_name="bifurc")
 @click.pass_context
 def main(ctx: click.Context) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from bifurc.atlas import Atlas, Form
 from bifurc.files.dataset import AtlasFileError, load_atlas
@@ -49,6 +50,8 @@ def loop_of(atlas: Atlas) -> Loop:
 
 def open_linkage_atlas(path: str) -> Atlas:
     """The atlas of a linkage in a file; raises `CommandError` for any other file."""
+    if Path(path).is_dir():
+        raise CommandError(f"{path}: it is a folder, not a saved atlas")
     try:
         atlas = load_atlas(path)
     except FileNotFoundError:

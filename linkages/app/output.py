@@ -56,10 +56,13 @@ def require_folder(out: Path) -> None:
 
 @contextmanager
 def writing_to(out: Path) -> Iterator[None]:
-    """A block that writes to ``out``; raises `CommandError` where that fails."""
+    """A block that writes to ``out``; raises `CommandError` where that fails.
+
+    The NetCDF library reports a full disk as a `RuntimeError`.
+    """
     try:
         yield
-    except OSError as error:
-        reason = error.strerror or str(error)
+    except (OSError, RuntimeError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
         message = f"--out {out}: nothing can be written there ({reason})"
         raise CommandError(message) from None

@@ -9,7 +9,7 @@ from linkages.app.options import NumberRange, json_option
 
 __all__ = ["identify_command"]
 
-LARGEST_TOLERANCE = 1.0  # as large as the linkage itself
+LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
 
 @click.command("identify", epilog=exit_code_table())
@@ -17,7 +17,7 @@ LARGEST_TOLERANCE = 1.0  # as large as the linkage itself
 @click.option(
     "--tolerance",
     default=1e-8,
-    type=NumberRange(min=0.0, max=LARGEST_TOLERANCE, min_open=True),
+    type=NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
     show_default=True,
     help="How far a table may be from the linkage it is.",
 )

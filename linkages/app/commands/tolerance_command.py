@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["tolerance_command"]
 
-LARGEST_ERROR = 1.0  # rad, and characteristic lengths
+LARGEST_ERROR = 1  # rad, and characteristic lengths
 MOST_COPIES = 10_000
 
 
@@ -32,7 +32,7 @@ MOST_COPIES = 10_000
 @click.option(
     "--error",
     default=1e-4,
-    type=NumberRange(min=0.0, max=LARGEST_ERROR),
+    type=NumberRange(min=0, max=LARGEST_ERROR),
     show_default=True,
     help="Standard deviation of the errors.",
 )

@@ -21,6 +21,7 @@ __all__ = ["Journal", "JournalError", "Line"]
 
 Line: TypeAlias = dict[str, Any]  # values of JSON; who writes a line knows which
 
+NO_JOURNAL = "it is no journal of a sweep; choose another --out or delete it"
 CHUNK = 4096  # bytes read at a time on the way back to the last newline
 
 
@@ -79,7 +80,7 @@ class Journal:
                 for text in file:
                     yield self._parsed(text)
             except UnicodeDecodeError:
-                raise JournalError(self.path, "is no journal of a sweep") from None
+                raise JournalError(self.path, NO_JOURNAL) from None
 
     def _parsed(self, text: str) -> Line:
         try:
@@ -87,7 +88,7 @@ class Journal:
         except json.JSONDecodeError:
             line = None
         if not isinstance(line, dict):
-            raise JournalError(self.path, "is no journal of a sweep")
+            raise JournalError(self.path, NO_JOURNAL)
         return line
 
     def _lock(self) -> None:
@@ -116,5 +117,5 @@ class Journal:
         if first is None:
             self.append(header)
         elif first != json.loads(json.dumps(header)):
-            why = "belongs to another sweep; choose another --out or delete it"
+            why = "it belongs to another sweep; choose another --out or delete it"
             raise JournalError(self.path, why)

@@ -57,9 +57,11 @@ def require_room(path: Path, plan: Plan) -> None:
     try:
         attributes = zarr.open_group(path, mode="r").attrs.asdict()
     except (OSError, ValueError, KeyError):
-        raise StoreError(path, "holds something else than a sweep") from None
+        raise StoreError(
+            path, "it is not the dataset of a sweep; choose another --out"
+        ) from None
     if attributes.get("plan") != _text(plan):
-        why = "belongs to another sweep; choose another --out or delete it"
+        why = "it belongs to another sweep; choose another --out or delete it"
         raise StoreError(path, why)
 
 
