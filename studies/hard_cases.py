@@ -152,13 +152,17 @@ def ladders(imperfections: np.ndarray) -> list[Ladder]:
 # --- points that are there, or only seem to be --------------------------------------------------------
 
 
+# singular point of the plane curves: at the origin rounding would vanish
+CENTER = np.array([0.1234, -0.0567])
+
+
 def _plane(function: Callable[[np.ndarray], list[float]]) -> Problem:
-    """A plane curve with its singular point moved away from the origin, where rounding
-    would vanish."""
-    away = np.array([0.1234, -0.0567])
-    return FunctionProblem(
-        lambda u: np.array(function(u - away)), [[-1.1, 1.0], [-1.05, 1.2]]
-    )
+    """A plane curve with its singular point moved from the origin to `CENTER`."""
+
+    def moved(u: np.ndarray) -> np.ndarray:
+        return np.array(function(u - CENTER))
+
+    return FunctionProblem(moved, [[-1.1, 1.0], [-1.05, 1.2]])
 
 
 def _line_and_parabola(u: np.ndarray) -> list[float]:
@@ -175,7 +179,8 @@ def _oval_and_line(u: np.ndarray) -> list[float]:
 
 
 def _at(x: float, y: float) -> np.ndarray:
-    return np.array([x + 0.1234, y - 0.0567])
+    """The point (x, y) of a plane curve before it is moved."""
+    return np.array([x, y]) + CENTER
 
 
 def crossings() -> list[Crossing]:

@@ -13,10 +13,10 @@ matplotlib.use("Agg")
 from matplotlib import colormaps
 from matplotlib import pyplot as plt
 
+from studies.work_precision_runs import Run
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from studies.work_precision import Run
 
 __all__ = ["draw_case", "draw_ratios", "unbeaten"]
 
