@@ -99,7 +99,7 @@ def _scheduler(workers: int, dask: bool) -> Iterator[str | None]:
         return
     from distributed import LocalCluster
 
-    with LocalCluster(
+    with LocalCluster(  # type: ignore[no-untyped-call]
         n_workers=workers,
         threads_per_worker=1,
         host="127.0.0.1",

@@ -44,27 +44,8 @@ class NumberRange(click.FloatRange):
         return number
 
 
-class Seed(click.ParamType):
-    """A seed of a generator, small enough to be stored in a file."""
-
-    name = "integer"
-
-    def convert(
-        self,
-        value: str | int,
-        param: click.Parameter | None,
-        ctx: click.Context | None,
-    ) -> int:
-        """The seed that ``value`` is; raises `click.BadParameter`."""
-        seed = int(click.INT.convert(value, param, ctx))
-        if not 0 <= seed <= LARGEST_SEED:
-            message = f"{seed} is not in the range from 0 to {LARGEST_SEED}."
-            self.fail(message, param, ctx)
-        return seed
-
-
 STARTS = click.IntRange(1, MOST_STARTS)
-SEED = Seed()
+SEED = click.IntRange(0, LARGEST_SEED)
 POSITIVE = NumberRange(min=0, min_open=True)
 
 

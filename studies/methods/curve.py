@@ -48,7 +48,9 @@ def through_points_and_tangents(
     chords = np.linalg.norm(np.diff(u, axis=0), axis=1)
     turns = np.linalg.norm(np.diff(t, axis=0), axis=1)
     s = _sums(chords * (1 + turns**2 / 24))
-    return Curve(CubicHermiteSpline(s, u, t), min(length, s[-1]), len(u))
+    spline = CubicHermiteSpline(s, u, t)
+    end = min(length, s[-1])
+    return Curve(spline, end, len(u))
 
 
 def through_points(
@@ -57,7 +59,9 @@ def through_points(
     """A cubic spline through points over their chord length, cut off at ``length``."""
     u = np.array(points)
     s = _sums(np.linalg.norm(np.diff(u, axis=0), axis=1))
-    return Curve(CubicSpline(s, u), min(length, s[-1]), len(u), seconds)
+    spline = CubicSpline(s, u)
+    end = min(length, s[-1])
+    return Curve(spline, end, len(u), seconds)
 
 
 def _sums(lengths: np.ndarray) -> np.ndarray:

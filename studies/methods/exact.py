@@ -73,4 +73,4 @@ def _widest_gap(case: Case, s: np.ndarray) -> float:
     ordered = np.sort(s)
     start, end = ordered[0], case.length - ordered[-1]
     ends = [start + end] if case.reference.closed else [start, end]
-    return max(float(np.diff(ordered).max()), *ends)
+    return float(max(np.diff(ordered).max(), *ends))

@@ -35,10 +35,10 @@ def solve_bordered(
     matrix[:m] = jacobian
     matrix[m] = tangent
     if m + 1 == n:
-        _, _, solution, _ = lapack.dgesv(matrix, right)
-        return solution
-    _, solution, _ = lapack.dgels(matrix, right)
-    return solution[:n]
+        _, _, exact, _ = lapack.dgesv(matrix, right)
+        return np.asarray(exact)
+    _, nearest, _ = lapack.dgels(matrix, right)
+    return np.asarray(nearest[:n])
 
 
 def mixtures(rows: int, wanted: int) -> np.ndarray:

@@ -49,11 +49,11 @@ def _solve(
 ) -> np.ndarray:
     def residual(x: np.ndarray) -> np.ndarray:
         guess[others] = x
-        return problem.residuals(guess[None])[0]
+        return np.asarray(problem.residuals(guess[None])[0])
 
     def jacobian(x: np.ndarray) -> np.ndarray:
         guess[others] = x
-        return problem.jacobians(guess[None])[0][:, others]
+        return np.asarray(problem.jacobians(guess[None])[0][:, others])
 
     x = guess[others]
     enough = max(0.1 * tolerance, 1e-14)
@@ -80,7 +80,7 @@ def _extrapolate(solved: list[np.ndarray]) -> np.ndarray:
     """The next of equally spaced points by the polynomial through the last four."""
     count = min(len(solved), len(WEIGHTS))
     weights = np.array(WEIGHTS[count - 1], dtype=float)
-    return weights @ np.array(solved[-count:])
+    return np.asarray(weights @ np.array(solved[-count:]))
 
 
 def _along(values: np.ndarray, solved: np.ndarray) -> CubicSpline:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.integrate import DOP853, LSODA, RK45, DenseOutput, OdeSolution, OdeSolver
+from scipy.integrate import DOP853, LSODA, RK45, OdeSolution, OdeSolver
 
 from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure
@@ -61,12 +61,13 @@ def integrate_null_field(
         atol=allowed,
         max_step=longest,
     )
-    times, pieces = [0.0], []
+    times = [0.0]
+    pieces = []
     while ode.status == "running":
         message = ode.step()
         if ode.status == "failed":
             raise MethodFailure(str(message))
-        pieces.append(_piece(ode))
+        pieces.append(ode.dense_output())
         times.append(ode.t)
         if projected:
             ode.y = _project(problem, ode.y, last, allowed)
@@ -75,19 +76,14 @@ def integrate_null_field(
     return Curve(lambda s: solution(s).T, length, len(times))
 
 
-def _piece(ode: OdeSolver) -> DenseOutput:
-    return ode.dense_output()
-
-
 def _project(
     problem: Problem, u: np.ndarray, tangent: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """Newton's method across ``tangent``."""
     for _ in range(3):
         residual, jacobian = evaluate(problem, u)
-        step = solve_bordered(jacobian, tangent, np.append(-residual, 0.0)[:, None])[
-            :, 0
-        ]
+        right = np.append(-residual, 0.0)[:, None]
+        step = solve_bordered(jacobian, tangent, right)[:, 0]
         u = u + step
         if np.linalg.norm(step) < np.sqrt(tolerance) * 1e-2:
             break
