@@ -11,6 +11,7 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.figures.plotting import plot_transition_map
 from linkages.app.files import staging, write_data, write_figures
 from linkages.app.status import compilation_announced
 from linkages.app.summary import make_summary
@@ -59,22 +60,21 @@ class Redrawing:
     def run(self, out: Path) -> None:
         """Print the tables and the claims; write the figure and the results of the map
         to a folder."""
-        from bifurc.figures.plotting import plot_transition_map
-
         out.mkdir(parents=True, exist_ok=True)
         with compilation_announced():
             atlas = self.compute()
-        lines = [_judged(claim) for claim in self.claims(atlas)]
-        summary = make_summary(atlas) + "\n\nWhat the source says\n" + "\n".join(lines)
+        sentences = "\n".join(_judge(claim) for claim in self.claims(atlas))
+        summary = f"{make_summary(atlas)}\n\nWhat the source says\n{sentences}"
         click.echo(summary)
-        written = write_data(atlas, out, summary) + write_figures(atlas, out)
-        with staging(out, written) as stage:
+        paths = write_data(atlas, out, summary)
+        paths += write_figures(atlas, out)
+        with staging(out, paths) as stage:
             figure = plot_transition_map(atlas, joints=self.joints)
             for ending in ("png", "svg"):
                 figure.savefig(stage / f"{self.figure}.{ending}", dpi=150)
+        others = len(paths) - 1
         click.echo(
-            f"wrote {self.figure}.png and {len(written) - 1} more files to {out}",
-            err=True,
+            f"wrote {self.figure}.png and {others} more files to {out}", err=True
         )
 
 
@@ -89,7 +89,7 @@ def largest(deviations: np.ndarray) -> float:
     return float(np.abs(deviations).max())
 
 
-def _judged(claim: Claim) -> str:
+def _judge(claim: Claim) -> str:
     if claim.deviation == 0:
         verdict = "holds"
     elif claim.deviation < HOLDS:

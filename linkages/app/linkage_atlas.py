@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 from bifurc.atlas import Atlas, Form
-from bifurc.files.dataset import AtlasFileError, load_atlas
 from linkages.app.exit_codes import CommandError
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["FormLabels", "labels_of", "loop_of", "open_linkage_atlas"]
+__all__ = ["FormLabels", "labels_of", "loop_of"]
 
 
 @dataclass(frozen=True)
@@ -46,30 +44,3 @@ def loop_of(atlas: Atlas) -> Loop:
         )
     except (KeyError, TypeError, GeometryError):
         raise CommandError("the atlas is of no linkage: it holds no loop") from None
-
-
-def open_linkage_atlas(path: str) -> Atlas:
-    """The atlas of a linkage in a file; raises `CommandError` for any other file."""
-    if Path(path).is_dir():
-        raise CommandError(f"{path}: it is a folder, not a saved atlas")
-    try:
-        atlas = load_atlas(path)
-    except FileNotFoundError:
-        raise CommandError(f"{path}: there is no such file") from None
-    except AtlasFileError:
-        raise
-    # a damaged file can make the reader stumble anywhere
-    except (
-        ArithmeticError,
-        AttributeError,
-        LookupError,
-        RuntimeError,
-        TypeError,
-        ValueError,
-    ) as error:
-        raise CommandError(f"{path}: the file is damaged ({error})") from None
-    try:
-        loop_of(atlas)
-    except CommandError as error:
-        raise CommandError(f"{path}: {error}") from None
-    return atlas

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import TypeAlias
 
 import mpmath
 import numpy as np
@@ -23,6 +23,8 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 __all__ = ["Case", "all_cases", "bratu"]
+
+Numbers: TypeAlias = list[mpmath.mpf]
 
 EXACT = TraceSettings(order=20, tolerance=1e-14)
 DIGITS = 40
@@ -44,7 +46,7 @@ class Case:
     problem: Problem
     start: np.ndarray
     tangent: np.ndarray
-    exact_residual: Callable[[list[Any]], list[Any]]
+    exact_residual: Callable[[Numbers], Numbers]
     settings: TraceSettings = EXACT
     tightest: float = 0.0
     patience: float = 1.0
@@ -129,16 +131,16 @@ def linkage_cases() -> list[Case]:
     ]
 
 
-def _named(name: str, title: str, family: str, **changed: Any) -> Case:
+def _named(name: str, title: str, family: str, **changed: str | float) -> Case:
     """The longest closed form of a member of the catalogue, from a regular point of
     it."""
-    found = entry(family)
+    source = entry(family)
     with mpmath.workdps(DIGITS):
         values = {
             key: mpmath.mpf(value)
-            for key, value in {**found.defaults, **changed}.items()
+            for key, value in {**source.defaults, **changed}.items()
         }
-        exact = found.build(**values)
+        exact = source.build(**values)
     return _loop_case(name, title, exact)
 
 
@@ -182,7 +184,7 @@ def _branches(problem: LoopClosure) -> list[Branch]:
     return branches
 
 
-def loop_residual(loop: Loop, theta: Sequence[Any]) -> list[Any]:
+def loop_residual(loop: Loop, theta: Sequence[mpmath.mpf]) -> Numbers:
     """Closure of a loop in mpmath numbers, in the order of `LoopClosure`: exact to
     first order next to closure."""
     total = mpmath.eye(4)
@@ -269,7 +271,7 @@ def bratu(n: int) -> Case:
         value[:-1] += u[1:]
         return value
 
-    def exact(x: list[Any]) -> list[Any]:
+    def exact(x: Numbers) -> Numbers:
         u = [mpmath.mpf(0), *x[:-1], mpmath.mpf(0)]
         step = mpmath.mpf(1) / (n + 1) ** 2
         return [

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from scipy.integrate import DOP853, LSODA, RK45, OdeSolution, OdeSolver
@@ -52,7 +51,7 @@ def integrate_null_field(
         return t
 
     allowed = max(tolerance, 1e-13)
-    ode: Any = SOLVERS[solver](
+    ode = SOLVERS[solver](
         field,
         0.0,
         start,

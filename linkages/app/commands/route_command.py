@@ -65,9 +65,9 @@ def route_command(
 def _atlas_of(source: str, parameters: tuple[str, ...], search: SearchOptions) -> Atlas:
     """The saved atlas, or that of the linkage, called ``source``. Raises `CommandError`
     where it has nothing that a route could lead along."""
+    from linkages.app.atlas_file import open_linkage_atlas
     from linkages.app.choice import choose_linkage
     from linkages.app.exploration import explore_linkage, require_uninterrupted
-    from linkages.app.linkage_atlas import open_linkage_atlas
     from linkages.app.verdict import judge
 
     if source.endswith(ATLAS_FILE):

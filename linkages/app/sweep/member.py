@@ -15,7 +15,6 @@ import networkx as nx
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.files.dataset import save_atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.settings import SearchSettings
 from linkages.app.linkage_atlas import labels_of
@@ -142,6 +141,8 @@ def map_member(
     if atlas.provenance.interrupted:
         raise KeyboardInterrupt  # what was found so far is not the member's map
     if atlas_path is not None:
+        from bifurc.files.dataset import save_atlas
+
         save_atlas(atlas, Path(atlas_path))
     record: Record = {"status": int(Status.MAPPED)}
     record |= summarise(atlas)
