@@ -18,24 +18,29 @@ import time
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TypedDict
 
 import click
 import numpy as np
 
+from bifurc.branch import Branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
 from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure import kernels
 from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import Linkage
+from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.slices.elimination import slice_configurations
 from studies.methods.cases import bratu
 
-__all__ = ["benchmarks", "machine"]
+__all__ = ["Machine", "benchmarks", "machine", "median_time"]
 
 LINKAGE = "special-double-subtractive-goldberg"
+UNPROVED = SearchSettings(prove=False)
+CPU_INFO = Path("/proc/cpuinfo")
+IMPORTS = "import linkages.mapping, linkages.app.cli"
 COMMAND = "from linkages.app.cli import main; main()"
 PACKAGES = ("bifurc", "numpy", "scipy", "numba", "networkx", "xarray")
 
@@ -58,51 +63,70 @@ def median_time(
 
 def benchmarks() -> dict[str, float]:
     """Seconds of each benchmark by name."""
-    found = entry(LINKAGE)
-    loop = found.build()
-    problem = LoopClosure(loop)
-    form = explore(problem).forms[0].branch
-    point, tangent = form(0.3), form(0.3, 1)
-    starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (200, 6))
-    limits = (
-        DEFAULT_SETTINGS.order,
-        DEFAULT_SETTINGS.tolerance,
-        DEFAULT_SETTINGS.shortest,
-        DEFAULT_SETTINGS.longest,
-    )
-    patterns = found.patterns(**found.defaults) if found.patterns is not None else ()
-    chain = bratu(50)
-    loose = TraceSettings(tolerance=1e-9)
     return {
-        "one closed 6R form, public interface": median_time(
-            lambda: trace_branch(problem, point, tangent)
-        ),
-        "one closed 6R form, kernel": median_time(
-            lambda: kernels.march(
-                point, tangent, problem._geometry, *limits, len(form.pieces)
-            )
-        ),
-        "200 random starts of a 6R, projected": median_time(
-            lambda: problem.project(starts)
-        ),
-        "24 complete slices of a 6R": median_time(
-            lambda: slice_configurations(loop, 1, np.linspace(0, 6, 24))
-        ),
-        "explore, four forms of a 6R": median_time(lambda: explore(problem)),
-        "complete map of a 6R, named": median_time(
-            lambda: map_linkage(Linkage(loop, patterns))
-        ),
-        "Bratu, 50 unknowns, tolerance 1e-9": median_time(
-            lambda: trace_branch(chain.problem, chain.start, chain.tangent, loose)
-        ),
+        **_tracing_benchmarks(),
+        **_search_benchmarks(),
+        "Bratu, 50 unknowns, tolerance 1e-9": _bratu_benchmark(),
         "import numpy, wall": command_time("-c", "import numpy"),
-        "import all that a map needs, wall": command_time(
-            "-c", "import linkages.mapping, linkages.app.cli"
-        ),
+        "import all that a map needs, wall": command_time("-c", IMPORTS),
         f"bifurc map {LINKAGE} --json, wall": command_time(
             "-c", COMMAND, "map", LINKAGE, "--json"
         ),
     }
+
+
+def _tracing_benchmarks() -> dict[str, float]:
+    """One form of the linkage, traced again and again."""
+    problem = LoopClosure(entry(LINKAGE).build())
+    form = explore(problem, settings=UNPROVED).forms[0].branch
+    point, tangent = form(0.3), form(0.3, 1)
+
+    def trace() -> Branch:
+        return trace_branch(problem, point, tangent)
+
+    def march() -> object:
+        return kernels.march(
+            point,
+            tangent,
+            problem._geometry,
+            DEFAULT_SETTINGS.order,
+            DEFAULT_SETTINGS.tolerance,
+            DEFAULT_SETTINGS.shortest,
+            DEFAULT_SETTINGS.longest,
+            len(form.pieces),
+        )
+
+    return {
+        "one closed 6R form, public interface": median_time(trace),
+        "one closed 6R form, kernel": median_time(march),
+    }
+
+
+def _search_benchmarks() -> dict[str, float]:
+    """The steps of a search for all forms of the linkage, and the whole of it."""
+    linkage = load(LINKAGE)
+    loop = linkage.loop
+    problem = LoopClosure(loop)
+    starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (200, loop.n))
+    angles = np.linspace(0, 6, 24)
+    work: dict[str, Callable[[], object]] = {
+        "200 random starts of a 6R, projected": lambda: problem.project(starts),
+        "24 complete slices of a 6R": lambda: slice_configurations(loop, 1, angles),
+        "explore, four forms of a 6R": lambda: explore(problem, settings=UNPROVED),
+        "complete map of a 6R, named": lambda: map_linkage(linkage),
+    }
+    return {name: median_time(task) for name, task in work.items()}
+
+
+def _bratu_benchmark() -> float:
+    """A square system of 51 unknowns."""
+    chain = bratu(50)
+    settings = TraceSettings(tolerance=1e-9)
+
+    def trace() -> Branch:
+        return trace_branch(chain.problem, chain.start, chain.tangent, settings)
+
+    return median_time(trace)
 
 
 def command_time(*arguments: str) -> float:
@@ -114,27 +138,37 @@ def command_time(*arguments: str) -> float:
     return median_time(run, budget=3.0, clock=time.perf_counter)
 
 
-def machine() -> dict[str, Any]:
-    """What the benchmarks ran on."""
-    model = platform.processor()
-    if Path("/proc/cpuinfo").exists():
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-        model = next(
-            (
-                line.partition(":")[2].strip()
-                for line in lines
-                if line.startswith("model name")
-            ),
-            model,
-        )
+class Machine(TypedDict):
+    """What the benchmarks ran on; ``packages`` are versions by name."""
+
+    system: str
+    architecture: str
+    processor: str
+    cores: int | None
+    python: str
+    packages: dict[str, str]
+
+
+def machine() -> Machine:
+    """What the benchmarks run on."""
     return {
         "system": platform.system(),
         "architecture": platform.machine(),
-        "processor": model,
+        "processor": _processor(),
         "cores": os.cpu_count(),
         "python": platform.python_version(),
         "packages": {name: version(name) for name in PACKAGES},
     }
+
+
+def _processor() -> str:
+    """The name of the processor."""
+    if CPU_INFO.exists():
+        for line in CPU_INFO.read_text(encoding="utf-8").splitlines():
+            key, _, value = line.partition(":")
+            if key.strip() == "model name":
+                return value.strip()
+    return platform.processor()
 
 
 @click.command()
@@ -153,19 +187,17 @@ def main(out: Path, against: Path | None) -> None:
     """Run the benchmarks and write them; with --against also say how many times faster
     or slower each is."""
     seconds = benchmarks()
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
-    result = {"machine": machine(), "load": load, "seconds": seconds}
+    busy = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
+    result = {"machine": machine(), "load": busy, "seconds": seconds}
     out.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
-    before = (
-        json.loads(against.read_text(encoding="utf-8"))["seconds"] if against else {}
-    )
+    before: dict[str, float] = {}
+    if against is not None:
+        before = json.loads(against.read_text(encoding="utf-8"))["seconds"]
     for name, value in seconds.items():
-        ratio = (
-            f"   {value / before[name]:.2f} of the time before"
-            if name in before
-            else ""
-        )
-        click.echo(f"{1e3 * value:10.3f} ms   {name}{ratio}")
+        line = f"{1e3 * value:10.3f} ms   {name}"
+        if name in before:
+            line += f"   {value / before[name]:.2f} of the time before"
+        click.echo(line)
 
 
 if __name__ == "__main__":

@@ -20,13 +20,17 @@ from pathlib import Path
 
 import click
 import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from bifurc.branch import Branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
 from bifurc.curves.monitor import profile_branch
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import MAX_JOINTS, Loop
+from linkages.loop import MAX_JOINTS, GeometryError, Loop
 from studies.bench import median_time
 
 __all__ = ["Cost", "cost_against_gap", "cost_of_loops"]
@@ -54,38 +58,50 @@ PARTS: dict[str, Callable[[Cost], float]] = {
 
 def cost_of(series: str, problem: LoopClosure | CoupledClosure) -> list[Cost]:
     """Cost of the closed branches through a few random closed configurations."""
-    points, gaps = problem.project(
-        np.random.default_rng(1).uniform(-np.pi, np.pi, (8, problem.n))
-    )
-    limits = (
+    rng = np.random.default_rng(1)
+    points, gaps = problem.project(rng.uniform(-np.pi, np.pi, (8, problem.n)))
+    costs: list[Cost] = []
+    for point in points[gaps < 1e-13]:
+        branch = trace_branch(problem, point)
+        is_new = all(abs(branch.length - cost.length) > 1e-6 for cost in costs)
+        if branch.closed and is_new:
+            costs.append(_measure(series, problem, point, branch))
+    return costs
+
+
+def _measure(
+    series: str,
+    problem: LoopClosure | CoupledClosure,
+    point: np.ndarray,
+    branch: Branch,
+) -> Cost:
+    """Cost of one branch through ``point``."""
+    march = partial(
+        problem.march,
+        branch(0.0),
+        branch(0.0, 1),
         DEFAULT_SETTINGS.order,
         DEFAULT_SETTINGS.tolerance,
         DEFAULT_SETTINGS.shortest,
         DEFAULT_SETTINGS.longest,
+        len(branch.pieces),
     )
-    out: list[Cost] = []
-    for point in points[gaps < 1e-13]:
-        branch = trace_branch(problem, point)
-        if branch.closed and all(
-            abs(branch.length - known.length) > 1e-6 for known in out
-        ):
-            count, ahead = len(branch.pieces), branch(0.0, 1)
-            seconds = median_time(partial(trace_branch, problem, point), budget=0.1)
-            march = median_time(
-                partial(problem.march, branch(0.0), ahead, *limits, count), budget=0.1
-            )
-            gap = float(profile_branch(problem, branch).smallest.min())
-            out.append(
-                Cost(series, problem.loop.n, branch.length, count, gap, seconds, march)
-            )
-    return out
+    return Cost(
+        series=series,
+        joints=problem.loop.n,
+        length=branch.length,
+        pieces=len(branch.pieces),
+        gap=float(profile_branch(problem, branch).smallest.min()),
+        seconds=median_time(partial(trace_branch, problem, point), budget=0.1),
+        march=median_time(march, budget=0.1),
+    )
 
 
 def random_loop(joints: int, rng: np.random.Generator) -> LoopClosure | CoupledClosure:
     """A general loop; its joints from the eighth on are geared to the first ones."""
-    lengths, twists, offsets = (
-        rng.uniform(*span, joints) for span in ((0.5, 1.5), (0.6, 2.5), (0.0, 0.4))
-    )
+    lengths = rng.uniform(0.5, 1.5, joints)
+    twists = rng.uniform(0.6, 2.5, joints)
+    offsets = rng.uniform(0.0, 0.4, joints)
     loop = Loop(tuple(lengths), tuple(twists), tuple(offsets), f"general {joints}R")
     extra = joints - 7
     if extra <= 0:
@@ -98,18 +114,19 @@ def random_loop(joints: int, rng: np.random.Generator) -> LoopClosure | CoupledC
 def cost_of_loops(rng: np.random.Generator) -> list[Cost]:
     """Branches of 4R, 5R and 6R members of the catalogue and of general loops of 7 to
     12 joints, at random."""
-    out = []
-    for family in ("bennett", "goldberg-5r", "double-subtractive-goldberg"):
-        found = entry(family)
+    costs = []
+    for name in ("bennett", "goldberg-5r", "double-subtractive-goldberg"):
+        family = entry(name)
         for _ in range(6):
             try:
-                out += cost_of("loops", LoopClosure(found.build(**found.draw(rng))))
-            except ValueError:  # the constructor refuses these parameters
+                loop = family.build(**family.draw(rng))
+            except GeometryError:  # the constructor refuses these parameters
                 continue
+            costs += cost_of("loops", LoopClosure(loop))
     for joints in range(7, MAX_JOINTS + 1):
         for _ in range(6):
-            out += cost_of("loops", random_loop(joints, rng))
-    return out
+            costs += cost_of("loops", random_loop(joints, rng))
+    return costs
 
 
 def cost_against_gap() -> list[Cost]:
@@ -122,78 +139,74 @@ def cost_against_gap() -> list[Cost]:
 def line(costs: list[Cost], seconds: Callable[[Cost], float]) -> np.ndarray:
     """Slope and intercept (s) of the line through the ``seconds`` per piece over the
     joints."""
-    return np.polyfit(
-        [c.joints for c in costs], [seconds(c) / c.pieces for c in costs], 1
-    )
+    joints = [cost.joints for cost in costs]
+    per_piece = [seconds(cost) / cost.pieces for cost in costs]
+    return np.polyfit(joints, per_piece, 1)
 
 
 def exponent(costs: list[Cost]) -> float:
     """p of the power law seconds ~ length^p through the costs."""
-    return float(
-        np.polyfit(
-            np.log([c.length for c in costs]), np.log([c.seconds for c in costs]), 1
-        )[0]
-    )
+    lengths = np.log([cost.length for cost in costs])
+    seconds = np.log([cost.seconds for cost in costs])
+    power, _ = np.polyfit(lengths, seconds, 1)
+    return float(power)
 
 
 def draw(costs: list[Cost], path: Path) -> None:
     """Time against length, and time per piece against joints, and time against
     1/gap."""
-    import matplotlib
+    loops = [cost for cost in costs if cost.series == "loops"]
+    gaps = [cost for cost in costs if cost.series == "gap"]
+    figure = Figure(figsize=(13, 4), layout="constrained")
+    left, middle, right = figure.subplots(1, 3)
+    _draw_lengths(left, loops)
+    _draw_pieces(middle, loops)
+    _draw_gaps(right, gaps)
+    for axes in (left, middle, right):
+        axes.grid(alpha=0.3)
+    figure.savefig(path, dpi=150)
 
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
 
-    figure, (left, middle, right) = plt.subplots(
-        1, 3, figsize=(13, 4), layout="constrained"
-    )
-    loops, gaps = (
-        [c for c in costs if c.series == "loops"],
-        [c for c in costs if c.series == "gap"],
-    )
-    shades = plt.get_cmap("viridis")(
-        np.linspace(0.0, 0.95, len({c.joints for c in loops}))
-    )
-    for joints, shade in zip(sorted({c.joints for c in loops}), shades, strict=True):
-        here = [c for c in loops if c.joints == joints]
-        left.loglog(
-            [c.length for c in here],
-            [1e3 * c.seconds for c in here],
-            "o",
-            ms=4,
-            color=shade,
-            label=joints,
-        )
-    joints_of = np.array([c.joints for c in loops])
+def _draw_lengths(axes: Axes, costs: list[Cost]) -> None:
+    """Time against length, a shade for every number of joints."""
+    numbers = sorted({cost.joints for cost in costs})
+    shades = colormaps["viridis"](np.linspace(0.0, 0.95, len(numbers)))
+    for joints, shade in zip(numbers, shades, strict=True):
+        group = [cost for cost in costs if cost.joints == joints]
+        lengths = [cost.length for cost in group]
+        times = [1e3 * cost.seconds for cost in group]
+        axes.loglog(lengths, times, "o", ms=4, color=shade, label=joints)
+    axes.set(xlabel="length of the branch (rad)", ylabel="processor time (ms)")
+    axes.legend(frameon=False, title="joints", ncols=2)
+
+
+def _draw_pieces(axes: Axes, costs: list[Cost]) -> None:
+    """Time per piece against joints, with a straight line through each part of it."""
+    joints = np.array([cost.joints for cost in costs])
     for name, seconds in PARTS.items():
-        per_piece = [1e6 * seconds(c) / c.pieces for c in loops]
-        (drawn,) = middle.plot(joints_of, per_piece, "o", ms=4, alpha=0.6, label=name)
-        middle.plot(
-            joints_of,
-            1e6 * np.polyval(line(loops, seconds), joints_of),
-            lw=1,
-            color=drawn.get_color(),
-        )
-    right.semilogx([c.gap for c in gaps], [1e3 * c.seconds for c in gaps], "o", ms=4)
-    right.invert_xaxis()
-    left.set(xlabel="length of the branch (rad)", ylabel="processor time (ms)")
-    middle.set(
+        times = [1e6 * seconds(cost) / cost.pieces for cost in costs]
+        (dots,) = axes.plot(joints, times, "o", ms=4, alpha=0.6, label=name)
+        fit = 1e6 * np.polyval(line(costs, seconds), joints)
+        axes.plot(joints, fit, lw=1, color=dots.get_color())
+    axes.set(
         xlabel="joints",
         ylabel="processor time per piece (us)",
         ylim=(0, None),
         xticks=range(4, MAX_JOINTS + 1),
     )
-    right.set(
+    axes.legend(frameon=False)
+
+
+def _draw_gaps(axes: Axes, costs: list[Cost]) -> None:
+    """Time against the gap, from wide to narrow."""
+    gaps = [cost.gap for cost in costs]
+    axes.semilogx(gaps, [1e3 * cost.seconds for cost in costs], "o", ms=4)
+    axes.invert_xaxis()
+    axes.set(
         xlabel="smallest singular value along the branch",
         ylabel="processor time (ms)",
         ylim=(0, None),
     )
-    left.legend(frameon=False, title="joints", ncols=2)
-    middle.legend(frameon=False)
-    for axes in (left, middle, right):
-        axes.grid(alpha=0.3)
-    figure.savefig(path, dpi=150)
-    plt.close(figure)
 
 
 @click.command()

@@ -11,14 +11,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
 import numpy as np
 
 from bifurc.atlas import Atlas
+from linkages.app.scene_figure import draw_configuration
+from linkages.app.texts import count_of
 from linkages.catalogue import FAMILIES, catalogue
+from linkages.closed_forms.all_forms import closed_forms
 from linkages.entry import Entry, Parameter
 from linkages.linkage import load
 from linkages.mapping import map_linkage
@@ -44,117 +47,117 @@ the choice of the first joint, direction, sense of axes and links, mirror image 
 def make_page(counts: Mapping[str, str]) -> str:
     """The page in Markdown; ``counts`` are the sentences of `count_map` by the name of
     the linkage."""
-    rows = [
-        f"| [{e.name}](#{e.name}) | {e.build().n} | {e.title} |"
-        for e in catalogue().values()
-    ]
+    rows = []
+    sections = []
+    for entry in catalogue().values():
+        joints = entry.build().n
+        rows.append(f"| [{entry.name}](#{entry.name}) | {joints} | {entry.title} |")
+        sections.append(_section(entry, counts.get(entry.name, NOT_COUNTED)))
     table = "\n".join(["| name | joints | title |", "|---|---|---|", *rows])
-    parts = [HEAD, f"{len(FAMILIES)} families, {len(rows)} linkages.\n\n{table}\n"]
-    parts += [
-        _section(found, counts.get(found.name, NOT_COUNTED))
-        for found in catalogue().values()
-    ]
-    return "\n".join(parts)
+    size = f"{len(FAMILIES)} families, {len(rows)} linkages."
+    return "\n".join([HEAD, f"{size}\n\n{table}\n", *sections])
 
 
 def read_counts(page: str) -> dict[str, str]:
     """The sentences on the maps that a page holds, by the name of the linkage."""
-    return dict(
-        re.findall(r"^## (\S+)$.*?^Map: (.*?)\.$", page, re.MULTILINE | re.DOTALL)
-    )
+    pattern = r"^## (\S+)$.*?^Map: (.*?)\.$"
+    return dict(re.findall(pattern, page, re.MULTILINE | re.DOTALL))
 
 
 def count_map(atlas: Atlas) -> str:
     """How many forms, bifurcations and components an atlas has, and surfaces and rigid
     assemblies if any."""
-    counted = [
-        (len(atlas.forms), "form"),
-        (len(atlas.bifurcations), "bifurcation"),
-        (atlas.components, "component"),
-        (len(atlas.rank_drops), "rank drop"),
-        (len(atlas.surfaces), "surface"),
-        (len(atlas.rigid), "rigid assembly"),
+    always = [
+        count_of(len(atlas.forms), "form"),
+        count_of(len(atlas.bifurcations), "bifurcation"),
+        count_of(atlas.components, "component"),
     ]
-    words = [
-        _plural(number, what)
-        for i, (number, what) in enumerate(counted)
-        if number or i < 3
-    ]
-    return ", ".join(words)
+    others = {
+        "rank drop": len(atlas.rank_drops),
+        "surface": len(atlas.surfaces),
+        "rigid assembly": len(atlas.rigid),
+    }
+    present = [count_of(number, noun) for noun, number in others.items() if number]
+    return ", ".join(always + present)
 
 
-def _plural(number: int, what: str) -> str:
-    many = what[:-1] + "ies" if what.endswith("y") else what + "s"
-    return f"{number} {what if number == 1 else many}"
-
-
-def _section(found: Entry, count: str) -> str:
-    closed = _closed_forms(found.name)
+def _section(entry: Entry, count: str) -> str:
+    parameters = ", ".join(_parameter(parameter) for parameter in entry.parameters)
     parts = [
-        f"## {found.name}\n\n{found.title}. Source: {found.source}.",
-        "Parameters: " + ", ".join(_parameter(p) for p in found.parameters) + ".",
-        _listed("Conditions", found.conditions),
-        _listed("Relations", _relations(found.name)),
-        _listed("Closed forms", closed),
-        _listed("Misprints in the source", found.errata),
+        f"## {entry.name}\n\n{entry.title}. Source: {entry.source}.",
+        f"Parameters: {parameters}.",
+        _list("Conditions", entry.conditions),
+        _list("Relations", _relations(entry.name)),
+        _list("Closed forms", _closed_forms(entry.name)),
+        _list("Misprints in the source", entry.errata),
         f"Map: {count}.",
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _parameter(p: Parameter) -> str:
-    default = (
-        f"{math.degrees(p.default):.6g} deg"
-        if p.kind == "angle"
-        else f"{p.default:.6g}"
-    )
-    return f"`{p.name}` = {default} ({p.meaning})"
+def _parameter(parameter: Parameter) -> str:
+    default = f"{parameter.default:.6g}"
+    if parameter.kind == "angle":
+        default = f"{math.degrees(parameter.default):.6g} deg"
+    return f"`{parameter.name}` = {default} ({parameter.meaning})"
 
 
 def _relations(name: str) -> list[str]:
     lines = []
-    for r in relations_of(name):
-        other = r.second if r.first == name else r.first
-        words = (
-            r.kind.value if r.kind is not RelationKind.SAME else "the same linkage as"
-        )
-        lines.append(
-            f"{words} [{other}](#{other}){f', {r.detail}' if r.detail else ''} ({r.source})"
-        )
+    for relation in relations_of(name):
+        other = relation.second if relation.first == name else relation.first
+        words = relation.kind.value
+        if relation.kind is RelationKind.SAME:
+            words = "the same linkage as"
+        detail = f", {relation.detail}" if relation.detail else ""
+        lines.append(f"{words} [{other}](#{other}){detail} ({relation.source})")
     return lines
 
 
 def _closed_forms(name: str) -> list[str]:
     """Name, source and LaTeX of every closed form of a linkage, u_x being tan(x/2) and
     t_i tan(theta_i/2)."""
-    from linkages.closed_forms.all_forms import closed_forms
-
     lines = []
     for form in closed_forms(name):
-        shown = [f"  - ${left} = {right}$" for left, right in form.latex().items()]
+        equations = form.latex().items()
+        shown = [f"  - ${left} = {right}$" for left, right in equations]
         lines.append("\n".join([f"{form.form} ({form.source}):", *shown]))
     return lines
 
 
-def _listed(title: str, lines: tuple[str, ...] | list[str]) -> str:
-    return f"{title}:\n\n" + "\n".join(f"- {line}" for line in lines) if lines else ""
+def _list(title: str, lines: Sequence[str]) -> str:
+    if not lines:
+        return ""
+    items = "\n".join(f"- {line}" for line in lines)
+    return f"{title}:\n\n{items}"
 
 
-def clearest_configuration(atlas: Atlas, found: Entry) -> np.ndarray | None:
+def clearest_configuration(atlas: Atlas, entry: Entry) -> np.ndarray | None:
     """Of a hundred configurations of each form, that whose joints lie furthest from
     joints and links; None without."""
-    loop = found.build()
+    loop = entry.build()
+
+    def room(theta: np.ndarray) -> float:
+        return _room(make_scene(loop, theta))
+
     samples = [theta for form in atlas.forms for theta in form.branch.sample(100)]
-    return (
-        max(samples, key=lambda theta: _room(make_scene(loop, theta)))
-        if samples
-        else None
-    )
+    return max(samples, key=room, default=None)
 
 
 def _room(scene: Scene) -> float:
-    apart, away = clearance(scene.joints, scene.normals)
-    return apart + 2 * away + breadth(scene.joints)
+    """How much joints and links keep clear of each other."""
+    between_joints, to_links = clearance(scene.joints, scene.normals)
+    return between_joints + 2 * to_links + breadth(scene.joints)
+
+
+def _draw(atlas: Atlas, entry: Entry, out: Path) -> None:
+    """Write the drawing of a linkage, if it has a form to draw it in."""
+    theta = clearest_configuration(atlas, entry)
+    if theta is None:
+        return
+    out.mkdir(parents=True, exist_ok=True)
+    figure = draw_configuration(entry.build(), theta, entry.title)
+    figure.savefig(out / f"{entry.name}.png", dpi=100)
 
 
 @click.command()
@@ -168,25 +171,17 @@ def _room(scene: Scene) -> float:
 )
 def main(out: Path | None, keep_counts: bool) -> None:
     """Write docs/catalogue.md, and a drawing of each linkage with --out."""
-    counts = (
-        read_counts(PAGE.read_text(encoding="utf-8"))
-        if keep_counts and PAGE.exists()
-        else {}
-    )
-    for found in catalogue().values():
-        if found.name in counts and out is None:
+    counts: dict[str, str] = {}
+    if keep_counts and PAGE.exists():
+        counts = read_counts(PAGE.read_text(encoding="utf-8"))
+    for entry in catalogue().values():
+        if entry.name in counts and out is None:
             continue
-
-        atlas = map_linkage(load(found.name))
-        counts[found.name] = count_map(atlas)
-        click.echo(f"{found.name}: {counts[found.name]}")
-        theta = clearest_configuration(atlas, found)
-        if out is not None and theta is not None:
-            from linkages.app.scene_figure import draw_configuration
-
-            out.mkdir(parents=True, exist_ok=True)
-            figure = draw_configuration(found.build(), theta, found.title)
-            figure.savefig(out / f"{found.name}.png", dpi=100)
+        atlas = map_linkage(load(entry.name))
+        counts[entry.name] = count_map(atlas)
+        click.echo(f"{entry.name}: {counts[entry.name]}")
+        if out is not None:
+            _draw(atlas, entry, out)
     PAGE.write_text(make_page(counts), encoding="utf-8")
     click.echo(f"wrote {PAGE.relative_to(PAGE.parents[1])}")
 

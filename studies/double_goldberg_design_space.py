@@ -18,6 +18,10 @@ from typing import TYPE_CHECKING
 
 import click
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from linkages.app.sweep.member import Status
 from linkages.app.sweep.plan import Plan, read_plan
@@ -27,7 +31,6 @@ from linkages.catalogue import entry
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
 
 __all__ = ["PLANES", "Plane", "classes", "shares"]
 
@@ -57,6 +60,8 @@ CLASSES = {
     "no form": "#bbbbbb",
     "refused": "#ffffff",
 }
+REFUSED = list(CLASSES).index("refused")
+STARTS = 100  # random starts of every member
 
 
 def classes(data: xr.Dataset) -> np.ndarray:
@@ -74,29 +79,31 @@ def classes(data: xr.Dataset) -> np.ndarray:
 
 def shares(data: xr.Dataset) -> dict[str, float]:
     """Share of each class that occurs among the members that exist."""
-    found = classes(data).ravel()
-    found = found[found != 5]
-    counts = np.bincount(found, minlength=len(CLASSES)) / max(len(found), 1)
-    return {
-        name: float(share)
-        for name, share in zip(CLASSES, counts, strict=True)
-        if share > 0
-    }
+    numbers = classes(data).ravel()
+    members = numbers[numbers != REFUSED]
+    counts = np.bincount(members, minlength=len(CLASSES))
+    pairs = zip(CLASSES, counts.tolist(), strict=True)
+    return {name: count / len(members) for name, count in pairs if count}
+
+
+def describe(data: xr.Dataset) -> str:
+    """The share of each class, and how fast the members were mapped."""
+    parts = [f"{name} {share:.1%}" for name, share in shares(data).items()]
+    rate = 1.0 / float(np.nanmean(data["seconds"].values))
+    return f"{', '.join(parts)}; {rate:.1f} members per second per core"
 
 
 def plane_plan(plane: Plane, count: int) -> Plan:
     """The grid over a plane, its points off the symmetry lines where possible."""
     span = f"{plane.low}:{plane.high}:{count}"
-    return read_plan(
-        plane.family, [f"{plane.x}={span}", f"{plane.y}={span}"], starts=100
-    )
+    texts = [f"{plane.x}={span}", f"{plane.y}={span}"]
+    return read_plan(plane.family, texts, starts=STARTS)
 
 
 def draw_plane(axes: Axes, plane: Plane, data: xr.Dataset) -> None:
     """The classes of a plane as coloured cells."""
-    from matplotlib.colors import ListedColormap
-
-    x, y = (np.degrees(data[name].values) for name in (plane.x, plane.y))
+    x = np.degrees(data[plane.x].values)
+    y = np.degrees(data[plane.y].values)
     values = classes(data.transpose(plane.y, plane.x, ...))
     axes.pcolormesh(
         x,
@@ -107,44 +114,36 @@ def draw_plane(axes: Axes, plane: Plane, data: xr.Dataset) -> None:
         vmax=len(CLASSES) - 0.5,
     )
     axes.set(xlabel=f"{plane.x} (deg)", ylabel=f"{plane.y} (deg)", aspect="equal")
-    fixed = ", ".join(
-        f"{p.name} = {np.degrees(p.default) if p.kind == 'angle' else p.default:.4g}"
-        for p in entry(plane.family).parameters
-        if p.name not in (plane.x, plane.y, "a")
-    )
-    axes.set_title(f"{plane.family.replace('-', ' ')}\n{fixed}", fontsize=8)
+    fixed = []
+    for parameter in entry(plane.family).parameters:
+        if parameter.name in (plane.x, plane.y, "a"):
+            continue
+        value = parameter.default
+        if parameter.kind == "angle":
+            value = np.degrees(value)
+        fixed.append(f"{parameter.name} = {value:.4g}")
+    title = plane.family.replace("-", " ")
+    axes.set_title(f"{title}\n{', '.join(fixed)}", fontsize=8)
 
 
 def draw(datasets: dict[Plane, xr.Dataset], path: Path) -> None:
     """All planes side by side."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
-    from matplotlib.patches import Patch
-
-    figure, axes = plt.subplots(
-        1, len(datasets), figsize=(4.6 * len(datasets), 5.2), layout="constrained"
-    )
-    for where, (plane, data) in zip(np.atleast_1d(axes), datasets.items(), strict=True):
-        draw_plane(where, plane, data)
-    seen = sorted(
-        set(
-            np.concatenate(
-                [np.unique(classes(data)) for data in datasets.values()]
-            ).tolist()
-        )
-    )
+    count = len(datasets)
+    figure = Figure(figsize=(4.6 * count, 5.2), layout="constrained")
+    panels = figure.subplots(1, count, squeeze=False)[0]
+    occurring: set[int] = set()
+    for axes, (plane, data) in zip(panels, datasets.items(), strict=True):
+        draw_plane(axes, plane, data)
+        occurring.update(np.unique(classes(data)).tolist())
     names = list(CLASSES)
-    handles = [
-        Patch(facecolor=CLASSES[names[i]], edgecolor="0.4", label=names[i])
-        for i in seen
-    ]
+    handles = []
+    for number in sorted(occurring):
+        colour = CLASSES[names[number]]
+        handles.append(Patch(facecolor=colour, edgecolor="0.4", label=names[number]))
     figure.legend(
         handles=handles, loc="outside lower center", ncols=len(handles), frameon=False
     )
     figure.savefig(path, dpi=160)
-    plt.close(figure)
 
 
 @click.command()
@@ -178,23 +177,11 @@ def main(out: Path, count: int, number: int, workers: int | None) -> None:
         store = out / f"{plane.family}_{count}.zarr"
         run_sweep(plane_plan(plane, count), store, workers=workers)
         datasets[plane] = open_sweep(store)
+        click.echo(f"{plane.family}, plane: {describe(datasets[plane])}")
         whole = out / f"{plane.family}_random_{number}.zarr"
-        run_sweep(
-            read_plan(plane.family, [], random=number, starts=100),
-            whole,
-            workers=workers,
-        )
-        for where, data in (
-            ("plane", datasets[plane]),
-            ("whole design space", open_sweep(whole)),
-        ):
-            said = ", ".join(
-                f"{name} {share:.1%}" for name, share in shares(data).items()
-            )
-            rate = 1.0 / float(np.nanmean(data["seconds"].values))
-            click.echo(
-                f"{plane.family}, {where}: {said}; {rate:.1f} members per second per core"
-            )
+        plan = read_plan(plane.family, [], random=number, starts=STARTS)
+        run_sweep(plan, whole, workers=workers)
+        click.echo(f"{plane.family}, whole design space: {describe(open_sweep(whole))}")
     draw(datasets, out / "design_space.png")
     click.echo(f"wrote {out / 'design_space.png'}")
 

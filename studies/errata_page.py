@@ -33,26 +33,26 @@ def errata_page() -> str:
     rows = []
     for erratum in ERRATA:
         printed, corrected = erratum.measure()
-        left = "0" if corrected < 1e-11 and corrected != 0 else f"{corrected:.0e}"
-        left = "below 1e-11" if left == "0" else "0"
-        cells = (
+        texts = (
             erratum.source,
             erratum.equation,
             erratum.linkage,
             erratum.printed,
             erratum.corrected,
         )
-        rows.append(
-            "| "
-            + " | ".join(
-                [*(cell.replace("|", r"\|") for cell in cells), f"{printed:.1g}", left]
-            )
-            + " |"
-        )
+        cells = [text.replace("|", r"\|") for text in texts]
+        cells += [f"{printed:.1g}", _remainder(corrected)]
+        rows.append(f"| {' | '.join(cells)} |")
     return HEAD + "\n".join(rows) + "\n"
 
 
+def _remainder(amount: float) -> str:
+    """What a correct equation leaves, without digits that are rounding."""
+    if amount == 0:
+        return "0"
+    return "below 1e-11" if amount < 1e-11 else f"{amount:.0e}"
+
+
 if __name__ == "__main__":
-    Path(sys.argv[1] if len(sys.argv) > 1 else "docs/errata.md").write_text(
-        errata_page(), encoding="utf-8"
-    )
+    target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/errata.md")
+    target.write_text(errata_page(), encoding="utf-8")

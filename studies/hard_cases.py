@@ -10,6 +10,7 @@ from math import sqrt
 import numpy as np
 from scipy.optimize import brentq
 
+from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.problem import Problem
 from linkages.catalogue import entry
@@ -152,85 +153,58 @@ def ladders(imperfections: np.ndarray) -> list[Ladder]:
 # --- points that are there, or only seem to be --------------------------------------------------------
 
 
-def _plane(function: Callable[[np.ndarray], list[float]]) -> Problem:
-    """A plane curve with its singular point moved away from the origin, where rounding
-    would vanish."""
-    away = np.array([0.1234, -0.0567])
-    return FunctionProblem(
-        lambda u: np.array(function(u - away)), [[-1.1, 1.0], [-1.05, 1.2]]
-    )
+# singular point of the plane curves: at the origin rounding would vanish
+CENTER = np.array([0.1234, -0.0567])
+MISS = 2.5e-7  # the square of half the width of the near miss among the plane curves
+Equation = Callable[[float, float], float]
 
 
-def _line_and_parabola(u: np.ndarray) -> list[float]:
-    above = u[1] - 0.5 * u[0]
-    return [above * (above - u[0] ** 2 + 0.04)]
+def _curve(
+    name: str, equation: Equation, start: tuple[float, float], length: float, count: int
+) -> Crossing:
+    """A plane curve whose singular point is moved from the origin to `CENTER`, and its
+    ``start`` with it."""
+
+    def moved(u: np.ndarray) -> np.ndarray:
+        x, y = u - CENTER
+        return np.array([equation(x, y)])
+
+    problem = FunctionProblem(moved, [[-1.1, 1.0], [-1.05, 1.2]])
+    return Crossing(name, problem, np.array(start) + CENTER, length, count)
 
 
-def _point_and_line(u: np.ndarray) -> list[float]:
-    return [(u[0] ** 2 + u[1] ** 2) * (u[0] - 0.05)]
+def _line_and_parabola(x: float, y: float) -> float:
+    above = y - 0.5 * x
+    return above * (above - x**2 + 0.04)
 
 
-def _oval_and_line(u: np.ndarray) -> list[float]:
-    return [(u[0] ** 2 + u[1] ** 2 - 1e-4) * (u[0] - 0.05)]
+def _point_and_line(x: float, y: float) -> float:
+    return (x**2 + y**2) * (x - 0.05)
 
 
-def _at(x: float, y: float) -> np.ndarray:
-    return np.array([x + 0.1234, y - 0.0567])
+def _oval_and_line(x: float, y: float) -> float:
+    return (x**2 + y**2 - 1e-4) * (x - 0.05)
+
+
+def _near_miss(x: float, y: float) -> float:
+    return x**2 - y**2 - MISS
 
 
 def crossings() -> list[Crossing]:
     """Plane curves with a known singular point, and linkages with known maps."""
     plane = [
-        Crossing(
-            "transcritical",
-            _plane(lambda u: [u[0] * u[1] - u[1] ** 2]),
-            _at(0.5, 0.5),
-            1.6,
-            1,
+        _curve("transcritical", lambda x, y: x * y - y**2, (0.5, 0.5), 1.6, 1),
+        _curve(
+            "pitchfork from the side", lambda x, y: x * y - y**3, (0.49, 0.7), 2.0, 1
         ),
-        Crossing(
-            "pitchfork from the side",
-            _plane(lambda u: [u[0] * u[1] - u[1] ** 3]),
-            _at(0.49, 0.7),
-            2.0,
-            1,
-        ),
-        Crossing(
-            "triple crossing",
-            _plane(lambda u: [u[1] * (u[1] ** 2 - u[0] ** 2)]),
-            _at(0.5, 0.5),
-            1.6,
-            1,
-        ),
-        Crossing(
-            "tacnode", _plane(lambda u: [u[1] ** 2 - u[0] ** 4]), _at(0.6, 0.36), 1.5, 1
-        ),
-        Crossing("double crossing", _plane(_line_and_parabola), _at(0.6, 0.3), 1.2, 2),
-        Crossing(
-            "cusp", _plane(lambda u: [u[1] ** 2 - u[0] ** 3]), _at(0.64, 0.512), 1.6, 0
-        ),
-        Crossing(
-            "isolated point beside a line",
-            _plane(_point_and_line),
-            _at(0.05, 0.5),
-            1.0,
-            0,
-        ),
-        Crossing(
-            "small oval beside a line", _plane(_oval_and_line), _at(0.05, 0.5), 1.0, 0
-        ),
+        _curve("triple crossing", lambda x, y: y * (y**2 - x**2), (0.5, 0.5), 1.6, 1),
+        _curve("tacnode", lambda x, y: y**2 - x**4, (0.6, 0.36), 1.5, 1),
+        _curve("double crossing", _line_and_parabola, (0.6, 0.3), 1.2, 2),
+        _curve("cusp", lambda x, y: y**2 - x**3, (0.64, 0.512), 1.6, 0),
+        _curve("isolated point beside a line", _point_and_line, (0.05, 0.5), 1.0, 0),
+        _curve("small oval beside a line", _oval_and_line, (0.05, 0.5), 1.0, 0),
+        _curve("near miss 1e-3", _near_miss, (0.5, sqrt(0.25 - MISS)), 1.4, 0),
     ]
-    miss = 2.5e-7  # the square of half its width
-    start = _at(0.5, sqrt(0.25 - miss))
-    plane.append(
-        Crossing(
-            "near miss 1e-3",
-            _plane(lambda u: [u[0] ** 2 - u[1] ** 2 - miss]),
-            start,
-            1.4,
-            0,
-        )
-    )
     return plane + [_loop(*case) for case in LOOPS]
 
 
@@ -257,18 +231,16 @@ LOOPS: tuple[tuple[str, str, int, dict[str, float]], ...] = (
 def _loop(title: str, name: str, count: int, values: dict[str, float]) -> Crossing:
     """A linkage of the catalogue, once around the first form that random starts reach
     far from singular points."""
-    from bifurc.curves.continuation import trace_branch
-
     problem = LoopClosure(entry(name).build(**values))
-    starts, gaps = problem.project(
-        np.random.default_rng(0).uniform(-3, 3, (60, problem.n))
-    )
-    good = starts[gaps < 1e-13]
-    sigma = np.linalg.svd(problem.jacobians(good), compute_uv=False)
-    curve = (
-        sigma[:, problem.n - 1] < 1e-9
-        if sigma.shape[1] >= problem.n
-        else np.ones(len(good), dtype=bool)
-    )
-    start = good[curve][np.argmax(sigma[curve, problem.n - 2])]
-    return Crossing(title, problem, start, trace_branch(problem, start).length, count)
+    n = problem.n
+    rng = np.random.default_rng(0)
+    points, gaps = problem.project(rng.uniform(-3, 3, (60, n)))
+    points = points[gaps < 1e-13]
+    sigma = np.linalg.svd(problem.jacobians(points), compute_uv=False)
+    if sigma.shape[1] >= n:
+        is_on_curve = sigma[:, n - 1] < 1e-9
+        points = points[is_on_curve]
+        sigma = sigma[is_on_curve]
+    start = points[np.argmax(sigma[:, n - 2])]
+    length = trace_branch(problem, start).length
+    return Crossing(title, problem, start, length, count)

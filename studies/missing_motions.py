@@ -13,7 +13,9 @@ second motion.
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Iterator
+from itertools import islice
 
 import click
 import numpy as np
@@ -21,14 +23,17 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
-from linkages.app.summary import table
+from linkages.app.texts import table
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
+from linkages.loop import GeometryError, Loop
 
 __all__ = ["linkages", "same_motions"]
 
-STARTS = 1500
+FIRST = SearchSettings(starts=1, prove=True)
+SECOND = SearchSettings(starts=1500)
+LEVELS = ("proved", "certified", "estimated")
+AT_BIRTH = "beside a birth"
 # at this twist, with these parameters, a second motion is born in a point; it grows as
 # the root of the distance
 BIRTH = 2.26432709527
@@ -46,26 +51,31 @@ BESIDE = {
 def linkages(rng: np.random.Generator) -> Iterator[tuple[str, Loop]]:
     """Random members of the families of four to six joints, and in turn with them
     linkages beside a birth."""
-    names = [name for name, found in catalogue().items() if found.build().n <= 6]
+    names = [name for name, family in catalogue().items() if family.build().n <= 6]
     while True:
         name = str(rng.choice(names))
+        family = entry(name)
         try:
-            yield name, entry(name).build(**entry(name).draw(rng))
-        except ValueError:  # the constructor refuses these parameters
+            loop = family.build(**family.draw(rng))
+        except GeometryError:  # the constructor refuses these parameters
             continue
+        yield name, loop
         twist = BIRTH - 10.0 ** rng.uniform(-7, -3)
-        yield (
-            "beside a birth",
-            entry("bricard-plane-symmetric").build(alpha12=twist, **BESIDE),
-        )
+        newborn = entry("bricard-plane-symmetric").build(alpha12=twist, **BESIDE)
+        yield AT_BIRTH, newborn
 
 
 def same_motions(one: Atlas, other: Atlas) -> bool:
     """Whether two atlases list motions of the same lengths."""
-    a, b = (
-        sorted(form.branch.length for form in atlas.forms) for atlas in (one, other)
-    )
-    return len(a) == len(b) and bool(np.allclose(a, b, rtol=1e-6))
+    lengths = _lengths(one)
+    others = _lengths(other)
+    if len(lengths) != len(others):
+        return False
+    return bool(np.allclose(lengths, others, rtol=1e-6))
+
+
+def _lengths(atlas: Atlas) -> list[float]:
+    return sorted(form.branch.length for form in atlas.forms)
 
 
 @click.command()
@@ -80,37 +90,30 @@ def same_motions(one: Atlas, other: Atlas) -> bool:
 def main(count: int, seed: int) -> None:
     """Search random linkages twice, and count the proofs that the second search
     refutes."""
-    drawn = linkages(np.random.default_rng(seed))
-    levels: dict[str, dict[str, int]] = {}
-    refuted: list[str] = []
+    levels: dict[str, Counter[str]] = {}
+    refuted = 0
     seconds = []
-    for _ in range(count):
-        name, loop = next(drawn)
-        kind = name if name == "beside a birth" else "catalogue"
-        problem, began = LoopClosure(loop), time.process_time()
-        first = explore(problem, settings=SearchSettings(starts=1, prove=True), seed=1)
-        seconds.append(time.process_time() - began)
-        level = first.completeness.level
-        levels.setdefault(kind, {}).setdefault(level, 0)
-        levels[kind][level] += 1
-        if level == "proved" and not same_motions(
-            first, explore(problem, settings=SearchSettings(starts=STARTS), seed=2)
-        ):
-            refuted.append(f"{name}: {loop}")
-            click.echo(f"refuted: {refuted[-1]}")
-    rows = [
-        (
-            kind,
-            *(
-                str(found.get(level, 0))
-                for level in ("proved", "certified", "estimated")
-            ),
-        )
-        for kind, found in levels.items()
-    ]
-    click.echo(table(("linkages", "proved", "certified", "estimated"), rows))
+    for name, loop in islice(linkages(np.random.default_rng(seed)), count):
+        kind = name if name == AT_BIRTH else "catalogue"
+        problem = LoopClosure(loop)
+        start = time.process_time()
+        atlas = explore(problem, settings=FIRST, seed=1)
+        seconds.append(time.process_time() - start)
+        level = atlas.completeness.level
+        levels.setdefault(kind, Counter())[level] += 1
+        if level != "proved":
+            continue
+        if not same_motions(atlas, explore(problem, settings=SECOND, seed=2)):
+            refuted += 1
+            click.echo(f"refuted: {name}: {loop}")
+    rows = []
+    for kind, counts in levels.items():
+        rows.append((kind, *(str(counts[level]) for level in LEVELS)))
+    click.echo(table(("linkages", *LEVELS), rows))
+    milliseconds = 1e3 * np.median(seconds)
     click.echo(
-        f"{len(refuted)} proofs refuted; search and proof took {1e3 * np.median(seconds):.0f} ms (median)"
+        f"{refuted} proofs refuted; search and proof took {milliseconds:.0f} ms "
+        "(median)"
     )
 
 

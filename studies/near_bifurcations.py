@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import click
 import numpy as np
@@ -26,7 +26,7 @@ from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.singular.locate import locate_singular_point
-from linkages.app.summary import table
+from linkages.app.texts import table
 from studies.near_misses import NearMiss, near_misses
 
 __all__ = [
@@ -68,29 +68,29 @@ class Trace:
 def follow(case: NearMiss, step: float, certify: bool = False) -> Trace:
     """Trace one linkage and judge it; without ``certify`` only wrong curves are held
     against their certificates."""
-    began = time.process_time()
-    branch = trace_branch(
-        case.problem, case.start, None, TraceSettings(longest=step / case.problem.scale)
+    settings = TraceSettings(longest=step / case.problem.scale)
+    start = time.process_time()
+    branch = trace_branch(case.problem, case.start, None, settings)
+    seconds = time.process_time() - start
+    right = is_right(case, branch)
+    trace = Trace(
+        family=case.family,
+        size=case.size,
+        step=step,
+        verdict="right" if right else "flagged",
+        outcome=branch.outcome.name,
+        pieces=len(branch.pieces),
+        seconds=seconds,
     )
-    seconds = time.process_time() - began
-    right, status, points, certifying = is_right(case, branch), "", 0, 0.0
-    if branch.closed and (certify or not right):
-        began = time.process_time()
-        status, points = certify_trace(case, branch)
-        certifying = time.process_time() - began
-    verdict = "right" if right else "jump" if status == "certified" else "flagged"
-    return Trace(
-        case.family,
-        case.size,
-        step,
-        verdict,
-        branch.outcome.name,
-        len(branch.pieces),
-        seconds,
-        status,
-        points,
-        certifying,
-    )
+    if not branch.closed or (right and not certify):
+        return trace
+    start = time.process_time()
+    status, points = certify_trace(case, branch)
+    certifying = time.process_time() - start
+    trace = replace(trace, certificate=status, points=points, certifying=certifying)
+    if not right and status == STATUSES[0]:
+        return replace(trace, verdict="jump")
+    return trace
 
 
 def is_right(case: NearMiss, branch: Branch) -> bool:
@@ -101,54 +101,36 @@ def is_right(case: NearMiss, branch: Branch) -> bool:
 def certify_trace(case: NearMiss, branch: Branch) -> tuple[str, int]:
     """Status and number of points of a certificate; a singular point is looked for
     wherever rounding stops it."""
-    certificate = certify_branch(
-        case.problem, branch, profile_branch(case.problem, branch)
-    )
-    middles, reach = branch(certificate.blurred.mean(axis=1)), 1e-3 * case.problem.scale
-    located = [
-        locate_singular_point(case.problem, u, 2, reach) is not None for u in middles
-    ]
-    return STATUSES[1] if certificate.status == STATUSES[2] and all(
-        located
-    ) else certificate.status, certificate.points
+    problem = case.problem
+    certificate = certify_branch(problem, branch, profile_branch(problem, branch))
+    status = certificate.status
+    if status == STATUSES[2]:
+        middles = branch(certificate.blurred.mean(axis=1))
+        reach = 1e-3 * problem.scale
+        located = [locate_singular_point(problem, u, 2, reach) for u in middles]
+        if all(point is not None for point in located):
+            status = STATUSES[1]
+    return status, certificate.points
 
 
 def _joins(branch: Branch) -> bool:
     """Whether neighbouring pieces meet, in the same direction."""
     inner = branch.breaks[1:-1]
-    tiny = 1e-9 * np.minimum(np.diff(branch.breaks)[:-1], np.diff(branch.breaks)[1:])
-    before, after = branch(inner - tiny), branch(inner + tiny)
-    turn = np.sum(branch(inner - tiny, 1) * branch(inner + tiny, 1), axis=1)
-    return bool(
-        np.all(np.linalg.norm(after - before, axis=1) < 1e-8) and np.all(turn > 0.9)
-    )
+    lengths = np.diff(branch.breaks)
+    tiny = 1e-9 * np.minimum(lengths[:-1], lengths[1:])
+    jumps = np.linalg.norm(branch(inner + tiny) - branch(inner - tiny), axis=1)
+    cosines = np.sum(branch(inner - tiny, 1) * branch(inner + tiny, 1), axis=1)
+    return bool(np.all(jumps < 1e-8) and np.all(cosines > 0.9))
 
 
 def describe(traces: Sequence[Trace]) -> str:
     """A row for every family and step, and one for all."""
     rows = []
-    groups = [(f, s) for f in dict.fromkeys(t.family for t in traces) for s in STEPS]
-    for family, step in [*groups, ("all", 0.0)]:
-        some = [
-            t for t in traces if family == "all" or (t.family, t.step) == (family, step)
-        ]
-        counts = [
-            sum(t.verdict == v for t in some) for v in ("right", "flagged", "jump")
-        ]
-        pieces, seconds = [t.pieces for t in some], [t.seconds for t in some]
-        rows.append(
-            (
-                family,
-                f"{step:g}" if step else "",
-                str(len(some)),
-                str(counts[0]),
-                str(counts[1]),
-                str(counts[2]),
-                f"{np.median(pieces):.0f}",
-                str(max(pieces)),
-                f"{1e3 * np.median(seconds):.1f}",
-            )
-        )
+    for family in dict.fromkeys(trace.family for trace in traces):
+        for step in STEPS:
+            group = [t for t in traces if (t.family, t.step) == (family, step)]
+            rows.append((family, f"{step:g}", *_counts(group)))
+    rows.append(("all", "", *_counts(traces)))
     heads = (
         "family",
         "step",
@@ -163,20 +145,35 @@ def describe(traces: Sequence[Trace]) -> str:
     return table(heads, rows)
 
 
+def _counts(traces: Sequence[Trace]) -> tuple[str, ...]:
+    """How many traces there are of every verdict, and what they took."""
+    verdicts = [trace.verdict for trace in traces]
+    pieces = [trace.pieces for trace in traces]
+    seconds = [trace.seconds for trace in traces]
+    return (
+        str(len(traces)),
+        str(verdicts.count("right")),
+        str(verdicts.count("flagged")),
+        str(verdicts.count("jump")),
+        f"{np.median(pieces):.0f}",
+        str(max(pieces)),
+        f"{1e3 * np.median(seconds):.1f}",
+    )
+
+
 def describe_certificates(traces: Sequence[Trace]) -> str:
     """How many traces of every family and step are certified, and what it costs."""
     rows = []
     for family, step in dict.fromkeys((t.family, t.step) for t in traces):
-        some = [t for t in traces if (t.family, t.step) == (family, step)]
-        seconds, points = [t.certifying for t in some], [t.points for t in some]
+        group = [t for t in traces if (t.family, t.step) == (family, step)]
+        certificates = [trace.certificate for trace in group]
+        points = [trace.points for trace in group]
+        seconds = [trace.certifying for trace in group]
         rows.append(
             (
                 family,
                 f"{step:g}",
-                *(
-                    str(sum(t.certificate == status for t in some))
-                    for status in STATUSES
-                ),
+                *(str(certificates.count(status)) for status in STATUSES),
                 f"{np.median(points):.0f}",
                 str(max(points)),
                 f"{1e3 * np.median(seconds):.0f}",
@@ -207,8 +204,9 @@ def main(count: int, seed: int, certify: bool) -> None:
             traces.append(trace)
             if trace.verdict != "right":
                 click.echo(
-                    f"{trace.verdict}: linkage {number}, {trace.family}, off by {trace.size:.1e}, step {step}, "
-                    f"{trace.outcome}, {trace.pieces} pieces"
+                    f"{trace.verdict}: linkage {number}, {trace.family}, off by "
+                    f"{trace.size:.1e}, step {step}, {trace.outcome}, "
+                    f"{trace.pieces} pieces"
                 )
     click.echo(describe(traces))
     if certify:

@@ -22,6 +22,7 @@ from linkages.mobility import survey
 
 __all__ = ["BREAK", "Control", "break_conditions", "controls", "controls_page"]
 
+SAME = 1e-9  # difference below which two entries are of equal size
 BREAK = 1e-3  # of the characteristic length, or rad
 TYPES = (("lengths", "a"), ("twists", "alpha"), ("offsets", "R"))
 
@@ -60,30 +61,34 @@ def break_conditions(loop: Loop) -> Iterator[tuple[str, Loop]]:
     for (which, letter), row in zip(TYPES, loop.arrays, strict=True):
         for i in range(loop.n):
             yield _name(letter, i, loop.n), _changed(loop, which, {i: 1.0})
-        sizes = np.abs(row)
-        seen: set[int] = set()
-        for i in range(loop.n):
-            group = [
-                j
-                for j in range(loop.n)
-                if abs(sizes[j] - sizes[i]) < 1e-9 and sizes[i] > 1e-9
-            ]
-            if len(group) > 1 and i not in seen:
-                seen.update(group)
-                text = ", ".join(_name(letter, j, loop.n) for j in group)
-                yield (
-                    f"{text} together",
-                    _changed(loop, which, {j: float(np.sign(row[j])) for j in group}),
-                )
+        for group in _equal_entries(row):
+            names = ", ".join(_name(letter, i, loop.n) for i in group)
+            signs = {i: float(np.sign(row[i])) for i in group}
+            yield f"{names} together", _changed(loop, which, signs)
+
+
+def _equal_entries(row: np.ndarray) -> list[list[int]]:
+    """The indices of entries of equal size, not 0, in groups of two or more."""
+    sizes = np.abs(row)
+    groups = []
+    grouped: set[int] = set()
+    for i, size in enumerate(sizes):
+        if size <= SAME or i in grouped:
+            continue
+        group = np.flatnonzero(np.abs(sizes - size) < SAME).tolist()
+        if len(group) > 1:
+            grouped.update(group)
+            groups.append(group)
+    return groups
 
 
 def controls(loop: Loop, starts: int = 20) -> list[Control]:
     """The controls of one loop."""
-    out = []
+    results = []
     for changed, broken in break_conditions(loop):
-        found = survey(broken, starts)
-        out.append(Control(changed, found.mobility, found.stiffness))
-    return out
+        outcome = survey(broken, starts)
+        results.append(Control(changed, outcome.mobility, outcome.stiffness))
+    return results
 
 
 HEAD = """# Negative controls
@@ -111,23 +116,24 @@ Written by `python -m studies.negative_controls`.
 def controls_page() -> str:
     """The page as Markdown."""
     rows = []
-    for name, found in catalogue().items():
-        checked = controls(found.build())
-        stopped = [control for control in checked if not control.mobility]
-        moving = (
-            "; ".join(control.changed for control in checked if control.mobility)
-            or "nothing"
+    for name, entry in catalogue().items():
+        results = controls(entry.build())
+        rigid = [control for control in results if not control.mobility]
+        mobile = [control for control in results if control.mobility]
+        cells = (
+            name,
+            str(len(results)),
+            str(len(rigid)),
+            _smallest([control.stiffness for control in rigid]),
+            "; ".join(control.changed for control in mobile) or "nothing",
         )
-        stiffness = _smallest([control.stiffness for control in stopped])
-        rows.append(
-            f"| {name} | {len(checked)} | {len(stopped)} | {stiffness} | {moving} |"
-        )
+        rows.append(f"| {' | '.join(cells)} |")
     return HEAD + "\n".join(rows) + "\n"
 
 
 def _smallest(values: list[float]) -> str:
-    known = [value for value in values if np.isfinite(value)]
-    return f"{min(known):.0e}" if known else "-"
+    finite = [value for value in values if np.isfinite(value)]
+    return f"{min(finite):.0e}" if finite else "-"
 
 
 if __name__ == "__main__":

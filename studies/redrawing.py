@@ -11,6 +11,7 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.figures.plotting import plot_transition_map
 from bifurc.files.atomic import replace_files
 from linkages.app.files import write_data, write_figures
 from linkages.app.status import compilation_announced
@@ -60,25 +61,24 @@ class Redrawing:
     def run(self, out: Path) -> None:
         """Print the tables and the claims; write the figure and the results of the map
         to a folder."""
-        from bifurc.figures.plotting import plot_transition_map
-
         out.mkdir(parents=True, exist_ok=True)
         with compilation_announced():
             atlas = self.compute()
-        lines = [_judged(claim) for claim in self.claims(atlas)]
-        summary = make_summary(atlas) + "\n\nWhat the source says\n" + "\n".join(lines)
+        sentences = "\n".join(_judge(claim) for claim in self.claims(atlas))
+        summary = f"{make_summary(atlas)}\n\nWhat the source says\n{sentences}"
         click.echo(summary)
-        written = write_data(atlas, out, summary) + write_figures(atlas, out)
+        paths = write_data(atlas, out, summary)
+        paths += write_figures(atlas, out)
         figure = plot_transition_map(atlas, joints=self.joints)
 
         def write(stage: Path) -> None:
             for ending in ("png", "svg"):
                 figure.savefig(stage / f"{self.figure}.{ending}", dpi=150)
 
-        written += replace_files(out, write)
+        paths += replace_files(out, write)
+        others = len(paths) - 1
         click.echo(
-            f"wrote {self.figure}.png and {len(written) - 1} more files to {out}",
-            err=True,
+            f"wrote {self.figure}.png and {others} more files to {out}", err=True
         )
 
 
@@ -93,7 +93,7 @@ def largest(deviations: np.ndarray) -> float:
     return float(np.abs(deviations).max())
 
 
-def _judged(claim: Claim) -> str:
+def _judge(claim: Claim) -> str:
     if claim.deviation == 0:
         verdict = "holds"
     elif claim.deviation < HOLDS:

@@ -3,39 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple, Protocol, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 
+from studies.stability_runs import Run
+
 __all__ = ["draw_stability"]
-
-
-class Run(Protocol):
-    """What is shown of a run; `studies.stability.Run` says what it is."""
-
-    @property
-    def case(self) -> str: ...
-    @property
-    def difficulty(self) -> float: ...
-    @property
-    def method(self) -> str: ...
-    @property
-    def step(self) -> str: ...
-    @property
-    def verdict(self) -> str: ...
-    @property
-    def found(self) -> int: ...
-    @property
-    def pieces(self) -> int: ...
-    @property
-    def certificate(self) -> str: ...
-    @property
-    def certificate_points(self) -> int: ...
-    @property
-    def certificate_seconds(self) -> float: ...
 
 
 class Look(NamedTuple):

@@ -4,32 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal, NamedTuple, Protocol, TypeAlias, TypeVar
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from studies.work_precision_runs import Run
+
 __all__ = ["draw_case", "draw_ratios", "unbeaten"]
 
 
-class Run(Protocol):
-    """What is shown of a run; `studies.work_precision.Run` says what it is."""
-
-    @property
-    def method(self) -> str: ...
-    @property
-    def order(self) -> int: ...
-    @property
-    def seconds(self) -> float: ...
-    @property
-    def error(self) -> float: ...
-    @property
-    def note(self) -> str: ...
-
-
-AnyRun = TypeVar("AnyRun", bound=Run)
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
 
@@ -122,11 +108,11 @@ def _is_tried(run: Run) -> bool:
     return bool(np.isfinite(run.seconds)) or "not tried" not in run.note
 
 
-def unbeaten(runs: Sequence[AnyRun]) -> list[AnyRun]:
+def unbeaten(runs: Sequence[Run]) -> list[Run]:
     """The runs that no other comes as near in less time, from large to small errors."""
     finite = [run for run in runs if np.isfinite(run.error)]
     finite.sort(key=lambda run: (run.seconds, run.error))
-    best: list[AnyRun] = []
+    best: list[Run] = []
     for run in finite:
         if not best or run.error < best[-1].error:
             best.append(run)

@@ -28,17 +28,17 @@ def compute() -> Atlas:
 def claims(atlas: Atlas) -> list[Claim]:
     """What the text says of the forms and of their meeting points."""
     symmetries = [form.labels["symmetry"] for form in atlas.forms]
-    meeting = np.array([point.point.u[0] for point in atlas.bifurcations])
-    mixed = [
-        {symmetries[i] for i, _ in point.passes} == {ORIGINAL, REVISED}
-        for point in atlas.bifurcations
-    ]
+    theta1 = np.array([point.point.u[0] for point in atlas.bifurcations])
+    alike = 0  # bifurcations of forms of one kind
+    for point in atlas.bifurcations:
+        kinds = {symmetries[index] for index, _ in point.passes}
+        alike += kinds != {ORIGINAL, REVISED}
     return [
         Claim("two original forms", abs(symmetries.count(ORIGINAL) - 2)),
         Claim("two revised forms", abs(symmetries.count(REVISED) - 2)),
         Claim("they meet in four bifurcations", abs(len(atlas.bifurcations) - 4)),
-        Claim("these are at theta1 = 0 or pi", largest(np.sin(meeting))),
-        Claim("an original form meets a revised one at each", mixed.count(False)),
+        Claim("these are at theta1 = 0 or pi", largest(np.sin(theta1))),
+        Claim("an original form meets a revised one at each", alike),
         Claim("all four forms are connected", atlas.components - 1),
     ]
 

@@ -6,34 +6,39 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
 from linkages.entry import Entry
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["choose_linkage", "choose_precisely"]
+__all__ = [
+    "choose_linkage",
+    "choose_precisely",
+    "read_number",
+    "read_parameters",
+    "split_parameter",
+]
 
 
 def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
     """The linkage called ``text``, or read from the file ``text`` if that is one (or
     ends with .toml).
 
-    ``parameters`` are "key=value", angles in degrees. Raises `GeometryError`,
-    `UnknownLinkageError` and `LinkageFileError`.
+    ``parameters`` are "key=value", angles in degrees. Raises `CommandError`,
+    `GeometryError`, `UnknownLinkageError` and `LinkageFileError`.
     """
-    if is_linkage_file(text):
-        if parameters:
-            raise GeometryError(
-                "--param",
-                parameters[0],
-                "left out with a file, which holds the whole geometry",
-            )
-        return load(text)
+    if is_linkage_file(text) and parameters:
+        raise GeometryError(
+            "--param",
+            parameters[0],
+            "left out with a file, which holds the whole geometry",
+        )
     if not parameters:
         return load(text)
-    family = entry(text)
-    return load(text, **dict(_parameter(family, item) for item in parameters))
+    values = read_parameters(entry(text), parameters)
+    return load(text, **values)
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
@@ -47,21 +52,44 @@ def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
 
     if is_linkage_file(text):
         return read_precisely(text)
-    found = entry(text)
-    values = found.complete(dict(_parameter(found, item) for item in parameters))
-    return found.build(**{key: mpmath.mpf(value) for key, value in values.items()})
+    family = entry(text)
+    values = family.complete(read_parameters(family, parameters))
+    exact = {name: mpmath.mpf(value) for name, value in values.items()}
+    return family.build(**exact)
 
 
-def _parameter(found: Entry, item: str) -> tuple[str, float]:
-    key, equals, text = item.partition("=")
-    key = key.strip()
+def read_parameters(family: Entry, texts: Sequence[str]) -> dict[str, float]:
+    """The parameters in "key=value", angles turned from degrees to rad; raises
+    `CommandError`.
+
+    Whether the family has parameters of these names is for `Entry.complete` to say.
+    """
+    kinds = {parameter.name: parameter.kind for parameter in family.parameters}
+    values: dict[str, float] = {}
+    for text in texts:
+        name, value = split_parameter(text)
+        if name in values:
+            raise CommandError(f"--param {name}: it is given twice")
+        number = read_number(name, value)
+        values[name] = math.radians(number) if kinds.get(name) == "angle" else number
+    return values
+
+
+def split_parameter(text: str) -> tuple[str, str]:
+    """Name and value of "key=value"; raises `GeometryError`."""
+    name, equals, value = text.partition("=")
     if not equals:
-        raise GeometryError("--param", repr(item), "of the form key=value")
+        raise GeometryError("--param", repr(text), "of the form key=value")
+    return name.strip(), value
+
+
+def read_number(name: str, text: str) -> float:
+    """The finite number that ``text`` is, for the parameter ``name``; raises
+    `GeometryError`."""
     try:
-        value = float(text)
+        number = float(text)
     except ValueError:
-        raise GeometryError(f"--param {key}", repr(text), "a number") from None
-    if not math.isfinite(value):
-        raise GeometryError(f"--param {key}", value, "a finite number")
-    kinds = {parameter.name: parameter.kind for parameter in found.parameters}
-    return key, math.radians(value) if kinds.get(key) == "angle" else value
+        raise GeometryError(f"--param {name}", repr(text), "a number") from None
+    if not math.isfinite(number):
+        raise GeometryError(f"--param {name}", number, "a finite number")
+    return number

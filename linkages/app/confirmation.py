@@ -10,7 +10,7 @@ import mpmath
 from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.singular.confirm import Confirmation, confirm_singular_point
 from linkages.app.choice import choose_precisely
-from linkages.app.summary import table
+from linkages.app.texts import table
 from linkages.closure.precise import precise_residual
 
 __all__ = ["confirm_points", "describe_confirmation"]
@@ -23,13 +23,12 @@ def confirm_points(
     geometry at the same precision."""
     with mpmath.workdps(3 * digits + 30):
         residual = precise_residual(choose_precisely(linkage, parameters))
-    for point in atlas.points:
-        yield (
-            point,
-            confirm_singular_point(
-                residual, point.point.u, point.point.null_space, digits
-            ),
+    for meeting in atlas.points:
+        point = meeting.point
+        confirmation = confirm_singular_point(
+            residual, point.u, point.null_space, digits
         )
+        yield meeting, confirmation
 
 
 def describe_confirmation(
@@ -37,34 +36,14 @@ def describe_confirmation(
 ) -> str:
     """What ``bifurc map --digits`` shows: a row for every singular point, and what the
     words for convergence mean."""
-    rows, endings = [], {}
-    for point, found in confirm_points(atlas, linkage, parameters, digits):
-        within = (
-            "holds" if found.distance <= point.point.error + found.error else "exceeded"
-        )
-        first = [x for x in found.singular_values if x > 0][
-            : len(found.singular_values) - found.nullity
-        ]
-        rows.append(
-            (
-                point.name,
-                point.kind.value,
-                f"{found.agreeing_digits:.1f}",
-                f"{found.distance:.1e}",
-                f"{point.point.error:.1e} {within}",
-                f"{found.angle:.1e}",
-                str(found.nullity),
-                f"{first[-1]:.3g}" if first else "-",
-                f"{found.residual:.0e}",
-                f"{found.error:.0e}",
-                found.convergence.name.lower().replace("_", " "),
-            )
-        )
-        endings[found.convergence] = found.convergence.value
+    rows = []
+    endings = {}
+    for point, confirmation in confirm_points(atlas, linkage, parameters, digits):
+        rows.append(_row(point, confirmation))
+        endings[confirmation.convergence] = f"  {confirmation.convergence.value}"
+    title = f"Confirmation at {digits} digits"
     if not rows:
-        return (
-            f"Confirmation at {digits} digits: there is no singular point to confirm."
-        )
+        return f"{title}: there is no singular point to confirm."
     heads = (
         "name",
         "kind",
@@ -78,5 +57,31 @@ def describe_confirmation(
         "error here",
         "convergence",
     )
-    listed = "\n".join(f"  {sentence}" for sentence in endings.values())
-    return f"Confirmation at {digits} digits\n{table(heads, rows)}\n\nConvergence\n{listed}"
+    explanations = "\n".join(endings.values())
+    return f"{title}\n{table(heads, rows)}\n\nConvergence\n{explanations}"
+
+
+def _row(meeting: MeetingPoint, confirmation: Confirmation) -> tuple[str, ...]:
+    stated = meeting.point.error
+    within = confirmation.distance <= stated + confirmation.error
+    return (
+        meeting.name,
+        meeting.kind.value,
+        f"{confirmation.agreeing_digits:.1f}",
+        f"{confirmation.distance:.1e}",
+        f"{stated:.1e} {'holds' if within else 'exceeded'}",
+        f"{confirmation.angle:.1e}",
+        str(confirmation.nullity),
+        _smallest_regular(confirmation),
+        f"{confirmation.residual:.0e}",
+        f"{confirmation.error:.0e}",
+        confirmation.convergence.name.lower().replace("_", " "),
+    )
+
+
+def _smallest_regular(confirmation: Confirmation) -> str:
+    """The smallest singular value that is not zero to the precision reached."""
+    rank = len(confirmation.singular_values) - confirmation.nullity
+    positive = [value for value in confirmation.singular_values if value > 0]
+    regular = positive[:rank]
+    return f"{regular[-1]:.3g}" if regular else "-"

@@ -4,69 +4,117 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
-from bifurc.atlas import Atlas, Form, Surface
+from bifurc.atlas import Atlas, Event, MeetingPoint
 from bifurc.torus import wrap
+from linkages.app.linkage_atlas import labels_of, loop_of
+from linkages.app.verdict import is_without_gaps
 
-__all__ = ["make_document"]
+__all__ = ["MapDocument", "make_document"]
 
 
-def make_document(atlas: Atlas) -> dict[str, Any]:
-    """The document that `bifurc map --json` prints; docs/results.md says what each key
-    holds."""
-    names = [form.name for form in atlas.forms]
-    forms = [_form(atlas, i, form) for i, form in enumerate(atlas.forms)]
-    surfaces = [_surface(atlas, k, surface) for k, surface in enumerate(atlas.surfaces)]
-    sure = atlas.completeness
+class LinkageDocument(TypedDict):
+    """The Denavit-Hartenberg table, twists in rad."""
+
+    name: str
+    lengths: list[float]
+    twists: list[float]
+    offsets: list[float]
+
+
+class FormDocument(TypedDict):
+    """A form; or a surface, with None for what makes sense for a curve only."""
+
+    name: str
+    dimension: int
+    closed: bool | None
+    length: float | None
+    winding: list[int] | None
+    inactive_joints: list[int]
+    symmetry: str
+    sample: list[float]
+    max_residual: float | None
+    min_singular_value: float | None
+    component: int
+
+
+class BifurcationDocument(TypedDict):
+    """A bifurcation: ``forms`` and ``tangents`` once for every pass of a form."""
+
+    theta: list[float]
+    rank: int
+    forms: list[str]
+    tangents: list[list[float]]
+    error: float
+
+
+class RankDropDocument(TypedDict):
+    """A point of lower rank that one form passes."""
+
+    theta: list[float]
+    rank: int
+    form: str
+
+
+class NearMissDocument(TypedDict):
+    """A minimum of the smallest regular singular value."""
+
+    theta: list[float]
+    singular_value: float
+    form: str
+
+
+class DeadPointDocument(TypedDict):
+    """Where a joint (from 1) stands still for a moment."""
+
+    theta: list[float]
+    joint: int
+    form: str
+
+
+class CompletenessDocument(TypedDict):
+    """How sure it is that nothing is missing."""
+
+    level: str
+    certainty: str
+    statement: str
+    missed_probability: float
+
+
+class MapDocument(TypedDict):
+    """The whole document; docs/results.md says what each key holds."""
+
+    linkage: LinkageDocument
+    forms: list[FormDocument]
+    bifurcations: list[BifurcationDocument]
+    rank_drops: list[RankDropDocument]
+    near_misses: list[NearMissDocument]
+    dead_points: list[DeadPointDocument]
+    rigid_assemblies: list[list[float]]
+    completeness: CompletenessDocument
+    seconds: float
+    version: str
+    seed: int
+    tolerance: float
+
+
+def make_document(atlas: Atlas) -> MapDocument:
+    """The document that `bifurc map --json` prints."""
+    forms = [_form(atlas, i) for i in range(len(atlas.forms))]
+    surfaces = [_surface(atlas, k) for k in range(len(atlas.surfaces))]
     return {
-        "linkage": dict(atlas.subject),
+        "linkage": _linkage(atlas),
         "forms": forms + surfaces,
-        "bifurcations": [
-            {
-                "theta": _angles(atlas, point.point.u),
-                "rank": point.point.rank,
-                "forms": [names[i] for i, _ in point.passes],
-                "tangents": point.tangents.tolist(),
-                "error": point.point.error,
-            }
-            for point in atlas.bifurcations
-        ],
-        "rank_drops": [
-            {
-                "theta": _angles(atlas, point.point.u),
-                "rank": point.point.rank,
-                "form": names[point.passes[0][0]],
-            }
-            for point in atlas.rank_drops
-        ],
-        "near_misses": [
-            {
-                "theta": _angles(atlas, miss.u),
-                "singular_value": miss.value,
-                "form": names[miss.form],
-            }
-            for miss in atlas.near_misses
-        ],
-        "dead_points": [
-            {
-                "theta": _angles(atlas, dead.u),
-                "joint": dead.index + 1,
-                "form": names[dead.form],
-            }
-            for dead in atlas.dead_points
-        ],
+        "bifurcations": [_bifurcation(atlas, point) for point in atlas.bifurcations],
+        "rank_drops": [_rank_drop(atlas, point) for point in atlas.rank_drops],
+        "near_misses": [_near_miss(atlas, event) for event in atlas.near_misses],
+        "dead_points": [_dead_point(atlas, event) for event in atlas.dead_points],
         "rigid_assemblies": [_angles(atlas, theta) for theta in atlas.rigid],
-        "completeness": {
-            "level": "complete slices"
-            if sure.level in ("proved", "certified")
-            else "estimated",
-            "certainty": sure.level,
-            "statement": sure.statement,
-            "missed_probability": sure.missed_probability,
-        },
+        "completeness": _completeness(atlas),
         "seconds": atlas.provenance.seconds,
         "version": version("bifurc"),
         "seed": atlas.provenance.seed,
@@ -74,27 +122,41 @@ def make_document(atlas: Atlas) -> dict[str, Any]:
     }
 
 
-def _form(atlas: Atlas, index: int, form: Form) -> dict[str, Any]:
-    branch = form.branch
+def _linkage(atlas: Atlas) -> LinkageDocument:
+    loop = loop_of(atlas)
+    lengths, twists, offsets = loop.arrays
+    return {
+        "name": loop.name,
+        "lengths": lengths.tolist(),
+        "twists": twists.tolist(),
+        "offsets": offsets.tolist(),
+    }
+
+
+def _form(atlas: Atlas, index: int) -> FormDocument:
+    form = atlas.forms[index]
+    labels = labels_of(form)
+    sample = form.branch(_clear_arclength(atlas, index))
     return {
         "name": form.name,
         "dimension": 1,
-        "closed": branch.closed,
-        "length": branch.length,
-        "winding": branch.winding.tolist(),
-        "inactive_joints": list(form.labels["inactive_joints"]),
-        "symmetry": form.labels["symmetry"],
-        "sample": _angles(atlas, branch(_far_from_singular(atlas, index))),
-        "max_residual": float(form.labels["max_residual"]),
+        "closed": form.branch.closed,
+        "length": form.branch.length,
+        "winding": form.branch.winding.tolist(),
+        "inactive_joints": list(labels.inactive_joints),
+        "symmetry": labels.symmetry,
+        "sample": _angles(atlas, sample),
+        "max_residual": labels.max_residual,
         "min_singular_value": form.min_singular_value,
         "component": form.component,
     }
 
 
-def _surface(atlas: Atlas, number: int, surface: Surface) -> dict[str, Any]:
+def _surface(atlas: Atlas, index: int) -> FormDocument:
     """A component of dimension 2 or more, shown by one configuration."""
+    surface = atlas.surfaces[index]
     return {
-        "name": f"surface {number + 1}",
+        "name": f"surface {index + 1}",
         "dimension": surface.dimension,
         "closed": None,
         "length": None,
@@ -104,25 +166,72 @@ def _surface(atlas: Atlas, number: int, surface: Surface) -> dict[str, Any]:
         "sample": _angles(atlas, surface.samples[0]),
         "max_residual": None,
         "min_singular_value": None,
-        "component": atlas.components + number,
+        "component": atlas.components + index,
     }
 
 
-def _far_from_singular(atlas: Atlas, index: int) -> float:
+def _bifurcation(atlas: Atlas, point: MeetingPoint) -> BifurcationDocument:
+    return {
+        "theta": _angles(atlas, point.point.u),
+        "rank": point.point.rank,
+        "forms": [atlas.forms[index].name for index, _ in point.passes],
+        "tangents": point.tangents.tolist(),
+        "error": point.point.error,
+    }
+
+
+def _rank_drop(atlas: Atlas, point: MeetingPoint) -> RankDropDocument:
+    index, _ = point.passes[0]
+    return {
+        "theta": _angles(atlas, point.point.u),
+        "rank": point.point.rank,
+        "form": atlas.forms[index].name,
+    }
+
+
+def _near_miss(atlas: Atlas, event: Event) -> NearMissDocument:
+    return {
+        "theta": _angles(atlas, event.u),
+        "singular_value": event.value,
+        "form": atlas.forms[event.form].name,
+    }
+
+
+def _dead_point(atlas: Atlas, event: Event) -> DeadPointDocument:
+    return {
+        "theta": _angles(atlas, event.u),
+        "joint": event.index + 1,
+        "form": atlas.forms[event.form].name,
+    }
+
+
+def _completeness(atlas: Atlas) -> CompletenessDocument:
+    completeness = atlas.completeness
+    slices = is_without_gaps(completeness)
+    return {
+        "level": "complete slices" if slices else "estimated",
+        "certainty": completeness.level,
+        "statement": completeness.statement,
+        "missed_probability": completeness.missed_probability,
+    }
+
+
+def _clear_arclength(atlas: Atlas, index: int) -> float:
     """An arclength of a form: the middle of its longest stretch without singular
     points."""
     branch = atlas.forms[index].branch
-    marks = sorted(s for point in atlas.points for i, s in point.passes if i == index)
+    passes = [one for point in atlas.points for one in point.passes]
+    marks = sorted(s for form, s in passes if form == index)
     if not marks:
         return 0.5 * branch.length
-    marks = (
-        [*marks, marks[0] + branch.length]
-        if branch.closed
-        else [0.0, *marks, branch.length]
-    )
+    if branch.closed:
+        marks.append(marks[0] + branch.length)
+    else:
+        marks = [0.0, *marks, branch.length]
     longest = int(np.argmax(np.diff(marks)))
     return 0.5 * (marks[longest] + marks[longest + 1])
 
 
-def _angles(atlas: Atlas, theta: np.ndarray) -> list[float]:
-    return [float(x) for x in wrap(theta, atlas.periods)]
+def _angles(atlas: Atlas, theta: NDArray[np.float64]) -> list[float]:
+    """Joint angles (n,), rad, between -pi and pi."""
+    return [float(angle) for angle in wrap(theta, atlas.periods)]

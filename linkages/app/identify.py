@@ -4,76 +4,88 @@ of, and with which parameters."""
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
+from linkages.app.texts import count_of, link_name
 from linkages.identification.identify import Identification, LockedJoint, Match
 
-__all__ = ["NOT_KNOWN", "describe_identification", "make_identification_document"]
+__all__ = ["describe_identification", "make_identification_document"]
 
-NOT_KNOWN = 5  # exit code: no linkage of the catalogue has this geometry
-NEAREST, WORST = (
-    3,
-    4,
-)  # linkages, and numbers of the table, that are shown where none fits
+NEAREST = 3  # linkages that are shown where none fits
+WORST = 4  # numbers of the table that are shown of each of them
+LENGTH_ROW, TWIST_ROW, OFFSET_ROW = range(3)  # of a table (3, n)
 
 
-def describe_identification(found: Identification) -> str:
+# --- text -----------------------------------------------------------------------------
+
+
+def describe_identification(identification: Identification) -> str:
     """The answer as text: lengths in the unit of the table, degrees, joints numbered
     from 1."""
-    if found.matches:
-        count = f"{len(found.matches)} linkage{'s' if len(found.matches) > 1 else ''}"
-        parts = [
-            f"{found.loop.name}\nA case of {count} of the catalogue, the most special first."
-        ]
-        parts += [_match(match) for match in found.matches]
+    name = identification.loop.name
+    matches = identification.matches
+    if matches:
+        linkages = count_of(len(matches), "linkage")
+        sentence = f"A case of {linkages} of the catalogue, the most special first."
+        parts = [_match(match) for match in matches]
     else:
-        parts = [
-            f"{found.loop.name}\nNo linkage of the catalogue has this geometry, to {found.tolerance:.1g}."
-        ]
-        parts += [_near(match) for match in found.nearest[:NEAREST]]
-    return "\n\n".join(parts + [_locked(joint) for joint in found.locked])
+        tolerance = f"{identification.tolerance:.1g}"
+        sentence = f"No linkage of the catalogue has this geometry, to {tolerance}."
+        parts = [_near(match) for match in identification.nearest[:NEAREST]]
+    parts += [_locked(joint) for joint in identification.locked]
+    return "\n\n".join([f"{name}\n{sentence}", *parts])
 
 
 def _match(match: Match) -> str:
+    """A linkage that the table is a case of."""
     lengths, twists, offsets = np.abs(match.residuals).max(axis=1)
     return (
-        f"{_head(match)}\n  {_parameters(match)}\n  read {match.reading}\n"
-        f"  off by at most {lengths:.1e} in lengths, {twists:.1e} rad in twists, {offsets:.1e} in offsets, of:\n"
-        + _conditions(match)
+        f"{_head(match)}\n"
+        f"  {_parameters(match)}\n"
+        f"  read {match.reading}\n"
+        f"  off by at most {lengths:.1e} in lengths, {twists:.1e} rad in twists, "
+        f"{offsets:.1e} in offsets, of:\n"
+        f"{_conditions(match)}"
     )
+
+
+def _near(match: Match) -> str:
+    """A linkage that the table is not, and the numbers that are off most."""
+    worst = np.argsort(-np.abs(match.residuals), axis=None)[:WORST]
+    rows, columns = np.unravel_index(worst, match.residuals.shape)
+    lines = [
+        f"Near: {_head(match)}",
+        f"  {_parameters(match)}",
+        f"  off by {match.distance:.2g}:",
+    ]
+    for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
+        lines.append(f"    {_deviation(match, row, column)}")
+    lines.append(_conditions(match))
+    return "\n".join(lines)
+
+
+def _deviation(match: Match, row: int, column: int) -> str:
+    """One number of the table: what it would be, and by how much it is off."""
+    value = match.member[row, column]
+    residual = match.residuals[row, column]
+    link = link_name(column, match.residuals.shape[1])
+    if row == TWIST_ROW:
+        degrees = math.degrees(value)
+        return f"alpha{link} would be {degrees:.6f} deg (off by {residual:.2g} rad)"
+    name = f"R{column + 1}" if row == OFFSET_ROW else f"a{link}"
+    return f"{name} would be {value:.8g} (off by {residual:.2g})"
 
 
 def _conditions(match: Match) -> str:
     """The conditions of the entry, each with how far the table is from it where it is
     an equation in its numbers."""
-    shown = (
-        f"    {text}" + ("" if size is None else f"  [off by {size:.1e}]")
-        for text, size in match.conditions
-    )
-    return "\n".join(shown)
-
-
-def _near(match: Match) -> str:
-    order = np.argsort(-np.abs(match.residuals), axis=None)[:WORST]
-    lines = [
-        _number(match, *(int(i) for i in np.unravel_index(k, match.residuals.shape)))
-        for k in order
-    ]
-    head = (
-        f"Near: {_head(match)}\n  {_parameters(match)}\n  off by {match.distance:.2g}:"
-    )
-    return "\n".join([head, *lines, _conditions(match)])
-
-
-def _number(match: Match, row: int, column: int) -> str:
-    n = match.residuals.shape[1]
-    link = f"{column + 1}{'-' if n > 9 else ''}{(column + 1) % n + 1}"
-    name = f"R{column + 1}" if row == 2 else f"{('a', 'alpha')[row]}{link}"
-    wanted = match.member[row, column]
-    shown = f"{math.degrees(wanted):.6f} deg" if row == 1 else f"{wanted:.8g}"
-    return f"    {name} would be {shown} (off by {match.residuals[row, column]:.2g}{' rad' if row == 1 else ''})"
+    lines = []
+    for text, residual in match.conditions:
+        remark = "" if residual is None else f"  [off by {residual:.1e}]"
+        lines.append(f"    {text}{remark}")
+    return "\n".join(lines)
 
 
 def _head(match: Match) -> str:
@@ -82,52 +94,100 @@ def _head(match: Match) -> str:
 
 
 def _parameters(match: Match) -> str:
-    kinds = {p.name: p.kind for p in match.entry.parameters}
-    return ", ".join(
-        f"{name} = {math.degrees(value):.8g} deg"
-        if kinds[name] == "angle"
-        else f"{name} = {value:.8g}"
-        for name, value in match.parameters.items()
-    )
+    kinds = {parameter.name: parameter.kind for parameter in match.entry.parameters}
+    parts = []
+    for name, value in match.parameters.items():
+        if kinds[name] == "angle":
+            parts.append(f"{name} = {math.degrees(value):.8g} deg")
+        else:
+            parts.append(f"{name} = {value:.8g}")
+    return ", ".join(parts)
 
 
-def _locked(found: LockedJoint) -> str:
-    best = found.matches[0]
-    names = ", ".join(match.entry.name for match in found.matches)
+def _locked(locked: LockedJoint) -> str:
+    best = locked.matches[0]
+    names = ", ".join(match.entry.name for match in locked.matches)
+    angle = math.degrees(locked.angle)
     return (
-        f"With joint {found.joint} locked at {math.degrees(found.angle):.0f} deg: {names}\n  "
-        f"{best.entry.name}: {_parameters(best)}"
+        f"With joint {locked.joint} locked at {angle:.0f} deg: {names}\n"
+        f"  {best.entry.name}: {_parameters(best)}"
     )
 
 
-def make_identification_document(found: Identification) -> dict[str, Any]:
+# --- JSON -----------------------------------------------------------------------------
+
+
+class ConditionDocument(TypedDict):
+    """A condition, and by how much the table is off it; None where it is no
+    equation."""
+
+    text: str
+    residual: float | None
+
+
+class MatchDocument(TypedDict):
+    """A linkage of the catalogue; ``member`` and ``residuals`` have rows a, alpha,
+    R."""
+
+    name: str
+    parameters: dict[str, float]
+    distance: float
+    freedom: int
+    conditions: list[ConditionDocument]
+    member: list[list[float]]
+    residuals: list[list[float]]
+
+
+class LockedDocument(TypedDict):
+    """What is left where a joint (from 1) is locked at an angle (rad)."""
+
+    joint: int
+    angle: float
+    matches: list[MatchDocument]
+
+
+class IdentificationDocument(TypedDict):
+    """The whole document."""
+
+    linkage: str
+    tolerance: float
+    matches: list[MatchDocument]
+    nearest: list[MatchDocument]
+    locked: list[LockedDocument]
+
+
+def make_identification_document(
+    identification: Identification,
+) -> IdentificationDocument:
     """The same as a JSON document, angles in radians; ``residuals`` are given less
-    member, rows a, alpha, R."""
+    member."""
     return {
-        "linkage": found.loop.name,
-        "tolerance": found.tolerance,
-        "matches": [_document(match) for match in found.matches],
-        "nearest": [_document(match) for match in found.nearest[:NEAREST]],
-        "locked": [
-            {
-                "joint": joint.joint,
-                "angle": joint.angle,
-                "matches": [_document(match) for match in joint.matches],
-            }
-            for joint in found.locked
-        ],
+        "linkage": identification.loop.name,
+        "tolerance": identification.tolerance,
+        "matches": [_match_document(m) for m in identification.matches],
+        "nearest": [_match_document(m) for m in identification.nearest[:NEAREST]],
+        "locked": [_locked_document(joint) for joint in identification.locked],
     }
 
 
-def _document(match: Match) -> dict[str, Any]:
+def _locked_document(locked: LockedJoint) -> LockedDocument:
+    return {
+        "joint": locked.joint,
+        "angle": locked.angle,
+        "matches": [_match_document(match) for match in locked.matches],
+    }
+
+
+def _match_document(match: Match) -> MatchDocument:
+    conditions: list[ConditionDocument] = [
+        {"text": text, "residual": residual} for text, residual in match.conditions
+    ]
     return {
         "name": match.entry.name,
         "parameters": match.parameters,
         "distance": match.distance,
         "freedom": match.freedom,
-        "conditions": [
-            {"text": text, "residual": size} for text, size in match.conditions
-        ],
+        "conditions": conditions,
         "member": match.member.tolist(),
         "residuals": match.residuals.tolist(),
     }

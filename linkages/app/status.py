@@ -1,5 +1,4 @@
-"""What is said on standard error while a command works, and what it tells its caller at
-the end."""
+"""What is said on standard error while a command works."""
 
 from __future__ import annotations
 
@@ -8,22 +7,18 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from enum import IntEnum
-from typing import Any
 
 import click
 
-__all__ = ["EchoHandler", "ExitCode", "StatusLine", "compilation_announced"]
+__all__ = [
+    "EchoHandler",
+    "StatusLine",
+    "compilation_announced",
+    "library_messages",
+    "say_more",
+]
 
-
-class ExitCode(IntEnum):
-    """What the command `bifurc` tells its caller."""
-
-    MAPPED = 0
-    BAD_INPUT = 2
-    DOES_NOT_MOVE = 3
-    NO_ROUTE = 4
-    INTERRUPTED = 130
+LIBRARIES = ("bifurc", "linkages")
 
 
 class StatusLine:
@@ -31,15 +26,18 @@ class StatusLine:
     and is wiped at the end."""
 
     def __init__(self, patience: float = 1.0):
-        self._began, self._patience = time.monotonic(), patience
+        self._start = time.monotonic()
+        self._patience = patience
         self._width = 0
 
     def __call__(self, what: str, count: int) -> None:
         """Show progress: the `progress` callback of `bifurc.search.explore.explore`."""
-        if sys.stderr.isatty() and time.monotonic() - self._began > self._patience:
-            text = f"exploring: {count} {what} so far, {time.monotonic() - self._began:.0f} s"
-            click.echo("\r" + text.ljust(self._width), nl=False, err=True)
-            self._width = len(text)
+        seconds = time.monotonic() - self._start
+        if seconds <= self._patience or not sys.stderr.isatty():
+            return
+        text = f"exploring: {count} {what} so far, {seconds:.0f} s"
+        click.echo("\r" + text.ljust(self._width), nl=False, err=True)
+        self._width = len(text)
 
     def wipe(self) -> None:
         """Remove the line."""
@@ -52,7 +50,31 @@ class EchoHandler(logging.Handler):
     """Log records of the library, one line each on standard error."""
 
     def emit(self, record: logging.LogRecord) -> None:
+        """Show one record."""
         click.echo(f"{record.levelname.lower()}: {record.getMessage()}", err=True)
+
+
+@contextmanager
+def library_messages() -> Iterator[None]:
+    """Show warnings of the library on standard error for the time of a block."""
+    handler = EchoHandler()
+    for name in LIBRARIES:
+        logger = logging.getLogger(name)
+        logger.setLevel(logging.WARNING)
+        logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        for name in LIBRARIES:
+            logger = logging.getLogger(name)
+            logger.setLevel(logging.NOTSET)
+            logger.removeHandler(handler)
+
+
+def say_more() -> None:
+    """Let the library say all it has to say, inside a block of `library_messages`."""
+    for name in LIBRARIES:
+        logging.getLogger(name).setLevel(logging.INFO)
 
 
 @contextmanager
@@ -62,25 +84,26 @@ def compilation_announced() -> Iterator[None]:
     from numba.core import event
 
     class Announcement(event.Listener):
-        began = 0.0
+        """Notes when the first compilation starts and the last one ends."""
 
-        def on_start(self, event: Any) -> None:
-            if not self.began:
-                self.began = time.monotonic()
-                click.echo(
-                    "compiling kernels (once, kept on disk; about half a minute) ...",
-                    err=True,
-                )
+        def __init__(self) -> None:
+            self.start: float | None = None
+            self.end = 0.0
 
-        def on_end(self, event: Any) -> None:
-            self.ended = time.monotonic()
+        def on_start(self, event: event.Event) -> None:
+            if self.start is None:
+                self.start = time.monotonic()
+                text = "compiling kernels (once, kept on disk; about half a minute) ..."
+                click.echo(text, err=True)
+
+        def on_end(self, event: event.Event) -> None:
+            self.end = time.monotonic()
 
     announcement = Announcement()
     try:
         with event.install_listener("numba:compile", announcement):
             yield
     finally:
-        if announcement.began:
-            click.echo(
-                f"compiled in {announcement.ended - announcement.began:.1f} s", err=True
-            )
+        if announcement.start is not None:
+            seconds = announcement.end - announcement.start
+            click.echo(f"compiled in {seconds:.1f} s", err=True)

@@ -6,11 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bifurc.atlas import Atlas
+from bifurc.seeds import Completeness
 from bifurc.singular.locate import Kind
-from linkages.app.status import ExitCode
+from linkages.app.exit_codes import ExitCode
+from linkages.app.texts import count_of
 
-__all__ = ["Verdict", "counted", "judge"]
-
+__all__ = ["Verdict", "is_without_gaps", "judge"]
 
 # closure gap, over the characteristic length, below which a condition is missed
 # narrowly
@@ -26,52 +27,77 @@ class Verdict:
 
 
 def judge(atlas: Atlas) -> Verdict:
-    """What the linkage of an atlas is. An interrupted search is said to be one,
-    whatever it found."""
+    """What the linkage of an atlas is.
+
+    An interrupted search is said to be one, whatever it found. A search that ran out of
+    time before it found a motion says nothing of the linkage.
+    """
     if atlas.provenance.interrupted:
-        found = f"{counted(len(atlas.forms), 'form')} and {counted(len(atlas.bifurcations), 'bifurcation')}"
-        return Verdict(
-            f"The search was interrupted; {found} were found by then.",
-            ExitCode.INTERRUPTED,
-        )
+        return Verdict(_interrupted(atlas), ExitCode.INTERRUPTED)
     if atlas.forms or atlas.surfaces:
-        return Verdict(_mobile(atlas), ExitCode.MAPPED)
-    isolated = sum(1 for point in atlas.points if point.kind is Kind.ISOLATED)
-    rigid = _rigid(len(atlas.rigid), isolated)
-    gap = f"{atlas.closure_gap:.3g} of the characteristic length"
-    if 0.0 < atlas.closure_gap < NEARLY_CLOSED:
-        sentence = f"The linkage nearly moves, but along the way its loop misses closure by {gap}. {rigid}"
-    elif len(atlas.rigid) or isolated:
-        sentence = f"The linkage is rigid. {rigid}"
-    else:
-        sentence = (
-            f"The linkage has no real configuration: its loop stays open by {gap}."
-        )
-    return Verdict(sentence.strip(), ExitCode.DOES_NOT_MOVE)
+        return Verdict(_mobile(atlas), ExitCode.DONE)
+    if atlas.completeness.level == "out of time":
+        return Verdict(_nothing_known(atlas), ExitCode.NOTHING_KNOWN)
+    return Verdict(_immobile(atlas), ExitCode.DOES_NOT_MOVE)
+
+
+def is_without_gaps(completeness: Completeness) -> bool:
+    """Whether every slice was complete, and nothing rests on random starts alone."""
+    return completeness.level in ("proved", "certified")
+
+
+def _interrupted(atlas: Atlas) -> str:
+    forms = count_of(len(atlas.forms), "form")
+    bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
+    return f"The search was interrupted; {forms} and {bifurcations} were found by then."
 
 
 def _mobile(atlas: Atlas) -> str:
-    if atlas.surfaces:
-        dimension = max(surface.dimension for surface in atlas.surfaces)
-        sentence = f"The linkage moves with mobility {dimension}"
-        if atlas.forms:
-            sentence += f", and has {counted(len(atlas.forms), 'form')} of mobility 1"
-        return sentence + "."
+    forms = count_of(len(atlas.forms), "form")
+    if not atlas.surfaces:
+        components = count_of(atlas.components, "component")
+        bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
+        return (
+            f"The linkage moves with mobility 1: {forms} in {components}, "
+            f"{bifurcations}."
+        )
+    dimension = max(surface.dimension for surface in atlas.surfaces)
+    sentence = f"The linkage moves with mobility {dimension}"
+    if atlas.forms:
+        sentence += f", and has {forms} of mobility 1"
+    return sentence + "."
+
+
+def _nothing_known(atlas: Atlas) -> str:
+    assemblies = count_of(len(atlas.rigid), "isolated assembly")
+    seconds = atlas.provenance.settings.budget
     return (
-        f"The linkage moves with mobility 1: {counted(len(atlas.forms), 'form')} in "
-        f"{counted(atlas.components, 'component')}, {counted(len(atlas.bifurcations), 'bifurcation')}."
+        f"The search ended after {seconds:.4g} s, before it found a motion: whether "
+        f"the linkage moves is not known ({assemblies} so far)."
     )
 
 
-def _rigid(regular: int, isolated: int) -> str:
-    if not regular + isolated:
-        return ""
-    shaky = f", {isolated} of them shaky (of lower rank)" if isolated else ""
-    return f"It closes in {counted(regular + isolated, 'isolated assembly')}{shaky}, and does not move from there."
+def _immobile(atlas: Atlas) -> str:
+    shaky = sum(1 for point in atlas.points if point.kind is Kind.ISOLATED)
+    assemblies = len(atlas.rigid) + shaky
+    gap = f"{atlas.closure_gap:.3g} of the characteristic length"
+    if 0.0 < atlas.closure_gap < NEARLY_CLOSED:
+        sentence = (
+            "The linkage nearly moves, but along the way its loop misses closure "
+            f"by {gap}."
+        )
+    elif assemblies:
+        sentence = "The linkage is rigid."
+    else:
+        return f"The linkage has no real configuration: its loop stays open by {gap}."
+    if not assemblies:
+        return sentence
+    return f"{sentence} {_assemblies(assemblies, shaky)}"
 
 
-def counted(number: int, noun: str) -> str:
-    """``number`` and the noun in its number: "1 form", "2 assemblies"."""
-    if number != 1:
-        noun = noun[:-1] + "ies" if noun.endswith("y") else noun + "s"
-    return f"{number} {noun}"
+def _assemblies(count: int, shaky: int) -> str:
+    remark = f", {shaky} of them shaky (of lower rank)" if shaky else ""
+    return (
+        f"It closes in {count_of(count, 'isolated assembly')}{remark}, and does not "
+        "move from there."
+    )

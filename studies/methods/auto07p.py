@@ -53,21 +53,10 @@ def _program() -> tuple[Path, TemporaryDirectory[str]]:
     folder = TemporaryDirectory(prefix="auto07p-")
     program = Path(folder.name) / "follow"
     source = Path(__file__).with_suffix(".f90")
-    subprocess.run(
-        [
-            "gfortran",
-            "-O2",
-            "-fopenmp",
-            "-J",
-            folder.name,
-            "-o",
-            program,
-            source,
-            *_objects(),
-        ],
-        check=True,
-        capture_output=True,
-    )
+    files = [str(path) for path in (source, *_objects())]
+    options = ["-O2", "-fopenmp", "-J", folder.name, "-o", str(program)]
+    command = ["gfortran", *options, *files]
+    subprocess.run(command, check=True, capture_output=True)
     return program, folder
 
 
@@ -98,10 +87,9 @@ def auto_07p(case: Case, tolerance: float) -> Curve:
         ds=0.1 * h * np.sign(case.tangent[parameter]),
     )
     with TemporaryDirectory(prefix="auto07p-") as folder:
-        Path(folder, "problem.dat").write_text(
-            _problem_data(case, parameter), encoding="ascii"
-        )
-        ended = subprocess.run(
+        data = _problem_data(case, parameter)
+        Path(folder, "problem.dat").write_text(data, encoding="ascii")
+        run = subprocess.run(
             [program],
             cwd=folder,
             input=constants.encode(),
@@ -110,23 +98,22 @@ def auto_07p(case: Case, tolerance: float) -> Curve:
             env={**os.environ, "OMP_NUM_THREADS": "1"},
         )
         if not Path(folder, "points.bin").exists():
-            raise RuntimeError(
-                f"AUTO-07p does not begin: {ended.stdout.decode()[-500:]}"
-            )
-        written = np.fromfile(Path(folder, "points.bin"))
-    if len(written) % n != 1:  # the time comes last
+            output = run.stdout.decode()[-500:]
+            raise RuntimeError(f"AUTO-07p does not begin: {output}")
+        numbers = np.fromfile(Path(folder, "points.bin"))
+    if len(numbers) % n != 1:  # the time comes last
         raise MethodFailure("it stops before the end of the curve")
-    points = written[:-1].reshape(-1, n)
-    return through_points(list(points), case.length, float(written[-1]))
+    points = numbers[:-1].reshape(-1, n)
+    return through_points(list(points), case.length, float(numbers[-1]))
 
 
 def _problem_data(case: Case, parameter: int) -> str:
     """What auto07p.f90 reads: numbers with 17 digits."""
-    problem, n = case.problem, case.problem.n
+    problem = case.problem
+    n = problem.n
     rows = len(problem.residuals(case.start[None])[0])
-    kind = KINDS[
-        "loop" if isinstance(problem, LoopClosure) else case.name.partition("-")[0]
-    ]
+    is_loop = isinstance(problem, LoopClosure)
+    kind = KINDS["loop" if is_loop else case.name.partition("-")[0]]
     mixed = mixtures(rows, n - 1) if rows != n - 1 else np.empty((0, rows))
     lines = [np.array([case.length]), case.start, *mixed]
     if isinstance(problem, LoopClosure):

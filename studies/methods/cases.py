@@ -4,9 +4,9 @@ problems."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import TypeAlias
 
 import mpmath
 import numpy as np
@@ -23,6 +23,8 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
 __all__ = ["Case", "all_cases", "bratu"]
+
+Numbers: TypeAlias = list[mpmath.mpf]
 
 EXACT = TraceSettings(order=20, tolerance=1e-14)
 DIGITS = 40
@@ -44,7 +46,7 @@ class Case:
     problem: Problem
     start: np.ndarray
     tangent: np.ndarray
-    exact_residual: Callable[[list[Any]], list[Any]]
+    exact_residual: Callable[[Numbers], Numbers]
     settings: TraceSettings = EXACT
     tightest: float = 0.0
     patience: float = 1.0
@@ -53,7 +55,7 @@ class Case:
     def sparse(self) -> bool:
         """Whether the Jacobian is sparse, so that dense matrices of its size are out of
         the question."""
-        return issparse(self.problem.jacobian(self.start))
+        return bool(issparse(self.problem.jacobian(self.start)))
 
     @cached_property
     def reference(self) -> Branch:
@@ -129,16 +131,16 @@ def linkage_cases() -> list[Case]:
     ]
 
 
-def _named(name: str, title: str, family: str, **changed: Any) -> Case:
+def _named(name: str, title: str, family: str, **changed: str | float) -> Case:
     """The longest closed form of a member of the catalogue, from a regular point of
     it."""
-    found = entry(family)
+    source = entry(family)
     with mpmath.workdps(DIGITS):
         values = {
             key: mpmath.mpf(value)
-            for key, value in {**found.defaults, **changed}.items()
+            for key, value in {**source.defaults, **changed}.items()
         }
-        exact = found.build(**values)
+        exact = source.build(**values)
     return _loop_case(name, title, exact)
 
 
@@ -156,31 +158,33 @@ def _seven() -> Case:
 
 
 def _loop_case(name: str, title: str, exact: Loop) -> Case:
-    lengths, twists, offsets = (
-        tuple(map(float, v)) for v in (exact.lengths, exact.twists, exact.offsets)
+    lengths, twists, offsets = (values.tolist() for values in exact.arrays)
+    problem = LoopClosure(Loop(lengths, twists, offsets, exact.name))
+    closed = [branch for branch in _branches(problem) if branch.closed]
+    branch = max(closed, key=lambda branch: round(branch.length, 6))
+    s = 0.1234 * branch.length  # not at a symmetric configuration
+    return Case(
+        name=name,
+        title=title,
+        problem=problem,
+        start=branch(s),
+        tangent=branch(s, 1),
+        exact_residual=partial(loop_residual, exact),
     )
-    loop = Loop(lengths, twists, offsets, exact.name)
-    problem = LoopClosure(loop)
-    seeds = problem.seeds(np.random.default_rng(0), 30).points
+
+
+def _branches(problem: LoopClosure) -> list[Branch]:
+    """The first four branches through the seeds of a linkage, or fewer."""
     branches: list[Branch] = []
-    for seed in seeds:
-        if not any(b.nearest(seed)[0][0] < 1e-6 for b in branches):
+    for seed in problem.seeds(np.random.default_rng(0), 30).points:
+        if not any(branch.nearest(seed)[0][0] < 1e-6 for branch in branches):
             branches.append(trace_branch(problem, seed))
         if len(branches) == 4:
             break
-    chosen = max((b for b in branches if b.closed), key=lambda b: round(b.length, 6))
-    s = 0.1234 * chosen.length  # not at a symmetric configuration
-    return Case(
-        name,
-        title,
-        problem,
-        chosen(s),
-        chosen(s, 1),
-        lambda theta: loop_residual(exact, theta),
-    )
+    return branches
 
 
-def loop_residual(loop: Loop, theta: Sequence[Any]) -> list[Any]:
+def loop_residual(loop: Loop, theta: Sequence[mpmath.mpf]) -> Numbers:
     """Closure of a loop in mpmath numbers, in the order of `LoopClosure`: exact to
     first order next to closure."""
     total = mpmath.eye(4)
@@ -262,12 +266,12 @@ def bratu(n: int) -> Case:
 
     def residual(x: np.ndarray) -> np.ndarray:
         u = x[:-1]
-        out = h2 * x[-1] * np.exp(u) - 2 * u
-        out[1:] += u[:-1]
-        out[:-1] += u[1:]
-        return out
+        value = np.asarray(h2 * x[-1] * np.exp(u) - 2 * u)
+        value[1:] += u[:-1]
+        value[:-1] += u[1:]
+        return value
 
-    def exact(x: list[Any]) -> list[Any]:
+    def exact(x: Numbers) -> Numbers:
         u = [mpmath.mpf(0), *x[:-1], mpmath.mpf(0)]
         step = mpmath.mpf(1) / (n + 1) ** 2
         return [
@@ -276,25 +280,21 @@ def bratu(n: int) -> Case:
         ]
 
     bounds = [(-1.0, 20.0)] * n + [(0.0, 5.0)]
-    problem = FunctionProblem(
-        residual, bounds, jacobian=_bratu_dense(n) if n <= DENSE else _bratu_sparse(n)
-    )
+    jacobian = _bratu_dense(n) if n <= DENSE else _bratu_sparse(n)
+    problem = FunctionProblem(residual, bounds, jacobian=jacobian)
     start = np.zeros(n + 1)
-    tangent = null_vector(problem, start, np.eye(n + 1)[-1])
-    name, title = f"bratu-{n}", f"Bratu, {n} unknowns"
-    if n <= DENSE:
-        return Case(name, title, problem, start, tangent, exact)
-    return Case(
-        name,
-        title,
-        problem,
-        start,
-        tangent,
-        exact,
-        TraceSettings(order=20, tolerance=1e-8),
-        1e-7,
-        4.0,
+    case = Case(
+        name=f"bratu-{n}",
+        title=f"Bratu, {n} unknowns",
+        problem=problem,
+        start=start,
+        tangent=null_vector(problem, start, np.eye(n + 1)[-1]),
+        exact_residual=exact,
     )
+    if n <= DENSE:
+        return case
+    settings = TraceSettings(order=20, tolerance=1e-8)
+    return replace(case, settings=settings, tightest=1e-7, patience=4.0)
 
 
 def _bratu_dense(n: int) -> Callable[[np.ndarray], np.ndarray]:

@@ -25,7 +25,9 @@ class Counted(NumericalProblem):
     """
 
     def __init__(self, problem: Problem, budget: int = 100_000):
-        self._problem, self.evaluations, self.budget = problem, 0, budget
+        self._problem = problem
+        self.evaluations = 0
+        self.budget = budget
         for name in (
             "names",
             "units",
@@ -37,12 +39,8 @@ class Counted(NumericalProblem):
             "curvature_residual",
         ):
             setattr(self, name, getattr(problem, name))
-        if (
-            type(problem).march is NumericalProblem.march
-        ):  # by collocation, through the evaluations below
-            self._compiled = False
-        else:
-            self._compiled = True
+        # by collocation F and F' are evaluated through the methods below
+        self._compiled = type(problem).march is not NumericalProblem.march
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
@@ -72,6 +70,6 @@ class Counted(NumericalProblem):
         each."""
         if not self._compiled:
             return super().march(*arguments)
-        made = self._problem.march(*arguments)
-        self.evaluations += A_PIECE * max(1, len(made.pieces))
-        return made
+        march = self._problem.march(*arguments)
+        self.evaluations += A_PIECE * max(1, len(march.pieces))
+        return march

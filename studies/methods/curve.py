@@ -43,17 +43,14 @@ def through_points_and_tangents(
 
     The arclength of a piece is its chord, times 1 + angle^2 / 24 for the arc above it.
     """
-    u, t = np.array(points), np.array(tangents)
-    turned = np.linalg.norm(np.diff(t, axis=0), axis=1)
-    s = np.concatenate(
-        [
-            [0.0],
-            np.cumsum(
-                np.linalg.norm(np.diff(u, axis=0), axis=1) * (1 + turned**2 / 24)
-            ),
-        ]
-    )
-    return Curve(CubicHermiteSpline(s, u, t), min(length, s[-1]), len(u))
+    u = np.array(points)
+    t = np.array(tangents)
+    chords = np.linalg.norm(np.diff(u, axis=0), axis=1)
+    turns = np.linalg.norm(np.diff(t, axis=0), axis=1)
+    s = _sums(chords * (1 + turns**2 / 24))
+    spline = CubicHermiteSpline(s, u, t)
+    end = min(length, s[-1])
+    return Curve(spline, end, len(u))
 
 
 def through_points(
@@ -61,5 +58,12 @@ def through_points(
 ) -> Curve:
     """A cubic spline through points over their chord length, cut off at ``length``."""
     u = np.array(points)
-    s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(u, axis=0), axis=1))])
-    return Curve(CubicSpline(s, u), min(length, s[-1]), len(u), seconds)
+    s = _sums(np.linalg.norm(np.diff(u, axis=0), axis=1))
+    spline = CubicSpline(s, u)
+    end = min(length, s[-1])
+    return Curve(spline, end, len(u), seconds)
+
+
+def _sums(lengths: np.ndarray) -> np.ndarray:
+    """Arclengths (k + 1,) at the ends of stretches of these lengths (k,)."""
+    return np.concatenate([[0.0], np.cumsum(lengths)])

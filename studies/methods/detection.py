@@ -23,22 +23,21 @@ def by_determinant(problem: Problem, points: np.ndarray) -> int:
     m = len(problem.residuals(points[:1])[0])
     n = points.shape[1]
     mix = np.eye(m) if m == n - 1 else mixtures(m, n - 1)
+    jacobians = mix @ problem.jacobians(points)
     chords = np.gradient(points, axis=0)
-    frames = np.concatenate(
-        [mix @ problem.jacobians(points), chords[:, None, :]], axis=1
-    )
-    sign = np.sign(np.linalg.det(frames))
-    sign = sign[sign != 0.0]  # a point that hits the singular point exactly
-    return int(np.count_nonzero(sign[1:] * sign[:-1] < 0))
+    frames = np.concatenate([jacobians, chords[:, None, :]], axis=1)
+    signs = np.sign(np.linalg.det(frames))
+    signs = signs[signs != 0.0]  # a point that hits the singular point exactly
+    changes = signs[1:] * signs[:-1] < 0
+    return int(np.count_nonzero(changes))
 
 
 def by_singular_value(problem: Problem, points: np.ndarray) -> int:
     """Local minima of singular value n - 1 that come close to zero: how the source
     papers read their curves."""
-    sigma = np.linalg.svd(problem.jacobians(points), compute_uv=False)[:, problem.n - 2]
-    low = (
-        (sigma[1:-1] < sigma[:-2])
-        & (sigma[1:-1] <= sigma[2:])
-        & (sigma[1:-1] < SMALL * np.median(sigma))
-    )
-    return int(np.count_nonzero(low))
+    values = np.linalg.svd(problem.jacobians(points), compute_uv=False)
+    smallest = values[:, problem.n - 2]
+    before, here, after = smallest[:-2], smallest[1:-1], smallest[2:]
+    is_minimum = (here < before) & (here <= after)
+    is_small = here < SMALL * np.median(smallest)
+    return int(np.count_nonzero(is_minimum & is_small))

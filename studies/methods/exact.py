@@ -10,6 +10,7 @@ from studies.methods.cases import DIGITS, Case
 
 __all__ = ["distance_in_digits", "distances", "largest_distance"]
 
+STEPS = 4  # of Newton's method
 COVER = 2000  # samples of a curve whose distances are measured
 
 
@@ -22,23 +23,23 @@ def distance_in_digits(case: Case, point: np.ndarray) -> float:
     """
     problem = case.problem
     jacobian = problem.jacobians(point[None])[0]
-    tangent = case.reference(case.reference.nearest(point)[1][0], 1)
-    matrix = np.vstack([jacobian / problem.magnitude, tangent])
-    inverse = np.linalg.pinv(matrix)
+    _, arclengths = case.reference.nearest(point)
+    tangent = case.reference(arclengths[0], 1)
+    inverse = np.linalg.pinv(np.vstack([jacobian / problem.magnitude, tangent]))
+    way = np.zeros(problem.n)
     with mpmath.workdps(DIGITS):
-        u, moved = [mpmath.mpf(float(x)) for x in point], np.zeros(problem.n)
-        for _ in range(4):
+        u = [mpmath.mpf(float(x)) for x in point]
+        for _ in range(STEPS):
             residual = case.exact_residual(u)
             size = max(abs(r) for r in residual)
             if size == 0:
                 break
-            right = (
-                np.append([float(-r / size) for r in residual], 0.0) / problem.magnitude
-            )
-            step = inverse @ right
-            u = [x + mpmath.mpf(float(d)) * size for x, d in zip(u, step, strict=True)]
-            moved += step * float(size)
-    return float(np.linalg.norm(moved))
+            relative = [float(-r / size) for r in residual]
+            step = inverse @ (np.append(relative, 0.0) / problem.magnitude)
+            pairs = zip(u, step, strict=True)
+            u = [x + mpmath.mpf(float(d)) * size for x, d in pairs]
+            way += step * float(size)
+    return float(np.linalg.norm(way))
 
 
 def distances(case: Case, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -61,13 +62,15 @@ def largest_distance(case: Case, points: np.ndarray) -> float:
         if not np.any(inside):
             return np.inf
         distance, s = distance[inside], s[inside]
+    allowed = max(20 * case.length / len(points), 2e-2 * case.length)
+    if _widest_gap(case, s) >= allowed:
+        return np.inf
+    return float(distance.max())
+
+
+def _widest_gap(case: Case, s: np.ndarray) -> float:
+    """The longest stretch of the curve without any of the arclengths ``s`` (k,)."""
     ordered = np.sort(s)
-    ends = [ordered[0], case.length - ordered[-1]]
-    if case.reference.closed:
-        ends = [ordered[0] + case.length - ordered[-1]]
-    widest = max(float(np.diff(ordered).max()), *ends)
-    return (
-        float(distance.max())
-        if widest < max(20 * case.length / len(points), 2e-2 * case.length)
-        else np.inf
-    )
+    start, end = ordered[0], case.length - ordered[-1]
+    ends = [start + end] if case.reference.closed else [start, end]
+    return float(max(np.diff(ordered).max(), *ends))

@@ -2,34 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 from scipy.linalg import lapack
-from scipy.sparse import issparse
+from scipy.sparse import csc_array, issparse
 
 from bifurc.numerics.bordered import sparse_bordered
 from bifurc.problem import Problem
 
-__all__ = ["evaluate", "mixtures", "solve_bordered"]
+__all__ = ["Jacobian", "evaluate", "mixtures", "solve_bordered"]
 
 
-def evaluate(problem: Problem, u: np.ndarray) -> tuple[np.ndarray, Any]:
+Jacobian: TypeAlias = np.ndarray | csc_array
+
+
+def evaluate(problem: Problem, u: np.ndarray) -> tuple[np.ndarray, Jacobian]:
     """F (m,) and F' (m, n), dense or sparse, at one point."""
-    return problem.residuals(u[None])[0], problem.jacobian(u)
+    residual = problem.residuals(u[None])[0]
+    return residual, problem.jacobian(u)
 
 
-def solve_bordered(jacobian: Any, tangent: np.ndarray, right: np.ndarray) -> np.ndarray:
+def solve_bordered(
+    jacobian: Jacobian, tangent: np.ndarray, right: np.ndarray
+) -> np.ndarray:
     """x (n, k) that solves [F'; t] x = right (m + 1, k): by LU where it is square, else
     in the least-squares sense."""
     m, n = jacobian.shape
     if issparse(jacobian):
         return sparse_bordered(jacobian, tangent)(right)
     matrix = np.empty((m + 1, n))
-    matrix[:m], matrix[m] = jacobian, tangent
+    matrix[:m] = jacobian
+    matrix[m] = tangent
     if m + 1 == n:
-        return lapack.dgesv(matrix, right)[2]
-    return lapack.dgels(matrix, right)[1][:n]
+        _, _, exact, _ = lapack.dgesv(matrix, right)
+        return np.asarray(exact)
+    _, nearest, _ = lapack.dgels(matrix, right)
+    return np.asarray(nearest[:n])
 
 
 def mixtures(rows: int, wanted: int) -> np.ndarray:
@@ -39,4 +48,6 @@ def mixtures(rows: int, wanted: int) -> np.ndarray:
     Wherever they have the rank ``wanted`` so has, for almost every such matrix, their
     mixture.
     """
-    return np.linalg.qr(np.random.default_rng(0).normal(size=(rows, rows)))[0][:wanted]
+    rng = np.random.default_rng(0)
+    orthogonal, _ = np.linalg.qr(rng.normal(size=(rows, rows)))
+    return orthogonal[:wanted]

@@ -13,6 +13,9 @@ from studies.methods.point_by_point import turn_per_step
 
 __all__ = ["natural_parameter"]
 
+# of the last 1 to 4 of equally spaced points, in the polynomial through them
+WEIGHTS = ((1,), (-1, 2), (1, -3, 3), (-1, 4, -6, 4))
+
 
 def natural_parameter(
     problem: Problem,
@@ -46,17 +49,18 @@ def _solve(
 ) -> np.ndarray:
     def residual(x: np.ndarray) -> np.ndarray:
         guess[others] = x
-        return problem.residuals(guess[None])[0]
+        return np.asarray(problem.residuals(guess[None])[0])
 
     def jacobian(x: np.ndarray) -> np.ndarray:
         guess[others] = x
-        return problem.jacobians(guess[None])[0][:, others]
+        return np.asarray(problem.jacobians(guess[None])[0][:, others])
 
-    x, enough = guess[others], max(0.1 * tolerance, 1e-14)
+    x = guess[others]
+    enough = max(0.1 * tolerance, 1e-14)
     if len(residual(x)) == len(others):
-        x = root(residual, x, jac=jacobian, tol=enough).x
+        solution = root(residual, x, jac=jacobian, tol=enough)
     else:
-        x = least_squares(
+        solution = least_squares(
             residual,
             x,
             jac=jacobian,
@@ -64,7 +68,8 @@ def _solve(
             xtol=enough,
             ftol=enough,
             gtol=enough,
-        ).x
+        )
+    x = solution.x
     if np.linalg.norm(residual(x)) > 1e3 * tolerance * problem.magnitude + 1e-11:
         raise MethodFailure("the solver does not converge")
     guess[others] = x
@@ -73,11 +78,11 @@ def _solve(
 
 def _extrapolate(solved: list[np.ndarray]) -> np.ndarray:
     """The next of equally spaced points by the polynomial through the last four."""
-    weights = {1: (1,), 2: (-1, 2), 3: (1, -3, 3), 4: (-1, 4, -6, 4)}[
-        min(len(solved), 4)
-    ]
-    return np.array(weights, dtype=float) @ np.array(solved[-len(weights) :])
+    count = min(len(solved), len(WEIGHTS))
+    weights = np.array(WEIGHTS[count - 1], dtype=float)
+    return np.asarray(weights @ np.array(solved[-count:]))
 
 
 def _along(values: np.ndarray, solved: np.ndarray) -> CubicSpline:
-    return CubicSpline((values - values[0]) / (values[-1] - values[0]), solved)
+    travelled = (values - values[0]) / (values[-1] - values[0])
+    return CubicSpline(travelled, solved)

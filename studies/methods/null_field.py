@@ -4,10 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-from scipy.integrate import DOP853, LSODA, RK45, DenseOutput, OdeSolution, OdeSolver
+from scipy.integrate import DOP853, LSODA, RK45, OdeSolution, OdeSolver
 
 from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure
@@ -52,7 +51,7 @@ def integrate_null_field(
         return t
 
     allowed = max(tolerance, 1e-13)
-    ode: Any = SOLVERS[solver](
+    ode = SOLVERS[solver](
         field,
         0.0,
         start,
@@ -61,12 +60,13 @@ def integrate_null_field(
         atol=allowed,
         max_step=longest,
     )
-    times, pieces = [0.0], []
+    times = [0.0]
+    pieces = []
     while ode.status == "running":
         message = ode.step()
         if ode.status == "failed":
             raise MethodFailure(str(message))
-        pieces.append(_piece(ode))
+        pieces.append(ode.dense_output())
         times.append(ode.t)
         if projected:
             ode.y = _project(problem, ode.y, last, allowed)
@@ -75,19 +75,14 @@ def integrate_null_field(
     return Curve(lambda s: solution(s).T, length, len(times))
 
 
-def _piece(ode: OdeSolver) -> DenseOutput:
-    return ode.dense_output()
-
-
 def _project(
     problem: Problem, u: np.ndarray, tangent: np.ndarray, tolerance: float
 ) -> np.ndarray:
     """Newton's method across ``tangent``."""
     for _ in range(3):
         residual, jacobian = evaluate(problem, u)
-        step = solve_bordered(jacobian, tangent, np.append(-residual, 0.0)[:, None])[
-            :, 0
-        ]
+        right = np.append(-residual, 0.0)[:, None]
+        step = solve_bordered(jacobian, tangent, right)[:, 0]
         u = u + step
         if np.linalg.norm(step) < np.sqrt(tolerance) * 1e-2:
             break

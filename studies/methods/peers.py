@@ -41,7 +41,7 @@ def pycont_lite(
 
     def system(u: np.ndarray, p: float) -> np.ndarray:
         value = problem.residuals(np.append(u, p)[None])[0]
-        return value if square else mix @ value
+        return np.asarray(value if square else mix @ value)
 
     h = 0.5 * turn_per_step(tolerance)
     direction = "increase_p" if tangent[-1] > 0 else "decrease_p"
@@ -91,7 +91,7 @@ def count_branch_points(
 
     def system(u: np.ndarray, p: float) -> np.ndarray:
         value = problem.residuals(np.append(u, p)[None])[0]
-        return value if rows == problem.n - 1 else mix @ value
+        return np.asarray(value if rows == problem.n - 1 else mix @ value)
 
     options = {
         "tolerance": 1e-10,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from bifurc.problem import Problem
@@ -20,15 +22,16 @@ __all__ = [
 ]
 
 NEWTON = 8  # corrections of one point
-LONGEST = (
-    0.6  # largest step over the turn of a step: straight stretches are not smooth ones
-)
+# largest step over the turn of a step: straight stretches are not smooth ones
+LONGEST = 0.6
+FIRST = 0.1  # first step, over the turn of a step
+SMALLEST = 1e-9  # step below which a curve is given up
 
 
 def turn_per_step(tolerance: float) -> float:
     """Angle by which the tangent may turn in a step so that cubic pieces err by about
     ``tolerance``."""
-    return 2.5 * tolerance**0.25
+    return float(2.5 * tolerance**0.25)
 
 
 def pseudo_arclength_tangent(
@@ -46,31 +49,28 @@ def pseudo_arclength_tangent(
     converge; the ``longest``, over the problem's scale, is `LONGEST` times that angle
     unless given.
     """
-    longest = LONGEST * turn_per_step(tolerance) if longest is None else longest
-    turn, u, t, h = (
-        turn_per_step(tolerance),
-        start,
-        tangent,
-        turn_per_step(tolerance) * 0.1,
-    )
-    points, tangents, travelled = [u], [t], 0.0
+    turn = turn_per_step(tolerance)
+    limit = (LONGEST * turn if longest is None else longest) * problem.scale
+    u, t, h = start, tangent, FIRST * turn
+    points = [u]
+    tangents = [t]
+    travelled = 0.0
     while travelled < length:
-        found = _correct(problem, u + h * t, t, tolerance)
-        if found is None:
+        corrected = _correct(problem, u + h * t, t, tolerance)
+        if corrected is None:
             h = _halved(h)
             continue
-        new, slope = found
-        angle = float(np.linalg.norm(slope - t))
+        angle = float(np.linalg.norm(corrected.tangent - t))
         if angle > 2 * turn:
             h = _halved(h)
             continue
-        travelled += float(np.linalg.norm(new - u)) * (1 + angle**2 / 24)
-        u, t = new, slope
+        chord = float(np.linalg.norm(corrected.point - u))
+        travelled += chord * (1 + angle**2 / 24)
+        u, t = corrected.point, corrected.tangent
         points.append(u)
         tangents.append(t)
-        h = min(
-            h * min(2.0, max(0.5, turn / (angle + 1e-300))), longest * problem.scale
-        )
+        growth = min(2.0, max(0.5, turn / (angle + 1e-300)))
+        h = min(h * growth, limit)
     return through_points_and_tangents(points, tangents, length)
 
 
@@ -83,54 +83,58 @@ def pseudo_arclength_secant(
 ) -> Curve:
     """Pseudo-arclength continuation with the secant through the last two points as
     predictor, and a cubic spline."""
-    turn, u, t, h = (
-        turn_per_step(tolerance),
-        start,
-        tangent,
-        turn_per_step(tolerance) * 0.1,
-    )
-    points, travelled, tried = [u], 0.0, h
+    turn = turn_per_step(tolerance)
+    limit = LONGEST * turn * problem.scale
+    u, t, h = start, tangent, FIRST * turn
+    points = [u]
+    travelled = 0.0
+    planned = h
     while travelled < length + 2 * h:
-        found = _correct(problem, u + h * t, t, tolerance)
-        if found is None:
+        corrected = _correct(problem, u + h * t, t, tolerance)
+        if corrected is None:
             h = _halved(h)
             continue
-        chord = found[0] - u
+        chord = corrected.point - u
         size = float(np.linalg.norm(chord))
         angle = float(np.linalg.norm(chord / size - t))
-        if (
-            angle > 2 * turn and h > tried / 16 and len(points) > 1
-        ):  # the last secant itself lags behind the tangent
+        # the last secant itself lags behind the tangent: halve four times at most
+        if angle > 2 * turn and h > planned / 16 and len(points) > 1:
             h = _halved(h)
             continue
         travelled += size
-        u, t = found[0], chord / size
+        u, t = corrected.point, chord / size
         points.append(u)
-        h = min(
-            h * min(1.5, max(0.5, turn / (angle + 1e-300))),
-            LONGEST * turn * problem.scale,
-        )
-        tried = h
+        growth = min(1.5, max(0.5, turn / (angle + 1e-300)))
+        h = planned = min(h * growth, limit)
     return through_points(points, length)
 
 
 def _halved(h: float) -> float:
-    if h < 1e-9:
+    if h < SMALLEST:
         raise MethodFailure("the step has become too small")
     return 0.5 * h
 
 
+class _Corrected(NamedTuple):
+    """A point (n,) of the curve and the unit tangent (n,) there."""
+
+    point: np.ndarray
+    tangent: np.ndarray
+
+
 def _correct(
     problem: Problem, guess: np.ndarray, tangent: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """Newton's method on F = 0, t . (u - guess) = 0; the point and the unit tangent
-    there, or None."""
-    u, enough = guess, max(0.1 * tolerance, 1e-13) * problem.scale
-    right, last = np.empty(0), np.inf
+) -> _Corrected | None:
+    """Newton's method on F = 0, t . (u - guess) = 0; None where it does not
+    converge."""
+    u = guess
+    enough = max(0.1 * tolerance, 1e-13) * problem.scale
+    last = np.inf
     for _ in range(NEWTON):
         residual, jacobian = evaluate(problem, u)
         right = np.zeros((len(residual) + 1, 2))
-        right[:-1, 0], right[-1, 1] = -residual, 1.0
+        right[:-1, 0] = -residual
+        right[-1, 1] = 1.0
         solution = solve_bordered(jacobian, tangent, right)
         step, slope = solution[:, 0], solution[:, 1]
         u = u + step
@@ -140,7 +144,7 @@ def _correct(
         # quadratic convergence: the next step would be about size^2, and the tangent is
         # as good
         if size < max(enough, 1e-3 * np.sqrt(enough)):
-            return u, slope / np.linalg.norm(slope)
+            return _Corrected(u, slope / np.linalg.norm(slope))
         last = size
     return None
 
@@ -161,25 +165,32 @@ def svd_predictor_corrector(
     below the tolerance. (In (A2) and (A6) the factors stand in the wrong order, and the
     sum of (A17) is -E.)
     """
-    h, u, t = 0.5 * turn_per_step(tolerance), start, tangent
-    points, tangents, travelled = [u], [t], 0.0
+    h = 0.5 * turn_per_step(tolerance)
+    u, t = start, tangent
+    points = [u]
+    tangents = [t]
+    travelled = 0.0
     limit = max(0.1 * tolerance, 1e-14)
     while travelled < length:
-        new = u + h * t
-        for _ in range(NEWTON):
-            residual, jacobian = evaluate(problem, new)
-            left, sigma, right = np.linalg.svd(jacobian)
-            if float(np.linalg.norm(residual)) <= limit * sigma[0]:
-                break
-            rank = problem.n - 1
-            new = new - right[:rank].T @ ((left[:, :rank].T @ residual) / sigma[:rank])
-        else:
-            raise MethodFailure("the corrector does not converge")
-        slope = right[-1] * np.sign(right[-1] @ t)
-        travelled += float(
-            np.linalg.norm(new - u) * (1 + np.linalg.norm(slope - t) ** 2 / 24)
-        )
-        u, t = new, slope
+        point, null_vector = _correct_by_svd(problem, u + h * t, limit)
+        slope = null_vector * np.sign(null_vector @ t)
+        turn = np.linalg.norm(slope - t)
+        travelled += float(np.linalg.norm(point - u) * (1 + turn**2 / 24))
+        u, t = point, slope
         points.append(u)
         tangents.append(t)
     return through_points_and_tangents(points, tangents, length)
+
+
+def _correct_by_svd(problem: Problem, guess: np.ndarray, limit: float) -> _Corrected:
+    """The point that steps of the pseudo-inverse lead to, and the null vector there, of
+    either sign; raises `MethodFailure`."""
+    u = guess
+    rank = problem.n - 1
+    for _ in range(NEWTON):
+        residual, jacobian = evaluate(problem, u)
+        left, sigma, right = np.linalg.svd(jacobian)
+        if float(np.linalg.norm(residual)) <= limit * sigma[0]:
+            return _Corrected(u, right[-1])
+        u = u - right[:rank].T @ ((left[:, :rank].T @ residual) / sigma[:rank])
+    raise MethodFailure("the corrector does not converge")

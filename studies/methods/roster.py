@@ -63,20 +63,19 @@ def comparison_methods() -> list[Method]:
         Method("natural parameter", _natural, small=True),
     ]
     for solver in null_field.SOLVERS:
-        for projected in (False, True) if solver != "LSODA" else (False,):
-            follow = partial(
-                null_field.integrate_null_field, solver=solver, projected=projected
-            )
-            methods.append(
-                _by_arclength(
-                    f"solve_ivp {solver}" + (", projected" if projected else ""), follow
-                )
-            )
+        plain = partial(_integrate, solver=solver, projected=False)
+        methods.append(_by_arclength(f"solve_ivp {solver}", plain))
+        if solver != "LSODA":  # its history of steps cannot be moved
+            moved = partial(_integrate, solver=solver, projected=True)
+            methods.append(_by_arclength(f"solve_ivp {solver}, projected", moved))
     if peers.has_pycont():
         methods.append(_by_arclength("pycont-lite", peers.pycont_lite))
     if auto07p.has_auto():
         methods.append(Method("AUTO-07p", auto07p.auto_07p, small=True))
     return methods
+
+
+_integrate = null_field.integrate_null_field
 
 
 def _by_arclength(name: str, follow: Follow, small: bool = False) -> Method:

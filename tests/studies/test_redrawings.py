@@ -6,7 +6,7 @@ from importlib import import_module
 import pytest
 from click.testing import CliRunner
 
-from studies.redrawing import HOLDS, Claim
+from studies.redrawing import HOLDS, Claim, _judge
 
 STUDIES = {
     "special_wohlhart_double_goldberg": "figure_5_4",
@@ -37,6 +37,4 @@ def test_a_study_prints_its_tables_and_writes_its_figure(tmp_path):
 
 
 def test_a_claim_that_does_not_hold_is_said_not_to():
-    from studies.redrawing import _judged
-
-    assert "is off by 0.3" in _judged(Claim("all is well", 0.3))
+    assert "is off by 0.3" in _judge(Claim("all is well", 0.3))

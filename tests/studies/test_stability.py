@@ -9,14 +9,10 @@ from bifurc.curves.monitor import profile_branch
 from studies.hard_cases import crossings, ladders, near_parallelogram, pitchfork
 from studies.methods.counted import Counted
 from studies.methods.detection import by_determinant, by_singular_value
-from studies.stability import (
-    describe,
-    follow_ladder,
-    followers,
-    report_points,
-    reporters,
-)
+from studies.stability import describe
+from studies.stability_arcs import follow_ladder, followers
 from studies.stability_figure import draw_stability
+from studies.stability_points import report_points, reporters
 
 CROSSINGS = {case.name: case for case in crossings()[:4]}
 

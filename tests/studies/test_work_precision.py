@@ -10,17 +10,16 @@ from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import distance_in_digits, largest_distance
 from studies.methods.peers import has_pycont, pycont_lite
 from studies.methods.roster import Method, comparison_methods, orders_of_this_project
-from studies.work_precision import (
-    Run,
+from studies.work_precision import measure, measure_case
+from studies.work_precision_figures import unbeaten
+from studies.work_precision_findings import (
     fastest,
-    measure,
-    measure_case,
     points_in_our_time,
     ratios,
     recommend,
     summarise,
 )
-from studies.work_precision_figures import unbeaten
+from studies.work_precision_runs import Run
 
 METHODS = [*orders_of_this_project(), *comparison_methods()]
 
@@ -70,7 +69,7 @@ def test_the_first_run_of_a_method_is_not_measured():
             case.reference, case.length, 1, seconds=99.0 if len(calls) == 1 else 1.0
         )  # it compiles at first
 
-    runs, _ = measure_case(case, [Method("slow to begin", follow)], 1.0)
+    runs = measure_case(case, [Method("slow to begin", follow)], 1.0).runs
     assert runs
     assert {run.seconds for run in runs} == {1.0}
 
@@ -80,7 +79,7 @@ def test_a_method_that_takes_long_to_fail_is_given_up():
         sum(range(100_000))
         raise MethodFailure("no")
 
-    runs, _ = measure_case(circle(), [Method("fails", fail)], 1e-6)
+    runs = measure_case(circle(), [Method("fails", fail)], 1e-6).runs
     assert len(runs) == 1
 
 
@@ -183,9 +182,9 @@ def test_a_sparse_problem_is_left_to_methods_with_sparse_matrices():
     )
     few = [METHODS[4], *(m for m in METHODS if m.small)]
     assert few[0].name == "order 16"
-    runs, floor = measure_case(case, few, 0.0)
-    ours, *others = runs
-    assert floor < 1e-8
+    measured = measure_case(case, few, 0.0)
+    ours, *others = measured.runs
+    assert measured.floor < 1e-8
     assert ours.error < 1e-3
     assert others
     assert all("not tried" in run.note for run in others)

@@ -8,19 +8,24 @@ import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeAlias
+
+from bifurc.errors import BifurcError
 
 try:
     import fcntl
-except (
-    ImportError
-):  # not a Unix system: nothing guards against two sweeps on one journal
+except ImportError:  # not a Unix system: nothing keeps two sweeps off one journal
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["Journal", "JournalError"]
+__all__ = ["Journal", "JournalError", "Line"]
+
+Line: TypeAlias = dict[str, Any]  # values of JSON; who writes a line knows which
+
+NO_JOURNAL = "it is no journal of a sweep; choose another --out or delete it"
+CHUNK = 4096  # bytes read at a time on the way back to the last newline
 
 
-class JournalError(ValueError):
+class JournalError(BifurcError, ValueError):
     """A journal that cannot be continued: ``path`` and why."""
 
     def __init__(self, path: Path, why: str):
@@ -33,23 +38,17 @@ class Journal:
     moment.
 
     The first line is ``header``; an existing file must begin with the same one. A last
-    line that was cut off is dropped. One writer at a time: a second one raises
-    `JournalError`.
+    line that was cut off is dropped. Raises `JournalError` for a file that is no
+    journal, for that of another header, and where another process writes it.
     """
 
-    def __init__(self, path: Path, header: Mapping[str, Any]):
+    def __init__(self, path: Path, header: Mapping[str, object]):
         self.path = path
         self._file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
         try:
             self._lock()
             self._drop_torn_line()
-            first = next(self.lines(), None)
-            if first is None:
-                self.append(header)
-            elif first != json.loads(json.dumps(header)):
-                raise JournalError(
-                    path, "belongs to another sweep; choose another --out or delete it"
-                )
+            self._begin_with(header)
         except BaseException:
             os.close(self._file)
             raise
@@ -65,18 +64,32 @@ class Journal:
     ) -> None:
         os.close(self._file)
 
-    def append(self, record: Mapping[str, Any]) -> None:
+    def append(self, line: Mapping[str, object]) -> None:
         """Write one line and force it to disk."""
-        line = (json.dumps(record) + "\n").encode()
-        while line:
-            line = line[os.write(self._file, line) :]
+        rest = (json.dumps(line) + "\n").encode()
+        while rest:
+            count = os.write(self._file, rest)
+            rest = rest[count:]
         os.fsync(self._file)
 
-    def lines(self) -> Iterator[dict[str, Any]]:
-        """All lines, the header first, read one at a time."""
+    def lines(self) -> Iterator[Line]:
+        """All lines, the header first, read one at a time; raises `JournalError` for a
+        line that is no JSON object."""
         with open(self.path, encoding="utf-8") as file:
-            for line in file:
-                yield json.loads(line)
+            try:
+                for text in file:
+                    yield self._parsed(text)
+            except UnicodeDecodeError:
+                raise JournalError(self.path, NO_JOURNAL) from None
+
+    def _parsed(self, text: str) -> Line:
+        try:
+            line = json.loads(text)
+        except json.JSONDecodeError:
+            line = None
+        if not isinstance(line, dict):
+            raise JournalError(self.path, NO_JOURNAL)
+        return line
 
     def _lock(self) -> None:
         if fcntl is None:
@@ -87,13 +100,22 @@ class Journal:
             raise JournalError(self.path, "another sweep is writing it") from None
 
     def _drop_torn_line(self) -> None:
+        """Cut off what stands behind the last newline."""
         end = os.lseek(self._file, 0, os.SEEK_END)
         while end:
-            start = max(0, end - 4096)
-            part = os.pread(self._file, end - start, start)
-            newline = part.rfind(b"\n")
+            start = max(0, end - CHUNK)
+            newline = os.pread(self._file, end - start, start).rfind(b"\n")
             if newline >= 0:
                 end = start + newline + 1
                 break
             end = start
         os.ftruncate(self._file, end)
+
+    def _begin_with(self, header: Mapping[str, object]) -> None:
+        """Write the header to an empty file, or compare it with that of the file."""
+        first = next(self.lines(), None)
+        if first is None:
+            self.append(header)
+        elif first != json.loads(json.dumps(header)):
+            why = "it belongs to another sweep; choose another --out or delete it"
+            raise JournalError(self.path, why)

@@ -8,15 +8,32 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
+from numpy.typing import NDArray
 
+from linkages.app.choice import read_number, split_parameter
 from linkages.catalogue import entry
 from linkages.entry import Entry
 from linkages.loop import GeometryError
 
-__all__ = ["Block", "Plan", "read_plan"]
+__all__ = ["Block", "Plan", "PlanDocument", "read_plan"]
+
+MOST_VALUES = 1_000_000  # of one parameter on a grid
+
+
+class PlanDocument(TypedDict):
+    """A plan in plain values, by which journal and dataset know it again."""
+
+    family: str
+    axes: dict[str, list[float]]
+    fixed: dict[str, float]
+    ranges: dict[str, list[float]]
+    random: int
+    starts: int
+    seed: int
+    block: int
 
 
 @dataclass(frozen=True)
@@ -26,7 +43,7 @@ class Block:
 
     number: int
     region: tuple[slice, ...]
-    indices: np.ndarray
+    indices: NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -56,11 +73,9 @@ class Plan:
     @property
     def shape(self) -> tuple[int, ...]:
         """Number of members along each dimension."""
-        return (
-            (self.random,)
-            if self.random
-            else tuple(len(values) for values in self.axes.values())
-        )
+        if self.random:
+            return (self.random,)
+        return tuple(len(values) for values in self.axes.values())
 
     @property
     def size(self) -> int:
@@ -70,26 +85,33 @@ class Plan:
     @cached_property
     def chunk(self) -> tuple[int, ...]:
         """Shape of a block: as many of the last dimensions as fit into it."""
-        left, out = self.block, []
+        room = self.block
+        chunk: list[int] = []
         for length in reversed(self.shape):
-            out.append(max(1, min(length, left)))
-            left //= out[-1]
-        return tuple(reversed(out))
+            along = max(1, min(length, room))
+            chunk.append(along)
+            room //= along
+        return tuple(reversed(chunk))
 
     def blocks(self) -> Iterator[Block]:
         """All blocks, in order."""
-        starts = [range(0, n, c) for n, c in zip(self.shape, self.chunk, strict=True)]
-        for number, corner in enumerate(product(*starts)):
-            region = tuple(
-                slice(a, min(a + c, n))
-                for a, c, n in zip(corner, self.chunk, self.shape, strict=True)
-            )
-            axes = np.meshgrid(
-                *(np.arange(s.start, s.stop) for s in region), indexing="ij"
-            )
-            yield Block(
-                number, region, np.ravel_multi_index(tuple(axes), self.shape).ravel()
-            )
+        corners = [
+            range(0, length, step)
+            for length, step in zip(self.shape, self.chunk, strict=True)
+        ]
+        for number, corner in enumerate(product(*corners)):
+            region = self._region(corner)
+            axes = [np.arange(along.start, along.stop) for along in region]
+            grid = np.meshgrid(*axes, indexing="ij")
+            indices = np.ravel_multi_index(tuple(grid), self.shape).ravel()
+            yield Block(number, region, indices)
+
+    def _region(self, corner: Sequence[int]) -> tuple[slice, ...]:
+        """The part of the grid that the block with this first corner covers."""
+        bounds = zip(corner, self.chunk, self.shape, strict=True)
+        return tuple(
+            slice(start, min(start + step, length)) for start, step, length in bounds
+        )
 
     @property
     def block_count(self) -> int:
@@ -98,41 +120,36 @@ class Plan:
 
     @property
     def _blocks_along(self) -> tuple[int, ...]:
-        return tuple(-(-n // c) for n, c in zip(self.shape, self.chunk, strict=True))
+        pairs = zip(self.shape, self.chunk, strict=True)
+        return tuple(math.ceil(length / step) for length, step in pairs)
 
     def block_of(self, index: int) -> int:
         """Number of the block that holds a member."""
-        corner = [
-            int(i) // c
-            for i, c in zip(
-                np.unravel_index(index, self.shape), self.chunk, strict=True
-            )
-        ]
+        place = np.unravel_index(index, self.shape)
+        pairs = zip(place, self.chunk, strict=True)
+        corner = [int(along) // step for along, step in pairs]
         return int(np.ravel_multi_index(corner, self._blocks_along))
 
     def parameters(self, index: int) -> dict[str, float]:
         """Parameters of one member, rad for angles."""
+        values = dict(self.fixed)
         if self.random:
             rng = np.random.default_rng([self.seed, index])
-            drawn = {
-                name: float(rng.uniform(low, high))
-                for name, (low, high) in self.ranges.items()
-            }
-            return {**self.fixed, **drawn}
-        at = np.unravel_index(index, self.shape)
-        varied = {
-            name: values[i]
-            for (name, values), i in zip(self.axes.items(), at, strict=True)
-        }
-        return {**self.fixed, **varied}
+            for name, (low, high) in self.ranges.items():
+                values[name] = float(rng.uniform(low, high))
+            return values
+        place = np.unravel_index(index, self.shape)
+        for (name, axis), along in zip(self.axes.items(), place, strict=True):
+            values[name] = axis[along]
+        return values
 
-    def as_dict(self) -> dict[str, Any]:
-        """The plan in plain values, by which a journal knows it again."""
+    def as_dict(self) -> PlanDocument:
+        """The plan in plain values."""
         return {
             "family": self.family,
-            "axes": {k: list(v) for k, v in self.axes.items()},
+            "axes": {name: list(values) for name, values in self.axes.items()},
             "fixed": dict(self.fixed),
-            "ranges": {k: list(v) for k, v in self.ranges.items()},
+            "ranges": {name: list(bounds) for name, bounds in self.ranges.items()},
             "random": self.random,
             "starts": self.starts,
             "seed": self.seed,
@@ -150,31 +167,23 @@ def read_plan(
     ``random`` drawn from the catalogue's ranges. Raises `GeometryError` and
     `linkages.catalogue.UnknownLinkageError`.
     """
-    found = entry(family)
+    if random < 0:
+        raise GeometryError("--random", random, "at least 1")
+    linkage = entry(family)
     fixed: dict[str, float] = {}
     spans: dict[str, tuple[float, ...]] = {}
     for text in texts:
-        name, numbers = _read(found, text)
+        name, numbers = _read(linkage, text)
+        if name in fixed or name in spans:
+            raise GeometryError(f"--param {name}", repr(text), "given only once")
         if len(numbers) == 1:
             fixed[name] = numbers[0]
         elif len(numbers) == (2 if random else 3):
             spans[name] = numbers
         else:
-            expected = (
-                "value or low:high with --random"
-                if random
-                else "value or first:last:count"
-            )
-            raise GeometryError(
-                f"--param {name}", repr(text), f"of the form {name}=... with {expected}"
-            )
-    if random < 0:
-        raise GeometryError("--random", random, "at least 1")
+            raise GeometryError(f"--param {name}", repr(text), _form(name, random))
     if random:
-        ranges = {
-            p.name: (p.low, p.high) for p in found.parameters if p.name not in fixed
-        }
-        ranges |= {name: (low, high) for name, (low, high) in spans.items()}
+        ranges = _ranges(linkage, fixed, spans)
         return Plan(
             family, fixed=fixed, ranges=ranges, random=random, starts=starts, seed=seed
         )
@@ -184,34 +193,51 @@ def read_plan(
             "no grid",
             "given as name=first:last:count at least once, or use --random",
         )
-    axes = {}
-    for name, (first, last, count) in spans.items():
-        if count != int(count) or count < 1:
-            raise GeometryError(
-                f"number of values of {name}", count, "a whole number from 1"
-            )
-        axes[name] = tuple(np.linspace(first, last, int(count)).tolist())
+    axes = {name: _axis(name, span) for name, span in spans.items()}
     return Plan(family, axes, fixed, starts=starts, seed=seed)
 
 
-def _read(found: Entry, text: str) -> tuple[str, tuple[float, ...]]:
+def _form(name: str, random: int) -> str:
+    """What a parameter may look like."""
+    values = (
+        "value or low:high with --random" if random else "value or first:last:count"
+    )
+    return f"of the form {name}=... with {values}"
+
+
+def _ranges(
+    linkage: Entry, fixed: Mapping[str, float], spans: Mapping[str, tuple[float, ...]]
+) -> dict[str, tuple[float, float]]:
+    """Bounds of the parameters that are drawn: those given, or else the
+    catalogue's."""
+    ranges = {}
+    for parameter in linkage.parameters:
+        if parameter.name in spans:
+            low, high = spans[parameter.name]
+            ranges[parameter.name] = (low, high)
+        elif parameter.name not in fixed:
+            ranges[parameter.name] = (parameter.low, parameter.high)
+    return ranges
+
+
+def _axis(name: str, span: Sequence[float]) -> tuple[float, ...]:
+    """The values of a parameter on a grid; raises `GeometryError`."""
+    first, last, count = span
+    if count != int(count) or not 1 <= count <= MOST_VALUES:
+        allowed = f"a whole number from 1 to {MOST_VALUES}"
+        raise GeometryError(f"number of values of {name}", count, allowed)
+    return tuple(np.linspace(first, last, int(count)).tolist())
+
+
+def _read(linkage: Entry, text: str) -> tuple[str, tuple[float, ...]]:
     """Name and numbers of "name=number:number:..."; angles turned to rad, the third
-    number left as it is."""
-    name, equals, values = text.partition("=")
-    name = name.strip()
-    kinds = {p.name: p.kind for p in found.parameters}
-    if not equals or name not in kinds:
-        raise GeometryError(
-            "--param", repr(text), f"name=... with a name out of {', '.join(kinds)}"
-        )
-    try:
-        numbers = [float(part) for part in values.split(":")]
-    except ValueError:
-        raise GeometryError(
-            f"--param {name}", repr(values), "numbers separated by colons"
-        ) from None
-    if not all(math.isfinite(x) for x in numbers):
-        raise GeometryError(f"--param {name}", repr(values), "finite numbers")
+    number left as it is. Raises `GeometryError`."""
+    name, values = split_parameter(text)
+    kinds = {parameter.name: parameter.kind for parameter in linkage.parameters}
+    if name not in kinds:
+        allowed = f"name=... with a name out of {', '.join(kinds)}"
+        raise GeometryError("--param", repr(text), allowed)
+    numbers = [read_number(name, part) for part in values.split(":")]
     if kinds[name] == "angle":
-        numbers[:2] = [math.radians(x) for x in numbers[:2]]
+        numbers[:2] = [math.radians(degrees) for degrees in numbers[:2]]
     return name, tuple(numbers)

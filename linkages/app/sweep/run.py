@@ -10,33 +10,22 @@ few blocks are ever held in memory.
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    wait,
-)
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from multiprocessing.connection import wait as wait_for_end
 from pathlib import Path
-from typing import Any
+from typing import TypeAlias
 
 from linkages.app.sweep.journal import Journal
-from linkages.app.sweep.member import atlas_name, map_member
+from linkages.app.sweep.member import Record, atlas_name, map_member
 from linkages.app.sweep.plan import Block, Plan
-from linkages.app.sweep.store import SweepStore
+from linkages.app.sweep.store import SweepStore, require_room
+from linkages.app.sweep.workers import Pool, WorkerError, open_pool
 
-__all__ = ["journal_path", "run_sweep"]
+__all__ = ["Sweep", "journal_path", "prepare_sweep", "run_sweep"]
 
-AHEAD = 4  # members waiting for each worker
-Records = dict[int, dict[str, Any]]
+Progress: TypeAlias = Callable[[int], None]
 
 
 def journal_path(out: Path) -> Path:
@@ -51,165 +40,178 @@ def run_sweep(
     workers: int | None = None,
     scheduler: str | None = None,
     atlases: Path | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Progress | None = None,
 ) -> None:
     """Map every member of ``plan`` that the journal beside ``out`` does not hold yet,
     and write the dataset ``out``.
 
-    ``workers`` processes on this machine (all cores by default), or the workers of the
-    Dask ``scheduler``. ``atlases`` is a folder for the whole atlas of every member,
-    which all workers must see. ``progress`` is called with the number of members
-    finished since its last call. Raises `linkages.app.sweep.journal.JournalError` where
-    the journal is of another sweep.
+    Options and errors are those of `prepare_sweep`; ``progress`` is called with the
+    number of members finished since its last call.
     """
-    if atlases is not None:
-        atlases = atlases.resolve()
-        atlases.mkdir(parents=True, exist_ok=True)
-    with Journal(journal_path(out), {"sweep": plan.as_dict()}) as journal:
-        written, known = _recall(plan, journal)
-        store = SweepStore(out, plan)
-        tell = progress or (lambda count: None)
-        tell(
-            sum(
-                len(block.indices) for block in plan.blocks() if block.number in written
-            )
-        )
-        if len(written) == plan.block_count:
-            return
-        with _executor(workers, scheduler) as (executor, window):
-            _Work(plan, journal, store, executor, window, atlases, tell).run(
-                written, known
-            )
+    with prepare_sweep(
+        plan, out, workers=workers, scheduler=scheduler, atlases=atlases
+    ) as sweep:
+        sweep.run(progress or _ignore)
 
 
-def _recall(plan: Plan, journal: Journal) -> tuple[set[int], Records]:
-    """Numbers of the blocks that are in the dataset, and the finished members of all
-    others."""
-    written = {line["block"] for line in journal.lines() if "block" in line}
-    finished = (line for line in journal.lines() if "member" in line)
-    return written, {
-        line["member"]: line
-        for line in finished
-        if plan.block_of(line["member"]) not in written
-    }
+def _ignore(count: int) -> None:
+    """Nobody wants to know of progress."""
 
 
 @contextmanager
-def _executor(
-    workers: int | None, scheduler: str | None
-) -> Iterator[tuple[Executor, int]]:
-    """An executor, and how many members to keep in its queue."""
-    if scheduler is not None:
-        from distributed import Client
+def prepare_sweep(
+    plan: Plan,
+    out: Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    atlases: Path | None = None,
+) -> Iterator[Sweep]:
+    """A sweep that is ready to run, with its journal and its workers.
 
-        with Client(scheduler) as client:
-            cores = sum(client.nthreads().values())
-            yield client.get_executor(pure=False), AHEAD * max(cores, 1)
-        return
-    count = workers or usable_cores()
-    os.environ.setdefault(
-        "OPENBLAS_NUM_THREADS", "1"
-    )  # one process a core: threads of BLAS would only compete
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(
-        count, mp_context=context, initializer=_start_worker
-    ) as executor:
-        try:
-            yield executor, AHEAD * count
-        except BaseException:
-            executor.shutdown(wait=False, cancel_futures=True)
-            raise
-
-
-def usable_cores() -> int:
-    """Number of cores this process may use."""
-    return (
-        len(os.sched_getaffinity(0))
-        if hasattr(os, "sched_getaffinity")
-        else os.cpu_count() or 1
-    )
+    ``workers`` processes on this machine (all cores by default), or the workers of the
+    Dask ``scheduler``. ``atlases`` is a folder for the whole atlas of every member,
+    which all workers must see. Raises `SchedulerError`, `StoreError` where ``out``
+    holds something else, and `JournalError` where the journal is of another sweep;
+    nothing is written before the scheduler answers.
+    """
+    require_room(out, plan)
+    with (
+        open_pool(workers, scheduler) as pool,
+        Journal(journal_path(out), {"sweep": plan.as_dict()}) as journal,
+    ):
+        store = SweepStore(out, plan)
+        if atlases is not None:
+            atlases = atlases.resolve()
+            atlases.mkdir(parents=True, exist_ok=True)
+        yield Sweep(plan, journal, store, pool, atlases)
 
 
-def _start_worker() -> None:
-    """Leave Ctrl-C to the sweep, and end with it when it is killed: by itself a worker
-    would wait for work for ever."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    parent = multiprocessing.parent_process()
+@dataclass(frozen=True)
+class _Finished:
+    """What the journal holds: the numbers of the blocks that are in the dataset, and
+    the records of members of other blocks."""
 
-    def watch() -> None:
-        if parent is not None:
-            wait_for_end([parent.sentinel])
-            os._exit(1)
+    blocks: set[int]
+    records: dict[int, Record]
 
-    threading.Thread(target=watch, daemon=True).start()
+
+@dataclass(frozen=True)
+class _OpenBlock:
+    """A block under way: the records of its finished members, by their indices."""
+
+    block: Block
+    records: dict[int, Record]
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all members are finished."""
+        return len(self.records) == len(self.block.indices)
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A member under way, and the block that it belongs to."""
+
+    index: int
+    block: _OpenBlock
 
 
 @dataclass
-class _Work:
-    """What is under way: the futures, and the records of every block that is not
-    complete."""
+class Sweep:
+    """What is under way: the futures, and the journal that they are written to."""
 
     plan: Plan
     journal: Journal
     store: SweepStore
-    executor: Executor
-    window: int
+    pool: Pool
     atlases: Path | None
-    tell: Callable[[int], None]
-    waiting: dict[Future[dict[str, Any]], tuple[Block, int]] = field(
-        default_factory=dict
-    )
-    opened: dict[int, Records] = field(default_factory=dict)
+    tasks: dict[Future[Record], _Task] = field(default_factory=dict)
 
-    def run(self, written: set[int], known: Records) -> None:
-        """Map what is missing, block by block, with never more than ``window`` members
-        under way."""
+    def run(self, progress: Progress) -> None:
+        """Map what is missing, block by block, with never more members under way than
+        the pool wants in its queue."""
+        finished = self._read_journal()
         for block in self.plan.blocks():
-            if block.number in written:
+            if block.number in finished.blocks:
+                progress(len(block.indices))
                 continue
-            indices = block.indices.tolist()
-            records = self.opened[block.number] = {
-                i: known.pop(i) for i in indices if i in known
-            }
-            self.tell(len(records))
-            for index in indices:
-                if index not in records:
-                    self._submit(block, index)
-            self._close_if_complete(block)
-        while self.waiting:
-            self._collect()
+            opened = _opened(block, finished)
+            progress(len(opened.records))
+            if opened.is_complete:
+                self._write(opened)
+                continue
+            for index in block.indices.tolist():
+                if index not in opened.records:
+                    self._make_room(progress)
+                    self._submit(_Task(index, opened))
+        while self.tasks:
+            self._collect(progress)
 
-    def _submit(self, block: Block, index: int) -> None:
-        while len(self.waiting) >= self.window:
-            self._collect()
-        plan, path = (
-            self.plan,
-            str(self.atlases / atlas_name(index)) if self.atlases else None,
-        )
-        future = self.executor.submit(
+    def _read_journal(self) -> _Finished:
+        blocks = {line["block"] for line in self.journal.lines() if "block" in line}
+        records: dict[int, Record] = {}
+        for line in self.journal.lines():
+            index = line.get("member")
+            if index is not None and self.plan.block_of(index) not in blocks:
+                records[index] = line
+        return _Finished(blocks, records)
+
+    def _make_room(self, progress: Progress) -> None:
+        """Wait until the pool wants another member."""
+        while len(self.tasks) >= self.pool.window:
+            self._collect(progress)
+
+    def _submit(self, task: _Task) -> None:
+        plan = self.plan
+        atlas_path = None
+        if self.atlases is not None:
+            atlas_path = str(self.atlases / atlas_name(task.index))
+        future = self.pool.executor.submit(
             map_member,
             plan.family,
-            plan.parameters(index),
+            plan.parameters(task.index),
             plan.starts,
             plan.seed,
-            path,
+            atlas_path,
         )
-        self.waiting[future] = (block, index)
+        self.tasks[future] = task
 
-    def _collect(self) -> None:
+    def _collect(self, progress: Progress) -> None:
         """Wait for the next members, and put them into the journal."""
-        for future in wait(self.waiting, return_when=FIRST_COMPLETED).done:
-            block, index = self.waiting.pop(future)
-            record = {"member": index, **future.result()}
+        for future in wait(self.tasks, return_when=FIRST_COMPLETED).done:
+            task = self.tasks.pop(future)
+            record: Record = {"member": task.index}
+            record |= _result(future, task)
             self.journal.append(record)
-            self.opened[block.number][index] = record
-            self.tell(1)
-            self._close_if_complete(block)
+            task.block.records[task.index] = record
+            progress(1)
+            if task.block.is_complete:
+                self._write(task.block)
 
-    def _close_if_complete(self, block: Block) -> None:
-        """Write a block all of whose members are finished, and forget it."""
-        records = self.opened.get(block.number, {})
-        if len(records) == len(block.indices):
-            self.store.write(block, records)
-            self.journal.append({"block": block.number})
-            del self.opened[block.number]
+    def _write(self, opened: _OpenBlock) -> None:
+        """Write a block all of whose members are finished."""
+        self.store.write(opened.block, opened.records)
+        self.journal.append({"block": opened.block.number})
+
+
+def _opened(block: Block, finished: _Finished) -> _OpenBlock:
+    """A block with the records of its finished members, which it takes over."""
+    records = {}
+    for index in block.indices.tolist():
+        if index in finished.records:
+            records[index] = finished.records.pop(index)
+    return _OpenBlock(block, records)
+
+
+def _result(future: Future[Record], task: _Task) -> Record:
+    """The record of a member; raises `WorkerError`.
+
+    Errors of the map are part of the record. What is raised here is the end of the
+    worker, or a file that it could not write.
+    """
+    try:
+        return future.result()
+    except Exception as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise WorkerError(task.index, reason) from error

@@ -3,20 +3,31 @@ block."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from linkages.app.sweep.member import FIELDS, Status
+from bifurc.errors import BifurcError
+from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Block, Plan
 from linkages.catalogue import entry
 
 if TYPE_CHECKING:
     import xarray as xr
+    import zarr
 
-__all__ = ["SweepStore", "count_status", "open_sweep"]
+__all__ = ["StoreError", "SweepStore", "count_status", "open_sweep", "require_room"]
+
+
+class StoreError(BifurcError):
+    """A place where the dataset of a sweep cannot be written: ``path`` and why."""
+
+    def __init__(self, path: Path, why: str):
+        self.path = path
+        super().__init__(f"{path}: {why}")
 
 
 def open_sweep(path: Path | str) -> xr.Dataset:
@@ -24,7 +35,39 @@ def open_sweep(path: Path | str) -> xr.Dataset:
     parameters (rad) or the members."""
     import xarray as xr
 
-    return xr.open_zarr(path, consolidated=False, chunks=None, mask_and_scale=False)
+    dataset: xr.Dataset = xr.open_zarr(
+        path, consolidated=False, chunks=None, mask_and_scale=False
+    )
+    return dataset
+
+
+def count_status(path: Path | str) -> dict[str, int]:
+    """How many members have each status that occurs."""
+    status, counts = np.unique(open_sweep(path)["status"].values, return_counts=True)
+    pairs = zip(status.tolist(), counts.tolist(), strict=True)
+    return {Status(number).name: count for number, count in pairs}
+
+
+def require_room(path: Path, plan: Plan) -> None:
+    """Raise `StoreError` unless ``path`` is free, or holds the dataset of this plan."""
+    import zarr
+
+    if not path.exists() or (path.is_dir() and not any(path.iterdir())):
+        return
+    try:
+        attributes = zarr.open_group(path, mode="r").attrs.asdict()
+    except (OSError, ValueError, KeyError):
+        raise StoreError(
+            path, "it is not the dataset of a sweep; choose another --out"
+        ) from None
+    if attributes.get("plan") != _text(plan):
+        why = "it belongs to another sweep; choose another --out or delete it"
+        raise StoreError(path, why)
+
+
+def _text(plan: Plan) -> str:
+    """A plan as text, by which a dataset knows it again."""
+    return json.dumps(plan.as_dict())
 
 
 class SweepStore:
@@ -36,86 +79,87 @@ class SweepStore:
 
         self.plan = plan
         self.joints = entry(plan.family).build().n
-        self._group: Any = zarr.open_group(path, mode="a")
-        if "status" not in self._group:
+        self._group: zarr.Group = zarr.open_group(path, mode="a")
+        if not all(name in self._group for name in FIELDS):
             self._create()
 
+    def write(self, block: Block, records: Mapping[int, Record]) -> None:
+        """Write the summaries of all members of a block, by index."""
+        indices = block.indices.tolist()
+        shape = tuple(along.stop - along.start for along in block.region)
+        for name, kind in FIELDS.items():
+            missing = self._missing(kind)
+            column = [records[index].get(name, missing) for index in indices]
+            values = np.array(column, dtype=kind.dtype)
+            self._array(name)[block.region] = values.reshape(*shape, *values.shape[1:])
+        for name in self.plan.ranges:
+            drawn = [self.plan.parameters(index)[name] for index in indices]
+            self._array(name)[block.region] = np.array(drawn)
+
+    def _array(self, name: str) -> zarr.Array[Any]:
+        import zarr
+
+        array = self._group[name]
+        assert isinstance(array, zarr.Array)
+        return array
+
+    def _missing(self, kind: Field) -> float | list[float]:
+        """What stands where a member has no value."""
+        return [kind.missing] * self.joints if kind.per_joint else kind.missing
+
     def _create(self) -> None:
-        plan, group = self.plan, self._group
-        kinds = {p.name: p.kind for p in entry(plan.family).parameters}
-        group.attrs.update(
+        """Make all arrays; what an earlier attempt left half-made is replaced."""
+        plan = self.plan
+        self._group.attrs.update(
             {
                 "family": plan.family,
                 "starts": plan.starts,
                 "seed": plan.seed,
                 "fixed": dict(plan.fixed),
+                "plan": _text(plan),
             }
         )
+        parameters = entry(plan.family).parameters
+        units = {p.name: "rad" if p.kind == "angle" else "" for p in parameters}
         for name, values in plan.axes.items():
-            self._array(
-                name, np.array(values), (name,), "rad" if kinds[name] == "angle" else ""
-            )
+            self._create_axis(name, np.array(values), units[name])
+        self._create_axis("joint", np.arange(1, self.joints + 1), "")
         for name in plan.ranges:
-            self._array(
-                name,
-                None,
-                ("member",),
-                "rad" if kinds[name] == "angle" else "",
-                np.nan,
-                "f8",
-            )
-        self._array("joint", np.arange(1, self.joints + 1), ("joint",), "")
+            meaning = f"{name} of the member"
+            self._create_field(name, Field("f8", units[name], meaning))
         for name, kind in FIELDS.items():
-            dims = (*plan.dims, "joint") if kind.per_joint else plan.dims
-            array = self._array(name, None, dims, kind.unit, kind.missing, kind.dtype)
-            array.attrs["long_name"] = kind.meaning
+            self._create_field(name, kind)
 
-    def _array(
-        self,
-        name: str,
-        values: np.ndarray | None,
-        dims: tuple[str, ...],
-        unit: str,
-        missing: float = 0,
-        dtype: str = "f8",
-    ) -> Any:
-        """A new array: ``values`` whole, or missing values in chunks of a block."""
-        plan = self.plan
-        if values is not None:
-            array = self._group.create_array(
-                name, shape=values.shape, dtype=values.dtype, dimension_names=dims
-            )
-            array[:] = values
-        else:
-            joint = (self.joints,) if dims[-1] == "joint" else ()
-            array = self._group.create_array(
-                name,
-                shape=(*plan.shape, *joint),
-                chunks=(*plan.chunk, *joint),
-                dtype=dtype,
-                fill_value=missing,
-                dimension_names=dims,
-            )
+    def _create_axis(self, name: str, values: np.ndarray, unit: str) -> None:
+        """The coordinates along one dimension."""
+        array = self._group.create_array(
+            name,
+            shape=values.shape,
+            dtype=values.dtype,
+            dimension_names=(name,),
+            overwrite=True,
+        )
+        array[:] = values
         if unit:
             array.attrs["units"] = unit
-        return array
 
-    def write(self, block: Block, records: Mapping[int, Mapping[str, Any]]) -> None:
-        """Write the summaries of all members of a block, by index."""
-        shape = tuple(s.stop - s.start for s in block.region)
-        for name, kind in FIELDS.items():
-            missing: Any = (
-                [kind.missing] * self.joints if kind.per_joint else kind.missing
-            )
-            column = [records[i].get(name, missing) for i in block.indices.tolist()]
-            values = np.array(column, dtype=kind.dtype)
-            self._group[name][block.region] = values.reshape(*shape, *values.shape[1:])
-        for name in self.plan.ranges:
-            drawn = [self.plan.parameters(i)[name] for i in block.indices.tolist()]
-            self._group[name][block.region] = np.array(drawn)
-
-
-def count_status(path: Path | str) -> dict[str, int]:
-    """How many members have each status that occurs."""
-    status, counts = np.unique(open_sweep(path)["status"].values, return_counts=True)
-    return {Status(int(s)).name: int(c) for s, c in zip(status, counts, strict=True)}
+    def _create_field(self, name: str, kind: Field) -> None:
+        """An array over all members, in chunks of a block, with missing values."""
+        plan = self.plan
+        shape, chunk, dims = plan.shape, plan.chunk, plan.dims
+        if kind.per_joint:
+            shape = (*shape, self.joints)
+            chunk = (*chunk, self.joints)
+            dims = (*dims, "joint")
+        array = self._group.create_array(
+            name,
+            shape=shape,
+            chunks=chunk,
+            dtype=kind.dtype,
+            fill_value=kind.missing,
+            dimension_names=dims,
+            overwrite=True,
+        )
+        array.attrs["long_name"] = kind.meaning
+        if kind.unit:
+            array.attrs["units"] = kind.unit

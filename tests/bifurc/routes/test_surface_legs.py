@@ -23,9 +23,9 @@ from bifurc.seeds import Seeds
 from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.geodesic import shortest_path
 from bifurc.torus import wrap
+from linkages.axes import loop_from_axes
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.double_goldberg import double_subtractive_goldberg
-from linkages.axes import loop_from_axes
 from linkages.loop import Loop
 
 

@@ -267,74 +267,8 @@ def test_an_unknown_form_and_forms_that_are_not_connected_have_their_own_exit_co
     assert "no route" in apart.stderr
 
 
-# --- bad input ----------------------------------------------------------------------------------------
-
-BAD = {
-    "an unknown name": (("map", "benett"), "the nearest names are bennett"),
-    "an unknown name to show": (("show", "wolhart"), "no linkage is called 'wolhart'"),
-    "a missing file": (("map", "nowhere.toml"), "nowhere.toml: there is no such file"),
-    "a missing atlas": (
-        ("route", "nowhere.nc", "a", "b"),
-        "nowhere.nc: there is no such file",
-    ),
-    "an unknown parameter": (
-        ("map", "bennett", "--param", "gamma=3"),
-        "one of a, alpha, beta",
-    ),
-    "a parameter without a value": (
-        ("map", "bennett", "--param", "alpha"),
-        "of the form key=value",
-    ),
-    "a parameter that is no number": (
-        ("map", "bennett", "--param", "alpha=x"),
-        "--param alpha: 'x'",
-    ),
-    "a parameter that is not finite": (
-        ("map", "bennett", "--param", "alpha=nan"),
-        "--param alpha: nan",
-    ),
-    "parameters that make no linkage": (
-        ("map", "bennett", "--param", "alpha=200"),
-        "alpha",
-    ),
-    "no random starts": (("map", "bennett", "--starts", "0"), "0 is not in the range"),
-    "a tolerance out of range": (
-        ("map", "bennett", "--tolerance", "1"),
-        "tolerance: 1.0",
-    ),
-    "an unknown option": (("map", "bennett", "--output", "x"), "No such option"),
-    "a word for a number": (
-        ("map", "bennett", "--seed", "x"),
-        "'x' is not a valid integer",
-    ),
-    "a negative seed": (("map", "bennett", "--seed", "-1"), "-1 is not in the range"),
-}
-
-
-@pytest.mark.parametrize("what", BAD)
-def test_bad_input_ends_with_a_message_and_exit_code_2(what):
-    arguments, message = BAD[what]
-    result = bifurc(*arguments)
-    assert result.exit_code == 2
-    assert message in result.stderr
-    assert result.stdout == ""
-    assert isinstance(result.exception, SystemExit)
-
-
-def test_a_file_that_is_wrong_ends_with_its_name_and_what_is_wrong(write):
-    result = bifurc("map", write(MINE.replace("twists", "twist")))
-    assert result.exit_code == 2
-    assert "mine.toml: key: 'twist' (the nearest is 'twists')" in result.stderr
-
-
 def test_a_name_without_the_ending_of_a_file_leads_to_the_file(write, monkeypatch):
     monkeypatch.chdir(write(MINE).parent)
     result = bifurc("map", "mine")
     assert result.exit_code == 2
     assert "the nearest names are mine.toml" in result.stderr
-
-
-def test_a_file_takes_no_parameters(write):
-    result = bifurc("map", write(MINE), "--param", "a=1")
-    assert result.exit_code == 2
-    assert "--param" in result.stderr

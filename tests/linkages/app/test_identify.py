@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
-from linkages.app.identify import NOT_KNOWN
+from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import entry
 
 BENNETT = """
@@ -38,7 +38,7 @@ def test_a_file_that_is_nothing_known_ends_with_its_own_code_and_shows_the_neare
     tmp_path,
 ):
     result = identify(tmp_path, 0.66)
-    assert result.exit_code == NOT_KNOWN
+    assert result.exit_code == ExitCode.NOT_IN_CATALOGUE
     assert "No linkage of the catalogue" in result.stdout
     assert "Near: bennett" in result.stdout
     assert "a34 would be" in result.stdout

@@ -8,8 +8,9 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
-from linkages.app.verify import ErratumCheck, describe, verify
-from linkages.app.verify_command import FAILED
+from linkages.app.exit_codes import ExitCode
+from linkages.app.verify import ErratumCheck, verify
+from linkages.app.verify_text import describe_verification
 from linkages.catalogue import catalogue
 from linkages.closed_forms.all_forms import all_closed_forms
 
@@ -33,7 +34,7 @@ def test_linkage_without_closed_form_moves_as_stated(name):
 
 
 def test_description_says_what_was_checked():
-    text = describe(verify("mixed-double-goldberg-type-i"))
+    text = describe_verification(verify("mixed-double-goldberg-type-i"))
     for word in (
         "condition",
         "proved exactly at 6 points",
@@ -49,7 +50,7 @@ def test_misprint_that_does_not_fail_is_a_failure():
     checked = verify("bennett")
     wrong = dataclasses.replace(checked, errata=(ErratumCheck("(1)", 0.0, 0.0),))
     assert wrong.failures == ("erratum (1): not reproduced",)
-    assert "FAILED" in describe(wrong)
+    assert "FAILED" in describe_verification(wrong)
 
 
 def test_mobility_other_than_stated_is_a_failure():
@@ -71,4 +72,5 @@ def test_command_prints_json_and_nothing_else():
 def test_command_ends_with_its_own_code_when_something_fails(monkeypatch):
     checked = dataclasses.replace(verify("bennett"), expected=2)
     monkeypatch.setattr("linkages.app.verify.verify", lambda *_: checked)
-    assert CliRunner().invoke(main, ["verify", "bennett"]).exit_code == FAILED
+    result = CliRunner().invoke(main, ["verify", "bennett"])
+    assert result.exit_code == ExitCode.DOES_NOT_HOLD

@@ -2,7 +2,6 @@
 
 import gc
 import json
-import mmap
 import os
 import signal
 import subprocess
@@ -18,13 +17,11 @@ from click.testing import CliRunner
 
 pytest.importorskip("zarr")
 
-from linkages.app.sweep.command import sweep_command
-from linkages.app.sweep.journal import Journal, JournalError
-from linkages.app.sweep.member import Status, map_member
+from linkages.app.cli import main
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import journal_path, run_sweep
 from linkages.app.sweep.store import open_sweep
-from linkages.loop import GeometryError
+from linkages.app.sweep.workers import Pool
 
 PLAN = Plan(
     "bennett",
@@ -172,10 +169,10 @@ def traced():
 
 def test_a_sweep_holds_no_more_of_many_members_than_of_few(tmp_path, monkeypatch):
     @contextmanager
-    def executor(workers, scheduler):
-        yield Stub(), 8
+    def stub_pool(workers, scheduler):
+        yield Pool(Stub(), window=8)
 
-    monkeypatch.setattr("linkages.app.sweep.run._executor", executor)
+    monkeypatch.setattr("linkages.app.sweep.run.open_pool", stub_pool)
     done, sizes = 0, {}
 
     def look(count):
@@ -193,41 +190,6 @@ def test_a_sweep_holds_no_more_of_many_members_than_of_few(tmp_path, monkeypatch
     )  # a record alone is more than 500 bytes
 
 
-@pytest.mark.parametrize("family", ["bennett", "goldberg-5r"])
-def test_a_worker_keeps_nothing_of_the_members_that_it_mapped(family):
-    plan = Plan(family, random=1000, ranges={"alpha": (0.5, 1.0)})
-    with traced() as held:
-        for index in range(20):
-            map_member(family, plan.parameters(index), 10, 0)
-            if index == 9:
-                before = held()
-        assert held() - before < 10 * 1000  # a single traced form is more than 20 kB
-
-
-def test_the_watch_sees_a_process_that_grows():
-    psutil = pytest.importorskip("psutil")
-    from linkages.app.sweep.memory import Watch
-
-    watch, kept, size = Watch(), [], 1 << 22
-    for done in range(20):
-        kept.append(
-            mmap.mmap(-1, size)
-        )  # an array might be given memory that the process has in hand
-        kept[-1].write(bytes([1]) * size)
-        watch.look(done)
-    assert watch.own[-1] == pytest.approx(psutil.Process().memory_info().rss, rel=0.1)
-    assert watch.growth("own") == pytest.approx(size, rel=0.2)
-    assert watch.growth("worker") < 1.0
-
-
-def test_refused_parameters_are_recorded_as_such():
-    record = map_member(
-        "double-subtractive-goldberg", {"alpha": 0.5, "gamma": 1.5}, 10, 0
-    )
-    assert record["status"] == Status.REFUSED
-    assert "length" in record["message"]
-
-
 def test_the_command_says_what_became_of_the_members(tmp_path):
     out = tmp_path / "out.zarr"
     arguments = [
@@ -239,89 +201,6 @@ def test_the_command_says_what_became_of_the_members(tmp_path):
         "--out",
         str(out),
     ]
-    result = CliRunner().invoke(sweep_command, [*arguments, "--starts", "20"])
+    result = CliRunner().invoke(main, ["sweep", *arguments, "--starts", "20"])
     assert result.exit_code == 0, result.output
     assert "1 mapped, 1 refused" in result.output
-
-
-# --- plan ---------------------------------------------------------------------------------------------
-
-
-def test_blocks_hold_every_member_once():
-    plan = Plan(
-        "bennett",
-        axes={
-            "a": tuple(range(1, 6)),
-            "alpha": tuple(range(1, 8)),
-            "beta": (0.1, 0.2, 0.3),
-        },
-        block=8,
-    )
-    blocks = list(plan.blocks())
-    indices = np.concatenate([block.indices for block in blocks])
-    assert sorted(indices.tolist()) == list(range(plan.size))
-    assert len(blocks) == plan.block_count
-    assert all(
-        plan.block_of(int(i)) == block.number for block in blocks for i in block.indices
-    )
-    assert max(len(block.indices) for block in blocks) <= 8
-
-
-def test_degrees_are_read_as_radians_and_lengths_as_they_are():
-    plan = read_plan("bennett", ["alpha=10:80:3", "a=2"])
-    assert np.allclose(plan.axes["alpha"], np.radians([10, 45, 80]))
-    assert plan.parameters(1) == {"a": 2.0, "alpha": pytest.approx(np.pi / 4)}
-
-
-def test_a_random_member_does_not_depend_on_how_many_there_are():
-    few, many = (
-        read_plan("bennett", ["alpha=10:80"], random=n, seed=3) for n in (5, 50)
-    )
-    assert few.parameters(4) == many.parameters(4)
-    assert few.parameters(4) != few.parameters(3)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "alpha",
-        "twist=3",
-        "alpha=x",
-        "alpha=1:2",
-        "alpha=1:2:3:4",
-        "alpha=1:2:0.5",
-        "alpha=nan",
-    ],
-)
-def test_a_parameter_that_cannot_be_read_is_refused(text):
-    with pytest.raises(GeometryError):
-        read_plan("bennett", [text])
-
-
-# --- journal ------------------------------------------------------------------------------------------
-
-
-def test_a_torn_last_line_is_dropped(tmp_path):
-    path = tmp_path / "j"
-    with Journal(path, {"sweep": 1}) as journal:
-        journal.append({"member": 0})
-    with path.open("ab") as file:
-        file.write(b'{"member": 1, "fo')
-    with Journal(path, {"sweep": 1}) as journal:
-        assert list(journal.lines()) == [{"sweep": 1}, {"member": 0}]
-        journal.append({"member": 1})
-        assert list(journal.lines())[-1] == {"member": 1}
-
-
-def test_the_journal_of_another_sweep_is_refused(tmp_path):
-    Journal(tmp_path / "j", {"sweep": 1}).__exit__(None, None, None)
-    with pytest.raises(JournalError, match="another sweep"):
-        Journal(tmp_path / "j", {"sweep": 2})
-
-
-def test_two_sweeps_cannot_write_one_journal(tmp_path):
-    with (
-        Journal(tmp_path / "j", {"sweep": 1}),
-        pytest.raises(JournalError, match="is writing"),
-    ):
-        Journal(tmp_path / "j", {"sweep": 1})

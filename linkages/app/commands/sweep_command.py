@@ -1,4 +1,4 @@
-"""The command line of a sweep."""
+"""The command `bifurc sweep`."""
 
 from __future__ import annotations
 
@@ -7,21 +7,30 @@ from pathlib import Path
 
 import click
 
+from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.options import SEED, STARTS
+
 __all__ = ["sweep_command"]
 
+MOST_MEMBERS = 1_000_000_000
+MOST_WORKERS = 10_000
 
-@click.command("sweep")
+
+@click.command("sweep", epilog=exit_code_table())
 @click.argument("family")
 @click.option(
     "--param",
     "parameters",
     multiple=True,
     metavar="NAME=FIRST:LAST:COUNT",
-    help="Grid of a parameter, or NAME=VALUE for one value, or NAME=LOW:HIGH with --random; angles in degrees.",
+    help=(
+        "Grid of a parameter, or NAME=VALUE for one value, "
+        "or NAME=LOW:HIGH with --random; angles in degrees."
+    ),
 )
 @click.option(
     "--random",
-    type=click.IntRange(1),
+    type=click.IntRange(1, MOST_MEMBERS),
     help="Number of members drawn at random, in place of a grid.",
 )
 @click.option(
@@ -38,7 +47,7 @@ __all__ = ["sweep_command"]
 )
 @click.option(
     "--workers",
-    type=click.IntRange(1),
+    type=click.IntRange(1, MOST_WORKERS),
     help="Number of processes (all cores by default).",
 )
 @click.option(
@@ -49,12 +58,14 @@ __all__ = ["sweep_command"]
 @click.option(
     "--starts",
     default=200,
+    type=STARTS,
     show_default=True,
     help="Number of random starts of every member.",
 )
 @click.option(
     "--seed",
     default=0,
+    type=SEED,
     show_default=True,
     help="Seed of the random starts and members.",
 )
@@ -81,34 +92,36 @@ def sweep_command(
       bifurc sweep bricard-line-symmetric-zero-offset --random 1000 --out bricard.zarr
       bifurc sweep bennett --random 5000 --scheduler tcp://127.0.0.1:8786
     """
-    from linkages.app.sweep.journal import JournalError
     from linkages.app.sweep.plan import read_plan
-    from linkages.app.sweep.run import run_sweep
-    from linkages.app.sweep.store import count_status
 
     plan = read_plan(family, parameters, random or 0, starts, seed)
     try:
-        with click.progressbar(
-            length=plan.size, label=f"{plan.size} members", file=sys.stderr
-        ) as bar:
-            run_sweep(
-                plan,
-                out,
-                workers=workers,
-                scheduler=scheduler,
-                atlases=atlases,
-                progress=bar.update,
-            )
-    except JournalError as error:
-        raise click.ClickException(str(error)) from None
+        from linkages.app.sweep.run import prepare_sweep
+        from linkages.app.sweep.store import count_status
+
+        with prepare_sweep(
+            plan, out, workers=workers, scheduler=scheduler, atlases=atlases
+        ) as sweep:
+            label = f"{plan.size} members"
+            with click.progressbar(
+                length=plan.size, label=label, file=sys.stderr
+            ) as bar:
+                sweep.run(bar.update)
     except ModuleNotFoundError as error:
-        raise click.ClickException(f"{error}; install bifurc[sweep]") from None
+        raise CommandError(f"{error}; install bifurc[sweep]") from None
     except KeyboardInterrupt:
-        click.echo(
-            f"interrupted; run the same command again to go on ({out})", err=True
-        )
-        raise
-    counts = ", ".join(
-        f"{count} {name.lower()}" for name, count in count_status(out).items()
-    )
-    click.echo(f"{out}: {counts}")
+        text = f"interrupted; run the same command again to go on ({out})"
+        click.echo(text, err=True)
+        click.get_current_context().exit(ExitCode.INTERRUPTED)
+    _report(out, count_status(out))
+
+
+def _report(out: Path, counts: dict[str, int]) -> None:
+    """Say how many members have which status; a failure has its own exit code."""
+    from linkages.app.output import say
+    from linkages.app.sweep.member import Status
+
+    shown = ", ".join(f"{count} {name.lower()}" for name, count in counts.items())
+    say(f"{out}: {shown}")
+    if Status.FAILED.name in counts:
+        click.get_current_context().exit(ExitCode.DOES_NOT_HOLD)

@@ -1,7 +1,7 @@
 """What a sweep holds in memory: that of the sweep and of its largest worker, while more
 and more members are mapped.
 
-    python -m linkages.app.sweep.memory [--family bennett] [--members 500 --members 2000 ...] [--out DIR]
+    python -m studies.sweep_memory [--family NAME] [--members NUMBER ...] [--out DIR]
 
 Every sweep runs in a fresh process, once on the process pool and once on a Dask cluster
 on this machine, whose scheduler lives in the process of the sweep. Resident memory is
@@ -58,17 +58,23 @@ class Watch:
         self.own.append(psutil.Process().memory_info().rss)
         self.worker.append(max(sizes))
 
+    def sizes(self, which: str) -> list[int]:
+        """The sizes of "own" or "worker"."""
+        return self.own if which == "own" else self.worker
+
     def growth(self, which: str) -> float:
         """Bytes a member, of "own" or "worker": slope of the line through the last
         half."""
         half = len(self.members) // 2
-        return float(np.polyfit(self.members[half:], getattr(self, which)[half:], 1)[0])
+        slope, _ = np.polyfit(self.members[half:], self.sizes(which)[half:], 1)
+        return float(slope)
 
 
 def watch_sweep(plan: Plan, workers: int, dask: bool) -> Watch:
     """The memory of this process and of ``workers`` others while a plan is run into a
     folder that is thrown away."""
-    watch, every = Watch(), max(plan.size // LOOKS, 1)
+    watch = Watch()
+    every = max(plan.size // LOOKS, 1)
     done = 0
 
     def look(count: int) -> None:
@@ -99,7 +105,7 @@ def _scheduler(workers: int, dask: bool) -> Iterator[str | None]:
         return
     from distributed import LocalCluster
 
-    with LocalCluster(
+    with LocalCluster(  # type: ignore[no-untyped-call]
         n_workers=workers,
         threads_per_worker=1,
         host="127.0.0.1",
@@ -128,30 +134,37 @@ def main(family: str, members: tuple[int, ...], workers: int, out: Path) -> None
     """Measure the memory of sweeps."""
     out.mkdir(parents=True, exist_ok=True)
     click.echo(
-        "of the sweep, then of its largest worker: MiB at first, at last, at most; growth in bytes a member"
+        "of the sweep, then of its largest worker: MiB at first, at last, at most; "
+        "growth in bytes a member"
     )
     for executor in ("pool", "dask"):
         for count in members:
             plan = read_plan(family, [], random=count)
-            with ProcessPoolExecutor(
-                1, mp_context=multiprocessing.get_context("spawn")
-            ) as fresh:
-                watch = fresh.submit(
-                    watch_sweep, plan, workers, executor == "dask"
-                ).result()
-            with (out / f"{family}_{executor}_{count}.csv").open(
-                "w", newline="", encoding="utf-8"
-            ) as file:
-                rows = csv.writer(file)
-                rows.writerow(["members", "own", "worker"])
-                rows.writerows(zip(watch.members, watch.own, watch.worker, strict=True))
-            columns = []
-            for which in ("own", "worker"):
-                sizes = np.array(getattr(watch, which)) / MEBIBYTE
-                columns.append(
-                    f"{sizes[0]:6.1f} {sizes[-1]:6.1f} {sizes.max():6.1f} {watch.growth(which):8.0f}"
-                )
+            watch = _watch_in_fresh_process(plan, workers, executor == "dask")
+            _write(watch, out / f"{family}_{executor}_{count}.csv")
+            columns = [_describe(watch, which) for which in ("own", "worker")]
             click.echo(f"{count:7d}  {executor:8s}  {'   '.join(columns)}")
+
+
+def _watch_in_fresh_process(plan: Plan, workers: int, dask: bool) -> Watch:
+    """As `watch_sweep`, where nothing but the sweep takes memory."""
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, mp_context=context) as fresh:
+        return fresh.submit(watch_sweep, plan, workers, dask).result()
+
+
+def _write(watch: Watch, path: Path) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow(["members", "own", "worker"])
+        rows.writerows(zip(watch.members, watch.own, watch.worker, strict=True))
+
+
+def _describe(watch: Watch, which: str) -> str:
+    """Memory at first, at last and at most, and its growth, of "own" or "worker"."""
+    sizes = np.array(watch.sizes(which)) / MEBIBYTE
+    growth = watch.growth(which)
+    return f"{sizes[0]:6.1f} {sizes[-1]:6.1f} {sizes.max():6.1f} {growth:8.0f}"
 
 
 if __name__ == "__main__":

@@ -1,0 +1,51 @@
+"""The command `bifurc identify`."""
+
+from __future__ import annotations
+
+import click
+
+from linkages.app.exit_codes import ExitCode, exit_code_table
+from linkages.app.options import NumberRange, json_option
+
+__all__ = ["identify_command"]
+
+LARGEST_TOLERANCE = 1  # as large as the linkage itself
+
+
+@click.command("identify", epilog=exit_code_table())
+@click.argument("linkage", metavar="FILE.toml|NAME")
+@click.option(
+    "--tolerance",
+    default=1e-8,
+    type=NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
+    show_default=True,
+    help="How far a table may be from the linkage it is.",
+)
+@json_option("; angles in radians")
+def identify_command(linkage: str, tolerance: float, as_json: bool) -> None:
+    """Name the linkages of the catalogue that a table is a case of, whichever way it is
+    read.
+
+    Other first joint, direction, sense of axes and links, mirror image and scale make
+    no difference. Where none fits, the nearest are shown with the numbers that are off.
+
+    \b
+    Example:
+      bifurc identify my_linkage.toml
+    """
+    from linkages.app.choice import choose_linkage
+    from linkages.app.identify import (
+        describe_identification,
+        make_identification_document,
+    )
+    from linkages.app.output import say, say_json
+    from linkages.identification.identify import identify
+
+    loop = choose_linkage(linkage).loop
+    identification = identify(loop, tolerance)
+    if as_json:
+        say_json(make_identification_document(identification))
+    else:
+        say(describe_identification(identification))
+    if not (identification.matches or identification.locked):
+        click.get_current_context().exit(ExitCode.NOT_IN_CATALOGUE)

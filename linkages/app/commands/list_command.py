@@ -1,0 +1,26 @@
+"""The command `bifurc list`."""
+
+from __future__ import annotations
+
+import click
+
+__all__ = ["list_command"]
+
+
+@click.command("list")
+def list_command() -> None:
+    """List the linkages of the catalogue.
+
+    \b
+    Example:
+      bifurc list
+    """
+    from linkages.app.output import say
+    from linkages.app.texts import table
+    from linkages.catalogue import catalogue
+
+    rows = []
+    for entry in catalogue().values():
+        joints = entry.build().n
+        rows.append((entry.name, str(joints), entry.title))
+    say(table(("name", "joints", "title"), rows))

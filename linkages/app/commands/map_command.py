@@ -1,0 +1,134 @@
+"""The command `bifurc map`: explore, report, write."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bifurc.limits import HeldInterrupt
+from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.options import (
+    SearchOptions,
+    json_option,
+    out_option,
+    param_option,
+    search_options,
+    verbose_option,
+)
+
+if TYPE_CHECKING:
+    from bifurc.atlas import Atlas
+
+__all__ = ["map_command"]
+
+
+@click.command("map", epilog=exit_code_table())
+@click.argument("linkage", metavar="NAME|FILE.toml")
+@out_option("dataset, graph, summary and figures")
+@json_option("; angles in radians")
+@click.option(
+    "--certify",
+    is_flag=True,
+    help="Prove that no form jumps from one arc to another, and say where.",
+)
+@click.option(
+    "--digits",
+    type=click.IntRange(20, 1000),
+    help=(
+        "Find every singular point again in arithmetic of so many digits, "
+        "and show how many of the map's agree."
+    ),
+)
+@param_option
+@search_options
+@verbose_option
+def map_command(
+    linkage: str,
+    parameters: tuple[str, ...],
+    out: Path | None,
+    as_json: bool,
+    certify: bool,
+    digits: int | None,
+    verbose: bool,
+    search: SearchOptions,
+) -> None:
+    """Map every motion form of a linkage, every bifurcation, and the graph between
+    them.
+
+    \b
+    Examples:
+      bifurc map bennett --param alpha=70 --param beta=30
+      bifurc map special-double-subtractive-goldberg --out out
+      bifurc map my_linkage.toml --json > map.json
+      bifurc map special-double-subtractive-goldberg --digits 50
+    """
+    from linkages.app.choice import choose_linkage
+    from linkages.app.exploration import explore_linkage
+    from linkages.app.output import require_folder, say
+    from linkages.app.status import say_more
+    from linkages.app.verdict import judge
+
+    if as_json and digits:
+        raise CommandError(
+            "--digits: it has no place in the JSON document; leave out --json"
+        )
+    if verbose:
+        say_more()
+    if out is not None:
+        require_folder(out)
+    chosen = choose_linkage(linkage, parameters)
+    # Ctrl-C ends the search, but not before what was found is shown and written
+    with HeldInterrupt():
+        atlas = explore_linkage(chosen, search, certify)
+        try:
+            report(atlas, as_json)
+        finally:  # where nothing can be shown, there are still the files
+            paths = write_numbers(atlas, out)
+    if digits:
+        from linkages.app.confirmation import describe_confirmation
+
+        say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
+    if out is not None:
+        paths += draw_figures(atlas, out)
+        names = ", ".join(path.name for path in paths)
+        click.echo(f"wrote {names} to {out}", err=True)
+    verdict = judge(atlas)
+    if as_json and verdict.code is not ExitCode.DONE:
+        click.echo(verdict.sentence, err=True)
+    click.get_current_context().exit(verdict.code)
+
+
+def report(atlas: Atlas, as_json: bool) -> None:
+    """Print the map, as tables or as one JSON document."""
+    from linkages.app.document import make_document
+    from linkages.app.output import say, say_json
+    from linkages.app.summary import make_summary
+
+    if as_json:
+        say_json(make_document(atlas))
+    else:
+        say(make_summary(atlas))
+
+
+def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
+    """The paths of dataset, graph and summary, just written to ``out`` if there is
+    one."""
+    if out is None:
+        return []
+    from linkages.app.files import write_data
+    from linkages.app.output import writing_to
+    from linkages.app.summary import make_summary
+
+    with writing_to(out):
+        return write_data(atlas, out, make_summary(atlas))
+
+
+def draw_figures(atlas: Atlas, out: Path) -> list[Path]:
+    """The paths of the figures, just written to ``out``."""
+    from linkages.app.files import write_figures
+    from linkages.app.output import writing_to
+
+    with writing_to(out):
+        return write_figures(atlas, out)

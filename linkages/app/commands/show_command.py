@@ -1,0 +1,23 @@
+"""The command `bifurc show`."""
+
+from __future__ import annotations
+
+import click
+
+__all__ = ["show_command"]
+
+
+@click.command("show")
+@click.argument("name")
+def show_command(name: str) -> None:
+    """Show a linkage of the catalogue: source, parameters, conditions, geometry.
+
+    \b
+    Example:
+      bifurc show bennett
+    """
+    from linkages.app.entry_text import describe_entry
+    from linkages.app.output import say
+    from linkages.catalogue import entry
+
+    say(describe_entry(entry(name)))

@@ -1,0 +1,118 @@
+"""The command `bifurc tolerance`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.options import (
+    SEED,
+    NumberRange,
+    SearchOptions,
+    out_option,
+    param_option,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from bifurc.atlas import Atlas
+
+__all__ = ["tolerance_command"]
+
+LARGEST_ERROR = 1  # rad, and characteristic lengths
+MOST_COPIES = 10_000
+
+
+@click.command("tolerance", epilog=exit_code_table())
+@click.argument("linkage", metavar="NAME|FILE.toml")
+@click.option(
+    "--error",
+    default=1e-4,
+    type=NumberRange(min=0, max=LARGEST_ERROR),
+    show_default=True,
+    help="Standard deviation of the errors.",
+)
+@click.option(
+    "--samples",
+    default=4,
+    type=click.IntRange(1, MOST_COPIES),
+    show_default=True,
+    help="Copies that are made.",
+)
+@click.option(
+    "--seed",
+    default=0,
+    type=SEED,
+    show_default=True,
+    help="Number of the first copy.",
+)
+@param_option
+@out_option("tolerance.txt and .png")
+def tolerance_command(
+    linkage: str,
+    error: float,
+    samples: int,
+    seed: int,
+    parameters: tuple[str, ...],
+    out: Path | None,
+) -> None:
+    """Show what manufacturing errors make of the forms and bifurcations of a linkage.
+
+    \b
+    Example:
+      bifurc tolerance special-double-subtractive-goldberg --error 1e-4 --out out
+    """
+    from linkages.app.choice import choose_linkage
+    from linkages.app.exploration import explore_linkage
+    from linkages.app.output import require_folder, say
+    from linkages.app.tolerance import climb, measure
+    from linkages.app.tolerance_text import describe_tolerance
+
+    if out is not None:
+        require_folder(out)
+    chosen = choose_linkage(linkage, parameters)
+    atlas = explore_linkage(chosen, SearchOptions())
+    _require_forms(atlas)
+    seeds = range(seed, seed + samples)
+    copies = [measure(atlas, chosen.loop, error, number) for number in seeds]
+    ladder = climb(atlas, chosen.loop, seeds)
+    text = describe_tolerance(atlas, copies, ladder)
+    try:
+        say(text)
+    finally:  # where nothing can be shown, there are still the files
+        if out is not None:
+            from linkages.app.tolerance_figure import draw_tolerance
+
+            _write(text, draw_tolerance(atlas, copies[0], ladder), out)
+
+
+def _require_forms(atlas: Atlas) -> None:
+    """Raise `CommandError` unless there are forms whose closure can be measured."""
+    from linkages.app.exploration import require_uninterrupted
+    from linkages.app.verdict import judge
+
+    require_uninterrupted(atlas)
+    if atlas.forms:
+        return
+    verdict = judge(atlas)
+    if verdict.code is not ExitCode.DONE:
+        raise CommandError(verdict.sentence, verdict.code)
+    raise CommandError(f"{verdict.sentence} It has no form of mobility 1 to measure.")
+
+
+def _write(text: str, figure: Figure, out: Path) -> None:
+    """Write the tables and the figure to ``out``."""
+    from bifurc.files.atomic import replace_files
+    from linkages.app.output import writing_to
+
+    def write(stage: Path) -> None:
+        (stage / "tolerance.txt").write_text(text + "\n", encoding="utf-8")
+        figure.savefig(stage / "tolerance.png", dpi=150)
+
+    with writing_to(out):
+        replace_files(out, write)
+    click.echo(f"wrote tolerance.txt and tolerance.png to {out}", err=True)

@@ -1,0 +1,79 @@
+"""The command `bifurc verify`."""
+
+from __future__ import annotations
+
+import click
+
+from linkages.app.exit_codes import ExitCode, exit_code_table
+from linkages.app.options import SEED, json_option
+
+__all__ = ["verify_command"]
+
+MOST_MEMBERS = 1_000_000
+MOST_POINTS = 1_000_000
+
+
+@click.command("verify", epilog=exit_code_table())
+@click.argument("name", required=False)
+@click.option(
+    "--members",
+    default=1,
+    type=click.IntRange(1, MOST_MEMBERS),
+    show_default=True,
+    help="Members of each family.",
+)
+@click.option(
+    "--points",
+    default=6,
+    type=click.IntRange(1, MOST_POINTS),
+    show_default=True,
+    help="Points of an exact proof.",
+)
+@click.option(
+    "--seed",
+    default=0,
+    type=SEED,
+    show_default=True,
+    help="Seed of what is drawn.",
+)
+@json_option()
+def verify_command(
+    name: str | None, members: int, points: int, seed: int, as_json: bool
+) -> None:
+    """Verify a linkage of the catalogue, or all: proofs, mobility, closed forms,
+    misprints.
+
+    The first member has the default parameters, the others are random. Exit code 6 if
+    something does not hold.
+
+    \b
+    Examples:
+      bifurc verify bennett
+      bifurc verify mixed-double-goldberg-type-i --members 50 --json
+    """
+    from linkages.app.output import say, say_json
+    from linkages.app.verify import verify
+    from linkages.app.verify_text import (
+        describe_verification,
+        make_verification_document,
+    )
+    from linkages.catalogue import catalogue
+
+    names = list(catalogue()) if name is None else [name]
+    documents = []
+    failures = 0
+    try:
+        for linkage in names:
+            verification = verify(linkage, members, points, seed)
+            failures += len(verification.failures)
+            if as_json:
+                documents.append(make_verification_document(verification))
+            else:
+                say(describe_verification(verification))
+    finally:  # an interruption leaves a document of what was verified by then
+        if as_json and name is None:
+            say_json(documents)
+    if as_json and name is not None:
+        say_json(documents[0])
+    if failures:
+        click.get_current_context().exit(ExitCode.DOES_NOT_HOLD)

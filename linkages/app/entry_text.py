@@ -1,0 +1,60 @@
+"""An entry of the catalogue as text: degrees, joints numbered from 1."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from linkages.app.texts import in_degrees, link_name, table
+from linkages.entry import Entry, Parameter
+from linkages.loop import Loop
+
+__all__ = ["describe_entry", "describe_geometry"]
+
+
+def describe_entry(entry: Entry) -> str:
+    """Everything that the catalogue says of a linkage, angles in degrees."""
+    parameters = table(
+        ("name", "default", "kind", "meaning"),
+        [(p.name, _default(p), p.kind, p.meaning) for p in entry.parameters],
+    )
+    facts = [f"{key}: {value}" for key, value in entry.facts.items()]
+    parts = [
+        f"{entry.name}\n{entry.title}\nSource: {entry.source}",
+        f"Parameters\n{parameters}",
+        _list("Conditions", entry.conditions),
+        describe_geometry(entry.build()),
+        _list("Published facts", facts),
+        _list("Misprints in the source", entry.errata),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def describe_geometry(loop: Loop) -> str:
+    """The Denavit-Hartenberg table of a loop, twists in degrees."""
+    lengths, twists, offsets = loop.arrays
+    rows = []
+    for i in range(loop.n):
+        rows.append(
+            (
+                str(i + 1),
+                link_name(i, loop.n),
+                f"{lengths[i]:.10g}",
+                in_degrees(twists[i]),
+                f"{offsets[i]:.10g}",
+            )
+        )
+    heads = ("joint", "link", "length", "twist (deg)", "offset")
+    return "Geometry\n" + table(heads, rows)
+
+
+def _default(parameter: Parameter) -> str:
+    if parameter.kind == "angle":
+        return f"{math.degrees(parameter.default):.6g} deg"
+    return f"{parameter.default:.6g}"
+
+
+def _list(title: str, lines: Sequence[str]) -> str:
+    if not lines:
+        return ""
+    return "\n".join([title, *(f"  {line}" for line in lines)])

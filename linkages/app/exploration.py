@@ -1,0 +1,43 @@
+"""Exploring a linkage for a command: with its settings, and with signs of life."""
+
+from __future__ import annotations
+
+from bifurc.atlas import Atlas
+from linkages.app.exit_codes import CommandError, ExitCode
+from linkages.app.options import SearchOptions
+from linkages.app.status import StatusLine, compilation_announced
+from linkages.app.verdict import judge
+from linkages.linkage import Linkage
+from linkages.mapping import map_linkage
+
+__all__ = ["explore_linkage", "require_uninterrupted"]
+
+
+def explore_linkage(
+    linkage: Linkage, search: SearchOptions, certify: bool = False
+) -> Atlas:
+    """The transition map of a linkage; progress is shown on standard error.
+
+    Ctrl-C ends the search early, and the atlas holds what was found by then. Raises
+    `bifurc.ProblemError` for settings out of their range.
+    """
+    settings = search.settings()
+    status = StatusLine()
+    try:
+        with compilation_announced():
+            return map_linkage(
+                linkage,
+                settings=settings,
+                certify=certify,
+                seed=search.seed,
+                progress=status,
+            )
+    finally:
+        status.wipe()
+
+
+def require_uninterrupted(atlas: Atlas) -> None:
+    """Raise `CommandError` where Ctrl-C ended the search: half a map is of no use to
+    the command."""
+    if atlas.provenance.interrupted:
+        raise CommandError(judge(atlas).sentence, ExitCode.INTERRUPTED)

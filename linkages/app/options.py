@@ -1,0 +1,140 @@
+"""Options and arguments that several commands share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from bifurc.search.settings import SearchSettings
+
+__all__ = [
+    "SEED",
+    "NumberRange",
+    "SearchOptions",
+    "json_option",
+    "out_option",
+    "param_option",
+    "search_options",
+    "verbose_option",
+]
+
+Command = Callable[..., None]
+
+MOST_STARTS = 1_000_000
+LARGEST_SEED = 2**63 - 1  # files store the seed as a signed number of 64 bits
+
+
+class NumberRange(click.FloatRange):
+    """A range of floats. "Not a number" compares with no bound, and is refused."""
+
+    def convert(
+        self, value: float, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """The number that ``value``, also as text, is; raises `click.BadParameter`."""
+        number = float(super().convert(value, param, ctx))
+        if math.isnan(number):
+            self.fail(f"{value} is not a number.", param, ctx)
+        return number
+
+
+STARTS = click.IntRange(1, MOST_STARTS)
+SEED = click.IntRange(0, LARGEST_SEED)
+POSITIVE = NumberRange(min=0, min_open=True)
+
+
+@dataclass(frozen=True)
+class SearchOptions:
+    """How a linkage is explored: what stands on the command line.
+
+    ``starts`` is the number of random starts, ``seed`` that of their generator,
+    ``tolerance`` that of the curves, ``budget`` the most seconds.
+    """
+
+    starts: int = 200
+    seed: int = 0
+    tolerance: float = 1e-13
+    budget: float = math.inf
+
+    def settings(self) -> SearchSettings:
+        """The settings of the search; raises `bifurc.ProblemError`."""
+        from bifurc.curves.continuation import TraceSettings
+        from bifurc.search.settings import SearchSettings
+
+        tracing = TraceSettings(tolerance=self.tolerance)
+        return SearchSettings(starts=self.starts, budget=self.budget, tracing=tracing)
+
+
+SEARCH_OPTIONS = (
+    click.option(
+        "--starts", default=200, type=STARTS, show_default=True, help="Random starts."
+    ),
+    click.option(
+        "--seed",
+        default=0,
+        type=SEED,
+        show_default=True,
+        help="Seed of the random starts.",
+    ),
+    click.option(
+        "--tolerance",
+        default=1e-13,
+        type=POSITIVE,
+        show_default=True,
+        help="How closely curves are followed.",
+    ),
+    click.option(
+        "--budget",
+        type=POSITIVE,
+        default=math.inf,
+        metavar="SECONDS",
+        help="End the search after so long, with what was found.  [default: none]",
+    ),
+)
+
+
+def search_options(command: Command) -> Command:
+    """``command`` with the options of a search, which it takes as one `SearchOptions`
+    called ``search``."""
+
+    @wraps(command)
+    def with_search(
+        starts: int, seed: int, tolerance: float, budget: float, **others: object
+    ) -> None:
+        search = SearchOptions(starts, seed, tolerance, budget)
+        command(search=search, **others)
+
+    decorated: Command = with_search
+    for option in reversed(SEARCH_OPTIONS):
+        decorated = option(decorated)
+    return decorated
+
+
+param_option = click.option(
+    "--param",
+    "parameters",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Parameter of a named linkage, angles in degrees; may be given several times.",
+)
+verbose_option = click.option(
+    "-v", "--verbose", is_flag=True, help="Say more on standard error."
+)
+
+
+def json_option(angles: str = "") -> Callable[[Command], Command]:
+    """The option ``--json``; ``angles`` says what follows in its help."""
+    text = f"Print one JSON document and nothing else{angles}."
+    return click.option("--json", "as_json", is_flag=True, help=text)
+
+
+def out_option(content: str) -> Callable[[Command], Command]:
+    """The option ``--out``, a folder for ``content``."""
+    folder = click.Path(path_type=Path, file_okay=False)
+    return click.option("--out", type=folder, help=f"Folder for {content}.")

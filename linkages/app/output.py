@@ -1,0 +1,68 @@
+"""What a command prints, and the folder that it writes to."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from linkages.app.exit_codes import CommandError
+
+__all__ = ["require_folder", "say", "say_json", "writing_to"]
+
+
+def say(text: str) -> None:
+    """Print ``text`` and a newline.
+
+    A reader that has gone away, as in ``bifurc map bennett | head -1``, is no error.
+    Raises `CommandError` where nothing can be printed, as on a full disk.
+    """
+    try:
+        click.echo(text)
+    except BrokenPipeError:
+        _discard_standard_output()
+    except OSError as error:
+        _discard_standard_output()
+        reason = error.strerror or str(error)
+        raise CommandError(f"standard output cannot be written ({reason})") from None
+
+
+def say_json(document: Mapping[str, object] | Sequence[object]) -> None:
+    """Print ``document`` as JSON; raises as `say`."""
+    say(json.dumps(document, allow_nan=False))
+
+
+def _discard_standard_output() -> None:
+    """Lead standard output to nowhere: what is left in its buffer would fail again when
+    the program ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
+
+
+def require_folder(out: Path) -> None:
+    """Make sure, before anything is computed, that files can be written to ``out``;
+    raises `CommandError`."""
+    from linkages.app.files import prepare_folder
+
+    with writing_to(out):
+        prepare_folder(out)
+
+
+@contextmanager
+def writing_to(out: Path) -> Iterator[None]:
+    """A block that writes to ``out``; raises `CommandError` where that fails.
+
+    The NetCDF library reports a full disk as a `RuntimeError`.
+    """
+    try:
+        yield
+    except (OSError, RuntimeError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        message = f"--out {out}: nothing can be written there ({reason})"
+        raise CommandError(message) from None

@@ -1,0 +1,48 @@
+"""A route of a linkage as text: degrees, joints numbered from 1."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from bifurc.atlas import Atlas
+from bifurc.routes.route import Route
+from linkages.app.summary import show_configuration
+from linkages.app.texts import table
+
+__all__ = ["describe_route"]
+
+
+def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
+    """A route as a table: along which form, to which singular point, how far each joint
+    turns on the way."""
+    length = np.degrees(route.length)
+    turns = [f"turn {i + 1}" for i in range(len(atlas.names))]
+    heads = ("", "along", "to", *turns, "configuration reached")
+    explanation = "All in degrees; a turn is the sum of a joint's movements both ways."
+    if any(leg.dimension > 1 for leg in route.legs):
+        explanation += " Over a surface the way is a geodesic."
+    return (
+        f"Route from {start} to {goal}: {len(route.legs)} legs, "
+        f"{length:.6g} deg in joint space\n"
+        f"from {show_configuration(atlas, route.path[0])}\n\n"
+        f"{table(heads, _rows(atlas, route))}\n\n{explanation}"
+    )
+
+
+def _rows(atlas: Atlas, route: Route) -> list[tuple[str, ...]]:
+    """A row for every leg, and one for the sum."""
+    places = {point.name: point.point.u for point in atlas.points}
+    rows: list[tuple[str, ...]] = []
+    for number, leg in enumerate(route.legs, start=1):
+        end = places[leg.at] if leg.at else route.path[-1]
+        turns = _turns(leg.travel)
+        reached = show_configuration(atlas, end)
+        rows.append((str(number), leg.form, leg.at or "goal", *turns, reached))
+    rows.append(("", "total", "", *_turns(route.travel), ""))
+    return rows
+
+
+def _turns(travel: Iterable[float]) -> list[str]:
+    return [f"{np.degrees(turn):.2f}" for turn in travel]

@@ -1,0 +1,101 @@
+"""What `bifurc verify` shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import TypeAlias
+
+from linkages.app.verify import (
+    ClosedFormCheck,
+    ErratumCheck,
+    MemberCheck,
+    Verification,
+)
+
+__all__ = ["describe_verification", "make_verification_document"]
+
+Json: TypeAlias = (
+    "bool | int | float | str | Sequence[Json] | Mapping[str, Json] | None"
+)
+
+
+def make_verification_document(verification: Verification) -> dict[str, Json]:
+    """The verification as plain values for JSON, where nan becomes None."""
+    values = asdict(verification)
+    values["failures"] = list(verification.failures)
+    return {key: _without_nan(value) for key, value in values.items()}
+
+
+def _without_nan(value: Json) -> Json:
+    if isinstance(value, Mapping):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def describe_verification(verification: Verification) -> str:
+    """The verification as a paragraph for the screen."""
+    lines = [verification.name]
+    lines += [_line("condition", text) for text in verification.conditions]
+    lines += [_line("closed form", _proof(form)) for form in verification.closed_forms]
+    if not verification.closed_forms:
+        lines.append(_line("closed form", "none in the sources"))
+    lines.append(_line("members", _count_members(verification.members)))
+    real = [member for member in verification.members if member.real]
+    if real:
+        closure = max(member.closure for member in real)
+        lines.append(_line("mobility", _mobility(real)))
+        lines.append(_line("closure", f"{closure:.1e} at most along the curves"))
+    if real and verification.closed_forms:
+        lines.append(_line("distance", _distance(real)))
+    lines += [_line("erratum", _erratum(erratum)) for erratum in verification.errata]
+    lines += [_line("FAILED", text) for text in verification.failures]
+    return "\n".join(lines)
+
+
+def _line(head: str, text: str) -> str:
+    return f"  {head:<13} {text}"
+
+
+def _proof(form: ClosedFormCheck) -> str:
+    proved = f"proved exactly at {form.points} points" if form.proved else "NOT PROVED"
+    return f"{form.form}: {proved} (doubt {form.doubt:.0e}); {form.source}"
+
+
+def _count_members(members: Sequence[MemberCheck]) -> str:
+    traced = sum(member.real for member in members)
+    refused = sum(bool(member.refused) for member in members)
+    unreal = len(members) - refused - traced
+    return f"{traced} traced, {refused} refused, {unreal} without real configuration"
+
+
+def _mobility(members: Sequence[MemberCheck]) -> str:
+    by_rank = _alternatives({member.corank for member in members})
+    by_tracing = _alternatives({member.mobility for member in members})
+    curves = sum(len(member.outcomes) for member in members)
+    return f"{by_rank} by rank, {by_tracing} by tracing ({curves} curves)"
+
+
+def _alternatives(values: set[int]) -> str:
+    return " or ".join(str(value) for value in sorted(values))
+
+
+def _distance(members: Sequence[MemberCheck]) -> str:
+    everywhere = max(member.distance for member in members)
+    certain = max(member.certain for member in members)
+    return (
+        f"{everywhere:.1e} rad at most from the closed form, "
+        f"{certain:.1e} off singular points"
+    )
+
+
+def _erratum(erratum: ErratumCheck) -> str:
+    return (
+        f"{erratum.equation}: printed fails by {erratum.printed:.1e}, "
+        f"corrected by {erratum.corrected:.1e}"
+    )

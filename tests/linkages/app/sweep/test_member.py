@@ -1,0 +1,44 @@
+"""One member of a sweep."""
+
+import gc
+import tracemalloc
+from contextlib import contextmanager
+
+import pytest
+
+from linkages.app.sweep.member import Status, map_member
+from linkages.app.sweep.plan import Plan
+
+
+@contextmanager
+def traced():
+    """Bytes held, garbage collected, as a function to call."""
+
+    def held():
+        gc.collect()
+        return tracemalloc.get_traced_memory()[0]
+
+    tracemalloc.start()
+    try:
+        yield held
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize("family", ["bennett", "goldberg-5r"])
+def test_a_worker_keeps_nothing_of_the_members_that_it_mapped(family):
+    plan = Plan(family, random=1000, ranges={"alpha": (0.5, 1.0)})
+    with traced() as held:
+        for index in range(20):
+            map_member(family, plan.parameters(index), 10, 0)
+            if index == 9:
+                before = held()
+        assert held() - before < 10 * 1000  # a single traced form is more than 20 kB
+
+
+def test_refused_parameters_are_recorded_as_such():
+    record = map_member(
+        "double-subtractive-goldberg", {"alpha": 0.5, "gamma": 1.5}, 10, 0
+    )
+    assert record["status"] == Status.REFUSED
+    assert "length" in record["message"]
