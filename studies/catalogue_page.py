@@ -18,7 +18,7 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
-from linkages.catalogue import FAMILIES, catalogue
+from linkages.catalogue import catalogue, families
 from linkages.entry import Entry, Parameter
 from linkages.linkage import load
 from linkages.mapping import map_linkage
@@ -49,7 +49,7 @@ def make_page(counts: Mapping[str, str]) -> str:
         for e in catalogue().values()
     ]
     table = "\n".join(["| name | joints | title |", "|---|---|---|", *rows])
-    parts = [HEAD, f"{len(FAMILIES)} families, {len(rows)} linkages.\n\n{table}\n"]
+    parts = [HEAD, f"{len(families())} families, {len(rows)} linkages.\n\n{table}\n"]
     parts += [
         _section(found, counts.get(found.name, NOT_COUNTED))
         for found in catalogue().values()
@@ -89,11 +89,11 @@ def _plural(number: int, what: str) -> str:
 
 
 def _section(found: Entry, count: str) -> str:
-    closed = _closed_forms(found.name)
+    closed = _closed_forms(found)
     parts = [
         f"## {found.name}\n\n{found.title}. Source: {found.source}.",
         "Parameters: " + ", ".join(_parameter(p) for p in found.parameters) + ".",
-        _listed("Conditions", found.conditions),
+        _listed("Conditions", [str(condition) for condition in found.conditions]),
         _listed("Relations", _relations(found.name)),
         _listed("Closed forms", closed),
         _listed("Misprints in the source", found.errata),
@@ -114,23 +114,20 @@ def _parameter(p: Parameter) -> str:
 def _relations(name: str) -> list[str]:
     lines = []
     for r in relations_of(name):
-        other = r.second if r.first == name else r.first
         words = (
             r.kind.value if r.kind is not RelationKind.SAME else "the same linkage as"
         )
         lines.append(
-            f"{words} [{other}](#{other}){f', {r.detail}' if r.detail else ''} ({r.source})"
+            f"{words} [{r.other}](#{r.other}){f', {r.detail}' if r.detail else ''} ({r.source})"
         )
     return lines
 
 
-def _closed_forms(name: str) -> list[str]:
+def _closed_forms(found: Entry) -> list[str]:
     """Name, source and LaTeX of every closed form of a linkage, u_x being tan(x/2) and
     t_i tan(theta_i/2)."""
-    from linkages.closed_forms.all_forms import closed_forms
-
     lines = []
-    for form in closed_forms(name):
+    for form in found.closed_forms:
         shown = [f"  - ${left} = {right}$" for left, right in form.latex().items()]
         lines.append("\n".join([f"{form.form} ({form.source}):", *shown]))
     return lines

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from bifurc.errors import BifurcError
 from bifurc.limits import HeldInterrupt
 from linkages.app.status import EchoHandler, ExitCode, StatusLine, compilation_announced
 from linkages.app.sweep.command import sweep_command
@@ -94,22 +95,8 @@ class Commands(click.Group):
     def invoke(self, ctx: click.Context) -> Any:
         try:
             return super().invoke(ctx)
-        except (ValueError, LookupError) as error:
-            from bifurc.errors import ProblemError, RouteError
-            from linkages.catalogue import UnknownLinkageError
-            from linkages.file import LinkageFileError
-            from linkages.loop import GeometryError
-
-            known = (
-                GeometryError,
-                LinkageFileError,
-                ProblemError,
-                RouteError,
-                UnknownLinkageError,
-            )
-            if isinstance(error, known):
-                raise BadInput(str(error)) from None
-            raise
+        except BifurcError as error:
+            raise BadInput(str(error)) from None
         except KeyboardInterrupt:
             click.echo("interrupted", err=True)
             ctx.exit(ExitCode.INTERRUPTED)

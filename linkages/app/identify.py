@@ -8,7 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from linkages.identification.identify import Identification, LockedJoint, Match
+from linkages.identification.identify import (
+    NEAR,
+    Identification,
+    LockedJoint,
+    Match,
+)
 
 __all__ = ["NOT_KNOWN", "describe_identification", "make_identification_document"]
 
@@ -33,6 +38,8 @@ def describe_identification(found: Identification) -> str:
             f"{found.loop.name}\nNo linkage of the catalogue has this geometry, to {found.tolerance:.1g}."
         ]
         parts += [_near(match) for match in found.nearest[:NEAREST]]
+        if not found.nearest:
+            parts.append(f"None misses by less than {NEAR:g}, so that none is near.")
     return "\n\n".join(parts + [_locked(joint) for joint in found.locked])
 
 

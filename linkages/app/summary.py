@@ -94,7 +94,7 @@ def describe_entry(found: Entry) -> str:
     parts = [
         f"{found.name}\n{found.title}\nSource: {found.source}",
         "Parameters\n" + table(("name", "default", "kind", "meaning"), rows),
-        _listed("Conditions", found.conditions),
+        _listed("Conditions", [str(condition) for condition in found.conditions]),
         describe_geometry(*(values.tolist() for values in found.build().arrays)),
         _listed(
             "Published facts", [f"{key}: {value}" for key, value in found.facts.items()]

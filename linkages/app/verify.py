@@ -142,11 +142,10 @@ def _plain(value: Any) -> Any:
 def verify(name: str, members: int = 1, points: int = 6, seed: int = 0) -> Verification:
     """Verify the default member and ``members`` - 1 random ones; raises
     `UnknownLinkageError`."""
-    from linkages.closed_forms.all_forms import closed_forms
     from linkages.closed_forms.proof import prove
 
     found, rng = entry(name), np.random.default_rng(seed)
-    proofs = [(form, prove(form, points, seed)) for form in closed_forms(name)]
+    proofs = [(form, prove(form, found, points, seed)) for form in found.closed_forms]
     checks = tuple(
         ClosedFormCheck(f.form, f.source, p.proved, p.points, p.doubt)
         for f, p in proofs
@@ -154,8 +153,9 @@ def verify(name: str, members: int = 1, points: int = 6, seed: int = 0) -> Verif
     drawn = [found.defaults, *(found.draw(rng) for _ in range(members - 1))]
     errata = tuple(ErratumCheck(e.equation, *e.measure()) for e in errata_of(name))
     verified = tuple(check_member(found, values, seed) for values in drawn)
+    conditions = tuple(condition.text for condition in found.conditions)
     return Verification(
-        name, found.conditions, checks, verified, errata, found.facts.get("mobility", 1)
+        name, conditions, checks, verified, errata, found.facts.get("mobility", 1)
     )
 
 
@@ -170,14 +170,13 @@ def verify_all(
 def check_member(found: Entry, values: Mapping[str, float], seed: int) -> MemberCheck:
     """Build a member, trace its forms from the closed form or from a survey, and
     compare."""
-    from linkages.closed_forms.all_forms import closed_forms
     from linkages.closed_forms.comparison import compare
 
     try:
         loop = found.build(**values)
     except GeometryError as refusal:
         return MemberCheck(values, refused=str(refusal))
-    problem, forms = LoopClosure(loop), closed_forms(found.name)
+    problem, forms = LoopClosure(loop), found.closed_forms
     starts = _starts(forms, values, np.random.default_rng(seed))
     surfaces = False
     if not len(starts):
