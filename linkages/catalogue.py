@@ -1,43 +1,28 @@
 """Every named linkage.
 
-A family module lists its linkages in ``ENTRIES`` and is named in `FAMILIES`; importing
-the catalogue imports numpy and these modules, nothing else.
+A module of `linkages.families` is a family: it lists its linkages in ``ENTRIES``. The
+families are found by looking into that package, so that a new one is a new file and
+nothing else. They come in the order of ``POSITION``, a number that a family may state;
+those that state none come last, by name. Importing the catalogue imports numpy and
+these modules, nothing else.
 """
 
 from __future__ import annotations
 
 import difflib
+import math
+import pkgutil
 from functools import cache
 from importlib import import_module
+from types import ModuleType
 
+import linkages.families
 from bifurc.errors import BifurcError
 from linkages.entry import Entry
 
-__all__ = ["FAMILIES", "UnknownLinkageError", "catalogue", "entry"]
+__all__ = ["UnknownLinkageError", "catalogue", "entry", "families"]
 
-FAMILIES = (
-    "linkages.families.four_bar",
-    "linkages.families.spherical",
-    "linkages.families.bennett",
-    "linkages.families.goldberg",
-    "linkages.families.goldberg_5r",
-    "linkages.families.tori",
-    "linkages.families.goldberg_6r",
-    "linkages.families.double_goldberg",
-    "linkages.families.generalized_double_goldberg",
-    "linkages.families.mixed_double_goldberg",
-    "linkages.families.back_to_back",
-    "linkages.families.waldron",
-    "linkages.families.yu_baker",
-    "linkages.families.mavroidis_roth",
-    "linkages.families.dietmaier",
-    "linkages.families.bricard",
-    "linkages.families.bricard_plane",
-    "linkages.families.bricard_collapsible",
-    "linkages.families.bricard_other",
-    "linkages.families.reconfigurable",
-    "linkages.families.wohlhart",
-)
+NEAREST = 5  # names that are shown where there is none of that name
 
 
 class UnknownLinkageError(BifurcError, KeyError):
@@ -49,42 +34,52 @@ class UnknownLinkageError(BifurcError, KeyError):
         super().__init__(name)
 
     def __str__(self) -> str:
-        hint = (
-            "the nearest names are " + ", ".join(self.nearest)
-            if self.nearest
-            else "no name is like it"
-        )
+        hint = "no name is like it"
+        if self.nearest:
+            hint = "the nearest names are " + ", ".join(self.nearest)
         return f"no linkage is called {self.name!r}; {hint}"
 
 
 @cache
-def _entries() -> tuple[Entry, ...]:
-    return tuple(
-        found for family in FAMILIES for found in import_module(family).ENTRIES
-    )
+def families() -> tuple[ModuleType, ...]:
+    """The modules of the families, in the order of the catalogue."""
+    package = linkages.families
+    modules = []
+    for module in pkgutil.iter_modules(package.__path__):
+        modules.append(import_module(f"{package.__name__}.{module.name}"))
+    return tuple(sorted(modules, key=_place))
+
+
+def _place(family: ModuleType) -> tuple[float, str]:
+    return getattr(family, "POSITION", math.inf), family.__name__
+
+
+@cache
+def _entries() -> dict[str, Entry]:
+    out: dict[str, Entry] = {}
+    for family in families():
+        for linkage in family.ENTRIES:
+            if linkage.name in out:
+                raise ValueError(f"two linkages are called {linkage.name!r}")
+            out[linkage.name] = linkage
+    return out
 
 
 def catalogue() -> dict[str, Entry]:
     """Every entry by its name, in the order of the families."""
-    out: dict[str, Entry] = {}
-    for found in _entries():
-        if found.name in out:
-            raise ValueError(f"two linkages are called {found.name!r}")
-        out[found.name] = found
-    return out
+    return dict(_entries())
 
 
 def entry(name: str) -> Entry:
     """The entry called ``name``; raises `UnknownLinkageError`, which lists the nearest
     names."""
-    known = catalogue()
+    known = _entries()
     if name in known:
         return known[name]
     plain = name.strip().lower().replace("_", "-").replace(" ", "-")
     nearest = difflib.get_close_matches(plain, known, n=3, cutoff=0.5)
-    nearest += [
-        key
-        for key in known
-        if plain and (plain in key or key in plain) and key not in nearest
-    ]
-    raise UnknownLinkageError(name, tuple(nearest[:5]))
+    for other in known:
+        is_part = bool(plain) and (plain in other or other in plain)
+        if is_part and other not in nearest:
+            nearest.append(other)
+    raise UnknownLinkageError(name, tuple(nearest[:NEAREST]))

@@ -1,33 +1,117 @@
-"""What the catalogue keeps of a linkage: constructor, parameters, source, conditions
-and named forms."""
+"""What the catalogue keeps of a linkage: constructor, parameters, source, conditions,
+named forms, closed forms, first guesses and relations."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from enum import Enum, StrEnum
+from functools import cached_property
+from math import radians
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from linkages.loop import GeometryError, Loop
+from bifurc.errors import BifurcError
+from linkages.closed_forms.closed_form import ClosedForm
+from linkages.construction.numbers import Number
+from linkages.loop import Loop
 
-__all__ = ["Entry", "FormPattern", "Parameter"]
+__all__ = [
+    "BY_IDENTIFICATION",
+    "Condition",
+    "Entry",
+    "FormPattern",
+    "Guesses",
+    "Parameter",
+    "ParameterKind",
+    "Relation",
+    "RelationKind",
+    "Term",
+    "UnknownParameterError",
+]
+
+Guesses: TypeAlias = Callable[[np.ndarray], Iterable[Mapping[str, float]]]
+Term: TypeAlias = Callable[[np.ndarray], float]
+BY_IDENTIFICATION = "found by identification"  # the source of a relation without one
+
+
+class UnknownParameterError(BifurcError):
+    """A linkage has no parameter of that name: ``linkage``, the ``name`` asked for and
+    the names that it has, ``known``."""
+
+    def __init__(self, linkage: str, name: str, known: tuple[str, ...]):
+        self.linkage, self.name, self.known = linkage, name, known
+        allowed = "one of " + ", ".join(known)
+        super().__init__(
+            f"parameter of {linkage}: {name!r} is not allowed; it must be {allowed}"
+        )
+
+
+class ParameterKind(StrEnum):
+    """What a parameter is: an angle in rad (degrees on the screen), a length, or a
+    number without unit."""
+
+    ANGLE = "angle"
+    LENGTH = "length"
+    NUMBER = "number"
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A free parameter of a family: ``kind`` is "angle" (rad; degrees on the screen),
-    "length" or "number".
+    """A free parameter of a family.
 
     ``low`` and ``high`` bound the open range from which random members are drawn.
     """
 
     name: str
     default: float
-    kind: str
+    kind: ParameterKind
     meaning: str
     low: float
     high: float
+
+    @classmethod
+    def length(
+        cls, name: str, default: float, meaning: str, low: float, high: float
+    ) -> Parameter:
+        """The parameter for a length or an offset."""
+        return cls(name, default, ParameterKind.LENGTH, meaning, low, high)
+
+    @classmethod
+    def angle(
+        cls, name: str, degrees: float, meaning: str, low: float, high: float
+    ) -> Parameter:
+        """The parameter for an angle, default and bounds in degrees."""
+        bounds = radians(low), radians(high)
+        return cls(name, radians(degrees), ParameterKind.ANGLE, meaning, *bounds)
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A condition on the geometry: its ``text``, and the equations of it that the
+    numbers of a table decide, one term each.
+
+    A term maps a table (3, n) of lengths, twists (rad) and offsets to the difference of
+    the sides of its equation. A condition in words has no terms.
+    """
+
+    text: str
+    terms: tuple[Term, ...] = ()
+
+    def __str__(self) -> str:
+        return self.text
+
+    def residual(self, table: np.ndarray) -> float | None:
+        """The largest difference that ``table`` (3, n) leaves, in the units of the
+        table; None where no term has a value."""
+        gaps = []
+        for term in self.terms:
+            try:
+                gaps.append(term(table))
+            except ArithmeticError:  # a ratio to a link of no length
+                continue
+        return max(gaps) if gaps else None
 
 
 @dataclass(frozen=True)
@@ -43,15 +127,50 @@ class FormPattern:
     residual: Callable[[np.ndarray], np.ndarray]
 
 
+class RelationKind(Enum):
+    """What a linkage is to another one."""
+
+    SPECIAL_CASE = "special case of"
+    SAME = "same linkage as"
+    ISOMER = "isomer of"
+    DEGENERATE = "degenerates to"
+    CONSTRUCTED = "constructed from"
+
+
+@dataclass(frozen=True)
+class Relation:
+    """What a linkage is to the one called ``other``; ``detail`` says how, ``source``
+    who says so.
+
+    ``joint`` (from 1) of the other is where its links are exchanged for an isomer;
+    ``vanishing`` is the parameter that goes to 0 for a degenerate case.
+    """
+
+    kind: RelationKind
+    other: str
+    source: str
+    detail: str = ""
+    joint: int = 0
+    vanishing: str = ""
+
+
 @dataclass(frozen=True)
 class Entry:
     """One linkage of the catalogue.
 
     ``construct`` takes the parameters by keyword (any number type) and returns the
     `Loop`, or raises `GeometryError` that says by how much a condition is violated.
-    ``patterns`` takes the same parameters (floats) and returns the named forms.
-    ``conditions`` states the geometry in words and symbols; ``facts`` the published
-    invariants that the tests assert, such as ``mobility`` or ``forms``.
+    ``conditions`` state the geometry; ``facts`` are the published invariants that the
+    tests assert, such as ``mobility`` or ``forms``. ``patterns`` takes the same
+    parameters (floats) and returns the named forms. ``formulas`` returns the closed
+    forms, and may import sympy.
+
+    Most parameters stand in the table of a member as they are, and recognition reads
+    them there. For the others ``guesses`` maps a table (3, n) in normal form (lengths
+    not negative, twists in [0, pi), offsets known by size only) to every candidate,
+    parameters by name; wrong ones do no harm. Where there is no formula ``scan`` holds
+    values of each hidden angle (rad) to start from. ``is_other_view`` marks the
+    linkages of another entry in parameters that it does not need.
     """
 
     name: str
@@ -59,30 +178,40 @@ class Entry:
     source: str
     construct: Callable[..., Loop]
     parameters: tuple[Parameter, ...]
-    conditions: tuple[str, ...] = ()
+    conditions: tuple[Condition, ...] = ()
     patterns: Callable[..., tuple[FormPattern, ...]] | None = None
+    formulas: Callable[[], tuple[ClosedForm, ...]] | None = None
+    guesses: Guesses | None = None
+    scan: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    relations: tuple[Relation, ...] = ()
     errata: tuple[str, ...] = ()
     facts: Mapping[str, Any] = field(default_factory=dict)
+    is_other_view: bool = False
 
     @property
     def defaults(self) -> dict[str, float]:
         """Default value of every parameter."""
         return {p.name: p.default for p in self.parameters}
 
+    @cached_property
+    def closed_forms(self) -> tuple[ClosedForm, ...]:
+        """The closed forms of the motion; none where the sources give none."""
+        return () if self.formulas is None else self.formulas()
+
     def complete(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """``values`` completed by the defaults; raises `GeometryError` for an unknown
-        parameter."""
+        """``values`` completed by the defaults; raises `UnknownParameterError`."""
         known = self.defaults
-        for key in values:
-            if key not in known:
-                raise GeometryError(
-                    f"parameter of {self.name}", repr(key), "one of " + ", ".join(known)
-                )
+        for name in values:
+            if name not in known:
+                raise UnknownParameterError(self.name, name, tuple(known))
         return {**known, **values}
 
-    def build(self, **values: Any) -> Loop:
+    def build(self, **values: Number) -> Loop:
         """The member with the given parameters, the others at their defaults, named
-        after the entry."""
+        after the entry.
+
+        Raises `GeometryError` and `UnknownParameterError`.
+        """
         loop = self.construct(**self.complete(values))
         return Loop(loop.lengths, loop.twists, loop.offsets, self.name)
 

@@ -4,21 +4,26 @@ for proof.
 With t_i = tan(theta_i/2) = s_i/c_i the angle of every joint is a homogeneous pair
 (numerator, denominator) of polynomials in the pair (s_1, c_1) of the input joint and,
 on curves that are not rational, in the pair of a second joint that is tied to it by one
-quadratic relation. Pairs have no poles: angles are added by multiplying pairs. This
-module and the modules of closed forms import sympy; the catalogue does not import them.
+quadratic relation. Pairs have no poles: angles are added by multiplying pairs.
+
+The expressions are sympy's. It is imported when the first symbol is made, so that the
+catalogue, which names the type, starts without it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
-import sympy as sp
 
 from linkages.construction import numbers
+from linkages.construction.numbers import Number
+
+if TYPE_CHECKING:
+    import sympy as sp
 
 __all__ = [
     "HALF_TURN",
@@ -26,34 +31,44 @@ __all__ = [
     "ClosedForm",
     "Pair",
     "constant",
+    "constant_latex",
+    "cosine_of",
     "joint",
     "minus",
     "negative",
+    "only",
     "plus",
     "ratio",
     "reciprocal",
+    "sine_of",
     "tangent",
 ]
 
-Pair = tuple[Any, Any]
-ZERO: Pair = (sp.Integer(0), sp.Integer(1))
-HALF_TURN: Pair = (sp.Integer(1), sp.Integer(0))
+Pair: TypeAlias = tuple[Number, Number]
+ZERO: Pair = (0, 1)
+HALF_TURN: Pair = (1, 0)
+ROUNDING = 1e-13  # a discriminant that is negative by less is zero
 
 
 def joint(i: int) -> Pair:
     """The pair (s_i, c_i) of joint ``i``, from 1."""
+    import sympy as sp
+
     s, c = sp.symbols(f"s_{i} c_{i}", real=True)
     return s, c
 
 
-def tangent(name: str) -> sp.Symbol:
+def tangent(name: str) -> Number:
     """The tangent of half the twist or kink called ``name``."""
-    return sp.Symbol(f"u_{name}", real=True)
+    return constant(f"u_{name}")
 
 
-def constant(name: str) -> sp.Symbol:
+def constant(name: str) -> Number:
     """A length or offset of the geometry, or a constant that a closed form defines."""
-    return sp.Symbol(name, real=True)
+    import sympy as sp
+
+    symbol: Number = sp.Symbol(name, real=True)
+    return symbol
 
 
 def plus(x: Pair, y: Pair) -> Pair:
@@ -71,15 +86,37 @@ def minus(x: Pair, y: Pair) -> Pair:
     return plus(x, negative(y))
 
 
-def reciprocal(x: Pair, factor: Any = 1) -> Pair:
+def reciprocal(x: Pair, factor: Number = 1) -> Pair:
     """The pair whose tangent is ``factor`` over that of ``x``."""
     return factor * x[1], x[0]
 
 
-def ratio(x: str, y: str) -> Any:
+def only(*pairs: Pair) -> tuple[tuple[Pair, ...], ...]:
+    """The half tangents of joints that have one pair each."""
+    return tuple((pair,) for pair in pairs)
+
+
+def ratio(x: str, y: str) -> Number:
     """sin((x + y)/2) / sin((x - y)/2) of two twists, by the tangents of their
     halves."""
     return (tangent(x) + tangent(y)) / (tangent(x) - tangent(y))
+
+
+def cosine_of(u: Number) -> Number:
+    """Cosine of the angle whose half has the tangent ``u``."""
+    return (1 - u**2) / (1 + u**2)
+
+
+def sine_of(u: Number) -> Number:
+    """Sine of the angle whose half has the tangent ``u``."""
+    return 2 * u / (1 + u**2)
+
+
+class _Root(NamedTuple):
+    """A root of a quadratic equation as a pair of unit length, and where it is real."""
+
+    pair: tuple[np.ndarray, np.ndarray]
+    is_real: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -99,9 +136,9 @@ class ClosedForm:
     source: str
     angles: tuple[str, ...]
     half_tangents: tuple[tuple[Pair, ...], ...]
-    constants: Mapping[str, Any] = field(default_factory=dict)
+    constants: Mapping[str, Number] = field(default_factory=dict)
     lengths: tuple[str, ...] = ()
-    relation: Any = None
+    relation: Number | None = None
     second: int = 0
 
     @property
@@ -115,63 +152,64 @@ class ClosedForm:
         return (1,) if self.relation is None else (1, -1)
 
     @cached_property
-    def _variables(self) -> list[sp.Symbol]:
-        return [
-            *joint(1),
-            *(joint(self.second) if self.second else ()),
-            *map(constant, self.constants),
-        ]
+    def _constant_symbols(self) -> list[Number]:
+        return [constant(name) for name in self.constants]
 
     @cached_property
-    def _constants(self) -> Any:
-        known: dict[sp.Symbol, Any] = {}
+    def _constants(self) -> Callable[..., Sequence[Number]]:
+        import sympy as sp
+
+        values: dict[Number, sp.Expr] = {}
         for name, value in self.constants.items():
-            known[constant(name)] = sp.sympify(value).subs(known)
-        arguments = [*map(tangent, self.angles), *map(constant, self.lengths)]
-        return sp.lambdify(
-            arguments, list(known.values()), modules=[{"sqrt": numbers.sqrt}], cse=True
-        )
+            values[constant(name)] = sp.sympify(value).subs(values)
+        angles = [tangent(name) for name in self.angles]
+        lengths = [constant(name) for name in self.lengths]
+        return _compiled([*angles, *lengths], list(values.values()), sqrt=numbers.sqrt)
 
     @cached_property
-    def _pairs(self) -> Any:
-        return sp.lambdify(
-            self._variables,
-            [list(pairs) for pairs in self.half_tangents],
-            modules=[],
-            cse=True,
-        )
+    def _pairs(self) -> Callable[..., Sequence[list[Pair]]]:
+        second = joint(self.second) if self.second else ()
+        arguments = [*joint(1), *second, *self._constant_symbols]
+        return _compiled(arguments, [list(pairs) for pairs in self.half_tangents])
 
     @cached_property
-    def quadratic(self) -> tuple[Any, Any, Any]:
+    def quadratic(self) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
         """Coefficients (A, B, C) of the relation A t^2 + B t + C = 0 of the second
         joint, without poles."""
+        import sympy as sp
+
         s, c = joint(self.second)
-        found = sp.Poly(self.relation, s, c)
+        polynomial = sp.Poly(self.relation, s, c)
         return (
-            found.coeff_monomial(s**2),
-            found.coeff_monomial(s * c),
-            found.coeff_monomial(c**2),
+            polynomial.coeff_monomial(s**2),
+            polynomial.coeff_monomial(s * c),
+            polynomial.coeff_monomial(c**2),
         )
 
     @cached_property
-    def _quadratic(self) -> Any:
-        arguments = [*joint(1), *map(constant, self.constants)]
-        return sp.lambdify(arguments, list(self.quadratic), modules=[], cse=True)
+    def _quadratic(self) -> Callable[..., Sequence[Number]]:
+        return _compiled([*joint(1), *self._constant_symbols], list(self.quadratic))
 
-    def evaluate_constants(self, parameters: Mapping[str, Any]) -> list[Any]:
+    def evaluate_constants(self, parameters: Mapping[str, Number]) -> list[Number]:
         """Values of the constants for parameters of any number type, angles in rad or
         exact."""
         tangents = [numbers.tan(parameters[name] / 2) for name in self.angles]
-        return list(
-            self._constants(*tangents, *(parameters[name] for name in self.lengths))
-        )
+        lengths = [parameters[name] for name in self.lengths]
+        return self.constants_by_tangents(tangents, lengths)
 
-    def evaluate_quadratic(self, first: Pair, constants: list[Any]) -> list[Any]:
+    def constants_by_tangents(
+        self, tangents: Sequence[Number], lengths: Sequence[Number] = ()
+    ) -> list[Number]:
+        """Values of the constants for the half tangents of ``angles`` and for
+        ``lengths``, in their order."""
+        return list(self._constants(*tangents, *lengths))
+
+    def evaluate_quadratic(self, first: Pair, constants: list[Number]) -> list[Number]:
         """Coefficients (A, B, C) for a pair of the input joint, of any number type."""
         return list(self._quadratic(*first, *constants))
 
     def evaluate_pairs(
-        self, first: Pair, second: Pair | None, constants: list[Any]
+        self, first: Pair, second: Pair | None, constants: list[Number]
     ) -> list[list[Pair]]:
         """For each joint its equivalent pairs, in the number type of the arguments."""
         return list(self._pairs(*first, *(second or ()), *constants))
@@ -186,67 +224,112 @@ class ClosedForm:
         tangent is formed.
         """
         theta_1 = np.asarray(theta_1, dtype=float)
-        values = self.evaluate_constants(parameters)
+        constants = self.evaluate_constants(parameters)
         first = np.sin(theta_1 / 2), np.cos(theta_1 / 2)
-        second, reached = None, np.ones(len(theta_1), dtype=bool)
+        second: tuple[np.ndarray, ...] = ()
+        is_real = np.ones(len(theta_1), dtype=bool)
         if self.relation is not None:
-            a, b, c = (x + 0 * theta_1 for x in self.evaluate_quadratic(first, values))
-            second, reached = _root(a, b, c, root)
+            coefficients = self._quadratic(*first, *constants)
+            a, b, c = (_broadcast(x, theta_1) for x in coefficients)
+            second, is_real = _root(a, b, c, root)
         out = np.empty((len(theta_1), self.n))
-        for i, pairs in enumerate(self.evaluate_pairs(first, second, values)):
-            angles = [(y + 0 * theta_1, x + 0 * theta_1) for y, x in pairs]
-            best = np.argmax([np.hypot(y, x) for y, x in angles], axis=0)
-            out[:, i] = np.choose(best, [2 * np.arctan2(y, x) for y, x in angles])
-        out[~reached] = np.nan
+        for i, pairs in enumerate(self._pairs(*first, *second, *constants)):
+            out[:, i] = _angles(pairs, theta_1)
+        out[~is_real] = np.nan
         return np.remainder(out + np.pi, 2 * np.pi) - np.pi
 
     def latex(self) -> dict[str, str]:
         """LaTeX of the constants, of the relation and of tan(theta_i/2), by the name of
         what stands left."""
-        out = {
-            constant_latex(name): sp.latex(value)
-            for name, value in self.constants.items()
-        }
-        t = {joint(i)[0]: sp.Symbol(f"t_{i}", real=True) for i in (1, self.second) if i}
-        plain = {**t, **{joint(i)[1]: sp.Integer(1) for i in (1, self.second) if i}}
+        import sympy as sp
+
+        out = {}
+        for name, value in self.constants.items():
+            out[constant_latex(name)] = sp.latex(value)
+        tangents = []
+        plain: dict[Number, sp.Expr] = {}
+        for i in (1, self.second):
+            if i:
+                s, c = joint(i)
+                plain[s] = sp.Symbol(f"t_{i}", real=True)
+                plain[c] = sp.Integer(1)
+                tangents.append(plain[s])
         if self.relation is not None:
-            out["0"] = sp.latex(
-                sp.collect(sp.expand(self.relation.subs(plain)), list(t.values()))
-            )
+            expanded = sp.expand(sp.sympify(self.relation).subs(plain))
+            out["0"] = sp.latex(sp.collect(expanded, tangents))
         for i, pairs in enumerate(self.half_tangents, start=1):
             top, bottom = (sp.sympify(x).subs(plain) for x in pairs[0])
-            shown = (
-                sp.oo
-                if bottom == 0
-                else sp.factor(sp.cancel(top / bottom))
-                if bottom.is_number
-                else top / bottom
-            )
-            out[rf"\tan\frac{{\theta_{i}}}{{2}}"] = sp.latex(shown)
+            quotient = _quotient(top, bottom)
+            out[rf"\tan\frac{{\theta_{i}}}{{2}}"] = sp.latex(quotient)
         return out
 
 
 def constant_latex(name: str) -> str:
     """LaTeX of the symbol of a constant."""
+    import sympy as sp
+
     return str(sp.latex(constant(name)))
 
 
-def _root(
-    a: np.ndarray, b: np.ndarray, c: np.ndarray, sign: int
-) -> tuple[Pair, np.ndarray]:
-    """The root of a t^2 + b t + c as a pair of unit length, and where it is real.
+def _quotient(top: sp.Expr, bottom: sp.Expr) -> sp.Expr:
+    """The quotient as it is shown: infinite, a polynomial in factors, or a fraction as
+    it stands."""
+    import sympy as sp
+
+    if bottom == 0:
+        return sp.oo
+    if bottom.is_number:
+        return sp.factor(sp.cancel(top / bottom))
+    return top / bottom
+
+
+def _compiled(
+    arguments: Sequence[Number], expressions: Sequence[object], **functions: object
+) -> Callable[..., Any]:
+    """A function that evaluates the expressions for numbers of any type."""
+    import sympy as sp
+
+    modules = [functions] if functions else []
+    compiled: Callable[..., Any] = sp.lambdify(
+        arguments, expressions, modules=modules, cse=True
+    )
+    return compiled
+
+
+def _broadcast(value: Number, like: np.ndarray) -> np.ndarray:
+    """``value``, a number or an array, in the shape of ``like``."""
+    return np.asarray(value + 0 * like)
+
+
+def _angles(pairs: Sequence[Pair], like: np.ndarray) -> np.ndarray:
+    """The angles (k,), rad, of a joint, from the longest of its pairs at each input."""
+    angles = []
+    sizes = []
+    for top, bottom in pairs:
+        y = _broadcast(top, like)
+        x = _broadcast(bottom, like)
+        angles.append(2 * np.arctan2(y, x))
+        sizes.append(np.hypot(y, x))
+    best = np.argmax(sizes, axis=0)
+    return np.asarray(np.choose(best, angles))
+
+
+def _root(a: np.ndarray, b: np.ndarray, c: np.ndarray, sign: int) -> _Root:
+    """A root of a t^2 + b t + c.
 
     Of the two equal quotients the longer pair is kept, so that nothing is lost by
     cancellation. A discriminant that is negative by rounding alone is taken as zero.
     """
     square = b * b - 4 * a * c
-    reached = square > -1e-13 * (np.abs(a) + np.abs(b) + np.abs(c)) ** 2
-    size = sign * np.sqrt(np.maximum(square, 0.0))
-    one, other = (size - b, 2 * a), (2 * c, -b - size)
-    lengths = np.hypot(*one), np.hypot(*other)
-    longer = lengths[0] >= lengths[1]
-    norm = np.maximum(np.maximum(*lengths), 1e-300)
-    return (
-        np.where(longer, one[0], other[0]) / norm,
-        np.where(longer, one[1], other[1]) / norm,
-    ), reached
+    size = np.abs(a) + np.abs(b) + np.abs(c)
+    is_real = square > -ROUNDING * size**2
+    root = sign * np.sqrt(np.maximum(square, 0.0))
+    one_y, one_x = root - b, 2 * a
+    other_y, other_x = 2 * c, -b - root
+    one_length = np.hypot(one_y, one_x)
+    other_length = np.hypot(other_y, other_x)
+    is_one = one_length >= other_length
+    norm = np.maximum(np.maximum(one_length, other_length), 1e-300)
+    top = np.where(is_one, one_y, other_y) / norm
+    bottom = np.where(is_one, one_x, other_x) / norm
+    return _Root((top, bottom), is_real)

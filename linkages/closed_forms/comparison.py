@@ -15,19 +15,22 @@ from linkages.closed_forms.closed_form import ClosedForm
 
 __all__ = ["Comparison", "compare", "pole_samples"]
 
-BESIDE = np.array(
-    [0.0, 1e-12, 1e-9, 1e-6, 1e-3]
-)  # arclengths around a pole that are looked at
+# arclengths around a pole that are looked at
+BESIDE = np.array([0.0, 1e-12, 1e-9, 1e-6, 1e-3])
+REGULAR = 1e-3  # singular values above which rounding leaves eleven digits
+LONGEST_STEP = 1e-3  # arclength that a foot may move in one step
+FOOT = 1e-6  # arclength within which the foot counts as reached
 
 
 def pole_samples(branch: Branch) -> np.ndarray:
     """Arclengths at which some joint is at 0 or pi, where its half tangent is 0 or
     infinite, and just beside."""
-    crossings = np.concatenate(
-        [*roots_along(branch, lambda s: np.sin(branch(s))), [0.0]]
-    )
-    around = crossings[:, None] + np.concatenate([-BESIDE[1:], BESIDE])
-    return np.clip(around.ravel(), 0.0, branch.length)
+    roots = roots_along(branch, lambda s: np.sin(branch(s)))
+    crossings = np.concatenate([*roots, [0.0]])
+    shifts = np.concatenate([-BESIDE[1:], BESIDE])
+    around = crossings[:, None] + shifts
+    samples: np.ndarray = np.clip(around.ravel(), 0.0, branch.length)
+    return samples
 
 
 @dataclass(frozen=True)
@@ -59,31 +62,31 @@ def compare(
     the curve.
     """
     s = np.concatenate([branch.arclengths(count), pole_samples(branch)])
-    theta_1 = branch(s)[:, 0]
+    theta = branch(s)
     best = np.full(len(s), np.inf)
     for form in forms:
         for root in form.roots:
-            best = np.fmin(
-                best, _across(branch, s, form.configurations(theta_1, parameters, root))
-            )
-    regular = singular_values(problem, branch(s))[:, problem.n - 2] > 1e-3
-    return Comparison(float(best.max()), float(best[regular].max(initial=0.0)))
+            configurations = form.configurations(theta[:, 0], parameters, root)
+            best = np.fmin(best, _distances(branch, s, configurations))
+    smallest = singular_values(problem, theta)[:, problem.n - 2]
+    certain = best[smallest > REGULAR]
+    return Comparison(float(best.max()), float(certain.max(initial=0.0)))
 
 
-def _across(branch: Branch, s: np.ndarray, configurations: np.ndarray) -> np.ndarray:
-    """Distances (k,) of configurations from the curve near arclengths ``s``: the feet
-    are found by one step."""
+def _distances(branch: Branch, s: np.ndarray, configurations: np.ndarray) -> np.ndarray:
+    """Distances (k,) of configurations from the curve near arclengths ``s``; infinite
+    where two steps do not reach the foot."""
     foot = s
     for _ in range(2):
-        points, along = branch(foot), branch(foot, 1)
-        along = along / np.linalg.norm(along, axis=1, keepdims=True)
-        away = np.remainder(configurations - points + np.pi, 2 * np.pi) - np.pi
-        shift = np.nan_to_num(np.sum(away * along, axis=1))
-        foot = foot + np.clip(shift, -1e-3, 1e-3)
-        foot = (
-            np.remainder(foot, branch.length)
-            if branch.closed
-            else np.clip(foot, 0.0, branch.length)
-        )
-    across = np.linalg.norm(away - shift[:, None] * along, axis=1)
-    return np.where(np.abs(shift) < 1e-6, across, np.inf)
+        points = branch(foot)
+        direction = branch(foot, 1)
+        direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
+        gap = np.remainder(configurations - points + np.pi, 2 * np.pi) - np.pi
+        shift = np.nan_to_num(np.sum(gap * direction, axis=1))
+        foot = foot + np.clip(shift, -LONGEST_STEP, LONGEST_STEP)
+        if branch.closed:
+            foot = np.remainder(foot, branch.length)
+        else:
+            foot = np.clip(foot, 0.0, branch.length)
+    across = np.linalg.norm(gap - shift[:, None] * direction, axis=1)
+    return np.where(np.abs(shift) < FOOT, across, np.inf)

@@ -15,18 +15,27 @@ for all points together.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import sympy as sp
 
-from linkages.catalogue import entry
-from linkages.closed_forms.closed_form import ClosedForm, constant, joint
-from linkages.construction import numbers
-from linkages.construction.exact import Angle, Quadratic
-from linkages.entry import Entry
+from linkages.closed_forms.closed_form import (
+    ClosedForm,
+    Pair,
+    constant,
+    cosine_of,
+    joint,
+    sine_of,
+    tangent,
+)
+from linkages.construction import exact, numbers
+from linkages.construction.exact import Angle, Exact, Quadratic
+from linkages.construction.numbers import Number
+from linkages.entry import Entry, ParameterKind
 from linkages.loop import GeometryError, Loop
 
 __all__ = [
@@ -41,6 +50,8 @@ __all__ = [
 # denominator of the random tangents and lengths: at least VALUES / 10 values of each
 VALUES = 1_000_000_007
 ATTEMPTS = 40  # random parameters that a constructor may refuse before a point is found
+# angles (`Angle`) and lengths (fractions), which share no operation but the sum
+ExactParameters: TypeAlias = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -65,19 +76,25 @@ class Proof:
         return self.points > 0 and self.closed == self.points
 
 
-def exact_parameters(found: Entry, rng: np.random.Generator) -> dict[str, Any]:
+def exact_parameters(linkage: Entry, rng: np.random.Generator) -> ExactParameters:
     """Random exact parameters within their ranges: angles with rational half tangents,
     rational lengths."""
-    out: dict[str, Any] = {}
-    for p in found.parameters:
-        low, high = (np.tan(x / 2) if p.kind == "angle" else x for x in (p.low, p.high))
-        value = Fraction(round(rng.uniform(low, high) * VALUES), VALUES)
-        out[p.name] = Angle(value) if p.kind == "angle" else value
+    out: ExactParameters = {}
+    for p in linkage.parameters:
+        if p.kind is ParameterKind.ANGLE:
+            low, high = np.tan(p.low / 2), np.tan(p.high / 2)
+            out[p.name] = Angle(_random_fraction(rng, low, high))
+        else:
+            out[p.name] = _random_fraction(rng, p.low, p.high)
     return out
 
 
+def _random_fraction(rng: np.random.Generator, low: float, high: float) -> Fraction:
+    return Fraction(round(rng.uniform(low, high) * VALUES), VALUES)
+
+
 def exact_angles(
-    form: ClosedForm, parameters: dict[str, Any], t_1: Fraction, root: int
+    form: ClosedForm, parameters: Mapping[str, Number], t_1: Fraction, root: int
 ) -> list[list[Angle]] | None:
     """For each joint the angles that its pairs give at tan(theta1/2) = ``t_1``; None
     where a pair is 0/0.
@@ -85,95 +102,115 @@ def exact_angles(
     Every pair of a joint is there, for they must agree.
     """
     constants = form.evaluate_constants(parameters)
-    first, second = (t_1, Fraction(1)), None
+    one = Fraction(1)
+    first = (t_1, one)
+    second = None
     if form.relation is not None:
         a, b, c = form.evaluate_quadratic(first, constants)
         if a == 0:
             return None
-        second = (
-            (-b + root * numbers.sqrt(Fraction(b * b - 4 * a * c))) / (2 * a),
-            Fraction(1),
-        )
-    pairs = form.evaluate_pairs(first, second, constants)
-    if any(y == 0 and x == 0 for alike in pairs for y, x in alike):
-        return None
-    return [[Angle(y, x) for y, x in alike] for alike in pairs]
-
-
-def closing_defects(loop: Loop, theta: list[Angle]) -> list[Any]:
-    """The twelve entries of the upper rows of T_1 ... T_n - I, exact. Raises
-    `TypeError` if one is not."""
-    product: list[list[Any]] = [
-        [Fraction(int(i == j)) for j in range(4)] for i in range(4)
-    ]
-    for turn, length, twist, offset in zip(
-        theta, loop.lengths, loop.twists, loop.offsets, strict=True
-    ):
-        c, s, ca, sa = (
-            numbers.cos(turn),
-            numbers.sin(turn),
-            numbers.cos(twist),
-            numbers.sin(twist),
-        )
-        step = [
-            [c, -s * ca, s * sa, length * c],
-            [s, c * ca, -c * sa, length * s],
-            [0, sa, ca, offset],
-            [0, 0, 0, 1],
-        ]
-        product = [
-            [_dot(row, [line[j] for line in step]) for j in range(4)] for row in product
-        ]
-    out = [product[i][j] - (1 if i == j else 0) for i in range(3) for j in range(4)]
-    for value in out:
-        if not isinstance(value, int | Fraction | Quadratic):
-            raise TypeError(f"{value!r} is not an exact number")
+        square = _exact(b * b - 4 * a * c)
+        t_2 = (-b + root * numbers.sqrt(square)) / (2 * a)
+        second = (t_2, one)
+    out = []
+    for pairs in form.evaluate_pairs(first, second, constants):
+        if any(y == 0 and x == 0 for y, x in pairs):
+            return None
+        out.append([_angle(pair) for pair in pairs])
     return out
 
 
-def _dot(x: list[Any], y: list[Any]) -> Any:
-    return sum((a * b for a, b in zip(x, y, strict=True)), Fraction(0))
+def _angle(pair: Pair) -> Angle:
+    y, x = (_exact(value) for value in pair)
+    return Angle(y, x)
 
 
-def prove(form: ClosedForm, points: int = 6, seed: int = 0) -> Proof:
-    """Exact closure at random rational ``points`` of parameters, input and root. Raises
-    `GeometryError` for none."""
-    rng, found = np.random.default_rng(seed), entry(form.linkage)
+def _exact(value: object) -> Exact:
+    """The value itself; raises `TypeError` if it is not an exact number."""
+    if isinstance(value, int):
+        return Fraction(value)
+    if isinstance(value, Fraction | Quadratic):
+        return value
+    raise TypeError(f"{value!r} is not an exact number")
+
+
+def closing_defects(loop: Loop, theta: Sequence[Angle]) -> list[Exact]:
+    """The twelve entries of the upper rows of T_1 ... T_n - I, exact. Raises
+    `TypeError` if one is not."""
+    identity = [[Fraction(int(i == j)) for j in range(4)] for i in range(4)]
+    product: list[list[Exact]] = [list(row) for row in identity]
+    for i, angle in enumerate(theta):
+        step = _transform(angle, loop, i)
+        product = [_row_times(row, step) for row in product]
+    out = []
+    for row, plain in zip(product[:3], identity[:3], strict=True):
+        for value, unit in zip(row, plain, strict=True):
+            out.append(_exact(value - unit))
+    return out
+
+
+def _transform(angle: Angle, loop: Loop, i: int) -> list[list[Exact]]:
+    """The transform of joint ``i`` (from 0) and its link."""
+    c, s = exact.cos(angle), exact.sin(angle)
+    ca, sa = numbers.cos(loop.twists[i]), numbers.sin(loop.twists[i])
+    length, offset = loop.lengths[i], loop.offsets[i]
+    rows = (
+        (c, -s * ca, s * sa, length * c),
+        (s, c * ca, -c * sa, length * s),
+        (0, sa, ca, offset),
+        (0, 0, 0, 1),
+    )
+    return [[_exact(value) for value in row] for row in rows]
+
+
+def _row_times(row: Sequence[Exact], matrix: Sequence[Sequence[Exact]]) -> list[Exact]:
+    out = []
+    for column in zip(*matrix, strict=True):
+        total: Exact = Fraction(0)
+        for x, y in zip(row, column, strict=True):
+            total = total + x * y
+        out.append(total)
+    return out
+
+
+def prove(form: ClosedForm, linkage: Entry, points: int = 6, seed: int = 0) -> Proof:
+    """Exact closure at random rational ``points`` of parameters, input and root.
+
+    ``linkage`` is the entry whose motion the form is. Raises `GeometryError` when its
+    constructor refuses all parameters that are drawn.
+    """
+    rng = np.random.default_rng(seed)
     tried = closed = 0
     for attempt in range(ATTEMPTS * points):
-        parameters = exact_parameters(found, rng)
+        parameters = exact_parameters(linkage, rng)
         t_1 = Fraction(int(rng.integers(-3 * VALUES, 3 * VALUES)), VALUES)
         try:
-            loop = found.build(**parameters)
+            loop = linkage.build(**parameters)
         except GeometryError:
             continue
-        angles = exact_angles(
-            form, parameters, t_1, form.roots[attempt % len(form.roots)]
-        )
+        root = form.roots[attempt % len(form.roots)]
+        angles = exact_angles(form, parameters, t_1, root)
         if angles is None:
             continue
         tried += 1
-        alike = all(angle == same[0] for same in angles for angle in same)
-        closed += alike and all(
-            x == 0 for x in closing_defects(loop, [same[0] for same in angles])
-        )
+        closed += _closes(loop, angles)
         if tried == points:
             break
     if not tried:
-        raise GeometryError(
-            f"exact member of {form.linkage}",
-            "none",
-            "one that the constructor accepts",
-        )
+        name = f"exact member of {form.linkage}"
+        raise GeometryError(name, "none", "one that the constructor accepts")
     bound = degree(form)
-    return Proof(
-        form.linkage,
-        form.form,
-        tried,
-        closed,
-        bound,
-        min(1.0, 20 * bound / VALUES) ** tried,
-    )
+    doubt = min(1.0, 20 * bound / VALUES) ** tried
+    return Proof(form.linkage, form.form, tried, closed, bound, doubt)
+
+
+def _closes(loop: Loop, angles: list[list[Angle]]) -> bool:
+    """Whether the angles of each joint agree, and close the loop."""
+    for alike in angles:
+        if any(angle != alike[0] for angle in alike):
+            return False
+    defects = closing_defects(loop, [alike[0] for alike in angles])
+    return all(defect == 0 for defect in defects)
 
 
 def degree(form: ClosedForm) -> int:
@@ -183,104 +220,107 @@ def degree(form: ClosedForm) -> int:
     A link of two basic links has a twist of degree 2 (4 in its sine) and a length of
     degree 4; offsets and the links of spatial triangles stay below that as well.
     """
-    known: dict[sp.Symbol, int] = {}
+    degrees: dict[Number, int] = {}
     for name, value in form.constants.items():
-        known[constant(name)] = _degree(sp.sympify(value), known)
-    second = 0
+        degrees[constant(name)] = _degree(sp.sympify(value), degrees)
     if form.relation is not None:
-        second = sum(_degree(x, known) for x in form.quadratic)
-        known.update(dict.fromkeys(joint(form.second), second))
-    joints = [
-        max(_degree(sp.sympify(x), known) for x in pairs[0])
-        for pairs in form.half_tangents
-    ]
-    return 2 * sum(2 * d + 8 for d in joints)
+        second = sum(_degree(x, degrees) for x in form.quadratic)
+        degrees.update(dict.fromkeys(joint(form.second), second))
+    total = 0
+    for pairs in form.half_tangents:
+        of_joint = max(_degree(sp.sympify(x), degrees) for x in pairs[0])
+        total += 2 * of_joint + 8
+    return 2 * total
 
 
-def _degree(value: sp.Expr, known: dict[sp.Symbol, int]) -> int:
-    """A bound of the degree of numerator and denominator, ``known`` symbols having the
-    degrees given."""
+def _degree(value: sp.Expr, degrees: Mapping[Number, int]) -> int:
+    """A bound of the degree of numerator and denominator, some symbols having the
+    ``degrees`` given."""
     if value.is_number:
         return 0
     if value.is_Symbol:
-        return known.get(value, 1)
-    parts = [_degree(part, known) for part in value.args]
+        return degrees.get(value, 1)
+    parts = [_degree(part, degrees) for part in value.args]
     if value.is_Pow:
         return int(parts[0] * max(1, abs(value.exp)))
     return sum(parts)
 
 
-def prove_symbolically(form: ClosedForm) -> bool:
+def prove_symbolically(form: ClosedForm, linkage: Entry) -> bool:
     """Whether the closure vanishes identically in all symbols; for loops without
     offsets and rational closed forms.
 
     The first half of the loop is compared with the inverse of the rest. A second for a
     4R, half a minute for a 5R.
     """
-    found = entry(form.linkage)
-    loop = found.build(
-        **{name: sp.Symbol(name, positive=True) for name in found.defaults}
-    )
-    tangents = {
-        sp.Symbol(name, positive=True): sp.Symbol(f"u_{name}", real=True)
-        for name in form.angles
-    }
-    halves = {name: _Symbolic(name) for name in form.angles}
-    pairs = form.evaluate_pairs(
-        (sp.Symbol("t_1", real=True), sp.Integer(1)),
-        None,
-        form.evaluate_constants(halves),
-    )
-    steps = []
-    for alike, length, twist in zip(pairs, loop.lengths, loop.twists, strict=True):
-        y, x = alike[0]
-        c, s = (x**2 - y**2) / (x**2 + y**2), 2 * x * y / (x**2 + y**2)
-        ca, sa, a = (
-            _by_tangents(value, tangents)
-            for value in (sp.cos(twist), sp.sin(twist), length)
-        )
-        turn = sp.Matrix([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
-        steps.append(
-            (
-                turn,
-                sp.Matrix(
-                    [[1, 0, 0, a], [0, ca, -sa, 0], [0, sa, ca, 0], [0, 0, 0, 1]]
-                ),
-            )
-        )
-    ahead, back, middle = sp.eye(4), sp.eye(4), (loop.n + 1) // 2
-    for turn, link in steps[:middle]:
-        ahead = (ahead * turn * link).applyfunc(sp.factor)
-    for turn, link in steps[middle:]:
+    symbols = {name: sp.Symbol(name, positive=True) for name in linkage.defaults}
+    loop = linkage.build(**symbols)
+    pairs = _symbolic_pairs(form)
+    turns = [_turn(alike[0]) for alike in pairs]
+    values = _half_angle_values([symbols[name] for name in form.angles], form.angles)
+    links = []
+    for length, twist in zip(loop.lengths, loop.twists, strict=True):
+        links.append(_link(length, twist, values))
+    middle = (loop.n + 1) // 2
+    forth = sp.eye(4)
+    for turn, link in zip(turns[:middle], links[:middle], strict=True):
+        forth = (forth * turn * link).applyfunc(sp.factor)
+    back = sp.eye(4)
+    for turn, link in zip(turns[middle:], links[middle:], strict=True):
         back = (_inverse(link) * turn.T * back).applyfunc(sp.factor)
-    return bool(
-        (ahead - back)
-        .applyfunc(lambda x: sp.numer(sp.together(x)).expand())
-        .is_zero_matrix
-    )
+    gap = (forth - back).applyfunc(_expanded_numerator)
+    return bool(gap.is_zero_matrix)
+
+
+def _symbolic_pairs(form: ClosedForm) -> list[list[Pair]]:
+    """The pairs of the form at tan(theta1/2) = t_1, in symbols."""
+    constants = form.constants_by_tangents([tangent(name) for name in form.angles])
+    first = (sp.Symbol("t_1", real=True), sp.Integer(1))
+    return form.evaluate_pairs(first, None, constants)
+
+
+def _half_angle_values(
+    twists: Sequence[sp.Symbol], names: Sequence[str]
+) -> dict[sp.Expr, sp.Expr]:
+    """Sines and cosines of the twists by the tangents of their halves."""
+    values = {}
+    for twist, name in zip(twists, names, strict=True):
+        u = tangent(name)
+        values[sp.sin(twist)] = sine_of(u)
+        values[sp.cos(twist)] = cosine_of(u)
+    return values
+
+
+def _turn(pair: Pair) -> sp.Matrix:
+    """The rotation about z by the angle of the pair."""
+    y, x = pair
+    c = (x**2 - y**2) / (x**2 + y**2)
+    s = 2 * x * y / (x**2 + y**2)
+    return sp.Matrix([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+
+
+def _link(
+    length: Number, twist: Number, values: Mapping[sp.Expr, sp.Expr]
+) -> sp.Matrix:
+    """The transform of a link, sines and cosines written by their ``values``."""
+    a = _in_tangents(length, values)
+    ca = _in_tangents(sp.cos(twist), values)
+    sa = _in_tangents(sp.sin(twist), values)
+    return sp.Matrix([[1, 0, 0, a], [0, ca, -sa, 0], [0, sa, ca, 0], [0, 0, 0, 1]])
+
+
+def _in_tangents(value: object, values: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
+    expanded = sp.expand_trig(sp.sympify(value))
+    return sp.factor(expanded.subs(values))
+
+
+def _expanded_numerator(value: sp.Expr) -> sp.Expr:
+    return sp.numer(sp.together(value)).expand()
 
 
 def _inverse(transform: sp.Matrix) -> sp.Matrix:
     """The inverse of a rigid transform."""
-    turn, shift = transform[:3, :3].T, transform[:3, 3]
-    return sp.Matrix.vstack(
-        sp.Matrix.hstack(turn, -turn * shift), sp.Matrix([[0, 0, 0, 1]])
-    )
-
-
-@dataclass(frozen=True)
-class _Symbolic:
-    """A twist known by the symbol of its half tangent."""
-
-    name: str
-
-    def __truediv__(self, two: int) -> sp.Expr:
-        return sp.atan(sp.Symbol(f"u_{self.name}", real=True))
-
-
-def _by_tangents(value: Any, tangents: dict[sp.Symbol, sp.Symbol]) -> Any:
-    """``value`` with sines and cosines of the twists written by the tangents of their
-    halves."""
-    known = {sp.sin(x): 2 * u / (1 + u**2) for x, u in tangents.items()}
-    known |= {sp.cos(x): (1 - u**2) / (1 + u**2) for x, u in tangents.items()}
-    return sp.factor(sp.expand_trig(sp.sympify(value)).subs(known))
+    turn = transform[:3, :3].T
+    shift = -turn * transform[:3, 3]
+    top = sp.Matrix.hstack(turn, shift)
+    return sp.Matrix.vstack(top, sp.Matrix([[0, 0, 0, 1]]))

@@ -7,23 +7,23 @@ is.
 
 from __future__ import annotations
 
-from typing import Any
-
-from linkages.construction.numbers import sin
+from linkages.construction.numbers import Number, sin
 from linkages.loop import GeometryError
 
 __all__ = [
     "bennett_length",
     "decided",
+    "require_different",
     "require_equal",
     "require_positive",
     "require_within",
 ]
 
 TOLERANCE = 1e-9  # relative; parameters typed with ten digits pass, a misprint does not
+ROUNDING = 1e-12  # relative; a difference below it is nothing but rounding
 
 
-def decided(value: Any) -> float | None:
+def decided(value: Number) -> float | None:
     """``value`` as a float, or None when it contains free symbols."""
     try:
         return float(value)
@@ -31,7 +31,7 @@ def decided(value: Any) -> float | None:
         return None
 
 
-def require_positive(name: str, value: Any) -> None:
+def require_positive(name: str, value: Number) -> None:
     """Raise `GeometryError` unless ``value`` is greater than zero."""
     number = decided(value)
     if number is not None and not number > 0:
@@ -39,17 +39,17 @@ def require_positive(name: str, value: Any) -> None:
 
 
 def require_within(
-    name: str, value: Any, low: float, high: float, unit: str = "rad"
+    name: str, value: Number, low: float, high: float, unit: str = "rad"
 ) -> None:
     """Raise `GeometryError` unless ``low < value < high``."""
     number = decided(value)
-    if number is not None and not low < number < high:
-        raise GeometryError(
-            name, f"{number:.6g} {unit}", f"between {low:.6g} and {high:.6g} {unit}"
-        )
+    if number is None or low < number < high:
+        return
+    allowed = f"between {low:.6g} and {high:.6g} {unit}"
+    raise GeometryError(name, f"{number:.6g} {unit}", allowed)
 
 
-def require_equal(name: str, value: Any, expected: Any, meaning: str) -> None:
+def require_equal(name: str, value: Number, expected: Number, meaning: str) -> None:
     """Raise `GeometryError` unless the two agree to a relative 1e-9; ``meaning`` says
     what is expected."""
     left, right = decided(value), decided(expected)
@@ -57,28 +57,46 @@ def require_equal(name: str, value: Any, expected: Any, meaning: str) -> None:
         return
     amount = abs(left - right)
     if not amount <= TOLERANCE * max(abs(left), abs(right), 1e-300):
-        raise GeometryError(
-            name, f"{left:.10g}", f"{right:.10g}, {meaning} (off by {amount:.3g})"
-        )
+        allowed = f"{right:.10g}, {meaning} (off by {amount:.3g})"
+        raise GeometryError(name, f"{left:.10g}", allowed)
+
+
+def require_different(name: str, value: Number, other: Number, meaning: str) -> None:
+    """Raise `GeometryError` when the two differ by rounding alone, so that nothing can
+    be divided by the difference; ``meaning`` says what ``other`` is."""
+    left, right = decided(value), decided(other)
+    if left is None or right is None:
+        return
+    scale = max(abs(left), abs(right), 1.0)
+    if not abs(left - right) > ROUNDING * scale:
+        allowed = f"different from {right:.6g}, {meaning}"
+        raise GeometryError(name, f"{left:.6g}", allowed)
 
 
 def bennett_length(
-    link: str, twist: Any, given: Any, length: Any, reference_twist: Any
-) -> Any:
+    link: str,
+    twist: Number,
+    given: Number | None,
+    length: Number,
+    reference_twist: Number,
+) -> Number:
     """Length of ``link`` with ``twist`` (rad) that has the Bennett ratio
     sin(twist)/length of the reference.
 
     A ``given`` length is checked against it and returned. Raises `GeometryError` for a
-    ratio that differs, and for a length that is not positive.
+    ratio that differs, for a length that is not positive, and for a reference without
+    twist.
     """
-    derived = length * sin(twist) / sin(reference_twist)
+    sine = sin(reference_twist)
+    require_different("sine of the twist of the first link", sine, 0, "no ratio")
+    derived = length * sin(twist) / sine
     require_positive(f"length of link {link}", derived if given is None else given)
     if given is None:
         return derived
     require_equal(
         f"link {link}: sin(twist)/length",
         sin(twist) / given,
-        sin(reference_twist) / length,
+        sine / length,
         "the Bennett ratio of the other links",
     )
     return given

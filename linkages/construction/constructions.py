@@ -19,14 +19,12 @@ and Chen (2012).
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from linkages.construction.conditions import decided, require_equal
-from linkages.construction.link import Link
-from linkages.construction.numbers import sin
-from linkages.construction.spatial_triangle import Kink, composite_link
+from linkages.construction.link import Link, closed_chain
+from linkages.construction.numbers import Number, sin
+from linkages.construction.spatial_triangle import Kink, KinkAngle, composite_link
 from linkages.loop import GeometryError, Loop
 
 __all__ = [
@@ -47,33 +45,37 @@ __all__ = [
 EQUAL = 1e-9  # relative difference up to which two links count as the same one
 
 
-def lock(loop: Loop, joint: int, kink: Any = Kink.STRAIGHT) -> Loop:
+def lock(loop: Loop, joint: int, kink: KinkAngle = Kink.STRAIGHT) -> Loop:
     """``loop`` with ``joint`` (1 to n) locked at ``kink``: one joint fewer, the pair of
     links now one.
 
     The new loop keeps the order of the other joints; joint 1 is the first that is left.
     """
-    links, offsets = _links(loop), list(loop.offsets)
-    n, i = loop.n, _index(loop, joint)
+    links = _links(loop)
+    offsets = list(loop.offsets)
+    i = _index(loop, joint)
     new = composite_link(links[i - 1], links[i], kink, offsets[i])
-    offsets[i - 1] += new.before[0]
-    offsets[(i + 1) % n] += new.after[0]
+    offsets[i - 1] += new.before.offset
+    offsets[(i + 1) % loop.n] += new.after.offset
     links[i - 1] = new.link
     del links[i], offsets[i]
     return _loop(links, offsets)
 
 
-def locked_angles(loop: Loop, joint: int, kink: Any, theta: np.ndarray) -> np.ndarray:
+def locked_angles(
+    loop: Loop, joint: int, kink: KinkAngle, theta: np.ndarray
+) -> np.ndarray:
     """Joint angles (..., n - 1) of ``lock(loop, joint, kink)`` for configurations
     ``theta`` (..., n), rad.
 
     The entry of the locked joint is not read.
     """
-    links, i = _links(loop), _index(loop, joint)
+    links = _links(loop)
+    i = _index(loop, joint)
     new = composite_link(links[i - 1], links[i], kink, loop.offsets[i])
     out = np.array(theta, dtype=float)
-    out[..., i - 1] += float(new.before[1])
-    out[..., (i + 1) % loop.n] += float(new.after[1])
+    out[..., i - 1] += float(new.before.angle)
+    out[..., (i + 1) % loop.n] += float(new.after.angle)
     return np.delete(out, i, axis=-1)
 
 
@@ -83,14 +85,12 @@ def ending_with(loop: Loop, *links: Link) -> Loop:
 
     Raises `GeometryError` when they do not follow each other in the loop.
     """
-    for read in (
-        r.relabelled(k) for r in (loop, loop.reversed()) for k in range(loop.n)
-    ):
-        if all(
-            _is_same(x, y)
-            for x, y in zip(_links(read)[-len(links) :], links, strict=True)
-        ):
-            return read
+    for direction in (loop, loop.reversed()):
+        for shift in range(loop.n):
+            reading = direction.relabelled(shift)
+            last = _links(reading)[-len(links) :]
+            if len(last) == len(links) and all(map(_is_same, last, links)):
+                return reading
     wanted = ", ".join(f"{link.length}/{link.twist}" for link in links)
     raise GeometryError(
         "shared links",
@@ -111,20 +111,20 @@ def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
     `ending_with` reads a loop so that given links come last. Raises `GeometryError`
     when the common links or the offsets of their inner joints differ.
     """
-    a, b = _links(first), _links(second)
-    n, m = first.n - shared, second.n - shared
+    a = _links(first)
+    b = _links(second)
+    n = first.n - shared
+    m = second.n - shared
     for k in range(1, shared + 1):
-        _refuse_different(a[-k], b[-k], f"shared link {n + shared + 1 - k}")
+        _refuse_different(a[-k], b[-k], f"shared link {first.n + 1 - k}")
     for k in range(1, shared):
         gap = first.offsets[-k] - second.offsets[-k]
-        _refuse_offset(
-            gap, f"offset of shared joint {first.n + 1 - k}, difference", first
-        )
-    offsets = [first.offsets[0] - second.offsets[0], *first.offsets[1:n]]
-    offsets += [
-        first.offsets[n] - second.offsets[m],
-        *(-r for r in second.offsets[m - 1 : 0 : -1]),
-    ]
+        name = f"offset of shared joint {first.n + 1 - k}, difference"
+        _refuse_offset(gap, name, first)
+    start = first.offsets[0] - second.offsets[0]
+    end = first.offsets[n] - second.offsets[m]
+    back = [-offset for offset in second.offsets[m - 1 : 0 : -1]]
+    offsets = [start, *first.offsets[1:n], end, *back]
     return _loop([*a[:n], *b[:m][::-1]], offsets)
 
 
@@ -145,13 +145,14 @@ def superposed_angles(
 ) -> np.ndarray:
     """Joint angles (..., n + m - 2 shared), rad, of the superposed loop from those of
     the two loops."""
-    first, second = np.asarray(first, dtype=float), np.asarray(second, dtype=float)
-    last, other = first.shape[-1] - shared, second.shape[-1] - shared
+    first = np.asarray(first, dtype=float)
+    second = np.asarray(second, dtype=float)
+    last = first.shape[-1] - shared
+    other = second.shape[-1] - shared
     start = first[..., :1] - second[..., :1] + np.pi
     end = first[..., last : last + 1] - second[..., other : other + 1] + np.pi
-    return np.concatenate(
-        [start, first[..., 1:last], end, -second[..., other - 1 : 0 : -1]], axis=-1
-    )
+    back = -second[..., other - 1 : 0 : -1]
+    return np.concatenate([start, first[..., 1:last], end, back], axis=-1)
 
 
 def summate(first: Loop, second: Loop) -> Loop:
@@ -174,7 +175,8 @@ def isomerize(loop: Loop, joint: int) -> Loop:
     offset. Source: Wohlhart (1991b).
     """
     _refuse_no_bennett(loop, joint)
-    links, i = _links(loop), _index(loop, joint)
+    links = _links(loop)
+    i = _index(loop, joint)
     links[i - 1], links[i] = links[i], links[i - 1]
     return _loop(links, list(loop.offsets))
 
@@ -185,21 +187,28 @@ def isomerized_angles(loop: Loop, joint: int, theta: np.ndarray) -> np.ndarray:
 
     ``joint`` keeps its angle; its neighbours turn against each other.
     """
-    links, i = _links(loop), _index(loop, joint)
+    links = _links(loop)
+    i = _index(loop, joint)
     out = np.array(theta, dtype=float)
-    first, second = float(links[i - 1].twist), float(links[i].twist)
-    c1, s1, c2, s2 = np.cos(first), np.sin(first), np.cos(second), np.sin(second)
+    first = float(links[i - 1].twist)
+    second = float(links[i].twist)
+    c1, s1 = np.cos(first), np.sin(first)
+    c2, s2 = np.cos(second), np.sin(second)
     ck, sk = np.cos(out[..., i]), np.sin(out[..., i])
-    turn = np.arctan2(s2 * sk, ck * s2 * c1 + c2 * s1) - np.arctan2(
-        s1 * sk, ck * s1 * c2 + c1 * s2
-    )
+    before = np.arctan2(s2 * sk, ck * s2 * c1 + c2 * s1)
+    after = np.arctan2(s1 * sk, ck * s1 * c2 + c1 * s2)
+    turn = before - after
     out[..., i - 1] += turn
     out[..., (i + 1) % loop.n] -= turn
     return out
 
 
 def share_joint(
-    first: Loop, second: Loop, kink_1: Any, kink_2: Any, shift: Any = 0
+    first: Loop,
+    second: Loop,
+    kink_1: KinkAngle,
+    kink_2: KinkAngle,
+    shift: Number = 0,
 ) -> Loop:
     """The hybrid of two loops with a common axis, joint 1 of both: n + m - 2 joints.
 
@@ -209,20 +218,17 @@ def share_joint(
     ``second``. The result starts with joint 2 of ``first``. On a configuration the
     angles of the two joints 1 add up to the sum of the kinks. Source: Waldron (1968).
     """
-    a, b = _links(first), _links(second)
+    a = _links(first)
+    b = _links(second)
     n = first.n
+    rest = first.offsets[0] + second.offsets[0] - shift
     forth = composite_link(a[-1], b[0], kink_1, shift)
-    back = composite_link(
-        b[-1], a[0], kink_2, first.offsets[0] + second.offsets[0] - shift
-    )
+    back = composite_link(b[-1], a[0], kink_2, rest)
     offsets = [*first.offsets[1:], *second.offsets[1:]]
-    for end, gain in (
-        (n - 2, forth.before),
-        (n - 1, forth.after),
-        (-1, back.before),
-        (0, back.after),
-    ):
-        offsets[end] += gain[0]
+    offsets[n - 2] += forth.before.offset
+    offsets[n - 1] += forth.after.offset
+    offsets[-1] += back.before.offset
+    offsets[0] += back.after.offset
     return _loop([*a[1:-1], forth.link, *b[1:-1], back.link], offsets)
 
 
@@ -230,12 +236,8 @@ def _links(loop: Loop) -> list[Link]:
     return [Link(a, alpha) for a, alpha in zip(loop.lengths, loop.twists, strict=True)]
 
 
-def _loop(links: list[Link], offsets: list[Any]) -> Loop:
-    return Loop(
-        tuple(link.length for link in links),
-        tuple(link.twist for link in links),
-        tuple(offsets),
-    )
+def _loop(links: list[Link], offsets: list[Number]) -> Loop:
+    return closed_chain(*links, offsets=offsets)
 
 
 def _index(loop: Loop, joint: int) -> int:
@@ -274,7 +276,7 @@ def _refuse_no_bennett(loop: Loop, joint: int) -> None:
     _refuse_offset(loop.offsets[i], f"offset of joint {joint}", loop)
 
 
-def _refuse_offset(value: Any, name: str, loop: Loop) -> None:
+def _refuse_offset(value: Number, name: str, loop: Loop) -> None:
     amount = decided(value)
     if amount is not None and abs(amount) > EQUAL * loop.characteristic_length:
         raise GeometryError(name, f"{amount:.6g}", "0")

@@ -11,10 +11,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import TypeAlias
 
 __all__ = [
     "Angle",
+    "Exact",
     "HalfAngle",
     "Quadratic",
     "acos",
@@ -33,12 +34,10 @@ def rational_sqrt(x: Fraction) -> Fraction | None:
     """The rational square root of ``x`` if it has one."""
     if x < 0:
         return None
-    top, bottom = math.isqrt(x.numerator), math.isqrt(x.denominator)
-    return (
-        Fraction(top, bottom)
-        if top * top == x.numerator and bottom * bottom == x.denominator
-        else None
-    )
+    top = math.isqrt(x.numerator)
+    bottom = math.isqrt(x.denominator)
+    root = Fraction(top, bottom)
+    return root if root * root == x else None
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class Quadratic:
     b: Fraction
     d: Fraction
 
-    def _alike(self, other: Any) -> tuple[Fraction, Fraction] | None:
+    def _alike(self, other: object) -> tuple[Fraction, Fraction] | None:
         """``other`` as (a, b) over the root of this number; None for a type that is not
         exact."""
         if isinstance(other, int | Fraction):
@@ -70,36 +69,33 @@ class Quadratic:
             )
         return other.a, other.b * root
 
-    def _make(self, a: Fraction, b: Fraction) -> Any:
+    def _make(self, a: Fraction, b: Fraction) -> Exact:
         return Quadratic(a, b, self.d) if b else a
 
-    def __add__(self, other: Any) -> Any:
-        pair = self._alike(other)
-        return (
-            NotImplemented
-            if pair is None
-            else self._make(self.a + pair[0], self.b + pair[1])
-        )
-
-    __radd__ = __add__
-
-    def __neg__(self) -> Any:
-        return Quadratic(-self.a, -self.b, self.d)
-
-    def __sub__(self, other: Any) -> Any:
-        return self + (-other)
-
-    def __rsub__(self, other: Any) -> Any:
-        return -self + other
-
-    def __mul__(self, other: Any) -> Any:
+    def __add__(self, other: ExactOrInt) -> Exact:
         pair = self._alike(other)
         if pair is None:
             return NotImplemented
-        return self._make(
-            self.a * pair[0] + self.d * self.b * pair[1],
-            self.a * pair[1] + self.b * pair[0],
-        )
+        a, b = pair
+        return self._make(self.a + a, self.b + b)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Quadratic:
+        return Quadratic(-self.a, -self.b, self.d)
+
+    def __sub__(self, other: ExactOrInt) -> Exact:
+        return self + (-other)
+
+    def __rsub__(self, other: ExactOrInt) -> Exact:
+        return -self + other
+
+    def __mul__(self, other: ExactOrInt) -> Exact:
+        pair = self._alike(other)
+        if pair is None:
+            return NotImplemented
+        a, b = pair
+        return self._make(self.a * a + self.d * self.b * b, self.a * b + self.b * a)
 
     __rmul__ = __mul__
 
@@ -108,16 +104,16 @@ class Quadratic:
         norm = self.a * self.a - self.d * self.b * self.b
         return Quadratic(self.a / norm, -self.b / norm, self.d)
 
-    def __truediv__(self, other: Any) -> Any:
-        return self * (
-            other.inverse() if isinstance(other, Quadratic) else 1 / Fraction(other)
-        )
+    def __truediv__(self, other: ExactOrInt) -> Exact:
+        if isinstance(other, Quadratic):
+            return self * other.inverse()
+        return self * (1 / Fraction(other))
 
-    def __rtruediv__(self, other: Any) -> Any:
+    def __rtruediv__(self, other: ExactOrInt) -> Exact:
         return self.inverse() * other
 
-    def __pow__(self, exponent: int) -> Any:
-        out: Any = Fraction(1)
+    def __pow__(self, exponent: int) -> Exact:
+        out: Exact = Fraction(1)
         for _ in range(exponent):
             out = out * self
         return out
@@ -126,11 +122,15 @@ class Quadratic:
         return float(self.a) + float(self.b) * math.sqrt(self.d)
 
 
+Exact: TypeAlias = Fraction | Quadratic
+ExactOrInt: TypeAlias = Exact | int
+
+
 @dataclass(frozen=True)
 class HalfAngle:
     """Half an `Angle`, whose tangent is exact."""
 
-    tangent: Any
+    tangent: Exact
 
     def __rmul__(self, factor: int) -> Angle:
         if factor != 2:
@@ -143,8 +143,8 @@ class Angle:
     """The angle whose half has the tangent ``s / c``; kept as (s/c, 1), or (1, 0) for a
     half turn."""
 
-    s: Any
-    c: Any = Fraction(1)
+    s: Exact
+    c: Exact = Fraction(1)
 
     def __post_init__(self) -> None:
         s, c = self.s, self.c
@@ -156,17 +156,17 @@ class Angle:
         object.__setattr__(self, "s", s / c if c != 0 else Fraction(1))
         object.__setattr__(self, "c", Fraction(1 if c != 0 else 0))
 
-    def __add__(self, other: Any) -> Angle:
+    def __add__(self, other: Angle) -> Angle:
         if not isinstance(other, Angle):
             return NotImplemented
-        return Angle(
-            self.s * other.c + self.c * other.s, self.c * other.c - self.s * other.s
-        )
+        s = self.s * other.c + self.c * other.s
+        c = self.c * other.c - self.s * other.s
+        return Angle(s, c)
 
     def __neg__(self) -> Angle:
         return Angle(-self.s, self.c)
 
-    def __sub__(self, other: Any) -> Angle:
+    def __sub__(self, other: Angle) -> Angle:
         return self + (-other)
 
     def __rmul__(self, factor: int) -> Angle:
@@ -187,28 +187,28 @@ class Angle:
 pi = Angle(Fraction(1), Fraction(0))
 
 
-def sin(x: Angle) -> Any:
+def sin(x: Angle) -> Exact:
     """Sine of an angle."""
     return 2 * x.s * x.c / (x.s * x.s + x.c * x.c)
 
 
-def cos(x: Angle) -> Any:
+def cos(x: Angle) -> Exact:
     """Cosine of an angle."""
     return (x.c * x.c - x.s * x.s) / (x.s * x.s + x.c * x.c)
 
 
-def tan(x: Angle | HalfAngle) -> Any:
+def tan(x: Angle | HalfAngle) -> Exact:
     """Tangent of an angle or of half an angle."""
     return x.tangent if isinstance(x, HalfAngle) else sin(x) / cos(x)
 
 
-def atan(x: Any) -> HalfAngle:
+def atan(x: Exact) -> HalfAngle:
     """Half the angle whose half has the tangent ``x``; twice the result is an
     `Angle`."""
     return HalfAngle(x)
 
 
-def sqrt(x: Any) -> Any:
+def sqrt(x: Exact) -> Exact:
     """Square root of a rational number, in the quadratic extension if need be."""
     if isinstance(x, Quadratic):
         raise ArithmeticError("a root of a root is not exact here")
@@ -216,7 +216,7 @@ def sqrt(x: Any) -> Any:
     return Quadratic(Fraction(0), Fraction(1), Fraction(x)) if root is None else root
 
 
-def atan2(y: Any, x: Any) -> Angle:
+def atan2(y: Exact, x: Exact) -> Angle:
     """Angle of the point (x, y), whose distance from the origin must lie in the
     field."""
     if y == 0:
@@ -224,11 +224,11 @@ def atan2(y: Any, x: Any) -> Angle:
     return Angle(y, sqrt(x * x + y * y) + x)
 
 
-def acos(x: Any) -> Angle:
+def acos(x: Exact) -> Angle:
     """The angle between 0 and pi whose cosine is ``x``."""
     return atan2(sqrt(1 - x * x), x)
 
 
-def asin(x: Any) -> Angle:
+def asin(x: Exact) -> Angle:
     """The angle between -pi/2 and pi/2 whose sine is ``x``."""
     return atan2(x, sqrt(1 - x * x))

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from linkages.construction.conditions import bennett_length, require_positive
-from linkages.construction.numbers import atan, sin, tan
+from linkages.construction.conditions import (
+    bennett_length,
+    require_different,
+    require_positive,
+)
+from linkages.construction.numbers import Number, atan, sin, tan
 from linkages.loop import Loop
 
 __all__ = [
@@ -29,8 +32,8 @@ class Link:
     """A binary link: ``length`` and ``twist`` (rad) of the common normal of its two
     joint axes."""
 
-    length: Any
-    twist: Any
+    length: Number
+    twist: Number
 
     def __add__(self, other: Link) -> Link:
         return Link(self.length + other.length, self.twist + other.twist)
@@ -42,7 +45,9 @@ class Link:
         return Link(-self.length, -self.twist)
 
 
-def bennett_links(a: Any, alpha: Any, **others: tuple[Any, Any]) -> tuple[Link, ...]:
+def bennett_links(
+    a: Number, alpha: Number, **others: tuple[Number, Number | None]
+) -> tuple[Link, ...]:
     """The link a/alpha and links of the same Bennett ratio, in the order given.
 
     Each of ``others`` is a name with (twist, length): the length follows from the ratio
@@ -50,38 +55,45 @@ def bennett_links(a: Any, alpha: Any, **others: tuple[Any, Any]) -> tuple[Link, 
     `GeometryError` for a ratio that differs, and for a length that is not positive.
     """
     require_positive("length a", a)
-    lengths = {
-        k: bennett_length(k, twist, given, a, alpha)
-        for k, (twist, given) in others.items()
-    }
-    return (
-        Link(a, alpha),
-        *(Link(lengths[k], twist) for k, (twist, _) in others.items()),
-    )
+    links = [Link(a, alpha)]
+    for name, (twist, given) in others.items():
+        length = bennett_length(name, twist, given, a, alpha)
+        links.append(Link(length, twist))
+    return tuple(links)
 
 
-def closed_chain(*links: Link, offsets: Sequence[Any] | None = None) -> Loop:
+def closed_chain(*links: Link, offsets: Sequence[Number] | None = None) -> Loop:
     """The loop with these links in order and the given offsets, by default none."""
-    return Loop(
-        tuple(link.length for link in links),
-        tuple(link.twist for link in links),
-        tuple(offsets) if offsets is not None else (0,) * len(links),
-    )
+    lengths = tuple(link.length for link in links)
+    twists = tuple(link.twist for link in links)
+    if offsets is None:
+        offsets = (0,) * len(links)
+    return Loop(lengths, twists, tuple(offsets))
 
 
-def half_angle_ratio(x: Any, y: Any) -> Any:
+def half_angle_ratio(x: Number, y: Number) -> Number:
     """sin((x + y)/2) / sin((x - y)/2), the factor of every Bennett closure equation;
-    twists in rad."""
-    p, q = tan(x / 2), tan(y / 2)
+    twists in rad.
+
+    Raises `GeometryError` for equal twists, whose Bennett loop is a rhombus.
+    """
+    p = tan(x / 2)
+    q = tan(y / 2)
+    require_different("half tangent of a twist", p, q, "that of the next link")
     return (p + q) / (p - q)
 
 
-def syncopated_link(base: Link, product: Any) -> Link:
+def syncopated_link(base: Link, product: Number) -> Link:
     """The second link of the primary Bennett loop, with sides ``base`` and this one, of
     a syncopation.
 
     Its twist x solves ``half_angle_ratio(x, base.twist) = product``; its length has the
-    Bennett ratio of ``base``.
+    Bennett ratio of ``base``. Raises `GeometryError` where that loop has none: for a
+    product of 1, and for a ``base`` whose twist is 0 or pi.
     """
-    twist = 2 * atan((product + 1) / (product - 1) * tan(base.twist / 2))
-    return Link(base.length * sin(twist) / sin(base.twist), twist)
+    require_different("product of the half-angle ratios", product, 1, "one")
+    tangent = (product + 1) / (product - 1) * tan(base.twist / 2)
+    twist = 2 * atan(tangent)
+    sine = sin(base.twist)
+    require_different("sine of the twist of the joined links", sine, 0, "none")
+    return Link(base.length * sin(twist) / sine, twist)

@@ -9,73 +9,117 @@ known by the tangent of their half).
 from __future__ import annotations
 
 import math
-from typing import Any
+from fractions import Fraction
+from types import ModuleType
+from typing import Any, Protocol, TypeAlias
 
-__all__ = ["acos", "asin", "atan", "atan2", "cos", "pi_like", "sin", "sqrt", "tan"]
+from linkages.construction import exact
+
+__all__ = [
+    "Number",
+    "acos",
+    "asin",
+    "atan",
+    "atan2",
+    "cos",
+    "pi_like",
+    "sin",
+    "sqrt",
+    "tan",
+]
+
+# the other side of an operation: each number type decides itself what it works with
+Operand: TypeAlias = Any
+EXACT = (Fraction, exact.Quadratic, exact.Angle, exact.HalfAngle)
 
 
-def _library(*values: Any) -> Any:
+class Number(Protocol):
+    """A number of any type that constructors work with: float, mpmath, sympy, exact."""
+
+    def __add__(self, other: Operand, /) -> Number: ...
+    def __radd__(self, other: Operand, /) -> Number: ...
+    def __sub__(self, other: Operand, /) -> Number: ...
+    def __rsub__(self, other: Operand, /) -> Number: ...
+    def __mul__(self, other: Operand, /) -> Number: ...
+    def __rmul__(self, other: Operand, /) -> Number: ...
+    def __truediv__(self, other: Operand, /) -> Number: ...
+    def __rtruediv__(self, other: Operand, /) -> Number: ...
+    def __pow__(self, exponent: Operand, /) -> Number: ...
+    def __neg__(self) -> Number: ...
+    def __float__(self) -> float: ...
+
+
+def _library(*values: Number) -> ModuleType:
     """The module whose functions fit the widest type among ``values``: sympy, mpmath,
     exact numbers, math."""
     roots = {type(v).__module__.split(".")[0] for v in values}
     if "sympy" in roots:
         import sympy
 
-        return sympy
+        library: ModuleType = sympy
+        return library
     if "mpmath" in roots:
         import mpmath
 
-        return mpmath
-    if roots & {"linkages", "fractions"} and not any(
-        isinstance(v, float) for v in values
-    ):
-        from linkages.construction import exact
-
+        library = mpmath
+        return library
+    some_exact = any(isinstance(v, EXACT) for v in values)
+    if some_exact and not any(isinstance(v, float) for v in values):
         return exact
     return math
 
 
-def sin(x: Any) -> Any:
+def sin(x: Number) -> Number:
     """Sine of ``x``, rad."""
-    return _library(x).sin(x)
+    value: Number = _library(x).sin(x)
+    return value
 
 
-def cos(x: Any) -> Any:
+def cos(x: Number) -> Number:
     """Cosine of ``x``, rad."""
-    return _library(x).cos(x)
+    value: Number = _library(x).cos(x)
+    return value
 
 
-def tan(x: Any) -> Any:
+def tan(x: Number) -> Number:
     """Tangent of ``x``, rad."""
-    return _library(x).tan(x)
+    value: Number = _library(x).tan(x)
+    return value
 
 
-def asin(x: Any) -> Any:
+def asin(x: Number) -> Number:
     """Inverse sine, rad."""
-    return _library(x).asin(x)
+    value: Number = _library(x).asin(x)
+    return value
 
 
-def acos(x: Any) -> Any:
+def acos(x: Number) -> Number:
     """Inverse cosine, rad."""
-    return _library(x).acos(x)
+    value: Number = _library(x).acos(x)
+    return value
 
 
-def atan(x: Any) -> Any:
+def atan(x: Number) -> Number:
     """Inverse tangent, rad."""
-    return _library(x).atan(x)
+    value: Number = _library(x).atan(x)
+    return value
 
 
-def atan2(y: Any, x: Any) -> Any:
+def atan2(y: Number, x: Number) -> Number:
     """Angle of the point (x, y), rad."""
-    return _library(x, y).atan2(y, x)
+    value: Number = _library(x, y).atan2(y, x)
+    return value
 
 
-def sqrt(x: Any) -> Any:
+def sqrt(x: Number) -> Number:
     """Square root."""
-    return _library(x).sqrt(x)
+    value: Number = _library(x).sqrt(x)
+    return value
 
 
-def pi_like(*values: Any) -> Any:
+def pi_like(*values: Number) -> Number:
     """Pi in the number type of ``values``."""
     library = _library(*values)
-    return +library.pi if library.__name__ == "mpmath" else library.pi
+    pi: Number = library.pi
+    # mpmath's own pi is a constant that is evaluated at each use
+    return +library.pi if library.__name__ == "mpmath" else pi

@@ -5,14 +5,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any
+from typing import NamedTuple, TypeAlias
 
 from linkages.construction.conditions import decided
 from linkages.construction.link import Link
-from linkages.construction.numbers import atan2, cos, pi_like, sin, sqrt
+from linkages.construction.numbers import Number, atan2, cos, pi_like, sin, sqrt
 from linkages.loop import GeometryError
 
-__all__ = ["CompositeLink", "Kink", "composite_link"]
+__all__ = ["CompositeLink", "EndGain", "Kink", "KinkAngle", "composite_link"]
+
+PARALLEL = 1e-12  # sine of the angle between axes that are parallel but for rounding
 
 
 class Kink(Enum):
@@ -23,22 +25,35 @@ class Kink(Enum):
     FOLDED = 1
 
 
+KinkAngle: TypeAlias = Kink | Number
+
+
+class EndGain(NamedTuple):
+    """What the joint at one end of a composite link gains: offset and angle (rad)."""
+
+    offset: Number
+    angle: Number
+
+
 @dataclass(frozen=True)
 class CompositeLink:
     """The link that replaces a locked link pair.
 
-    ``before`` and ``after`` are what the joint at its first and at its last end gains:
-    (offset, angle). In the convention of `Loop`: X(first) Z(kink, offset) X(second) =
-    Z(before) X(link) Z(after).
+    ``before`` and ``after`` are what the joint at its first and at its last end gains.
+    In the convention of `Loop`: X(first) Z(kink, offset) X(second) = Z(before) X(link)
+    Z(after).
     """
 
     link: Link
-    before: tuple[Any, Any]
-    after: tuple[Any, Any]
+    before: EndGain
+    after: EndGain
 
 
 def composite_link(
-    first: Link, second: Link, kink: Any = Kink.STRAIGHT, offset: Any = 0
+    first: Link,
+    second: Link,
+    kink: KinkAngle = Kink.STRAIGHT,
+    offset: Number = 0,
 ) -> CompositeLink:
     """The link between the outer axes of two links that are locked at angle ``kink``
     (rad) and ``offset``.
@@ -49,39 +64,59 @@ def composite_link(
     then offset and angle at their ends are not determined. Source: Waldron (1968),
     Baker (1993a); formulas derived from the closure of the triangle.
     """
-    if kink is Kink.STRAIGHT and offset == 0:
-        return CompositeLink(first + second, (0, 0), (0, 0))
-    if kink is Kink.FOLDED and offset == 0:
-        return CompositeLink(
-            first - second, (0, 0), (0, pi_like(first.twist, second.twist))
-        )
-    p, q, e = first.length, second.length, offset
-    c1, s1, c2, s2 = (
-        cos(first.twist),
-        sin(first.twist),
-        cos(second.twist),
-        sin(second.twist),
-    )
-    ck, sk = (
-        (1 - 2 * kink.value, 0) if isinstance(kink, Kink) else (cos(kink), sin(kink))
-    )
+    if isinstance(kink, Kink) and offset == 0:
+        return _collinear(first, second, kink)
+    return _triangle(first, second, kink, offset)
+
+
+def _collinear(first: Link, second: Link, kink: Kink) -> CompositeLink:
+    """Sum or difference of the links."""
+    nothing = EndGain(0, 0)
+    if kink is Kink.STRAIGHT:
+        return CompositeLink(first + second, nothing, nothing)
+    half_turn = pi_like(first.twist, second.twist)
+    return CompositeLink(first - second, nothing, EndGain(0, half_turn))
+
+
+def _triangle(
+    first: Link, second: Link, kink: KinkAngle, offset: Number
+) -> CompositeLink:
+    """The third side; s and c are sines and cosines of both twists and of the kink."""
+    c1 = cos(first.twist)
+    s1 = sin(first.twist)
+    c2 = cos(second.twist)
+    s2 = sin(second.twist)
+    ck, sk = _cosine_and_sine(kink)
     cosine = c1 * c2 - ck * s1 * s2
-    before = (
-        ck * s2 * c1 + c2 * s1,
-        sk * s2,
-    )  # new common normal seen from the first link, times sin(twist)
-    after = (
-        ck * s1 * c2 + c1 * s2,
-        sk * s1,
-    )  # second link seen from the new common normal, times sin(twist)
-    sine = sqrt(before[0] ** 2 + before[1] ** 2)
-    size = decided(sine)
-    if size is not None and size < 1e-12:
-        raise GeometryError("kink", kink, "such that the outer axes are not parallel")
-    length = (p * before[0] + q * after[0] - e * s1 * s2 * sk) / sine
-    along_first, along_last = q * s1 * sk + e * c1, p * s2 * sk + e * c2
+    # new common normal seen from the first link, times the sine of the new twist
+    before_x = ck * s2 * c1 + c2 * s1
+    before_y = sk * s2
+    # second link seen from the new common normal, times the sine of the new twist
+    after_x = ck * s1 * c2 + c1 * s2
+    after_y = sk * s1
+    sine = sqrt(before_x**2 + before_y**2)
+    _refuse_parallel(sine, kink)
+    p = first.length
+    q = second.length
+    length = (p * before_x + q * after_x - offset * s1 * s2 * sk) / sine
+    along_first = q * s1 * sk + offset * c1
+    along_last = p * s2 * sk + offset * c2
+    before_offset = (along_first - cosine * along_last) / sine**2
+    after_offset = (along_last - cosine * along_first) / sine**2
     return CompositeLink(
         Link(length, atan2(sine, cosine)),
-        ((along_first - cosine * along_last) / sine**2, atan2(before[1], before[0])),
-        ((along_last - cosine * along_first) / sine**2, atan2(after[1], after[0])),
+        EndGain(before_offset, atan2(before_y, before_x)),
+        EndGain(after_offset, atan2(after_y, after_x)),
     )
+
+
+def _cosine_and_sine(kink: KinkAngle) -> tuple[Number, Number]:
+    if isinstance(kink, Kink):
+        return 1 - 2 * kink.value, 0
+    return cos(kink), sin(kink)
+
+
+def _refuse_parallel(sine: Number, kink: KinkAngle) -> None:
+    size = decided(sine)
+    if size is not None and size < PARALLEL:
+        raise GeometryError("kink", kink, "such that the outer axes are not parallel")

@@ -8,96 +8,53 @@ print, or the correction, changes the root.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import atan, radians, sin, sqrt, tan
+from math import atan, nan, radians, sin, sqrt, tan
+from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["SWITCHING_ROWS"]
+from linkages.errata.erratum import Amounts, Erratum
 
-Row = tuple[str, str, str, str, str, Callable[[], tuple[float, float]]]
-NEAR = 1e-13
-CROSSING = tuple(
-    map(radians, (66, 40, 28, 50))
-)  # m3 m4 < 0 and m1 m6 < 0: full turns through a pole of Q
-PLAIN = tuple(map(radians, (66, 50, 28, 83)))  # m3 m4 > 0: Q has no pole
+__all__ = ["SWITCHING_ERRATA"]
+
+NEAR = 1e-13  # rad, from the input where the root changes
+
+
+class Twists(NamedTuple):
+    """Twists of the basic links, rad."""
+
+    alpha: float
+    beta: float
+    gamma: float
+    delta: float
+
+
+class Ratios(NamedTuple):
+    """m1, m2, m3, m4, m6 of (3.4.1)."""
+
+    m1: float
+    m2: float
+    m3: float
+    m4: float
+    m6: float
+
+
+def _twists(*degrees: float) -> Twists:
+    return Twists(*(radians(x) for x in degrees))
+
+
+# m3 m4 < 0 and m1 m6 < 0: full turns through a pole of Q
+CROSSING = _twists(66, 40, 28, 50)
+PLAIN = _twists(66, 50, 28, 83)  # m3 m4 > 0: Q has no pole
 
 
 def _m(x: float, y: float) -> float:
     return sin((x + y) / 2) / sin((x - y) / 2)
 
 
-def _products(twists: tuple[float, ...]) -> tuple[float, float, float]:
-    """m3 m4, m1 m6 and m6 of (5.2.3) for alpha, beta, gamma, delta."""
+def _ratios(twists: Twists) -> Ratios:
     alpha, beta, gamma, delta = twists
-    return (
-        _m(delta, alpha) * _m(delta, gamma),
-        _m(beta, alpha) * _m(beta, gamma),
-        _m(beta, gamma),
-    )
-
-
-def _fourth(twists: tuple[float, ...], theta_1: float, root: int) -> float:
-    """theta4 by (5.2.2), (5.2.4) with 1 - m1 m6 throughout; nan where there is none."""
-    k, product, m6 = _products(twists)
-    t = tan(theta_1 / 2)
-    q = (k - 1) * t / (k + t * t)
-    square = (1 - product) ** 2 - 4 * product * q * q
-    if square < 0:
-        return float("nan")
-    return float(2 * atan(m6 * ((1 - product) + root * sqrt(square)) / (2 * m6 * q)))
-
-
-def _gap(twists: tuple[float, ...], t: float, roots: tuple[int, int]) -> float:
-    """Gap of theta4 at tan(theta1/2) = ``t`` between the first root below and the
-    second above."""
-    at = 2 * atan(t)
-    return abs(
-        sin(
-            (
-                _fourth(twists, at - NEAR, roots[0])
-                - _fourth(twists, at + NEAR, roots[1])
-            )
-            / 2
-        )
-    )
-
-
-def _place() -> tuple[float, float]:
-    """Switch at sqrt(m3 m4); or at sqrt(-m3 m4) where that is real, and nowhere
-    else."""
-    printed = sqrt(_products(PLAIN)[0])
-    pole = sqrt(-_products(CROSSING)[0])
-    return _gap(PLAIN, printed, (-1, 1)), max(
-        _gap(PLAIN, printed, (1, 1)), _gap(CROSSING, pole, (-1, 1))
-    )
-
-
-def _ranges() -> tuple[float, float]:
-    """The plus root below and above 2 atan(q), as the printed ranges say; or above
-    alone."""
-    pole = sqrt(-_products(CROSSING)[0])
-    return _gap(CROSSING, pole, (1, 1)), _gap(CROSSING, pole, (-1, 1))
-
-
-def _paper_place() -> tuple[float, float]:
-    """The modulus of Song and Chen's q, which is imaginary, beside sqrt(-m1 m2); b and
-    d have changed places there."""
-    alpha, beta, gamma, delta = CROSSING
-    m1, m2, m3, m4 = (_m(x, y) for x in (delta, beta) for y in (alpha, gamma))
-    top, bottom = (m2 + m3) - m2 * m3 * (m1 + m4), m1 * m4 * (m2 + m3) - (m1 + m4)
-    printed = abs(m1) * sqrt(abs(top / bottom))
-    return _gap(CROSSING, printed, (-1, 1)), _gap(CROSSING, sqrt(-m1 * m2), (-1, 1))
-
-
-# --- m2 for m6
-
-
-def _special(alpha: float, beta: float, gamma: float) -> tuple[float, ...]:
-    """m1, m2, m3, m4, m6 of (3.4.1) with delta by tan(alpha/2) tan(gamma/2) =
-    tan(beta/2) tan(delta/2)."""
-    delta = 2 * atan(tan(alpha / 2) * tan(gamma / 2) / tan(beta / 2))
-    return (
+    return Ratios(
         _m(beta, alpha),
         _m(gamma, alpha),
         _m(delta, alpha),
@@ -106,37 +63,120 @@ def _special(alpha: float, beta: float, gamma: float) -> tuple[float, ...]:
     )
 
 
-def _constant_angle() -> tuple[float, float]:
-    """Equations (5.2.13) to (5.2.15) and (5.2.17) on the special linkage: the largest
-    of what they leave."""
-    m1, m2, m3, m4, m6 = _special(radians(125), radians(60), radians(14))
+def _fourth(twists: Twists, theta_1: float, root: int) -> float:
+    """theta4 by (5.2.2), (5.2.4) with 1 - m1 m6 throughout; nan where there is none."""
+    m = _ratios(twists)
+    k = m.m3 * m.m4
+    product = m.m1 * m.m6
+    t = tan(theta_1 / 2)
+    q = (k - 1) * t / (k + t * t)
+    square = (1 - product) ** 2 - 4 * product * q * q
+    if square < 0:
+        return nan
+    p = ((1 - product) + root * sqrt(square)) / (2 * m.m6 * q)
+    return 2 * atan(m.m6 * p)
+
+
+def _gap(twists: Twists, t: float, below: int, above: int) -> float:
+    """Gap of theta4 at tan(theta1/2) = ``t`` between the root ``below`` and the root
+    ``above``."""
+    at = 2 * atan(t)
+    before = _fourth(twists, at - NEAR, below)
+    after = _fourth(twists, at + NEAR, above)
+    return abs(sin((before - after) / 2))
+
+
+def _pole() -> float:
+    """tan(theta1/2) at the pole of Q, sqrt(-m3 m4)."""
+    m = _ratios(CROSSING)
+    return sqrt(-m.m3 * m.m4)
+
+
+def _place() -> Amounts:
+    """Switch at sqrt(m3 m4); or at sqrt(-m3 m4) where that is real, and nowhere
+    else."""
+    m = _ratios(PLAIN)
+    place = sqrt(m.m3 * m.m4)
+    printed = _gap(PLAIN, place, -1, 1)
+    without = _gap(PLAIN, place, 1, 1)
+    at_pole = _gap(CROSSING, _pole(), -1, 1)
+    return Amounts(printed, max(without, at_pole))
+
+
+def _ranges() -> Amounts:
+    """The plus root below and above 2 atan(q), as the printed ranges say; or above
+    alone."""
+    pole = _pole()
+    return Amounts(_gap(CROSSING, pole, 1, 1), _gap(CROSSING, pole, -1, 1))
+
+
+def _paper_place() -> Amounts:
+    """The modulus of Song and Chen's q, which is imaginary, beside sqrt(-m1 m2); b and
+    d have changed places there."""
+    alpha, beta, gamma, delta = CROSSING
+    m1, m2 = _m(delta, alpha), _m(delta, gamma)
+    m3, m4 = _m(beta, alpha), _m(beta, gamma)
+    top = (m2 + m3) - m2 * m3 * (m1 + m4)
+    bottom = m1 * m4 * (m2 + m3) - (m1 + m4)
+    place = abs(m1) * sqrt(abs(top / bottom))
+    printed = _gap(CROSSING, place, -1, 1)
+    return Amounts(printed, _gap(CROSSING, sqrt(-m1 * m2), -1, 1))
+
+
+# --- m2 for m6
+
+
+def _special_ratios(alpha: float, beta: float, gamma: float) -> Ratios:
+    """The ratios with delta by tan(alpha/2) tan(gamma/2) = tan(beta/2) tan(delta/2)."""
+    delta = 2 * atan(tan(alpha / 2) * tan(gamma / 2) / tan(beta / 2))
+    return _ratios(Twists(alpha, beta, gamma, delta))
+
+
+def _constant_angle() -> Amounts:
+    """Equations (5.2.13) to (5.2.15) and (5.2.17) on the special linkage: the least
+    that the print leaves of one, the largest that the correction leaves."""
+    m = _special_ratios(radians(125), radians(60), radians(14))
+    printed = _left_by(m, m.m2)
+    corrected = _left_by(m, m.m6)
+    return Amounts(min(printed), max(*corrected, abs(m.m4 + m.m1)))
+
+
+def _left_by(m: Ratios, printed: float) -> list[float]:
+    """What the equations leave with ``printed`` in the place of m6."""
     t = 0.7
-    q, out = (m3 + m4 * t * t) / ((m4 - m3) * t), []
-    for m in (m2, m6):
-        root = np.emath.sqrt((m - m1) ** 2 * q * q - 4 * m1 * m)
-        equation = min(
-            abs(m4 * t - ((m - m1) * q + sign * root) / 2) for sign in (1, -1)
-        )
-        pair = abs((m - m1) - (m4 - m3)), abs(m3 * m4 * (m - m1) - m1 * m * (m4 - m3))
-        out.append([float(equation), *pair, abs(m3 + m)])
-    return min(out[0]), max(*out[1], abs(m4 + m1))
+    q = (m.m3 + m.m4 * t * t) / ((m.m4 - m.m3) * t)
+    difference = printed - m.m1
+    root = np.emath.sqrt(difference**2 * q * q - 4 * m.m1 * printed)
+    one = abs(m.m4 * t - (difference * q + root) / 2)
+    other = abs(m.m4 * t - (difference * q - root) / 2)
+    products = m.m3 * m.m4 * difference - m.m1 * printed * (m.m4 - m.m3)
+    return [
+        float(min(one, other)),
+        abs(difference - (m.m4 - m.m3)),
+        abs(products),
+        abs(m.m3 + printed),
+    ]
 
 
-def _critical_input() -> tuple[float, float]:
+def _critical_input() -> Amounts:
     """Appendix B, Case 3: m6 - m1 tan(theta1/2)^2 at the input where its sign is said
     to change."""
-    m1, m2, _, _, m6 = _special(radians(70), radians(125), radians(120))
-    printed, corrected = atan(sqrt(m2 / m1)), 2 * atan(sqrt(m6 / m1))
-    return abs(m6 - m1 * tan(printed / 2) ** 2), abs(m6 - m1 * tan(corrected / 2) ** 2)
+    m = _special_ratios(radians(70), radians(125), radians(120))
+    printed = atan(sqrt(m.m2 / m.m1))
+    corrected = 2 * atan(sqrt(m.m6 / m.m1))
+    return Amounts(
+        abs(m.m6 - m.m1 * tan(printed / 2) ** 2),
+        abs(m.m6 - m.m1 * tan(corrected / 2) ** 2),
+    )
 
 
-SONG, WDG, DSG = (
-    "Song 2013",
-    "wohlhart-double-goldberg",
-    "special-double-subtractive-goldberg",
-)
-SWITCHING_ROWS: tuple[Row, ...] = (
-    (
+SONG = "Song 2013"
+SPECIAL_PAPER = "Song and Chen 2012 (special)"
+WDG = "wohlhart-double-goldberg"
+DSG = "special-double-subtractive-goldberg"
+
+SWITCHING_ERRATA: tuple[Erratum, ...] = (
+    Erratum(
         SONG,
         "(5.2.4), (5.2.5)",
         WDG,
@@ -144,7 +184,7 @@ SWITCHING_ROWS: tuple[Row, ...] = (
         "at q = sqrt(-m3 m4), and only if m3 m4 < 0",
         _place,
     ),
-    (
+    Erratum(
         SONG,
         "(5.2.4), (5.2.5)",
         WDG,
@@ -152,15 +192,15 @@ SWITCHING_ROWS: tuple[Row, ...] = (
         "-pi <= theta1 < -2 atan(q), 2 atan(q) <= theta1 < pi",
         _ranges,
     ),
-    (
-        "Song and Chen 2012 (special)",
+    Erratum(
+        SPECIAL_PAPER,
         "(5.4), (5.5)",
         WDG,
         "q = abs(m1) sqrt(...) is imaginary; the amount is for its modulus",
         "q = sqrt(-m1 m2), and only if m1 m2 < 0",
         _paper_place,
     ),
-    (
+    Erratum(
         SONG,
         "(5.2.13)-(5.2.15), (5.2.17)",
         DSG,
@@ -168,7 +208,7 @@ SWITCHING_ROWS: tuple[Row, ...] = (
         "m6, as in m3 = -m6",
         _constant_angle,
     ),
-    (
+    Erratum(
         SONG,
         "Appendix B, Case 3",
         DSG,

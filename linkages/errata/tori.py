@@ -3,39 +3,40 @@ its equation (2.2)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import cos, sin
 
 import numpy as np
 
-__all__ = ["TORI_ROWS"]
+from linkages.errata.erratum import Amounts, Erratum
 
-Row = tuple[str, str, str, str, str, Callable[[], tuple[float, float]]]
+__all__ = ["TORI_ERRATA"]
+
 SIGMA, CHI, THETA, R, S = 0.7, 0.8, 0.25, 1.5, 0.9
 PHIS = (0.6, 2.1, -1.3)
 
 
-def _about(axis: int, angle: float) -> np.ndarray:
+def _rotation(axis: int, angle: float) -> np.ndarray:
     """Rotation matrix about the axis 0, 1 or 2."""
-    i, j = (axis + 1) % 3, (axis + 2) % 3
+    i = (axis + 1) % 3
+    j = (axis + 2) % 3
     out = np.eye(3)
     out[i, i] = out[j, j] = cos(angle)
-    out[i, j], out[j, i] = -sin(angle), sin(angle)
+    out[i, j] = -sin(angle)
+    out[j, i] = sin(angle)
     return out
 
 
 def _point(phi: float) -> np.ndarray:
     """Equation (2.2): the point of the torus at ``phi``, at the fixed angles and radii
     above."""
-    along = S * cos(phi) * cos(THETA) + R
-    across = S * sin(phi) * cos(CHI) + S * cos(phi) * sin(THETA) * sin(CHI)
-    x, y = (
-        along * cos(SIGMA) - across * sin(SIGMA),
-        along * sin(SIGMA) + across * cos(SIGMA),
-    )
-    return np.array(
-        [x, y, S * sin(phi) * sin(CHI) - S * cos(phi) * sin(THETA) * cos(CHI)]
-    )
+    forth = S * cos(phi)
+    side = S * sin(phi)
+    along = forth * cos(THETA) + R
+    across = side * cos(CHI) + forth * sin(THETA) * sin(CHI)
+    x = along * cos(SIGMA) - across * sin(SIGMA)
+    y = along * sin(SIGMA) + across * cos(SIGMA)
+    z = side * sin(CHI) - forth * sin(THETA) * cos(CHI)
+    return np.array([x, y, z])
 
 
 def _centre() -> np.ndarray:
@@ -49,89 +50,98 @@ def _gap(x: np.ndarray, y: np.ndarray) -> float:
 
 def _off_axis(axis: np.ndarray) -> float:
     """Largest |cosine| between ``axis`` and the radii of the circle."""
-    return max(abs(float(axis @ (_point(phi) - _centre()))) / S for phi in PHIS)
+    products = [axis @ (_point(phi) - _centre()) for phi in PHIS]
+    return float(max(abs(product) for product in products) / S)
 
 
-def _surface() -> tuple[float, float]:
-    sigma, chi, theta = _about(2, SIGMA), _about(0, CHI), _about(1, THETA)
+def _surface() -> Amounts:
+    """Equation (2.1): r added after or before the turn by sigma."""
+    by_sigma, by_chi = _rotation(2, SIGMA), _rotation(0, CHI)
+    shift = np.array([R, 0, 0])
     printed = corrected = 0.0
     for phi in PHIS:
-        turned = theta @ _about(2, phi) @ np.array([S, 0, 0])
-        printed = max(printed, _gap(sigma @ chi @ turned + [R, 0, 0], _point(phi)))
-        corrected = max(
-            corrected, _gap(sigma @ (chi @ turned + [R, 0, 0]), _point(phi))
-        )
-    return printed, corrected
+        on_circle = _rotation(1, THETA) @ _rotation(2, phi) @ np.array([S, 0, 0])
+        tilted = by_chi @ on_circle
+        point = _point(phi)
+        printed = max(printed, _gap(by_sigma @ tilted + shift, point))
+        corrected = max(corrected, _gap(by_sigma @ (tilted + shift), point))
+    return Amounts(printed, corrected)
 
 
-def _axis_of_chi() -> tuple[float, float]:
-    sigma, end = _about(2, SIGMA), _about(1, THETA) @ [0, 0, 1]
-    return _off_axis(sigma @ _about(1, CHI) @ end), _off_axis(
-        sigma @ _about(0, CHI) @ end
-    )
+def _axis_of_chi() -> Amounts:
+    """Before (2.1): the axis of the circle turned by chi about Y, or about X."""
+    by_sigma = _rotation(2, SIGMA)
+    tilted = _rotation(1, THETA) @ [0, 0, 1]
+    printed = by_sigma @ _rotation(1, CHI) @ tilted
+    corrected = by_sigma @ _rotation(0, CHI) @ tilted
+    return Amounts(_off_axis(printed), _off_axis(corrected))
 
 
-def _centres() -> tuple[float, float]:
+def _centres() -> Amounts:
+    """Equation (2.5): the centre without and with its distance r."""
     direction = np.array([cos(SIGMA), sin(SIGMA), 0])
-    return _gap(direction, _centre()), _gap(R * direction, _centre())
+    centre = _centre()
+    return Amounts(_gap(direction, centre), _gap(R * direction, centre))
 
 
-def _axis_of_circle() -> tuple[float, float]:
+def _axis_of_circle() -> Amounts:
+    """Equation (2.6): the direction of the circle's axis."""
     phi = PHIS[0]
-    long = cos(THETA) * cos(phi)
-    cross = cos(CHI) * sin(phi) - sin(CHI) * sin(THETA) * cos(phi)
-    x, y = (
-        long * cos(SIGMA) + cross * sin(SIGMA),
-        long * sin(SIGMA) - cross * cos(SIGMA),
-    )
-    printed = np.array([x, y, -sin(CHI) * sin(phi) - cos(CHI) * sin(THETA) * cos(phi)])
+    along = cos(THETA) * cos(phi)
+    across = cos(CHI) * sin(phi) - sin(CHI) * sin(THETA) * cos(phi)
+    x = along * cos(SIGMA) + across * sin(SIGMA)
+    y = along * sin(SIGMA) - across * cos(SIGMA)
+    z = -sin(CHI) * sin(phi) - cos(CHI) * sin(THETA) * cos(phi)
     local = np.array([sin(THETA), -sin(CHI) * cos(THETA), cos(CHI) * cos(THETA)])
-    return _off_axis(printed), _off_axis(_about(2, SIGMA) @ local)
+    corrected = _rotation(2, SIGMA) @ local
+    return Amounts(_off_axis(np.array([x, y, z])), _off_axis(corrected))
 
 
-def _carried_centre() -> tuple[float, float]:
+def _carried_centre() -> Amounts:
     """Equation (3.2), R1 = Q4: the origin of torus 4 is the centre of the circle of
     torus 1."""
     shift = np.array([R, 0, 0])
-    return _gap(shift, _centre()), _gap(_about(2, SIGMA) @ shift, _centre())
+    centre = _centre()
+    return Amounts(_gap(shift, centre), _gap(_rotation(2, SIGMA) @ shift, centre))
 
 
-TORI = "Bil and Budniak, Model of 5R spatial linkage in the geometry of tori"
-TORI_ROWS: tuple[Row, ...] = (
-    (
-        TORI,
+SOURCE = "Bil and Budniak, Model of 5R spatial linkage in the geometry of tori"
+
+TORI_ERRATA: tuple[Erratum, ...] = (
+    Erratum(
+        SOURCE,
         "before (2.1)",
         "torus-4r",
         "axis of the circle turned by chi about Y",
         "turned by chi about X",
         _axis_of_chi,
     ),
-    (
-        TORI,
+    Erratum(
+        SOURCE,
         "(2.1)",
         "torus-4r",
         "Rz(sigma) Rx(chi) {...} + (r, 0, 0)",
         "Rz(sigma) {Rx(chi) ... + (r, 0, 0)}",
         _surface,
     ),
-    (
-        TORI,
+    Erratum(
+        SOURCE,
         "(2.5)",
         "torus-4r",
         "R = (cos(sigma), sin(sigma), 0)",
         "R = r (cos(sigma), sin(sigma), 0)",
         _centres,
     ),
-    (
-        TORI,
+    Erratum(
+        SOURCE,
         "(2.6)",
         "torus-4r",
         "Z with cos(phi) and sin(phi), a radius of the circle",
         "Z = Rz(sigma) (sin(theta), -sin(chi) cos(theta), cos(chi) cos(theta))",
         _axis_of_circle,
     ),
-    (
-        TORI,
+    Erratum(
+        SOURCE,
         "(3.5), (3.6)",
         "torus-5r-14-plus-plus",
         "... + (r1, 0, 0)",

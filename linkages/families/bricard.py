@@ -1,40 +1,90 @@
-"""The line-symmetric Bricard 6R linkage: general, with zero offsets, and octahedral.
+"""The line-symmetric Bricard 6R linkages: general, with zero offsets, octahedral, and
+revised.
 
-Opposite links and offsets are alike. Forms I and II ("original") have theta_{i+3} =
-theta_i; with zero offsets there are also Forms I' and II' ("revised") with theta_{i+3}
-= -theta_i.
+Opposite links are alike. With opposite offsets alike too, Forms I and II ("original")
+have theta_{i+3} = theta_i; with opposite offsets negative ("revised") the Forms I' and
+II' have theta_{i+3} = -theta_i; with zero offsets there are all four.
+
+The closure then leaves one bilinear equation between theta1 and theta2 and one between
+theta1 and theta3: Song (2013), equations (4.2.14)-(4.2.24), with H2 and L2 of (4.2.15)
+completed, and (4.3.3)-(4.3.8) for opposite angles, of which (4.3.8) is not in the text.
+Each is a quadratic in tan(theta/2); Form I takes the plus root for theta2 and the minus
+root for theta3, Form II the opposite: the discriminants of both are the same.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
 
+import numpy as np
+
+from linkages.closed_forms.closed_form import (
+    ClosedForm,
+    Pair,
+    constant,
+    cosine_of,
+    joint,
+    negative,
+    sine_of,
+    tangent,
+)
 from linkages.construction.conditions import decided
-from linkages.entry import Entry, Parameter
-from linkages.families.bricard_forms import patterns
+from linkages.construction.link import Link, closed_chain
+from linkages.construction.numbers import Number
+from linkages.construction.table_equations import (
+    equal_links,
+    equal_offsets,
+    equal_twists,
+    opposite_offsets,
+    zero_lengths,
+    zero_offsets,
+)
+from linkages.entry import (
+    BY_IDENTIFICATION,
+    Condition,
+    Entry,
+    FormPattern,
+    Parameter,
+    ParameterKind,
+    Relation,
+    RelationKind,
+)
 from linkages.loop import GeometryError, Loop
 
 __all__ = [
     "ENTRIES",
+    "LETTERS",
+    "Equations",
+    "Three",
     "bricard_line_symmetric",
     "bricard_line_symmetric_zero_offset",
     "bricard_octahedral_line_symmetric",
+    "original_equations",
+    "patterns",
+    "revised_equations",
+    "revised_line_symmetric",
 ]
 
-SOURCE = "Bricard 1927, Lecons de cinematique; Baker 1980, Mech. Mach. Theory 15, 267-286; Song 2013, "
+POSITION = 160
+SOURCE = (
+    "Bricard 1927, Lecons de cinematique; Baker 1980, Mech. Mach. Theory 15, 267-286; "
+    "Song 2013, "
+)
 
 
 def bricard_line_symmetric(
-    a12: Any,
-    a23: Any,
-    a34: Any,
-    alpha12: Any,
-    alpha23: Any,
-    alpha34: Any,
-    R1: Any,
-    R2: Any,
-    R3: Any,
+    a12: Number,
+    a23: Number,
+    a34: Number,
+    alpha12: Number,
+    alpha23: Number,
+    alpha34: Number,
+    R1: Number,
+    R2: Number,
+    R3: Number,
 ) -> Loop:
     """The general line-symmetric Bricard linkage: links 12, 23, 34 and offsets of
     joints 1, 2, 3, twice over.
@@ -45,9 +95,9 @@ def bricard_line_symmetric(
     + c12 c23 c34), c and s being cosines and sines of the twists.
     """
     for name, length in (("a12", a12), ("a23", a23), ("a34", a34)):
-        number = decided(length)
-        if number is not None and number < 0:
-            raise GeometryError(f"length {name}", f"{number:.6g}", "0 or greater")
+        size = decided(length)
+        if size is not None and size < 0:
+            raise GeometryError(f"length {name}", f"{size:.6g}", "0 or greater")
     return Loop(
         (a12, a23, a34) * 2,
         (alpha12, alpha23, alpha34) * 2,
@@ -57,7 +107,12 @@ def bricard_line_symmetric(
 
 
 def bricard_line_symmetric_zero_offset(
-    a12: Any, a23: Any, a34: Any, alpha12: Any, alpha23: Any, alpha34: Any
+    a12: Number,
+    a23: Number,
+    a34: Number,
+    alpha12: Number,
+    alpha23: Number,
+    alpha34: Number,
 ) -> Loop:
     """The line-symmetric Bricard linkage whose offsets vanish (Song 2013, section
     4.4.3); errors as above."""
@@ -65,7 +120,12 @@ def bricard_line_symmetric_zero_offset(
 
 
 def bricard_octahedral_line_symmetric(
-    alpha12: Any, alpha23: Any, alpha34: Any, R1: Any, R2: Any, R3: Any
+    alpha12: Number,
+    alpha23: Number,
+    alpha34: Number,
+    R1: Number,
+    R2: Number,
+    R3: Number,
 ) -> Loop:
     """The line-symmetric octahedral Bricard linkage: no lengths, opposite twists and
     offsets alike.
@@ -76,38 +136,379 @@ def bricard_octahedral_line_symmetric(
     return bricard_line_symmetric(0, 0, 0, alpha12, alpha23, alpha34, R1, R2, R3)
 
 
-def _number(name: str, kind: str, default: float, low: float, high: float) -> Parameter:
-    meaning = {"a": "length of link", "al": "twist of link", "R": "offset of joint"}
-    key = "al" if name.startswith("al") else name[0]
-    digits = name.lstrip("alphR")
-    opposite = (
-        str(int(digits) + 33)
-        if len(digits) == 2 and digits != "34"
-        else {"34": "61"}.get(digits)
+def revised_line_symmetric(
+    a12: Number,
+    a23: Number,
+    a34: Number,
+    alpha12: Number,
+    alpha23: Number,
+    alpha34: Number,
+    R1: Number,
+    R2: Number,
+    R3: Number,
+) -> Loop:
+    """Revised general line-symmetric Bricard 6R: opposite links equal, opposite offsets
+    negative.
+
+    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995);
+    equation (2.4.19) in Song (2013).
+    """
+    half = (Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34))
+    return closed_chain(*half, *half, offsets=(R1, R2, R3, -R1, -R2, -R3))
+
+
+# --- the equations of closure
+
+Three = tuple[Number, Number, Number]
+Coefficients = tuple[Number, ...]
+# of sin1, cos1, sin, cos, sin1 sin, sin1 cos, cos1 sin, cos1 cos, 1
+LETTERS = "ABCDEFGHL"
+
+
+class Equations(NamedTuple):
+    """Coefficients (A, ..., H, L) of the equations for theta2 and for theta3."""
+
+    second: Coefficients
+    third: Coefficients
+
+
+def original_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
+    """The equations where opposite joints turn alike (eqs 4.2.15, 4.2.22).
+
+    ``a``, ``R`` are the three lengths and offsets, ``c``, ``s`` cosines and sines of
+    the twists, of any number type.
+    """
+    (a12, a23, a34), (r1, r2, r3) = a, R
+    (c12, c23, c34), (s12, s23, s34) = c, s
+    second = (
+        a34 * s12 * c23 + a12 * s34,
+        -(r3 * s12 * c23 * s34 + r2 * s12 * s34),
+        a23 * s12 * c34 + a12 * s23,
+        -(r3 * s12 * s23 * c34 + r1 * s12 * s23),
+        r3 * s23 * s34,
+        a34 * c12 * s23 + a23 * s34,
+        a23 * c12 * s34 + a34 * s23,
+        -r3 * c12 * s23 * s34,
+        r1 * (c12 * c23 + c34) + r2 * (c23 + c12 * c34) + r3 * (1 + c12 * c23 * c34),
     )
-    opposite = opposite or str(int(digits) + 3)
+    third = (
+        a12 * c23 * s34 + a34 * s12,
+        -(r2 * s12 * c23 * s34 + r3 * s12 * s34),
+        a23 * c12 * s34 + a34 * s23,
+        -(r2 * c12 * s23 * s34 + r1 * s23 * s34),
+        r2 * s12 * s23,
+        a12 * s23 * c34 + a23 * s12,
+        a23 * s12 * c34 + a12 * s23,
+        -r2 * s12 * s23 * c34,
+        r1 * (c12 + c23 * c34) + r2 * (1 + c12 * c23 * c34) + r3 * (c23 + c12 * c34),
+    )
+    return Equations(second, third)
+
+
+def revised_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
+    """The same for opposite offsets and theta_{i+3} = -theta_i (eqs 4.3.6, 4.3.8; the
+    latter is not in the text)."""
+    (a12, a23, a34), (r1, r2, r3) = a, R
+    (c12, c23, c34), (s12, s23, s34) = c, s
+    second = (
+        a34 * s12 * c23 - a12 * s34,
+        r3 * s12 * c23 * s34 + r2 * s12 * s34,
+        -(a23 * s12 * c34 - a12 * s23),
+        r3 * s12 * s23 * c34 - r1 * s12 * s23,
+        -r3 * s23 * s34,
+        a34 * c12 * s23 - a23 * s34,
+        -(a23 * c12 * s34 - a34 * s23),
+        r3 * c12 * s23 * s34,
+        r1 * (c12 * c23 - c34) + r2 * (c23 - c12 * c34) + r3 * (1 - c12 * c23 * c34),
+    )
+    third = (
+        -(a12 * c23 * s34 - a34 * s12),
+        r2 * s12 * c23 * s34 + r3 * s12 * s34,
+        -(a23 * c12 * s34 - a34 * s23),
+        r2 * c12 * s23 * s34 + r1 * s23 * s34,
+        r2 * s12 * s23,
+        -(a12 * s23 * c34 - a23 * s12),
+        -(a23 * s12 * c34 - a12 * s23),
+        r2 * s12 * s23 * c34,
+        r1 * (c12 - c23 * c34) + r2 * (1 - c12 * c23 * c34) + r3 * (c23 - c12 * c34),
+    )
+    return Equations(second, third)
+
+
+# --- forms
+
+
+def _value_and_slope(
+    k: np.ndarray, x: np.ndarray, y: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The equation with coefficients ``k`` in theta1 = ``x``, theta = ``y``; its
+    derivative by ``y``."""
+    s, c = np.sin(x), np.cos(x)
+    free = k[0] * s + k[1] * c + k[8]
+    by_sin = k[2] + k[4] * s + k[6] * c
+    by_cos = k[3] + k[5] * s + k[7] * c
+    value = free + by_sin * np.sin(y) + by_cos * np.cos(y)
+    slope = by_sin * np.cos(y) - by_cos * np.sin(y)
+    return value, slope
+
+
+def _scaled(coefficients: Coefficients) -> np.ndarray:
+    k = np.array([float(value) for value in coefficients])
+    return np.asarray(k / max(np.abs(k).max(), 1e-300))
+
+
+def _residual(
+    sign: int, root: int, equations: Equations
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Residual of theta_{i+3} = sign theta_i, both equations, and their roots if
+    ``root`` is +1 or -1.
+
+    The derivative of the equation by theta2 is half the square root with its sign, so
+    that its sign names the root, without poles and without regard to where the form is
+    entered.
+    """
+    second, third = _scaled(equations.second), _scaled(equations.third)
+
+    def residual(theta: np.ndarray) -> np.ndarray:
+        theta = np.asarray(theta)
+        rows = []
+        for i in range(3):
+            gap = theta[..., i + 3] - sign * theta[..., i]
+            rows.append(np.sin(gap / 2))
+        for i, k, side in ((1, second, root), (2, third, -root)):
+            value, slope = _value_and_slope(k, theta[..., 0], theta[..., i])
+            rows.append(value)
+            rows.append(np.maximum(0.0, -side * slope))
+        return np.stack(rows, axis=-1)
+
+    return residual
+
+
+def _three_patterns(
+    suffix: str, mark: str, sign: int, equations: Equations
+) -> list[FormPattern]:
+    both = f"Forms I{mark} and II{mark} ({suffix})"
+    return [
+        FormPattern(f"Form I{mark} ({suffix})", _residual(sign, +1, equations)),
+        FormPattern(f"Form II{mark} ({suffix})", _residual(sign, -1, equations)),
+        FormPattern(both, _residual(sign, 0, equations)),
+    ]
+
+
+def patterns(
+    a12: float,
+    a23: float,
+    a34: float,
+    alpha12: float,
+    alpha23: float,
+    alpha34: float,
+    R1: float = 0.0,
+    R2: float = 0.0,
+    R3: float = 0.0,
+) -> tuple[FormPattern, ...]:
+    """Forms I and II, and, where one closed curve holds both, "Forms I and II"; I' and
+    II' for zero offsets.
+
+    Lengths and offsets in one unit, twists in rad.
+    """
+    a = (a12, a23, a34)
+    c = (math.cos(alpha12), math.cos(alpha23), math.cos(alpha34))
+    s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
+    R = (R1, R2, R3)
+    out = _three_patterns("original", "", +1, original_equations(a, c, s, R))
+    has_offsets = max(abs(R1), abs(R2), abs(R3)) > 0
+    if not has_offsets and max(a) > 0:
+        out += _three_patterns("revised", "'", -1, revised_equations(a, c, s, R))
+    return tuple(out)
+
+
+def _octahedral_patterns(
+    alpha12: float, alpha23: float, alpha34: float, R1: float, R2: float, R3: float
+) -> tuple[FormPattern, ...]:
+    return patterns(0.0, 0.0, 0.0, alpha12, alpha23, alpha34, R1, R2, R3)
+
+
+# --- closed forms
+
+LENGTH_NAMES = ("a12", "a23", "a34")
+TWIST_NAMES = ("alpha12", "alpha23", "alpha34")
+OFFSET_NAMES = ("R1", "R2", "R3")
+
+
+class _Quadratic(NamedTuple):
+    """Aterm, Bterm, Cterm of equations (4.2.18), (4.2.21): the quadratic in
+    tan(theta/2) of joint 2 or 3."""
+
+    a: Number
+    b: Number
+    c: Number
+
+
+def _quadratic(number: int) -> _Quadratic:
+    """The quadratic of joint ``number``."""
+    a, b, c, d, e, f, g, h, free = (constant(f"{x}_{number}") for x in LETTERS)
+    s1, c1 = joint(1)
+    sine = 2 * s1 * c1
+    cosine = c1**2 - s1**2
+    one = s1**2 + c1**2
+    rest = a * sine + b * cosine + free * one
+    by_sin = c * one + e * sine + g * cosine
+    by_cos = d * one + f * sine + h * cosine
+    return _Quadratic(rest - by_cos, 2 * by_sin, rest + by_cos)
+
+
+def _third_pairs() -> tuple[Pair, ...]:
+    """The pairs of joint 3: its root has the sign opposite to that of joint 2."""
+    second, third = _quadratic(2), _quadratic(3)
+    s, c = joint(2)
+    # the square root, as two quotients
+    roots = (
+        (2 * second.a * s + second.b * c, c),
+        (-2 * second.c * c - second.b * s, s),
+    )
+    out: list[Pair] = []
+    for top, bottom in roots:
+        out.append((-third.b * bottom - top, 2 * third.a * bottom))
+        out.append((2 * third.c * bottom, top - third.b * bottom))
+    return tuple(out)
+
+
+def _symbols(names: tuple[str, ...], known: tuple[str, ...]) -> Three:
+    """The symbols of ``names``, or 0 for those that are not parameters."""
+    x, y, z = (constant(name) if name in known else 0 for name in names)
+    return x, y, z
+
+
+def _closed_form(
+    linkage: str,
+    sign: int,
+    lengths: tuple[str, ...] = LENGTH_NAMES,
+    offsets: tuple[str, ...] = OFFSET_NAMES,
+) -> ClosedForm:
+    """``sign`` +1 where opposite joints turn alike, -1 where oppositely."""
+    equations = original_equations if sign > 0 else revised_equations
+    u12, u23, u34 = (tangent(name) for name in TWIST_NAMES)
+    rows = equations(
+        _symbols(LENGTH_NAMES, lengths),
+        (cosine_of(u12), cosine_of(u23), cosine_of(u34)),
+        (sine_of(u12), sine_of(u23), sine_of(u34)),
+        _symbols(OFFSET_NAMES, offsets),
+    )
+    constants = {}
+    for number, row in ((2, rows.second), (3, rows.third)):
+        for letter, value in zip(LETTERS, row, strict=True):
+            constants[f"{letter}_{number}"] = value
+    s, c = joint(2)
+    quadratic = _quadratic(2)
+    half = ((joint(1),), (joint(2),), _third_pairs())
+    other = half
+    if sign < 0:
+        other = tuple(tuple(negative(pair) for pair in pairs) for pairs in half)
+    return ClosedForm(
+        linkage,
+        "Forms I and II" if sign > 0 else "Forms I' and II'",
+        ORIGINAL if sign > 0 else REVISED,
+        TWIST_NAMES,
+        (*half, *other),
+        constants,
+        (*lengths, *offsets),
+        relation=quadratic.a * s**2 + quadratic.b * s * c + quadratic.c * c**2,
+        second=2,
+    )
+
+
+ORIGINAL = "Song 2013, eqs (4.2.14)-(4.2.24), H2 and L2 of (4.2.15) completed"
+REVISED = "Song 2013, eqs (4.3.3)-(4.3.8), (4.3.8) being missing in the text"
+
+
+def _general_formulas(linkage: str, sign: int) -> tuple[ClosedForm, ...]:
+    return (_closed_form(linkage, sign),)
+
+
+def _zero_offset_formulas() -> tuple[ClosedForm, ...]:
+    linkage = "bricard-line-symmetric-zero-offset"
+    return (
+        _closed_form(linkage, +1, offsets=()),
+        _closed_form(linkage, -1, offsets=()),
+    )
+
+
+def _octahedral_formulas() -> tuple[ClosedForm, ...]:
+    return (_closed_form("bricard-octahedral-line-symmetric", +1, lengths=()),)
+
+
+# --- entries
+
+
+def _length(link: str, opposite: str, default: float) -> Parameter:
+    meaning = f"length of link {link} and {opposite}"
+    return Parameter.length(f"a{link}", default, meaning, 0.3, 3.0)
+
+
+def _twist(link: str, opposite: str, degrees: float) -> Parameter:
     return Parameter(
-        name, default, kind, f"{meaning[key]} {digits} and {opposite}", low, high
+        f"alpha{link}",
+        math.radians(degrees),
+        ParameterKind.ANGLE,
+        f"twist of link {link} and {opposite}",
+        0.2,
+        math.pi - 0.2,
     )
 
 
-LENGTHS = tuple(
-    _number(n, "length", x, 0.3, 3.0)
-    for n, x in (("a12", 2.4), ("a23", 2.9), ("a34", 1.5))
+def _offset(number: int, default: float) -> Parameter:
+    meaning = f"offset of joint {number} and {number + 3}"
+    return Parameter.length(f"R{number}", default, meaning, -1.0, 1.0)
+
+
+def _revised_length(name: str, default: float) -> Parameter:
+    return Parameter.length(name, default, f"length {name}", 0.5, 1.6)
+
+
+def _revised_twist(link: int, degrees: float) -> Parameter:
+    return Parameter.angle(f"alpha{link}", degrees, f"twist of link {link}", 15, 165)
+
+
+def _revised_offset(name: str, default: float) -> Parameter:
+    return Parameter.length(name, default, f"offset {name}", -0.5, 0.5)
+
+
+LENGTHS = (
+    _length("12", "45", 2.4),
+    _length("23", "56", 2.9),
+    _length("34", "61", 1.5),
 )
-TWISTS = tuple(
-    _number(n, "angle", math.radians(x), 0.2, math.pi - 0.2)
-    for n, x in (("alpha12", 40), ("alpha23", 80), ("alpha34", 130))
+TWISTS = (_twist("12", "45", 40), _twist("23", "56", 80), _twist("34", "61", 130))
+OFFSETS = (_offset(1, 0.5), _offset(2, 0.55), _offset(3, 0.42))
+OPPOSITE_LINKS: tuple[tuple[int, int], ...] = ((12, 45), (23, 56), (34, 61))
+OPPOSITE_JOINTS: tuple[tuple[int, int], ...] = ((1, 4), (2, 5), (3, 6))
+LINKS = Condition(
+    "a12 = a45, a23 = a56, a34 = a61, "
+    "alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61",
+    (equal_links(*OPPOSITE_LINKS),),
 )
-OFFSETS = tuple(
-    _number(n, "length", x, -1.0, 1.0)
-    for n, x in (("R1", 0.5), ("R2", 0.55), ("R3", 0.42))
-)
-LINKS = "a12 = a45, a23 = a56, a34 = a61, alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61"
 ERRATA = (
-    "Song 2013, text of (4.2.1): theta3 = theta1, theta4 = theta2 must be theta4 = theta1, theta5 = theta2",
+    "Song 2013, text of (4.2.1): theta3 = theta1, theta4 = theta2 must be "
+    "theta4 = theta1, theta5 = theta2",
     "Song 2013, eq. (4.2.15): H2 and L2 are incomplete, see the constructor",
 )
+
+
+def _case_of(other: str, source: str) -> Relation:
+    return Relation(RelationKind.SPECIAL_CASE, other, source)
+
+
+def _isomer_of(other: str) -> Relation:
+    return Relation(
+        RelationKind.ISOMER,
+        other,
+        BY_IDENTIFICATION,
+        "links at joint 3 exchanged",
+        joint=3,
+    )
+
+
+GENERAL_CASE = _case_of("bricard-line-symmetric", "Song (2013), section 4.4")
 
 ENTRIES: tuple[Entry, ...] = (
     Entry(
@@ -115,9 +516,13 @@ ENTRIES: tuple[Entry, ...] = (
         "General line-symmetric Bricard 6R linkage",
         SOURCE + "eqs (4.2.1)-(4.2.25)",
         bricard_line_symmetric,
-        LENGTHS + TWISTS + OFFSETS,
-        conditions=(LINKS, "R1 = R4, R2 = R5, R3 = R6"),
+        (*LENGTHS, *TWISTS, *OFFSETS),
+        conditions=(
+            LINKS,
+            Condition("R1 = R4, R2 = R5, R3 = R6", (equal_offsets(*OPPOSITE_JOINTS),)),
+        ),
         patterns=patterns,
+        formulas=partial(_general_formulas, "bricard-line-symmetric", +1),
         errata=ERRATA,
         facts={
             "mobility": 1,
@@ -132,9 +537,15 @@ ENTRIES: tuple[Entry, ...] = (
         "Line-symmetric Bricard 6R linkage with zero offsets",
         SOURCE + "section 4.4.3",
         bricard_line_symmetric_zero_offset,
-        LENGTHS + TWISTS,
-        conditions=(LINKS, "all offsets 0"),
+        (*LENGTHS, *TWISTS),
+        conditions=(LINKS, Condition("all offsets 0", (zero_offsets(),))),
         patterns=patterns,
+        formulas=_zero_offset_formulas,
+        relations=(
+            GENERAL_CASE,
+            _isomer_of("wohlhart-double-goldberg"),
+            _isomer_of("double-subtractive-goldberg"),
+        ),
         errata=(*ERRATA, "Song 2013, eq. (4.3.8) is missing from the text"),
         facts={
             "mobility": 1,
@@ -147,17 +558,21 @@ ENTRIES: tuple[Entry, ...] = (
     Entry(
         "bricard-octahedral-line-symmetric",
         "Line-symmetric octahedral Bricard 6R linkage",
-        "Bricard 1897, J. Pure Appl. Math. 3, 113-150; Song 2013, eq. (2.4.16) and section 4.4.2",
+        "Bricard 1897, J. Pure Appl. Math. 3, 113-150; "
+        "Song 2013, eq. (2.4.16) and section 4.4.2",
         bricard_octahedral_line_symmetric,
-        TWISTS + OFFSETS,
+        (*TWISTS, *OFFSETS),
         conditions=(
-            "all lengths 0",
-            "alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61",
-            "R_i = R_{i+3}",
+            Condition("all lengths 0", (zero_lengths(),)),
+            Condition(
+                "alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61",
+                (equal_twists(*OPPOSITE_LINKS),),
+            ),
+            Condition("R_i = R_{i+3}", (equal_offsets(*OPPOSITE_JOINTS),)),
         ),
-        patterns=lambda alpha12, alpha23, alpha34, R1, R2, R3: patterns(
-            0.0, 0.0, 0.0, alpha12, alpha23, alpha34, R1, R2, R3
-        ),
+        patterns=_octahedral_patterns,
+        formulas=_octahedral_formulas,
+        relations=(GENERAL_CASE,),
         errata=("Song 2013, eq. (2.4.16): the equalities of the twists are missing",),
         facts={
             "mobility": 1,
@@ -166,5 +581,36 @@ ENTRIES: tuple[Entry, ...] = (
             "bifurcations": 0,
             "components": 1,
         },
+    ),
+    Entry(
+        "bricard-line-symmetric-revised",
+        "Revised general line-symmetric Bricard 6R",
+        "Mavroidis and Roth (1995); Song (2013), eq. 2.4.19",
+        revised_line_symmetric,
+        (
+            _revised_length("a12", 1.0),
+            _revised_length("a23", 0.8),
+            _revised_length("a34", 1.25),
+            _revised_twist(12, 50),
+            _revised_twist(23, 77),
+            _revised_twist(34, 110),
+            _revised_offset("R1", 0.3),
+            _revised_offset("R2", -0.45),
+            _revised_offset("R3", 0.6),
+        ),
+        conditions=(
+            Condition(
+                "a12 = a45, a23 = a56, a34 = a61, twists likewise",
+                (equal_links(*OPPOSITE_LINKS),),
+            ),
+            Condition(
+                "R1 = -R4, R2 = -R5, R3 = -R6", (opposite_offsets(*OPPOSITE_JOINTS),)
+            ),
+        ),
+        formulas=partial(_general_formulas, "bricard-line-symmetric-revised", -1),
+        relations=(
+            Relation(RelationKind.SAME, "bricard-line-symmetric", BY_IDENTIFICATION),
+        ),
+        facts={"joints": 6, "mobility": 1},
     ),
 )

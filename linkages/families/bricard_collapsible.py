@@ -3,21 +3,46 @@ collapses."""
 
 from __future__ import annotations
 
-from typing import Any
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
 
-from linkages.construction.conditions import decided
+import numpy as np
+
+from linkages.construction.conditions import decided, require_different
 from linkages.construction.link import Link, closed_chain
-from linkages.construction.numbers import acos, atan2, cos, pi_like, sin, sqrt
-from linkages.entry import Entry, Parameter
+from linkages.construction.numbers import Number, acos, atan2, cos, pi_like, sin, sqrt
+from linkages.entry import Condition, Entry, Parameter
 from linkages.loop import GeometryError, Loop
 
 __all__ = ["ENTRIES", "doubly_collapsible_octahedral"]
 
-Point = tuple[Any, Any]
+POSITION = 180
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of the plane of the hexagon."""
+
+    x: Number
+    y: Number
+
+    def __sub__(self, other: Point) -> Point:
+        return Point(self.x - other.x, self.y - other.y)
+
+    def dot(self, other: Point) -> Number:
+        """Scalar product."""
+        return self.x * other.x + self.y * other.y
+
+    @property
+    def norm(self) -> Number:
+        """Distance from the origin."""
+        return sqrt(self.x**2 + self.y**2)
 
 
 def doubly_collapsible_octahedral(
-    x1: Any, y1: Any, x2: Any, y2: Any, radius_1: Any, radius_2: Any
+    x1: Number, y1: Number, x2: Number, y2: Number, radius_1: Number, radius_2: Number
 ) -> Loop:
     """Doubly collapsible octahedral Bricard 6R: all lengths zero, axes along the sides
     of a plane hexagon.
@@ -25,56 +50,159 @@ def doubly_collapsible_octahedral(
     From A = (x1, y1) and A' = (x2, y2) the tangents to the circle of ``radius_1`` about
     the origin meet in B and B', those to ``radius_2`` in C and C'; the joints 1 to 6
     lie along C'A, AB, BC, CA', A'B', B'C', the last one reversed, so that R1 R3 R5 + R2
-    R4 R6 = 0. Raises `GeometryError` if a point lies within a circle. Source: Bricard
-    (1897); equation (2.4.18) in Song (2013) is that product alone, which is necessary
-    and not sufficient.
+    R4 R6 = 0. Raises `GeometryError` if a point lies within a circle, if tangents are
+    parallel, and for a hexagon with a side of no length. Source: Bricard (1897);
+    equation (2.4.18) in Song (2013) is that product alone, which is necessary and not
+    sufficient.
     """
-    first, opposite = (x1, y1), (x2, y2)
-    (b, b_opposite), (c, c_opposite) = (
-        _corners(first, opposite, r) for r in (radius_1, radius_2)
-    )
-    corners = (c_opposite, first, b, c, opposite, b_opposite)
-    sides = [_difference(corners[(i + 1) % 6], corners[i]) for i in range(6)]
-    offsets = [sqrt(x * x + y * y) for x, y in sides]
+    a, a_opposite = Point(x1, y1), Point(x2, y2)
+    b, b_opposite = _corners(a, a_opposite, radius_1)
+    c, c_opposite = _corners(a, a_opposite, radius_2)
+    corners = (c_opposite, a, b, c, a_opposite, b_opposite)
+    sides = []
+    for i, corner in enumerate(corners):
+        sides.append(corners[(i + 1) % 6] - corner)
+    offsets = [side.norm for side in sides]
+    for i, offset in enumerate(offsets, start=1):
+        require_different(f"side {i} of the hexagon", offset, 0, "a point")
     twists = []
-    for i, (x, y) in enumerate(sides):
-        u, v = sides[(i + 1) % 6]
-        twists.append(acos((x * u + y * v) / (offsets[i] * offsets[(i + 1) % 6])))
+    for i, side in enumerate(sides):
+        following = sides[(i + 1) % 6]
+        cosine = side.dot(following) / (offsets[i] * offsets[(i + 1) % 6])
+        twists.append(_angle_of(cosine))
     pi = pi_like(*twists)
-    offsets[5], twists[4], twists[5] = -offsets[5], twists[4] - pi, twists[5] - pi
+    offsets[5] = -offsets[5]
+    twists[4] = twists[4] - pi
+    twists[5] = twists[5] - pi
     return closed_chain(*(Link(0, twist) for twist in twists), offsets=offsets)
 
 
-def _corners(first: Point, opposite: Point, radius: Any) -> tuple[Point, Point]:
+def _angle_of(cosine: Number) -> Number:
+    """The angle of sides that may lie in line, where the cosine may pass 1 by
+    rounding."""
+    value = decided(cosine)
+    if value is not None and abs(value) > 1:
+        return acos(cosine / abs(value))
+    return acos(cosine)
+
+
+class _Normals(NamedTuple):
+    """Directions (rad) of the normals of the two tangents from a point to a circle."""
+
+    left: Number
+    right: Number
+
+
+def _corners(first: Point, opposite: Point, radius: Number) -> tuple[Point, Point]:
     """The two meeting points, neither on one tangent with the other, of the tangents
     from two points."""
-    (a, a_other), (b, b_other) = _normals(first, radius), _normals(opposite, radius)
-    return _meet(a_other, b, radius), _meet(a, b_other, radius)
+    a = _normals(first, radius)
+    b = _normals(opposite, radius)
+    return _meet(a.right, b.left, radius), _meet(a.left, b.right, radius)
 
 
-def _normals(point: Point, radius: Any) -> tuple[Any, Any]:
-    """Directions (rad) of the normals of the two tangents from ``point`` to the circle
-    about the origin."""
-    distance = sqrt(point[0] ** 2 + point[1] ** 2)
+def _normals(point: Point, radius: Number) -> _Normals:
+    """The normals of the tangents from ``point`` to the circle about the origin."""
+    distance = point.norm
     size, reach = decided(radius), decided(distance)
     if size is not None and reach is not None and not reach > size > 0:
-        raise GeometryError(
-            "radius of a circle",
-            size,
-            f"between 0 and {reach}, the distance of a corner",
-        )
-    middle, half = atan2(point[1], point[0]), acos(radius / distance)
-    return middle + half, middle - half
+        allowed = f"between 0 and {reach}, the distance of a corner"
+        raise GeometryError("radius of a circle", size, allowed)
+    middle = atan2(point.y, point.x)
+    half = acos(radius / distance)
+    return _Normals(middle + half, middle - half)
 
 
-def _meet(one: Any, other: Any, radius: Any) -> Point:
+def _meet(one: Number, other: Number, radius: Number) -> Point:
     """Where the tangents with normals at the angles ``one`` and ``other`` meet."""
-    middle, half = (one + other) / 2, (one - other) / 2
-    return radius * cos(middle) / cos(half), radius * sin(middle) / cos(half)
+    middle = (one + other) / 2
+    cosine = cos((one - other) / 2)
+    name = "cosine of half the angle between the tangents"
+    require_different(name, cosine, 0, "parallel tangents")
+    return Point(radius * cos(middle) / cosine, radius * sin(middle) / cosine)
 
 
-def _difference(p: Point, q: Point) -> Point:
-    return p[0] - q[0], p[1] - q[1]
+# --- first guesses: the offsets are the sides of the hexagon C' A B C A' B', the twists
+# its turns, modulo pi and in either sense
+
+LOOSE = 0.05  # of the perimeter: a hexagon that misses itself by more is not one
+SMALL_LENGTH = 1e-3  # of the longest side: a table with longer links is another linkage
+TRIED = 8  # hexagons, those that close best
+
+
+def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """Corners and radii, of all choices of the turns those laid out that close."""
+    lengths, twists, offsets = form
+    sides = np.abs(offsets)
+    if lengths.max() > SMALL_LENGTH * sides.max() or sides.min() == 0:
+        return
+    turns = [(t, t - np.pi, -t, np.pi - t) for t in twists[:5]]
+    choices = np.array(list(itertools.product(*turns)))
+    start = np.zeros((len(choices), 1))
+    heading = np.concatenate([start, np.cumsum(choices, axis=1)], axis=1)
+    steps = sides * np.exp(1j * heading)
+    gaps = np.abs(steps.sum(axis=1)) / sides.sum()
+    for k in np.argsort(gaps)[:TRIED]:
+        if gaps[k] < LOOSE:
+            walk = np.cumsum(steps[k])[:5]
+            yield from _guesses_by_hexagon(walk)
+
+
+def _guesses_by_hexagon(walk: np.ndarray) -> Iterator[dict[str, float]]:
+    """Parameters for the corners A, B, C, A', B', from C' at the origin.
+
+    The centre of the circles lies on a bisector of the sides that meet at A and one of
+    those that meet at A'.
+    """
+    a, b, c, a_opposite, b_opposite = walk
+    for sense, opposite_sense in itertools.product((1, 1j), repeat=2):
+        # bisectors of the angle at A between AB and AB', and at A' between A'B and A'B'
+        first = sense * _bisector(b - a, b_opposite - a)
+        sides = b - a_opposite, b_opposite - a_opposite
+        second = opposite_sense * _bisector(*sides)
+        cross = (np.conj(first) * second).imag
+        if abs(cross) < 1e-9:
+            continue
+        along = (np.conj(a_opposite - a) * second).imag / cross
+        centre = a + first * along
+        p, q = a - centre, a_opposite - centre
+        for mirror in (1, -1):
+            yield {
+                "x1": float(p.real),
+                "y1": mirror * float(p.imag),
+                "x2": float(q.real),
+                "y2": mirror * float(q.imag),
+                "radius_1": _distance(centre, a, b),
+                "radius_2": _distance(centre, a, c),
+            }
+
+
+def _bisector(u: complex, v: complex) -> complex:
+    total = u / abs(u) + v / abs(v)
+    return total / abs(total) if abs(total) > 1e-9 else 1j * u / abs(u)
+
+
+def _distance(point: complex, first: complex, second: complex) -> float:
+    """Distance of a point from the line through two others."""
+    side = second - first
+    return float(abs((np.conj(side) * (point - first)).imag) / abs(side))
+
+
+# --- entry
+
+
+def _coordinate(
+    name: str, default: float, which: str, corner: str, low: float, high: float
+) -> Parameter:
+    meaning = f"{which} coordinate of the corner {corner}"
+    return Parameter.length(name, default, meaning, low, high)
+
+
+def _radius(
+    name: str, default: float, sides: str, low: float, high: float
+) -> Parameter:
+    meaning = f"radius of the circle that {sides} touch"
+    return Parameter.length(name, default, meaning, low, high)
 
 
 ENTRIES = (
@@ -84,41 +212,27 @@ ENTRIES = (
         "Bricard (1897); Baker (1980); Song (2013), eq. 2.4.18",
         doubly_collapsible_octahedral,
         (
-            Parameter(
-                "x1", 2.3, "length", "first coordinate of the corner A", 1.8, 2.8
+            _coordinate("x1", 2.3, "first", "A", 1.8, 2.8),
+            _coordinate("y1", 0.4, "second", "A", 0.1, 0.8),
+            _coordinate("x2", -1.1, "first", "A'", -1.6, -0.9),
+            _coordinate("y2", 1.9, "second", "A'", 1.5, 2.3),
+            _radius("radius_1", 0.7, "AB, A'B', A'B, AB'", 0.5, 0.8),
+            _radius("radius_2", 1.1, "AC, A'C', A'C, AC'", 0.95, 1.3),
+        ),
+        conditions=(
+            Condition(
+                "all lengths zero; offsets and twists are sides and turns of the "
+                "hexagon A B C A' B' C'"
             ),
-            Parameter(
-                "y1", 0.4, "length", "second coordinate of the corner A", 0.1, 0.8
-            ),
-            Parameter(
-                "x2", -1.1, "length", "first coordinate of the corner A'", -1.6, -0.9
-            ),
-            Parameter(
-                "y2", 1.9, "length", "second coordinate of the corner A'", 1.5, 2.3
-            ),
-            Parameter(
-                "radius_1",
-                0.7,
-                "length",
-                "radius of the circle that AB, A'B', A'B, AB' touch",
-                0.5,
-                0.8,
-            ),
-            Parameter(
-                "radius_2",
-                1.1,
-                "length",
-                "radius of the circle that AC, A'C', A'C, AC' touch",
-                0.95,
-                1.3,
+            Condition(
+                "AB, A'B', A'B, AB' touch one circle, AC, A'C', A'C, AC' another one "
+                "about the same centre"
             ),
         ),
-        (
-            "all lengths zero; offsets and twists are sides and turns of the hexagon A B C A' B' C'",
-            "AB, A'B', A'B, AB' touch one circle, AC, A'C', A'C, AC' another one about the same centre",
-        ),
+        guesses=_guesses,
         errata=(
-            "R1 R3 R5 + R2 R4 R6 = 0 is printed as the only condition; it is necessary, not sufficient",
+            "R1 R3 R5 + R2 R4 R6 = 0 is printed as the only condition; "
+            "it is necessary, not sufficient",
         ),
         facts={"joints": 6, "mobility": 1},
     ),

@@ -1,55 +1,44 @@
-"""Bricard's trihedral and revised line-symmetric 6R, and the linkages of Altmann and
-Wohlhart near them."""
+"""Bricard's trihedral 6R, and the linkages of Altmann and Wohlhart near it."""
 
 from __future__ import annotations
 
 from functools import partial
-from math import radians
-from typing import Any
+from math import pi
 
 from linkages.construction.conditions import require_equal, require_positive
 from linkages.construction.link import Link, closed_chain
-from linkages.construction.numbers import pi_like, sqrt
-from linkages.entry import Entry, Parameter
+from linkages.construction.numbers import Number, pi_like, sqrt
+from linkages.construction.table_equations import (
+    TableNumbers,
+    equal_lengths,
+    equation,
+    opposite_twists,
+    twists_of_value,
+    zero_lengths,
+    zero_offsets,
+)
+from linkages.entry import (
+    BY_IDENTIFICATION,
+    Condition,
+    Entry,
+    Parameter,
+    Relation,
+    RelationKind,
+)
 from linkages.loop import Loop
 
-__all__ = [
-    "ENTRIES",
-    "altmann",
-    "revised_line_symmetric",
-    "trihedral",
-    "wohlhart_hybrid",
-]
+__all__ = ["ENTRIES", "altmann", "trihedral", "wohlhart_hybrid"]
 
-
-def revised_line_symmetric(
-    a12: Any,
-    a23: Any,
-    a34: Any,
-    alpha12: Any,
-    alpha23: Any,
-    alpha34: Any,
-    R1: Any,
-    R2: Any,
-    R3: Any,
-) -> Loop:
-    """Revised general line-symmetric Bricard 6R: opposite links equal, opposite offsets
-    negative.
-
-    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995);
-    equation (2.4.19) in Song (2013).
-    """
-    half = Link(a12, alpha12), Link(a23, alpha23), Link(a34, alpha34)
-    return closed_chain(*half, *half, offsets=(R1, R2, R3, -R1, -R2, -R3))
+POSITION = 190
 
 
 def trihedral(
-    a12: Any,
-    a23: Any,
-    a34: Any,
-    a45: Any,
-    a56: Any,
-    a61: Any = None,
+    a12: Number,
+    a23: Number,
+    a34: Number,
+    a45: Number,
+    a56: Number,
+    a61: Number | None = None,
     alternating: bool = True,
 ) -> Loop:
     """Trihedral Bricard 6R: right-angled links, of ``alternating`` sign or all +pi/2,
@@ -59,42 +48,52 @@ def trihedral(
     given. Raises `GeometryError`. Source: Bricard (1927); equation (2.4.15) in Song
     (2013) for alternating twists.
     """
+    name = "a12^2 + a34^2 + a56^2 - a23^2 - a45^2"
     square = a12**2 + a34**2 + a56**2 - a23**2 - a45**2
-    require_positive("a12^2 + a34^2 + a56^2 - a23^2 - a45^2", square)
-    if a61 is not None:
-        require_equal("a61^2", a61**2, square, "a12^2 + a34^2 + a56^2 - a23^2 - a45^2")
-    a61 = sqrt(square) if a61 is None else a61
-    right = pi_like(a12, a23, a34, a45, a56) / 2
-    other = -right if alternating else right
-    lengths = (a12, a23, a34, a45, a56, a61)
+    require_positive(name, square)
+    if a61 is None:
+        a61 = sqrt(square)
+    else:
+        require_equal("a61^2", a61**2, square, name)
+    odd = pi_like(a12, a23, a34, a45, a56) / 2
+    even = -odd if alternating else odd
     return closed_chain(
-        *(Link(a, right if i % 2 == 0 else other) for i, a in enumerate(lengths))
+        Link(a12, odd),
+        Link(a23, even),
+        Link(a34, odd),
+        Link(a45, even),
+        Link(a56, odd),
+        Link(a61, even),
     )
 
 
-def altmann(a12: Any, a34: Any) -> Loop:
+def altmann(a12: Number, a34: Number) -> Loop:
     """Altmann's 6R: a line-symmetric Bricard linkage with right angles and a23 = a56 =
     0.
 
     Source: Altmann (1954), Baker (1993b); equation (2.4.21) in Song (2013).
     """
     right = pi_like(a12, a34) / 2
-    twists = (right, right, right, -right, right, -right)
     return closed_chain(
-        *(Link(a, t) for a, t in zip((a12, 0, a34) * 2, twists, strict=True))
+        Link(a12, right),
+        Link(0, right),
+        Link(a34, right),
+        Link(a12, -right),
+        Link(0, right),
+        Link(a34, -right),
     )
 
 
 def wohlhart_hybrid(
-    a12: Any,
-    a23: Any,
-    a45: Any,
-    alpha12: Any,
-    alpha23: Any,
-    alpha45: Any,
-    R2: Any,
-    R4: Any,
-    R6: Any = None,
+    a12: Number,
+    a23: Number,
+    a45: Number,
+    alpha12: Number,
+    alpha23: Number,
+    alpha45: Number,
+    R2: Number,
+    R4: Number,
+    R6: Number | None = None,
 ) -> Loop:
     """Wohlhart's hybrid 6R: three plane-symmetric link pairs 61-12, 23-34, 45-56 with a
     common transversal.
@@ -103,103 +102,147 @@ def wohlhart_hybrid(
     Raises `GeometryError`. Source: Wohlhart (1987); equation (2.4.22) in Song (2013)
     has the pairs 12-23, 34-45, 56-61, which does not go with its offsets.
     """
+    last = -R2 - R4
     if R6 is not None:
-        require_equal("R6", R6, -R2 - R4, "-(R2 + R4)")
-    a, b, c = Link(a12, alpha12), Link(a23, alpha23), Link(a45, alpha45)
-    b_back, c_back, a_back = (Link(link.length, -link.twist) for link in (b, c, a))
-    offsets = (0, R2, 0, R4, 0, -R2 - R4)
-    return closed_chain(a, b, b_back, c, c_back, a_back, offsets=offsets)
-
-
-def _lengths(**values: float) -> tuple[Parameter, ...]:
-    return tuple(
-        Parameter(k, v, "length", f"length {k}", 0.5, 1.6) for k, v in values.items()
+        require_equal("R6", R6, last, "-(R2 + R4)")
+    return closed_chain(
+        Link(a12, alpha12),
+        Link(a23, alpha23),
+        Link(a23, -alpha23),
+        Link(a45, alpha45),
+        Link(a45, -alpha45),
+        Link(a12, -alpha12),
+        offsets=(0, R2, 0, R4, 0, last),
     )
 
 
-def _twists(**degrees: float) -> tuple[Parameter, ...]:
-    return tuple(
-        Parameter(
-            k,
-            radians(v),
-            "angle",
-            f"twist of link {k[5:]}",
-            radians(-165 if v < 0 else 15),
-            radians(-15 if v < 0 else 165),
-        )
-        for k, v in degrees.items()
-    )
+# --- conditions
 
 
-def _offsets(**values: float) -> tuple[Parameter, ...]:
-    return tuple(
-        Parameter(k, v, "length", f"offset {k}", -0.5, 0.5) for k, v in values.items()
-    )
+def _squares_gap(t: TableNumbers) -> float:
+    """a12^2 + a34^2 + a56^2 = a23^2 + a45^2 + a61^2."""
+    odd = t.a(12) ** 2 + t.a(34) ** 2 + t.a(56) ** 2
+    even = t.a(23) ** 2 + t.a(45) ** 2 + t.a(61) ** 2
+    return odd - even
 
 
-_TRIHEDRAL = tuple(
-    Parameter(name, value, "length", f"length {name}", low, low + 0.3)
-    for name, value, low in (
-        ("a12", 1.0, 0.95),
-        ("a23", 0.7, 0.65),
-        ("a34", 1.1, 0.95),
-        ("a45", 0.9, 0.65),
-        ("a56", 0.8, 0.7),
-    )
+def _offsets_gap(t: TableNumbers) -> float:
+    """R2 + R4 + R6 = 0."""
+    return t.R(2) + t.R(4) + t.R(6)
+
+
+SQUARES = Condition(
+    "a12^2 + a34^2 + a56^2 = a23^2 + a45^2 + a61^2", (equation(_squares_gap),)
 )
-_SQUARES = "a12^2 + a34^2 + a56^2 = a23^2 + a45^2 + a61^2"
-_FACTS = {"joints": 6, "mobility": 1}
+NO_OFFSETS = Condition("R = 0", (zero_offsets(),))
+ALTERNATING_TWISTS = Condition(
+    "alpha12 = alpha34 = alpha56 = pi/2, alpha23 = alpha45 = alpha61 = -pi/2",
+    (twists_of_value(pi / 2, 12, 34, 56), twists_of_value(-pi / 2, 23, 45, 61)),
+)
+EQUAL_TWISTS = Condition(
+    "all twists pi/2", (twists_of_value(pi / 2, 12, 23, 34, 45, 56, 61),)
+)
+ALTMANN_CONDITIONS = (
+    Condition(
+        "a12 = a45, a34 = a61, a23 = a56 = 0",
+        (equal_lengths((12, 45), (34, 61)), zero_lengths(23, 56)),
+    ),
+    Condition(
+        "alpha12 = alpha23 = alpha34 = alpha56 = pi/2, alpha45 = alpha61 = -pi/2, "
+        "R = 0",
+        (
+            twists_of_value(pi / 2, 12, 23, 34, 56),
+            twists_of_value(-pi / 2, 45, 61),
+            zero_offsets(),
+        ),
+    ),
+)
+HYBRID_CONDITIONS = (
+    Condition(
+        "a61 = a12, a23 = a34, a45 = a56, "
+        "alpha61 = -alpha12, alpha34 = -alpha23, alpha56 = -alpha45",
+        (
+            equal_lengths((61, 12), (23, 34), (45, 56)),
+            opposite_twists((61, 12), (34, 23), (56, 45)),
+        ),
+    ),
+    Condition(
+        "R1 = R3 = R5 = 0, R2 + R4 + R6 = 0",
+        (zero_offsets(1, 3, 5), equation(_offsets_gap)),
+    ),
+)
+
+
+# --- entries
+
+
+def _length(name: str, default: float) -> Parameter:
+    return Parameter.length(name, default, f"length {name}", 0.5, 1.6)
+
+
+def _side(name: str, default: float, low: float) -> Parameter:
+    return Parameter.length(name, default, f"length {name}", low, low + 0.3)
+
+
+def _twist(link: int, degrees: float) -> Parameter:
+    low, high = (-165, -15) if degrees < 0 else (15, 165)
+    meaning = f"twist of link {link}"
+    return Parameter.angle(f"alpha{link}", degrees, meaning, low, high)
+
+
+def _offset(name: str, default: float) -> Parameter:
+    return Parameter.length(name, default, f"offset {name}", -0.5, 0.5)
+
+
+SIDES = (
+    _side("a12", 1.0, 0.95),
+    _side("a23", 0.7, 0.65),
+    _side("a34", 1.1, 0.95),
+    _side("a45", 0.9, 0.65),
+    _side("a56", 0.8, 0.7),
+)
+FACTS = {"joints": 6, "mobility": 1}
 
 ENTRIES = (
-    Entry(
-        "bricard-line-symmetric-revised",
-        "Revised general line-symmetric Bricard 6R",
-        "Mavroidis and Roth (1995); Song (2013), eq. 2.4.19",
-        revised_line_symmetric,
-        (
-            *_lengths(a12=1.0, a23=0.8, a34=1.25),
-            *_twists(alpha12=50, alpha23=77, alpha34=110),
-            *_offsets(R1=0.3, R2=-0.45, R3=0.6),
-        ),
-        (
-            "a12 = a45, a23 = a56, a34 = a61, twists likewise",
-            "R1 = -R4, R2 = -R5, R3 = -R6",
-        ),
-        facts=_FACTS,
-    ),
     Entry(
         "bricard-trihedral",
         "Trihedral Bricard 6R",
         "Bricard (1927); Baker (1980); Song (2013), eq. 2.4.15",
         trihedral,
-        _TRIHEDRAL,
-        (
-            _SQUARES,
-            "alpha12 = alpha34 = alpha56 = pi/2, alpha23 = alpha45 = alpha61 = -pi/2",
-            "R = 0",
-        ),
-        facts=_FACTS,
+        SIDES,
+        conditions=(SQUARES, ALTERNATING_TWISTS, NO_OFFSETS),
+        facts=FACTS,
     ),
     Entry(
         "bricard-trihedral-equal-twists",
         "Trihedral Bricard 6R with equal twists",
         "variant of Bricard (1927) found by closure",
         partial(trihedral, alternating=False),
-        _TRIHEDRAL,
-        (_SQUARES, "all twists pi/2", "R = 0"),
-        facts=_FACTS,
+        SIDES,
+        conditions=(SQUARES, EQUAL_TWISTS, NO_OFFSETS),
+        facts=FACTS,
     ),
     Entry(
         "altmann",
         "Altmann's 6R",
         "Altmann (1954); Baker (1993b); Song (2013), eq. 2.4.21",
         altmann,
-        _lengths(a12=1.0, a34=1.4),
-        (
-            "a12 = a45, a34 = a61, a23 = a56 = 0",
-            "alpha12 = alpha23 = alpha34 = alpha56 = pi/2, alpha45 = alpha61 = -pi/2, R = 0",
+        (_length("a12", 1.0), _length("a34", 1.4)),
+        conditions=ALTMANN_CONDITIONS,
+        relations=(
+            Relation(
+                RelationKind.SPECIAL_CASE,
+                "bricard-line-symmetric-zero-offset",
+                "Baker (1993b)",
+            ),
+            Relation(RelationKind.SPECIAL_CASE, "bricard-trihedral", BY_IDENTIFICATION),
+            Relation(
+                RelationKind.SPECIAL_CASE,
+                "bricard-trihedral-equal-twists",
+                BY_IDENTIFICATION,
+            ),
         ),
-        facts=_FACTS,
+        facts=FACTS,
     ),
     Entry(
         "wohlhart-hybrid",
@@ -207,17 +250,20 @@ ENTRIES = (
         "Wohlhart (1987); Song (2013), eq. 2.4.22",
         wohlhart_hybrid,
         (
-            *_lengths(a12=1.0, a23=0.8, a45=1.25),
-            *_twists(alpha12=-50, alpha23=77, alpha45=110),
-            *_offsets(R2=0.4, R4=0.3),
+            _length("a12", 1.0),
+            _length("a23", 0.8),
+            _length("a45", 1.25),
+            _twist(12, -50),
+            _twist(23, 77),
+            _twist(45, 110),
+            _offset("R2", 0.4),
+            _offset("R4", 0.3),
         ),
-        (
-            "a61 = a12, a23 = a34, a45 = a56, alpha61 = -alpha12, alpha34 = -alpha23, alpha56 = -alpha45",
-            "R1 = R3 = R5 = 0, R2 + R4 + R6 = 0",
-        ),
+        conditions=HYBRID_CONDITIONS,
         errata=(
-            "the pairs 12-23, 34-45, 56-61 are printed; with R2 + R4 + R6 = 0 they are 61-12, 23-34, 45-56",
+            "the pairs 12-23, 34-45, 56-61 are printed; with R2 + R4 + R6 = 0 they are "
+            "61-12, 23-34, 45-56",
         ),
-        facts=_FACTS,
+        facts=FACTS,
     ),
 )

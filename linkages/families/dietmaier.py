@@ -2,31 +2,39 @@
 
 from __future__ import annotations
 
-from math import radians
-from typing import Any
+import math
 
-from linkages.construction.conditions import decided, require_equal
+from linkages.construction.conditions import require_different, require_equal
 from linkages.construction.link import Link, bennett_links, closed_chain
-from linkages.construction.numbers import cos, sin
-from linkages.entry import Entry, Parameter
-from linkages.loop import GeometryError, Loop
+from linkages.construction.numbers import Number, cos, sin
+from linkages.construction.table_equations import (
+    TableNumbers,
+    equal_links,
+    equal_offsets,
+    equation,
+    zero_offsets,
+)
+from linkages.entry import Condition, Entry, Parameter
+from linkages.loop import Loop
 
 __all__ = ["ENTRIES", "dietmaier"]
 
+POSITION = 150
+
 
 def dietmaier(
-    a12: Any,
-    alpha12: Any,
-    alpha61: Any,
-    alpha34: Any,
-    alpha45: Any,
-    length: Any,
-    twist: Any,
-    R2: Any,
-    R3: Any,
-    a61: Any = None,
-    a34: Any = None,
-    a45: Any = None,
+    a12: Number,
+    alpha12: Number,
+    alpha61: Number,
+    alpha34: Number,
+    alpha45: Number,
+    length: Number,
+    twist: Number,
+    R2: Number,
+    R3: Number,
+    a61: Number | None = None,
+    a34: Number | None = None,
+    a45: Number | None = None,
 ) -> Loop:
     """Dietmaier's 6R: two links of one Bennett ratio at joint 1, two of another at
     joint 4, 23 equal to 56.
@@ -38,20 +46,54 @@ def dietmaier(
     sin/a for a/sin and offsets R1 = R5, R2 = R4, which leaves the linkage rigid.
     """
     link12, link61 = bennett_links(a12, alpha12, a61=(alpha61, a61))
+    first = cos(alpha12) + cos(alpha61)
     second = cos(alpha34) + cos(alpha45)
-    if decided(second) == 0:
-        raise GeometryError("cos(alpha34) + cos(alpha45)", 0, "different from 0")
-    needed = a12 / sin(alpha12) * (cos(alpha12) + cos(alpha61)) * sin(alpha34) / second
+    name = "cos(alpha34) + cos(alpha45)"
+    require_different(name, second, 0, "supplementary twists")
+    length34 = a12 / sin(alpha12) * first * sin(alpha34) / second
     if a34 is not None:
-        require_equal("a34", a34, needed, "from the condition on the cosines")
-    link34, link45 = bennett_links(
-        needed if a34 is None else a34, alpha34, a45=(alpha45, a45)
-    )
+        require_equal("a34", a34, length34, "from the condition on the cosines")
+        length34 = a34
+    link34, link45 = bennett_links(length34, alpha34, a45=(alpha45, a45))
     free = Link(length, twist)
-    return closed_chain(
-        link12, free, link34, link45, free, link61, offsets=(0, R2, R3, 0, R3, R2)
-    )
+    links = (link12, free, link34, link45, free, link61)
+    return closed_chain(*links, offsets=(0, R2, R3, 0, R3, R2))
 
+
+# --- conditions
+
+
+def _ratio(t: TableNumbers, link: int) -> float:
+    return math.sin(t.alpha(link)) / t.a(link)
+
+
+def _first_ratio_gap(t: TableNumbers) -> float:
+    """sin(alpha12)/a12 = sin(alpha61)/a61."""
+    return _ratio(t, 12) - _ratio(t, 61)
+
+
+def _second_ratio_gap(t: TableNumbers) -> float:
+    """sin(alpha34)/a34 = sin(alpha45)/a45."""
+    return _ratio(t, 34) - _ratio(t, 45)
+
+
+def _cosines_gap(t: TableNumbers) -> float:
+    """The condition on the cosines, see `dietmaier`."""
+    first = math.cos(t.alpha(12)) + math.cos(t.alpha(61))
+    second = math.cos(t.alpha(34)) + math.cos(t.alpha(45))
+    left = t.a(12) / math.sin(t.alpha(12)) * first
+    right = t.a(34) / math.sin(t.alpha(34)) * second
+    return left - right
+
+
+# --- entry
+
+
+def _twist(link: int, degrees: float) -> Parameter:
+    return Parameter.angle(f"alpha{link}", degrees, f"twist of link {link}", 15, 85)
+
+
+LENGTH = 1.7 * math.sin(math.radians(50))
 
 ENTRIES = (
     Entry(
@@ -60,44 +102,34 @@ ENTRIES = (
         "Dietmaier (1995b); Song (2013), eq. 2.4.12",
         dietmaier,
         (
-            Parameter(
-                "a12", 1.7 * sin(radians(50)), "length", "length of link 12", 0.3, 3.0
+            Parameter.length("a12", LENGTH, "length of link 12", 0.3, 3.0),
+            _twist(12, 50),
+            _twist(61, 75),
+            _twist(34, 35),
+            _twist(45, 62),
+            Parameter.length(
+                "length", 1.13, "length of the free links 23 and 56", 0.3, 2.0
             ),
-            *(
-                Parameter(
-                    name,
-                    radians(value),
-                    "angle",
-                    f"twist of link {name[-2:]}",
-                    radians(15),
-                    radians(85),
-                )
-                for name, value in (
-                    ("alpha12", 50),
-                    ("alpha61", 75),
-                    ("alpha34", 35),
-                    ("alpha45", 62),
-                )
-            ),
-            Parameter(
-                "length", 1.13, "length", "length of the free links 23 and 56", 0.3, 2.0
-            ),
-            Parameter(
-                "twist",
-                radians(73),
-                "angle",
-                "twist of the free links 23 and 56",
-                radians(15),
-                radians(165),
-            ),
-            Parameter("R2", 0.31, "length", "offset R2", -0.5, 0.5),
-            Parameter("R3", -0.47, "length", "offset R3", -0.5, 0.5),
+            Parameter.angle("twist", 73, "twist of the free links 23 and 56", 15, 165),
+            Parameter.length("R2", 0.31, "offset R2", -0.5, 0.5),
+            Parameter.length("R3", -0.47, "offset R3", -0.5, 0.5),
         ),
-        (
-            "sin(alpha12)/a12 = sin(alpha61)/a61, sin(alpha34)/a34 = sin(alpha45)/a45",
-            "a23 = a56, alpha23 = alpha56",
-            "a12/sin(alpha12) (cos alpha12 + cos alpha61) = a34/sin(alpha34) (cos alpha34 + cos alpha45)",
-            "R1 = R4 = 0, R2 = R6, R3 = R5",
+        conditions=(
+            Condition(
+                "sin(alpha12)/a12 = sin(alpha61)/a61, "
+                "sin(alpha34)/a34 = sin(alpha45)/a45",
+                (equation(_first_ratio_gap), equation(_second_ratio_gap)),
+            ),
+            Condition("a23 = a56, alpha23 = alpha56", (equal_links((23, 56)),)),
+            Condition(
+                "a12/sin(alpha12) (cos alpha12 + cos alpha61) "
+                "= a34/sin(alpha34) (cos alpha34 + cos alpha45)",
+                (equation(_cosines_gap),),
+            ),
+            Condition(
+                "R1 = R4 = 0, R2 = R6, R3 = R5",
+                (zero_offsets(1, 4), equal_offsets((2, 6), (3, 5))),
+            ),
         ),
         errata=(
             "sin(alpha)/a is printed for a/sin(alpha) in the condition on the cosines",

@@ -6,21 +6,37 @@ add up to a multiple of a full turn.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from linkages.construction.conditions import decided, require_positive
-from linkages.entry import Entry, FormPattern, Parameter
+from linkages.construction.numbers import Number
+from linkages.construction.table_equations import (
+    equal_lengths,
+    zero_offsets,
+    zero_twists,
+)
+from linkages.entry import (
+    Condition,
+    Entry,
+    FormPattern,
+    Parameter,
+    Relation,
+    RelationKind,
+)
 from linkages.loop import GeometryError, Loop
 
 __all__ = ["ENTRIES", "form_patterns", "four_bar", "kite", "parallelogram", "rhombus"]
 
+POSITION = 10
 SOURCE = "Hunt 1990, Kinematic geometry of mechanisms"
-NAMES = ("12", "23", "34", "41")
+LINKS = ("12", "23", "34", "41")
+Function: TypeAlias = Callable[[np.ndarray], np.ndarray]
 
 
-def four_bar(a: Any, b: Any, c: Any, d: Any) -> Loop:
+def four_bar(a: Number, b: Number, c: Number, d: Number) -> Loop:
     """The planar four-bar with links 12, 23, 34, 41 of lengths ``a``, ``b``, ``c``,
     ``d``.
 
@@ -28,39 +44,46 @@ def four_bar(a: Any, b: Any, c: Any, d: Any) -> Loop:
     others cannot span.
     """
     lengths = (a, b, c, d)
-    for name, value in zip(NAMES, lengths, strict=True):
-        require_positive(f"length of link {name}", value)
-    known = [decided(value) for value in lengths]
-    sizes = [size for size in known if size is not None]
-    if len(sizes) == 4 and 2 * max(sizes) >= sum(sizes):
-        longest = sizes.index(max(sizes))
-        rest = sum(sizes) - max(sizes)
-        raise GeometryError(
-            f"length of link {NAMES[longest]}",
-            f"{max(sizes):.6g}",
-            f"less than {rest:.6g}, the sum of the others (too long by {max(sizes) - rest:.3g})",
-        )
+    sizes = []
+    for link, value in zip(LINKS, lengths, strict=True):
+        require_positive(f"length of link {link}", value)
+        size = decided(value)
+        if size is not None:
+            sizes.append(size)
+    if len(sizes) == 4:
+        _refuse_too_long(sizes)
     return Loop(lengths, (0, 0, 0, 0), (0, 0, 0, 0), "four-bar")
 
 
-def parallelogram(a: Any, b: Any) -> Loop:
+def _refuse_too_long(sizes: list[float]) -> None:
+    longest = max(sizes)
+    rest = sum(sizes) - longest
+    if 2 * longest < sum(sizes):
+        return
+    excess = longest - rest
+    allowed = f"less than {rest:.6g}, the sum of the others (too long by {excess:.3g})"
+    name = f"length of link {LINKS[sizes.index(longest)]}"
+    raise GeometryError(name, f"{longest:.6g}", allowed)
+
+
+def parallelogram(a: Number, b: Number) -> Loop:
     """The planar four-bar with opposite links alike: 12 and 34 of length ``a``, 23 and
     41 of length ``b``."""
     return four_bar(a, b, a, b)
 
 
-def rhombus(a: Any) -> Loop:
+def rhombus(a: Number) -> Loop:
     """The planar four-bar with four links of length ``a``."""
     return four_bar(a, a, a, a)
 
 
-def kite(a: Any, b: Any) -> Loop:
+def kite(a: Number, b: Number) -> Loop:
     """The planar four-bar with links 12 and 41 of length ``a``, 23 and 34 of length
     ``b``."""
     return four_bar(a, b, b, a)
 
 
-def _pairs(sign: int, *extra: Any) -> Any:
+def _pairs(sign: int, *extra: Function) -> Function:
     """Residual of theta3 = sign theta1, theta4 = sign theta2, and ``extra`` functions
     of half angles."""
 
@@ -70,7 +93,8 @@ def _pairs(sign: int, *extra: Any) -> Any:
             np.sin(h[..., 2] - sign * h[..., 0]),
             np.sin(h[..., 3] - sign * h[..., 1]),
         ]
-        return np.stack(rows + [f(h) for f in extra], axis=-1)
+        rows += [function(h) for function in extra]
+        return np.stack(rows, axis=-1)
 
     return residual
 
@@ -82,20 +106,29 @@ def _proper(name: str) -> FormPattern:
 def _folded(first: int) -> FormPattern:
     """Two pairs of links stay folded onto each other at joints ``first`` and ``first +
     2`` (from 1)."""
-    residual = _pairs(
-        -1, lambda h: np.cos(h[..., first - 1]), lambda h: np.cos(h[..., first + 1])
-    )
-    return FormPattern(f"folded form (joints {first},{first + 2} inactive)", residual)
+    second = first + 2
+
+    def first_cosine(h: np.ndarray) -> np.ndarray:
+        return np.cos(h[..., first - 1])
+
+    def second_cosine(h: np.ndarray) -> np.ndarray:
+        return np.cos(h[..., second - 1])
+
+    name = f"folded form (joints {first},{second} inactive)"
+    return FormPattern(name, _pairs(-1, first_cosine, second_cosine))
 
 
 def _kite(axis: int) -> FormPattern:
     """The angles beside the axis of symmetry, which runs through joint ``axis`` (from
     1), are alike."""
-    i, j = axis % 4, (axis + 2) % 4
-    return FormPattern(
-        "kite form",
-        lambda theta: np.sin((theta[..., i] - theta[..., j]) / 2)[..., None],
-    )
+    i = axis % 4
+    j = (axis + 2) % 4
+
+    def residual(theta: np.ndarray) -> np.ndarray:
+        difference = theta[..., i] - theta[..., j]
+        return np.sin(difference / 2)[..., None]
+
+    return FormPattern("kite form", residual)
 
 
 def form_patterns(a: float, b: float, c: float, d: float) -> tuple[FormPattern, ...]:
@@ -104,9 +137,8 @@ def form_patterns(a: float, b: float, c: float, d: float) -> tuple[FormPattern, 
     if a == b == c == d:
         return _proper("rhombus form"), _folded(1), _folded(2)
     if a == c and b == d:
-        return _proper("parallelogram form"), FormPattern(
-            "antiparallelogram form", _pairs(-1)
-        )
+        crossed = FormPattern("antiparallelogram form", _pairs(-1))
+        return _proper("parallelogram form"), crossed
     if a == d and b == c:
         return _folded(1), _kite(1)
     if a == b and c == d:
@@ -114,9 +146,27 @@ def form_patterns(a: float, b: float, c: float, d: float) -> tuple[FormPattern, 
     return ()
 
 
-def _length(name: str, default: float, meaning: str) -> Parameter:
-    return Parameter(name, default, "length", meaning, 0.3, 3.0)
+def _parallelogram_patterns(a: float, b: float) -> tuple[FormPattern, ...]:
+    return form_patterns(a, b, a, b)
 
+
+def _rhombus_patterns(a: float) -> tuple[FormPattern, ...]:
+    return form_patterns(a, a, a, a)
+
+
+def _kite_patterns(a: float, b: float) -> tuple[FormPattern, ...]:
+    return form_patterns(a, b, b, a)
+
+
+def _length(name: str, default: float, meaning: str) -> Parameter:
+    return Parameter.length(name, default, meaning, 0.3, 3.0)
+
+
+def _case_of(other: str) -> Relation:
+    return Relation(RelationKind.SPECIAL_CASE, other, "Hunt (1990)")
+
+
+PLANE = Condition("all twists and offsets 0", (zero_twists, zero_offsets()))
 
 ENTRIES: tuple[Entry, ...] = (
     Entry(
@@ -130,10 +180,7 @@ ENTRIES: tuple[Entry, ...] = (
             _length("c", 2.0, "length of link 34"),
             _length("d", 2.7, "length of link 41"),
         ),
-        conditions=(
-            "all twists and offsets 0",
-            "no link as long as the other three together",
-        ),
+        conditions=(PLANE, Condition("no link as long as the other three together")),
         facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 0},
     ),
     Entry(
@@ -145,8 +192,12 @@ ENTRIES: tuple[Entry, ...] = (
             _length("a", 1.0, "length of links 12 and 34"),
             _length("b", 2.0, "length of links 23 and 41"),
         ),
-        conditions=("a12 = a34, a23 = a41", "all twists and offsets 0"),
-        patterns=lambda a, b: form_patterns(a, b, a, b),
+        conditions=(
+            Condition("a12 = a34, a23 = a41", (equal_lengths((12, 34), (23, 41)),)),
+            PLANE,
+        ),
+        patterns=_parallelogram_patterns,
+        relations=(_case_of("four-bar"),),
         facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},
     ),
     Entry(
@@ -155,8 +206,15 @@ ENTRIES: tuple[Entry, ...] = (
         SOURCE,
         rhombus,
         (_length("a", 1.0, "length of every link"),),
-        conditions=("a12 = a23 = a34 = a41", "all twists and offsets 0"),
-        patterns=lambda a: form_patterns(a, a, a, a),
+        conditions=(
+            Condition(
+                "a12 = a23 = a34 = a41",
+                (equal_lengths((12, 23), (12, 34), (12, 41)),),
+            ),
+            PLANE,
+        ),
+        patterns=_rhombus_patterns,
+        relations=(_case_of("parallelogram"), _case_of("kite")),
         facts={"mobility": 1, "rank": 3, "forms": 3, "bifurcations": 3, "arcs": 6},
     ),
     Entry(
@@ -168,8 +226,12 @@ ENTRIES: tuple[Entry, ...] = (
             _length("a", 1.0, "length of links 12 and 41"),
             _length("b", 2.0, "length of links 23 and 34"),
         ),
-        conditions=("a12 = a41, a23 = a34", "all twists and offsets 0"),
-        patterns=lambda a, b: form_patterns(a, b, b, a),
+        conditions=(
+            Condition("a12 = a41, a23 = a34", (equal_lengths((12, 41), (23, 34)),)),
+            PLANE,
+        ),
+        patterns=_kite_patterns,
+        relations=(_case_of("four-bar"),),
         facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},
     ),
 )

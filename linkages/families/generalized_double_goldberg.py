@@ -9,28 +9,37 @@ and Roth with R2 = R3 = -R5 = -R6.
 
 from __future__ import annotations
 
-from math import radians, sin
-from typing import Any
+import itertools
+from collections.abc import Iterator
 
+import numpy as np
+
+from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
 from linkages.construction.constructions import superpose
-from linkages.entry import Entry, Parameter
+from linkages.construction.numbers import Number
+from linkages.construction.possible_angles import kinks
+from linkages.construction.spatial_triangle import KinkAngle
+from linkages.construction.table_equations import zero_offsets
+from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
 from linkages.families.goldberg_5r import generalized_goldberg
 from linkages.loop import Loop
 
 __all__ = ["ENTRIES", "generalized_double_goldberg"]
 
+POSITION = 90
+
 
 def generalized_double_goldberg(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    kink_1: Any,
-    kink_2: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    kink_1: KinkAngle,
+    kink_2: KinkAngle,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Links b, [a c], b, d, [a c], d, the pair a, c locked at ``kink_1`` and at
     ``kink_2`` (rad, or a `Kink`).
@@ -43,6 +52,40 @@ def generalized_double_goldberg(
     return superpose(first, second, shared=2)
 
 
+def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """Sum and product of the cosines of alpha and gamma are linear in the rest."""
+    lengths, twists, offsets = form
+    ratio = lengths[0] / np.sin(twists[0])
+    joined = twists[1]
+    for twist, sign in itertools.product((joined, joined + np.pi), (1, -1)):
+        total = sign * lengths[1] / ratio / np.tan(twist / 2)
+        shear = offsets[1] / ratio * (1 + np.cos(twist))
+        top = np.cos(twist) ** 2 + shear**2 - 1 + total**2
+        product = top / (2 * (1 + np.cos(twist)))
+        root = np.sqrt(max(total**2 / 4 - product, 0.0))
+        if abs(total / 2) + root >= 1:
+            continue
+        pair = np.arccos([total / 2 + root, total / 2 - root])
+        for gamma, alpha in itertools.permutations(pair):
+            links = {"a": ratio * np.sin(alpha), "alpha": alpha, "gamma": gamma}
+            yield from _kink_guesses(links, twists)
+
+
+def _kink_guesses(
+    links: dict[str, float], twists: np.ndarray
+) -> Iterator[dict[str, float]]:
+    """The ``links`` a and c with every pair of kinks that the twists leave possible."""
+    first = kinks(links["alpha"], links["gamma"], twists[1])
+    second = kinks(links["alpha"], links["gamma"], twists[4])
+    for kink_1, kink_2 in itertools.product(first, second):
+        yield {**links, "kink_1": kink_1, "kink_2": kink_2}
+
+
+def _kink(number: int, degrees: float, side: str) -> Parameter:
+    meaning = f"angle of a and c in the 5R with link {side}"
+    return Parameter.angle(f"kink_{number}", degrees, meaning, -90, 90)
+
+
 ENTRIES = (
     Entry(
         "generalized-double-goldberg",
@@ -50,41 +93,27 @@ ENTRIES = (
         "Wohlhart (1991a)",
         generalized_double_goldberg,
         (
-            Parameter(
-                "a", 1.7 * sin(radians(66)), "length", "length of link a", 0.3, 3.0
-            ),
-            *(
-                Parameter(
-                    name,
-                    radians(value),
-                    "angle",
-                    f"twist of link {link}",
-                    radians(15),
-                    radians(110),
-                )
-                for name, value, link in (
-                    ("alpha", 66, "a"),
-                    ("beta", 50, "b"),
-                    ("gamma", 28, "c"),
-                    ("delta", 83, "d"),
-                )
-            ),
-            *(
-                Parameter(
-                    f"kink_{k}",
-                    radians(v),
-                    "angle",
-                    f"angle of a and c in the 5R with link {side}",
-                    radians(-90),
-                    radians(90),
-                )
-                for k, v, side in ((1, 40, "b"), (2, -25, "d"))
-            ),
+            length_a(66),
+            *twists_of_links(a=66, b=50, c=28, d=83),
+            _kink(1, 40, "b"),
+            _kink(2, -25, "d"),
         ),
-        (
-            "sin(twist)/length is the same for the links a, b, c, d",
-            "links 12 = 34 = b and 45 = 61 = d; links 23 and 56 and their offsets from the spatial triangles of a, c",
-            "R1 = R4 = 0",
+        conditions=(
+            EQUAL_RATIOS,
+            Condition(
+                "links 12 = 34 = b and 45 = 61 = d; links 23 and 56 and their offsets "
+                "from the spatial triangles of a, c"
+            ),
+            Condition("R1 = R4 = 0", (zero_offsets(1, 4),)),
+        ),
+        guesses=_guesses,
+        relations=(
+            Relation(
+                RelationKind.CONSTRUCTED,
+                "generalized-goldberg-5r",
+                "Wohlhart (1991a)",
+                "common link pair of two",
+            ),
         ),
         facts={"joints": 6, "mobility": 1},
     ),

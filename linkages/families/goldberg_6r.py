@@ -8,22 +8,38 @@ one.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import radians, sin
-from typing import Any
+from collections.abc import Iterator
+from functools import partial
 
+import numpy as np
+
+from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
 from linkages.construction.constructions import lock, superpose
 from linkages.construction.link import (
+    Link,
     bennett_links,
     closed_chain,
     half_angle_ratio,
     syncopated_link,
 )
-from linkages.entry import Entry, Parameter
+from linkages.construction.numbers import Number
+from linkages.construction.possible_angles import half_tangents, twists_with
+from linkages.construction.spatial_triangle import KinkAngle
+from linkages.construction.table_equations import zero_offsets
+from linkages.entry import (
+    BY_IDENTIFICATION,
+    Condition,
+    Entry,
+    Parameter,
+    Relation,
+    RelationKind,
+)
+from linkages.families.goldberg_5r import syncopation_guesses
 from linkages.loop import Loop
 
 __all__ = [
     "ENTRIES",
+    "difference_guesses",
     "generalized_l_shape_goldberg",
     "generalized_serial_goldberg",
     "l_shape_goldberg",
@@ -34,300 +50,391 @@ __all__ = [
     "syncopated_serial_goldberg",
 ]
 
+POSITION = 70
+
 
 def serial_goldberg(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Serial Goldberg 6R: three Bennett loops in a row, links a, c, d in line. Source:
     Goldberg (1943)."""
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return closed_chain(b, a + c + d, b, d, c, a)
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
+    )
+    joined = link_a + link_c + link_d
+    return closed_chain(link_b, joined, link_b, link_d, link_c, link_a)
 
 
 def syncopated_serial_goldberg(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Syncopated serial Goldberg 6R: a serial one taken from a Bennett loop with sides
     a + c + d and e.
 
-    Source: Goldberg (1943), equation (2.4.2) in Song (2013), whose triple product lacks
-    a minus sign.
+    Raises `GeometryError` for a beta equal to one of the other twists. Source: Goldberg
+    (1943), equation (2.4.2) in Song (2013), whose triple product lacks a minus sign.
     """
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
+    )
     product = (
         half_angle_ratio(alpha, beta)
         * half_angle_ratio(gamma, beta)
         * half_angle_ratio(delta, beta)
     )
-    side = syncopated_link(a + c + d, -product) - b
-    return closed_chain(side, a + c + d, side, d, c, a)
+    joined = link_a + link_c + link_d
+    side = syncopated_link(joined, -product) - link_b
+    return closed_chain(side, joined, side, link_d, link_c, link_a)
 
 
 def l_shape_goldberg(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """L-shape Goldberg 6R: a Goldberg 5R and a Bennett loop across it on link a.
     Source: Goldberg (1943)."""
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return closed_chain(b + d, a + c, b, c, d, a)
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
+    )
+    first, second = link_b + link_d, link_a + link_c
+    return closed_chain(first, second, link_b, link_c, link_d, link_a)
 
 
 def syncopated_l_shape_goldberg(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Syncopated L-shape Goldberg 6R: an L-shape one taken from a Bennett loop with
     sides a + c and e.
 
-    Source: Goldberg (1943), equation (2.4.4) in Song (2013).
+    Raises `GeometryError` for a beta equal to alpha or gamma. Source: Goldberg (1943),
+    equation (2.4.4) in Song (2013).
     """
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    e = syncopated_link(
-        a + c, half_angle_ratio(alpha, beta) * half_angle_ratio(gamma, beta)
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
     )
-    return closed_chain(b + d - e, a + c, e - b, c, d, a)
+    product = half_angle_ratio(alpha, beta) * half_angle_ratio(gamma, beta)
+    joined = link_a + link_c
+    link_e = syncopated_link(joined, product)
+    first, third = link_b + link_d - link_e, link_e - link_b
+    return closed_chain(first, joined, third, link_c, link_d, link_a)
 
 
 def serial_variant(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Baker's variant of the serial Goldberg 6R: a, c in line on one side and c, d on
     the other.
 
     Source: Baker (1993a), equation (2.4.5) in Song (2013).
     """
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return closed_chain(b, a + c, d, b, c + d, a)
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
+    )
+    second, fifth = link_a + link_c, link_c + link_d
+    return closed_chain(link_b, second, link_d, link_b, fifth, link_a)
 
 
 def l_shape_variant(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Baker's variant of the L-shape Goldberg 6R: b, d in line on one side and c, d on
     the other.
 
     Source: Baker (1993a), equation (2.4.6) in Song (2013).
     """
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return closed_chain(b + d, a, c, b, c + d, a)
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
+    )
+    first, fifth = link_b + link_d, link_c + link_d
+    return closed_chain(first, link_a, link_c, link_b, fifth, link_a)
 
 
 def generalized_serial_goldberg(
-    a: Any, alpha: Any, beta: Any, gamma: Any, delta: Any, kink_1: Any, kink_2: Any
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    kink_1: KinkAngle,
+    kink_2: KinkAngle,
 ) -> Loop:
     """Serial Goldberg 6R with a, c locked at ``kink_1`` and that link and d at
     ``kink_2``, rad.
 
     Source: named by Goldberg (1943) and Song (2013), section 2.4.1, without formulas.
     """
-    a, b, c, d = bennett_links(
+    link_a, link_b, link_c, link_d = bennett_links(
         a, alpha, b=(beta, None), c=(gamma, None), d=(delta, None)
     )
-    pair = lock(
-        superpose(closed_chain(a, b, a, b), closed_chain(c, b, c, b)), 4, kink_1
-    )  # a b [a.c] b c
+    pair = _kinked_pair(link_a, link_b, link_c, kink_1)
     row = pair.relabelled(4)  # c a b [a.c] b
-    return lock(superpose(row, closed_chain(d, b, d, b)), 5, kink_2).relabelled(2)
+    third = closed_chain(link_d, link_b, link_d, link_b)
+    return lock(superpose(row, third), 5, kink_2).relabelled(2)
 
 
 def generalized_l_shape_goldberg(
-    a: Any, alpha: Any, beta: Any, gamma: Any, delta: Any, kink_1: Any, kink_2: Any
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    kink_1: KinkAngle,
+    kink_2: KinkAngle,
 ) -> Loop:
     """L-shape Goldberg 6R with b, d locked at ``kink_2`` and a, c at ``kink_1``, rad.
 
     Source: named by Goldberg (1943) and Song (2013), section 2.4.1, without formulas.
     """
-    a, b, c, d = bennett_links(
+    link_a, link_b, link_c, link_d = bennett_links(
         a, alpha, b=(beta, None), c=(gamma, None), d=(delta, None)
     )
-    pair = lock(
-        superpose(closed_chain(a, b, a, b), closed_chain(c, b, c, b)), 4, kink_1
-    )  # a b [a.c] b c
+    pair = _kinked_pair(link_a, link_b, link_c, kink_1)
     bent = pair.reversed().relabelled(4)
-    return (
-        lock(superpose(bent, closed_chain(d, a, d, a)), 5, kink_2)
-        .reversed()
-        .relabelled(1)
-    )
+    third = closed_chain(link_d, link_a, link_d, link_a)
+    across = lock(superpose(bent, third), 5, kink_2)
+    return across.reversed().relabelled(1)
 
 
-def _parameters(*degrees: float) -> tuple[Parameter, ...]:
-    twists = tuple(
-        Parameter(
-            name,
-            radians(value),
-            "angle",
-            f"twist of link {link}",
-            radians(15),
-            radians(110),
-        )
-        for name, value, link in zip(
-            ("alpha", "beta", "gamma", "delta"), degrees, "abcd", strict=True
-        )
-    )
-    return (
-        Parameter(
-            "a", 1.7 * sin(radians(degrees[0])), "length", "length of link a", 0.3, 3.0
-        ),
-        *twists,
-    )
+def _kinked_pair(a: Link, b: Link, c: Link, kink: KinkAngle) -> Loop:
+    """Two Bennett loops on the link b, a and c locked: links a, b, [a.c], b, c."""
+    first = closed_chain(a, b, a, b)
+    second = closed_chain(c, b, c, b)
+    return lock(superpose(first, second), 4, kink)
+
+
+# --- first guesses
+
+
+def difference_guesses(
+    name: str, whole: int, part: int, form: np.ndarray
+) -> Iterator[dict[str, float]]:
+    """The twist ``name`` of a link that is added to, or subtracted from, the link in
+    column ``part`` and makes the one in column ``whole``.
+
+    The opposite difference comes too: a link c - b reads b - c where that is longer.
+    """
+    x = form[1, whole]
+    y = form[1, part]
+    for twist in (x - y, y - x, x + y):
+        yield {name: twist % np.pi}
+
+
+def _serial_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """A quadratic equation for tan(beta/2), from elementary symmetric functions of the
+    other three tangents."""
+    others = np.tan(form[1, 3:6] / 2)
+    e1 = others.sum()
+    e3 = others.prod()
+    e2 = (e1**2 - (others**2).sum()) / 2
+    for side in half_tangents(form[1, 0]):
+        quadratic = [side * (e1 - e3), -(e1 * e2 - e3), side * e3 * (1 - e2)]
+        for beta in twists_with(np.roots(quadratic)):
+            yield {"beta": beta}
+
+
+# every 30 degrees, none of them collinear
+KINKS = tuple((np.linspace(-np.pi, np.pi, 12, endpoint=False) + 0.01).tolist())
+KINK_SCAN = {"kink_1": KINKS, "kink_2": KINKS}
+
+
+# --- entries
+
+
+def _parameters(
+    alpha: float, beta: float, gamma: float, delta: float
+) -> tuple[Parameter, ...]:
+    twists = twists_of_links(a=alpha, b=beta, c=gamma, d=delta)
+    return length_a(alpha), *twists
 
 
 def _kink(name: str, degrees: float, links: str) -> Parameter:
-    return Parameter(
-        name,
-        radians(degrees),
-        "angle",
-        f"angle between {links}",
-        radians(-120),
-        radians(120),
+    return Parameter.angle(name, degrees, f"angle between {links}", -120, 120)
+
+
+def _links(order: str) -> Condition:
+    text = f"links {order}, twists likewise, R = 0"
+    return Condition(text, (zero_offsets(),))
+
+
+def _case_of(other: str, source: str) -> Relation:
+    return Relation(RelationKind.SPECIAL_CASE, other, source)
+
+
+def _grown_from_5r(detail: str) -> tuple[Relation, ...]:
+    """What the serial and the L-shape linkage are to the Goldberg 5R."""
+    without = Relation(
+        RelationKind.DEGENERATE,
+        "goldberg-5r",
+        "Goldberg (1943)",
+        "delta to 0: its link vanishes",
+        vanishing="delta",
     )
+    built = Relation(RelationKind.CONSTRUCTED, "goldberg-5r", "Goldberg (1943)", detail)
+    return without, built
 
 
-def _entry(
-    name: str,
-    title: str,
-    source: str,
-    construct: Callable[..., Loop],
-    parameters: tuple[Parameter, ...],
-    *conditions: str,
-    errata: tuple[str, ...] = (),
-) -> Entry:
-    ratio = "sin(twist)/length is the same for the links a, b, c, d"
-    facts = {"joints": 6, "mobility": 1}
-    return Entry(
-        name,
-        title,
-        source,
-        construct,
-        parameters,
-        (ratio, *conditions),
-        errata=errata,
-        facts=facts,
-    )
-
-
-_SERIAL = "links b, a+c+d, b, d, c, a, twists likewise, R = 0"
-_L_SHAPE = "links b+d, a+c, b, c, d, a, twists likewise, R = 0"
+TYPICAL = _parameters(66, 50, 28, 83)
+SLENDER = _parameters(35, 62, 41, 22)
+FACTS = {"joints": 6, "mobility": 1}
 
 ENTRIES = (
-    _entry(
+    Entry(
         "serial-goldberg-6r",
         "Serial Goldberg 6R",
         "Goldberg (1943); Song (2013), eq. 2.4.1",
         serial_goldberg,
-        _parameters(35, 62, 41, 22),
-        _SERIAL,
+        SLENDER,
+        conditions=(EQUAL_RATIOS, _links("b, a+c+d, b, d, c, a")),
+        relations=(
+            _case_of("generalized-serial-goldberg-6r", "Goldberg (1943)"),
+            *_grown_from_5r("a third loop in line"),
+        ),
+        facts=FACTS,
     ),
-    _entry(
+    Entry(
         "syncopated-serial-goldberg-6r",
         "Syncopated serial Goldberg 6R",
         "Goldberg (1943); Song (2013), eq. 2.4.2",
         syncopated_serial_goldberg,
-        _parameters(35, 62, 41, 22),
-        "links e-b, a+c+d, e-b, d, c, a, twists likewise, R = 0",
-        "sin(epsilon)/e = sin(alpha+gamma+delta)/(a+c+d)",
-        "m(alpha,beta) m(gamma,beta) m(delta,beta) = -m(epsilon, alpha+gamma+delta)",
-        errata=(
-            "the triple product is printed with + and then leaves the linkage rigid; it takes -",
+        SLENDER,
+        conditions=(
+            EQUAL_RATIOS,
+            _links("e-b, a+c+d, e-b, d, c, a"),
+            Condition("sin(epsilon)/e = sin(alpha+gamma+delta)/(a+c+d)"),
+            Condition(
+                "m(alpha,beta) m(gamma,beta) m(delta,beta) "
+                "= -m(epsilon, alpha+gamma+delta)"
+            ),
         ),
+        guesses=_serial_guesses,
+        errata=(
+            "the triple product is printed with + and then leaves the linkage rigid; "
+            "it takes -",
+        ),
+        facts=FACTS,
     ),
-    _entry(
+    Entry(
         "l-shape-goldberg-6r",
         "L-shape Goldberg 6R",
         "Goldberg (1943); Song (2013), eq. 2.4.3",
         l_shape_goldberg,
-        _parameters(66, 50, 28, 83),
-        _L_SHAPE,
+        TYPICAL,
+        conditions=(EQUAL_RATIOS, _links("b+d, a+c, b, c, d, a")),
+        relations=(
+            _case_of("generalized-l-shape-goldberg-6r", "Goldberg (1943)"),
+            *_grown_from_5r("a third loop across"),
+        ),
+        facts=FACTS,
     ),
-    _entry(
+    Entry(
         "syncopated-l-shape-goldberg-6r",
         "Syncopated L-shape Goldberg 6R",
         "Goldberg (1943); Song (2013), eq. 2.4.4",
         syncopated_l_shape_goldberg,
-        _parameters(35, 62, 41, 22),
-        "links b+d-e, a+c, e-b, c, d, a, twists likewise, R = 0",
-        "sin(epsilon)/e = sin(alpha+gamma)/(a+c), m(alpha,beta) m(gamma,beta) = m(epsilon, alpha+gamma)",
+        SLENDER,
+        conditions=(
+            EQUAL_RATIOS,
+            _links("b+d-e, a+c, e-b, c, d, a"),
+            Condition(
+                "sin(epsilon)/e = sin(alpha+gamma)/(a+c), "
+                "m(alpha,beta) m(gamma,beta) = m(epsilon, alpha+gamma)"
+            ),
+        ),
+        guesses=syncopation_guesses(side=2, alpha=5, gamma=3),
+        relations=(_case_of("generalized-l-shape-goldberg-6r", BY_IDENTIFICATION),),
+        facts=FACTS,
     ),
-    _entry(
+    Entry(
         "serial-goldberg-variant-6r",
         "Variant of the serial Goldberg 6R",
         "Baker (1993a); Song (2013), eq. 2.4.5",
         serial_variant,
-        _parameters(66, 50, 28, 83),
-        "links b, a+c, d, b, c+d, a, twists likewise, R = 0",
+        TYPICAL,
+        conditions=(EQUAL_RATIOS, _links("b, a+c, d, b, c+d, a")),
+        guesses=partial(difference_guesses, "gamma", 1, 5),
+        facts=FACTS,
     ),
-    _entry(
+    Entry(
         "l-shape-goldberg-variant-6r",
         "Variant of the L-shape Goldberg 6R",
         "Baker (1993a); Song (2013), eq. 2.4.6",
         l_shape_variant,
-        _parameters(66, 50, 28, 83),
-        "links b+d, a, c, b, c+d, a, twists likewise, R = 0",
+        TYPICAL,
+        conditions=(EQUAL_RATIOS, _links("b+d, a, c, b, c+d, a")),
+        guesses=partial(difference_guesses, "delta", 0, 3),
+        facts=FACTS,
     ),
-    _entry(
+    Entry(
         "generalized-serial-goldberg-6r",
         "Serial Goldberg 6R with kink angles",
         "Goldberg (1943)",
         generalized_serial_goldberg,
-        (
-            *_parameters(35, 62, 41, 22),
-            _kink("kink_1", 25, "a and c"),
-            _kink("kink_2", -40, "c and d"),
+        (*SLENDER, _kink("kink_1", 25, "a and c"), _kink("kink_2", -40, "c and d")),
+        conditions=(
+            EQUAL_RATIOS,
+            Condition(
+                "as the serial linkage, the links a, c, d locked at the two kink "
+                "angles and replaced by one"
+            ),
         ),
-        "as the serial linkage, the links a, c, d locked at the two kink angles and replaced by one",
+        scan=KINK_SCAN,
+        facts=FACTS,
     ),
-    _entry(
+    Entry(
         "generalized-l-shape-goldberg-6r",
         "L-shape Goldberg 6R with kink angles",
         "Goldberg (1943)",
         generalized_l_shape_goldberg,
-        (
-            *_parameters(66, 50, 28, 83),
-            _kink("kink_1", 25, "a and c"),
-            _kink("kink_2", -40, "b and d"),
+        (*TYPICAL, _kink("kink_1", 25, "a and c"), _kink("kink_2", -40, "b and d")),
+        conditions=(
+            EQUAL_RATIOS,
+            Condition(
+                "as the L-shape linkage, the pairs a, c and b, d locked at the kink "
+                "angles"
+            ),
         ),
-        "as the L-shape linkage, the pairs a, c and b, d locked at the kink angles",
+        scan=KINK_SCAN,
+        facts=FACTS,
     ),
 )

@@ -4,142 +4,460 @@ equal kinds of 5R.
 Two 5R linkages, each a Goldberg or a subtractive Goldberg linkage, are joined on the
 link pair a, c or across the Bennett loop a, c. Up to the sign with which c is added,
 the links come in six orders.
+
+Closed forms of the mixed ones: Song and Chen (2012), equations (4.8), (4.9), (4.12),
+(4.16), (4.17), (4.21), (4.22); Song (2013), section 3.4. Type I is printed with m2 for
+m1 and m4, and Type III with the wrong sign of tan(theta4/2). The irrational quantity of
+Types I and II is written by t4: Q = -m4/t4 and P = -m3/t4.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum
 from functools import partial
-from math import pi, radians, sin
 from typing import Any
 
+import numpy as np
+
+from linkages.closed_forms.closed_form import (
+    HALF_TURN,
+    ZERO,
+    ClosedForm,
+    Pair,
+    constant,
+    joint,
+    minus,
+    negative,
+    only,
+    plus,
+    ratio,
+    reciprocal,
+)
+from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
 from linkages.construction.link import Link, bennett_links, closed_chain
-from linkages.entry import Entry, Parameter
+from linkages.construction.numbers import Number
+from linkages.construction.possible_angles import twist_pairs
+from linkages.construction.table_equations import zero_offsets
+from linkages.entry import (
+    BY_IDENTIFICATION,
+    Condition,
+    Entry,
+    Guesses,
+    Relation,
+    RelationKind,
+)
+from linkages.families.double_goldberg import (
+    constructive_closed_form,
+    non_constructive_closed_form,
+)
+from linkages.families.goldberg_6r import difference_guesses
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "KINDS", "TYPES", "double_goldberg_chain", "double_goldberg_type"]
+__all__ = [
+    "ENTRIES",
+    "Kind",
+    "Order",
+    "double_goldberg_chain",
+    "double_goldberg_type",
+]
 
-TYPES = ("I", "II", "III", "IV", "V", "VI")
-KINDS = {
-    "mixed": (-1, 1),
-    "goldberg": (1, 1),
-    "subtractive": (-1, -1),
-}  # signs of the first and second 5R
-_ORDER = {
-    "I": "a*c b d a+c d b",
-    "II": "a b*c d a+c d b",
-    "III": "a b*c d+c a d b",
-    "IV": "a b*c d a d+c b",
-    "V": "a b*c d c d+a b",
-    "VI": "a b*c d+a c d b",
-}  # composite links: * takes the sign of the first 5R, + that of the second
+POSITION = 100
+
+
+class Order(Enum):
+    """The six types, and the order of their links: * takes the sign of the first 5R, +
+    that of the second."""
+
+    I = "a*c b d a+c d b"
+    II = "a b*c d a+c d b"
+    III = "a b*c d+c a d b"
+    IV = "a b*c d a d+c b"
+    V = "a b*c d c d+a b"
+    VI = "a b*c d+a c d b"
+
+
+@dataclass(frozen=True)
+class _KindFacts:
+    """Signs with which the first and the second 5R join their links, names, and the
+    angle at which joint 3 of Type III is locked."""
+
+    first: int
+    second: int
+    prefix: str
+    title: str
+    locked: float
+
+
+class Kind(Enum):
+    """Of which 5R linkages a member is made."""
+
+    MIXED = _KindFacts(-1, 1, "mixed-double-goldberg", "Mixed double-Goldberg 6R", 0.0)
+    GOLDBERG = _KindFacts(1, 1, "double-goldberg", "Double-Goldberg 6R", np.pi)
+    SUBTRACTIVE = _KindFacts(
+        -1,
+        -1,
+        "double-subtractive-goldberg",
+        "Double-subtractive-Goldberg 6R",
+        np.pi,
+    )
 
 
 def double_goldberg_type(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    order: str = "I",
-    kind: str = "mixed",
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    order: Order = Order.I,
+    kind: Kind = Kind.MIXED,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """The double-Goldberg 6R of Type ``order``, I to VI, made of the two 5R linkages of
     ``kind``.
 
     Twists of the links a, b, c, d in rad; the lengths b, c, d follow and are checked if
-    given; no offsets. ``kind`` is a key of `KINDS`: "mixed" (a subtractive and a plain
-    Goldberg 5R), "goldberg", "subtractive". Source: Song and Chen (2012), tables 2 and
-    3; Song (2013), tables 3.3.1 and 3.5.3, equations (3.4.3) to (3.4.22). The latter's
-    "alpha34 = alpha + gamma" in (3.4.11) is alpha45.
+    given; no offsets. Source: Song and Chen (2012), tables 2 and 3; Song (2013), tables
+    3.3.1 and 3.5.3, equations (3.4.3) to (3.4.22). The latter's "alpha34 = alpha +
+    gamma" in (3.4.11) is alpha45.
     """
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return double_goldberg_chain(a, b, c, d, order, kind)
+    links = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    return double_goldberg_chain(*links, order, kind)
 
 
 def double_goldberg_chain(
-    a: Link, b: Link, c: Link, d: Link, order: str, kind: str
+    a: Link, b: Link, c: Link, d: Link, order: Order, kind: Kind
 ) -> Loop:
     """The loop of Type ``order`` and ``kind`` of these four basic links, whatever their
     ratios; -c is allowed."""
-    names = {"a": a, "b": b, "c": c, "d": d}
-    first, second = KINDS[kind]
-
-    def link(text: str) -> Link:
-        if len(text) == 1:
-            return names[text]
-        sign = first if text[1] == "*" else second
-        return (
-            names[text[0]] + names[text[2]]
-            if sign > 0
-            else names[text[0]] - names[text[2]]
-        )
-
-    return closed_chain(*(link(text) for text in _ORDER[order].split()))
+    basic = {"a": a, "b": b, "c": c, "d": d}
+    links = []
+    for text in order.value.split():
+        link = basic[text[0]]
+        if len(text) == 3:
+            sign = kind.value.first if text[1] == "*" else kind.value.second
+            other = basic[text[2]]
+            link = link + other if sign > 0 else link - other
+        links.append(link)
+    return closed_chain(*links)
 
 
-_PARAMETERS = (
-    Parameter("a", 1.7 * sin(radians(66)), "length", "length of link a", 0.3, 3.0),
-    *(
-        Parameter(
-            name,
-            radians(value),
-            "angle",
-            f"twist of link {link}",
-            radians(15),
-            radians(110),
-        )
-        for name, value, link in (
-            ("alpha", 66, "a"),
-            ("beta", 50, "b"),
-            ("gamma", 28, "c"),
-            ("delta", 83, "d"),
-        )
-    ),
-)
-_TITLES = {
-    "mixed": "Mixed double-Goldberg 6R",
-    "goldberg": "Double-Goldberg 6R",
-    "subtractive": "Double-subtractive-Goldberg 6R",
+# --- closed forms of the mixed linkages
+
+
+def _ratios() -> dict[str, Number]:
+    return {
+        "m_1": ratio("beta", "alpha"),
+        "m_2": ratio("gamma", "alpha"),
+        "m_3": ratio("delta", "alpha"),
+        "m_4": ratio("delta", "gamma"),
+        "m_6": ratio("beta", "gamma"),
+    }
+
+
+def _form(
+    order: Order,
+    source: str,
+    angles: tuple[Pair, ...],
+    relation: Number | None = None,
+) -> tuple[ClosedForm, ...]:
+    form = ClosedForm(
+        _name(order, Kind.MIXED),
+        f"Forms of Type {order.name}",
+        source,
+        ("alpha", "beta", "gamma", "delta"),
+        only(*angles),
+        _ratios(),
+        relation=relation,
+        second=0 if relation is None else 4,
+    )
+    return (form,)
+
+
+def _type_one() -> tuple[ClosedForm, ...]:
+    first, fourth = joint(1), joint(4)
+    s1, c1 = first
+    s4, c4 = fourth
+    m1, m3 = constant("m_1"), constant("m_3")
+    m4, m6 = constant("m_4"), constant("m_6")
+    q = reciprocal(fourth, -m4)
+    outer = plus(q, reciprocal(first, m1))
+    # (m1 + m6 x^2) (Q^2 + m4/m3) = (1/m3 - m4) (m1 - m6) x Q, times m3 t4^2 / m4
+    top = m1 * c1**2 + m6 * s1**2
+    slope = (1 - m3 * m4) * (m1 - m6) * s1 * c1
+    relation = top * (m3 * m4 * c4**2 + s4**2) + slope * s4 * c4
+    angles = (
+        first,
+        (m1 * c1, m6 * s1),
+        plus(HALF_TURN, outer),
+        fourth,
+        (m3 * m4 * c4, s4),
+        negative(outer),
+    )
+    source = (
+        "Song and Chen 2012, eqs (4.8), (4.9), corrected: t2 = m1/(m6 t1), "
+        "t5 = -m3 Q, H = (m1 + m6 t1^2)/..."
+    )
+    return _form(Order.I, source, angles, relation)
+
+
+def _type_two() -> tuple[ClosedForm, ...]:
+    first, fourth = joint(1), joint(4)
+    s1, c1 = first
+    s4, c4 = fourth
+    m1, m2 = constant("m_1"), constant("m_2")
+    m3, m4 = constant("m_3"), constant("m_4")
+    p, r = reciprocal(fourth, -m3)
+    # m4 x P^2 - (m3 m4 - 1) P + m3 x = 0, times t4^2 / m3
+    relation = m3 * m4 * s1 * c4**2 + (m3 * m4 - 1) * s4 * c4 * c1 + s1 * s4**2
+    third = (p * s1 - m2 * r * c1, s1 * r + m2 * p * c1)
+    square = s1**2 + m1 * m2 * c1**2
+    cross = (m1 - m2) * s1 * c1
+    sixth = (square * r - cross * p, cross * r + square * p)
+    angles = (
+        first,
+        reciprocal(first, m1),
+        third,
+        fourth,
+        (m3 * m4 * c4, s4),
+        sixth,
+    )
+    return _form(Order.II, "Song and Chen 2012, eq. (4.12)", angles, relation)
+
+
+def _type_three() -> tuple[ClosedForm, ...]:
+    first = joint(1)
+    s1, c1 = first
+    m1, m3 = constant("m_1"), constant("m_3")
+    angles = (
+        first,
+        reciprocal(first, m1),
+        ZERO,
+        (m3 * s1, c1),
+        minus(HALF_TURN, first),
+        ((1 - m1 * m3) * s1 * c1, m1 * c1**2 + m3 * s1**2),
+    )
+    source = "Song and Chen 2012, eq. (4.16), with tan(theta4/2) = +m3 tan(theta1/2)"
+    return _form(Order.III, source, angles)
+
+
+def _type_four() -> tuple[ClosedForm, ...]:
+    first = joint(1)
+    s1, c1 = first
+    m1, m2, m3 = constant("m_1"), constant("m_2"), constant("m_3")
+    angles = (
+        first,
+        reciprocal(first, m1),
+        (m2 * c1**2 + m3 * s1**2, (m2 * m3 - 1) * s1 * c1),
+        minus(HALF_TURN, first),
+        (m3 * s1, c1),
+        (m1 * m2 * c1**2 + s1**2, (m1 - m2) * s1 * c1),
+    )
+    return _form(Order.IV, "Song and Chen 2012, eq. (4.17)", angles)
+
+
+def _type_five() -> tuple[ClosedForm, ...]:
+    first = joint(1)
+    s1, c1 = first
+    m1, m4 = constant("m_1"), constant("m_4")
+    third = (c1, m4 * s1)
+    angles = (
+        first,
+        reciprocal(first, m1),
+        third,
+        minus(HALF_TURN, first),
+        minus(HALF_TURN, third),
+        (-m1 * c1, s1),
+    )
+    return _form(Order.V, "Song and Chen 2012, eq. (4.21)", angles)
+
+
+def _type_six() -> tuple[ClosedForm, ...]:
+    first = joint(1)
+    s1, c1 = first
+    m1, m2, m4 = constant("m_1"), constant("m_2"), constant("m_4")
+    sixth = (
+        (m4 * s1**2 + (m1 * m2 * m4 + m1 - m2) * c1**2) * s1,
+        ((m1 * m4 - m2 * m4 - 1) * s1**2 - m1 * m2 * c1**2) * c1,
+    )
+    angles = (
+        first,
+        reciprocal(first, m1),
+        (s1, m2 * c1),
+        (m4 * s1, c1),
+        minus(HALF_TURN, first),
+        sixth,
+    )
+    return _form(Order.VI, "Song and Chen 2012, eq. (4.22)", angles)
+
+
+MIXED_FORMULAS = {
+    Order.I: _type_one,
+    Order.II: _type_two,
+    Order.III: _type_three,
+    Order.IV: _type_four,
+    Order.V: _type_five,
+    Order.VI: _type_six,
 }
-_LOCKED = {"mixed": 0.0, "goldberg": pi, "subtractive": pi}
-_ERRATA = {
-    ("I", "mixed"): (
-        "the closure equations (4.8), (4.9) / (3.4.8), (3.4.9) are printed with m2 for m1 and m4",
+
+
+def _type_one_of_equals(kind: Kind) -> tuple[ClosedForm, ...]:
+    """Type I of two equal 5R linkages is a double-Goldberg linkage with the links b, d
+    exchanged."""
+    name = _name(Order.I, kind)
+    sign = kind.value.second
+    return (
+        constructive_closed_form(name, sign, exchanged=True),
+        non_constructive_closed_form(name, sign, exchanged=True),
+    )
+
+
+def _formulas(order: Order, kind: Kind) -> Callable[[], tuple[ClosedForm, ...]] | None:
+    if kind is Kind.MIXED:
+        return MIXED_FORMULAS[order]
+    if order is Order.I:
+        return partial(_type_one_of_equals, kind)
+    return None
+
+
+# --- first guesses
+
+
+def _type_one_guesses(kind: Kind, form: np.ndarray) -> Iterator[dict[str, float]]:
+    """Links a*c, b, d, a+c, d, b, the two composite ones with the signs of ``kind``."""
+    lengths, twists, _ = form
+    ratio = lengths[1] / np.sin(twists[1])
+    if kind is Kind.MIXED:
+        mean = (twists[0] + twists[3]) / 2
+        half = (twists[3] - twists[0]) / 2
+        pairs = [(mean + turn, (half + turn) % np.pi) for turn in (0, np.pi / 2)]
+    else:
+        pairs = twist_pairs(twists[0], lengths[0] / ratio, kind.value.second)
+    for alpha, gamma in pairs:
+        twist = alpha % np.pi
+        yield {"alpha": twist, "gamma": gamma, "a": ratio * np.sin(twist)}
+
+
+def _guesses(order: Order, kind: Kind) -> Guesses | None:
+    if order is Order.I:
+        return partial(_type_one_guesses, kind)
+    if order in (Order.II, Order.III, Order.IV):
+        return partial(difference_guesses, "gamma", 1, 5)
+    return None
+
+
+# --- relations
+
+SHARED = "common link pair or common Bennett loop"
+SHARED_BY_TWO = f"{SHARED} of two"
+TABLE_3_3_1 = "Song (2013), table 3.3.1"
+TABLE_3_5_3 = "Song (2013), table 3.5.3"
+
+
+def _case_of(other: str, source: str) -> Relation:
+    return Relation(RelationKind.SPECIAL_CASE, other, source)
+
+
+def _same_as(other: str, source: str) -> Relation:
+    return Relation(RelationKind.SAME, other, source)
+
+
+def _built_from(other: str, source: str, detail: str) -> Relation:
+    return Relation(RelationKind.CONSTRUCTED, other, source, detail)
+
+
+def _mixed_relations(order: Order) -> tuple[Relation, ...]:
+    detail = f"{SHARED}, with a subtractive one"
+    built = _built_from("goldberg-5r", TABLE_3_3_1, detail)
+    others = {
+        Order.I: _case_of("generalized-double-goldberg", "Wohlhart (1991a)"),
+        Order.V: _case_of("waldron-collinear", "Song (2013), section 3.4"),
+        Order.VI: _same_as("syncopated-l-shape-goldberg-6r", BY_IDENTIFICATION),
+    }
+    return (others[order], built) if order in others else (built,)
+
+
+def _goldberg_relations(order: Order) -> tuple[Relation, ...]:
+    built = _built_from("goldberg-5r", TABLE_3_5_3, SHARED_BY_TWO)
+    table_3_5_2 = "Song (2013), table 3.5.2"
+    return {
+        Order.I: (_same_as("wohlhart-double-goldberg", TABLE_3_5_3),),
+        Order.II: (_same_as("l-shape-goldberg-variant-6r", table_3_5_2),),
+        Order.III: (built,),
+        Order.IV: (_same_as("serial-goldberg-variant-6r", table_3_5_2),),
+        Order.V: (_case_of("waldron-hybrid", BY_IDENTIFICATION), built),
+        Order.VI: (_same_as("l-shape-goldberg-6r", BY_IDENTIFICATION),),
+    }[order]
+
+
+def _subtractive_relations(order: Order) -> tuple[Relation, ...]:
+    if order is Order.I:
+        return (_same_as("double-subtractive-goldberg", TABLE_3_5_3),)
+    built = _built_from("subtractive-goldberg-5r", TABLE_3_5_3, SHARED_BY_TWO)
+    general = {
+        Order.V: "waldron-hybrid",
+        Order.VI: "generalized-l-shape-goldberg-6r",
+    }
+    if order in general:
+        return _case_of(general[order], BY_IDENTIFICATION), built
+    return (built,)
+
+
+RELATIONS = {
+    Kind.MIXED: _mixed_relations,
+    Kind.GOLDBERG: _goldberg_relations,
+    Kind.SUBTRACTIVE: _subtractive_relations,
+}
+
+
+# --- entries
+
+ERRATA = {
+    Order.I: (
+        "the closure equations (4.8), (4.9) / (3.4.8), (3.4.9) are printed with m2 for "
+        "m1 and m4",
     ),
-    ("II", "mixed"): (
+    Order.II: (
         "alpha34 = alpha + gamma is printed twice in (4.11) / (3.4.11); one is alpha45",
     ),
-    ("III", "mixed"): (
-        "tan(theta4/2) = -m3 tan(theta1/2) is printed in (4.16) / (3.4.16); the sign is +",
+    Order.III: (
+        "tan(theta4/2) = -m3 tan(theta1/2) is printed in (4.16) / (3.4.16); "
+        "the sign is +",
     ),
 }
 
 
-def _entry(order: str, kind: str) -> Entry:
-    first, second = ("+" if sign > 0 else "-" for sign in KINDS[kind])
-    links = _ORDER[order].replace("+", second).replace("*", first).replace(" ", ", ")
+def _name(order: Order, kind: Kind) -> str:
+    return f"{kind.value.prefix}-type-{order.name.lower()}"
+
+
+def _links(order: Order, kind: Kind) -> Condition:
+    first = "+" if kind.value.first > 0 else "-"
+    second = "+" if kind.value.second > 0 else "-"
+    links = order.value.replace("+", second).replace("*", first).replace(" ", ", ")
+    return Condition(f"links {links}, twists likewise, R = 0", (zero_offsets(),))
+
+
+def _entry(order: Order, kind: Kind) -> Entry:
     facts: dict[str, Any] = {"joints": 6, "mobility": 1}
-    if order == "III":
-        facts["locked"] = {3: _LOCKED[kind]}
-    name = {"mixed": "mixed-double-goldberg", "goldberg": "double-goldberg"}.get(
-        kind, "double-subtractive-goldberg"
-    )
+    if order is Order.III:
+        facts["locked"] = {3: kind.value.locked}
     return Entry(
-        f"{name}-type-{order.lower()}",
-        f"{_TITLES[kind]}, Type {order}",
+        _name(order, kind),
+        f"{kind.value.title}, Type {order.name}",
         "Song and Chen (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3",
         partial(double_goldberg_type, order=order, kind=kind),
-        _PARAMETERS,
-        (
-            "sin(twist)/length is the same for the links a, b, c, d",
-            f"links {links}, twists likewise, R = 0",
-        ),
-        errata=_ERRATA.get((order, kind), ()),
+        (length_a(66), *twists_of_links(a=66, b=50, c=28, d=83)),
+        conditions=(EQUAL_RATIOS, _links(order, kind)),
+        formulas=_formulas(order, kind),
+        guesses=_guesses(order, kind),
+        relations=RELATIONS[kind](order),
+        errata=ERRATA.get(order, ()) if kind is Kind.MIXED else (),
         facts=facts,
     )
 
 
-ENTRIES = tuple(_entry(order, kind) for kind in KINDS for order in TYPES)
+ENTRIES = tuple(_entry(order, kind) for kind in Kind for order in Order)

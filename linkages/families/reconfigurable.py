@@ -10,51 +10,87 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from functools import partial
 
 import numpy as np
 
+from linkages.closed_forms.closed_form import (
+    ClosedForm,
+    Pair,
+    constant,
+    cosine_of,
+    joint,
+    minus,
+    negative,
+    only,
+    plus,
+    reciprocal,
+    sine_of,
+    tangent,
+)
+from linkages.construction import numbers
 from linkages.construction.conditions import (
     bennett_length,
     require_positive,
     require_within,
 )
 from linkages.construction.link import Link
-from linkages.construction.numbers import pi_like
+from linkages.construction.numbers import Number, pi_like
 from linkages.construction.spatial_triangle import composite_link
-from linkages.entry import Entry, FormPattern, Parameter
+from linkages.construction.table_equations import equal_links, equal_offsets
+from linkages.entry import (
+    Condition,
+    Entry,
+    FormPattern,
+    Parameter,
+    ParameterKind,
+    Relation,
+    RelationKind,
+)
 from linkages.families.bricard import bricard_line_symmetric
-from linkages.families.bricard_forms import patterns as bricard_patterns
+from linkages.families.bricard import patterns as bricard_patterns
 from linkages.loop import Loop
 
 __all__ = ["ENTRIES", "reconfigurable_bricard_1", "reconfigurable_bricard_2"]
 
+POSITION = 200
 SOURCE = "Song 2013, Kinematic study of overconstrained linkages, section 5.3, "
+FIRST, SECOND = "reconfigurable-bricard-1", "reconfigurable-bricard-2"
 
 
 def _loop(
-    a: Any,
-    alpha: Any,
-    b: Any,
-    beta: Any,
-    r2: Any,
-    kink: Any,
-    gamma: Any,
-    c: Any,
-    twist34: Any,
+    a: Number,
+    alpha: Number,
+    b: Number,
+    beta: Number,
+    r2: Number,
+    kink: Number,
+    gamma: Number,
+    c: Number | None,
+    twist34: Number,
 ) -> Loop:
     require_positive("length a", a)
     require_positive("length b", b)
-    for name, twist in (("alpha", alpha), ("beta", beta), ("gamma", gamma)):
-        require_within(f"twist {name}", twist, 0.0, math.pi)
+    require_within("twist alpha", alpha, 0.0, math.pi)
+    require_within("twist beta", beta, 0.0, math.pi)
+    require_within("twist gamma", gamma, 0.0, math.pi)
     triangle = composite_link(Link(a, alpha), Link(b, beta), kink, r2)
-    c = bennett_length("34", gamma, c, triangle.link.length, triangle.link.twist)
-    r1, r3 = -triangle.before[0], -triangle.after[0]
+    third = triangle.link
+    c = bennett_length("34", gamma, c, third.length, third.twist)
+    r1 = -triangle.before.offset
+    r3 = -triangle.after.offset
     return bricard_line_symmetric(a, b, c, alpha, beta, twist34, r1, r2, r3)
 
 
 def reconfigurable_bricard_1(
-    a: Any, alpha: Any, b: Any, beta: Any, r2: Any, kink: Any, gamma: Any, c: Any = None
+    a: Number,
+    alpha: Number,
+    b: Number,
+    beta: Number,
+    r2: Number,
+    kink: Number,
+    gamma: Number,
+    c: Number | None = None,
 ) -> Loop:
     """The first reconfigurable Bricard linkage: links 12 a/alpha, 23 b/beta, 34
     c/gamma, twice over.
@@ -70,7 +106,14 @@ def reconfigurable_bricard_1(
 
 
 def reconfigurable_bricard_2(
-    a: Any, alpha: Any, b: Any, beta: Any, r2: Any, kink: Any, gamma: Any, c: Any = None
+    a: Number,
+    alpha: Number,
+    b: Number,
+    beta: Number,
+    r2: Number,
+    kink: Number,
+    gamma: Number,
+    c: Number | None = None,
 ) -> Loop:
     """The second reconfigurable Bricard linkage, whose links 34 and 61 have the twist
     gamma - pi.
@@ -81,82 +124,159 @@ def reconfigurable_bricard_2(
     return _loop(a, alpha, b, beta, r2, kink, gamma, c, gamma - pi_like(gamma))
 
 
+# --- forms and closed forms
+
+
 def _patterns(
     construct: Callable[..., Loop], set_up: str
 ) -> Callable[..., tuple[FormPattern, ...]]:
     name = f"Bennett 4R form (joints 2,5 inactive) {set_up}"
 
     def patterns(**values: float) -> tuple[FormPattern, ...]:
-        lengths, twists, offsets = (tuple(v[:3]) for v in construct(**values).arrays)
+        arrays = construct(**values).arrays
+        lengths, twists, offsets = (row[:3].tolist() for row in arrays)
+        others = bricard_patterns(*lengths, *twists, *offsets)
 
         def inactive(theta: np.ndarray) -> np.ndarray:
-            return np.sin((np.asarray(theta)[..., [1, 4]] - values["kink"]) / 2)
+            gap = np.asarray(theta)[..., [1, 4]] - values["kink"]
+            return np.sin(gap / 2)
 
-        return FormPattern(name, inactive), *bricard_patterns(
-            *lengths, *twists, *offsets
-        )
+        return FormPattern(name, inactive), *others
 
     return patterns
 
 
+def _triangle_constants() -> dict[str, Number]:
+    """The constants of the closed form, by the half tangents of alpha, beta, kink,
+    gamma: the spatial triangle, as in `composite_link`, and the product m of the
+    Bennett loop on its third side."""
+    u_a, u_b = tangent("alpha"), tangent("beta")
+    u_k, u_g = tangent("kink"), tangent("gamma")
+    s_a, c_a = sine_of(u_a), cosine_of(u_a)
+    s_b, c_b = sine_of(u_b), cosine_of(u_b)
+    s_k, c_k = sine_of(u_k), cosine_of(u_k)
+    x_1, y_1 = constant("x_1"), constant("y_1")
+    sin_d, u_d = constant("sin_delta"), constant("u_delta")
+    return {
+        "k": u_k,
+        "x_1": c_k * s_b * c_a + c_b * s_a,
+        "y_1": s_k * s_b,
+        "x_3": c_k * s_a * c_b + c_a * s_b,
+        "y_3": s_k * s_a,
+        "sin_delta": numbers.sqrt(x_1**2 + y_1**2),
+        "u_delta": sin_d / (1 + c_a * c_b - c_k * s_a * s_b),
+        "m": (u_g + u_d) / (u_g - u_d),
+    }
+
+
+def _formulas(linkage: str, sign: int, equation: str) -> tuple[ClosedForm, ...]:
+    """The Bennett form, ``sign`` +1 for the line-symmetric set-up: third sides of the
+    triangles, links 34 and 61.
+
+    The angles of that Bennett loop are theta1 + first, theta3 + third, where first and
+    third are the angles of the spatial triangle at the joints 1 and 3. Song (2013),
+    equations (5.3.13), (5.3.15).
+    """
+    sin_d = constant("sin_delta")
+    first = (constant("y_1"), sin_d + constant("x_1"))
+    third = (constant("y_3"), sin_d + constant("x_3"))
+    kink: Pair = (constant("k"), 1)
+    one = plus(joint(1), first)
+    other = reciprocal(one, constant("m"))
+    opposite_one = one if sign > 0 else negative(one)
+    opposite_other = other if sign > 0 else negative(other)
+    angles = (
+        joint(1),
+        kink,
+        minus(other, third),
+        minus(opposite_one, first),
+        kink,
+        minus(opposite_other, third),
+    )
+    form = ClosedForm(
+        linkage,
+        "Bennett 4R form",
+        f"Song 2013, eq. {equation}",
+        ("alpha", "beta", "kink", "gamma"),
+        only(*angles),
+        _triangle_constants(),
+    )
+    return (form,)
+
+
+# --- entries
+
+
+def _twist(name: str, degrees: float, links: str) -> Parameter:
+    default = math.radians(degrees)
+    meaning = f"twist of links {links}"
+    return Parameter(name, default, ParameterKind.ANGLE, meaning, 0.2, math.pi - 0.2)
+
+
 PARAMETERS = (
-    Parameter("a", 0.9, "length", "length of links 12 and 45", 0.3, 3.0),
-    Parameter(
-        "alpha",
-        math.radians(35),
-        "angle",
-        "twist of links 12 and 45",
-        0.2,
-        math.pi - 0.2,
-    ),
-    Parameter("b", 2.0, "length", "length of links 23 and 56", 0.3, 3.0),
-    Parameter(
-        "beta",
-        math.radians(60),
-        "angle",
-        "twist of links 23 and 56",
-        0.2,
-        math.pi - 0.2,
-    ),
-    Parameter("r2", 0.7, "length", "offset of joints 2 and 5", -1.0, 1.0),
+    Parameter.length("a", 0.9, "length of links 12 and 45", 0.3, 3.0),
+    _twist("alpha", 35, "12 and 45"),
+    Parameter.length("b", 2.0, "length of links 23 and 56", 0.3, 3.0),
+    _twist("beta", 60, "23 and 56"),
+    Parameter.length("r2", 0.7, "offset of joints 2 and 5", -1.0, 1.0),
     Parameter(
         "kink",
         math.radians(-70),
-        "angle",
+        ParameterKind.ANGLE,
         "angle of joints 2 and 5 in the Bennett form",
         -3.0,
         3.0,
     ),
-    Parameter(
-        "gamma",
-        math.radians(160),
-        "angle",
-        "twist of links 34 and 61",
-        0.2,
-        math.pi - 0.2,
+    _twist("gamma", 160, "34 and 61"),
+)
+# every five degrees, none of them collinear
+CIRCLE = np.linspace(-math.pi, math.pi, 72, endpoint=False) + 0.01
+KINK_SCAN = {"kink": tuple(CIRCLE.tolist())}
+LINE_SYMMETRY = Condition(
+    "opposite links and offsets alike",
+    (equal_links((12, 45), (23, 56), (34, 61)), equal_offsets((1, 4), (2, 5), (3, 6))),
+)
+TRIANGLE = Condition(
+    "R1 and R3 those of the spatial triangle of the links 12 and 23 at theta2 = kink"
+)
+RELATIONS = (
+    Relation(
+        RelationKind.SPECIAL_CASE, "bricard-line-symmetric", "Song (2013), section 5.3"
+    ),
+    Relation(
+        RelationKind.CONSTRUCTED,
+        "bennett",
+        "Song (2013), section 5.3",
+        "a spatial triangle on opposite links",
     ),
 )
-CONDITIONS = (
-    "opposite links and offsets alike",
-    "R1 and R3 those of the spatial triangle of the links 12 and 23 at theta2 = kink",
+DENOMINATOR = (
+    "Song 2013, eqs (5.3.2), (5.3.9), (5.3.18): the denominator of R3 must be "
+    "sin(alpha23) sin(theta2)"
 )
-TRIANGLE = "Song 2013, eqs (5.3.2), (5.3.9), (5.3.18): the denominator of R3 must be sin(alpha23) sin(theta2)"
 
 ENTRIES: tuple[Entry, ...] = (
     Entry(
-        "reconfigurable-bricard-1",
+        FIRST,
         "First reconfigurable line-symmetric Bricard 6R linkage",
         SOURCE + "eqs (5.3.7)-(5.3.13)",
         reconfigurable_bricard_1,
         PARAMETERS,
         conditions=(
-            *CONDITIONS,
-            "sin(gamma)/c = sin(delta)/d of the third side d/delta of the triangle",
+            LINE_SYMMETRY,
+            TRIANGLE,
+            Condition(
+                "sin(gamma)/c = sin(delta)/d of the third side d/delta of the triangle"
+            ),
         ),
         patterns=_patterns(reconfigurable_bricard_1, "asymmetric"),
+        formulas=partial(_formulas, FIRST, -1, "(5.3.13)"),
+        scan=KINK_SCAN,
+        relations=RELATIONS,
         errata=(
-            TRIANGLE,
-            "Song 2013, eq. (5.3.18): the minus sign before sin(alpha34)/a34 must be a plus",
+            DENOMINATOR,
+            "Song 2013, eq. (5.3.18): the minus sign before sin(alpha34)/a34 must be a "
+            "plus",
         ),
         facts={
             "mobility": 1,
@@ -167,21 +287,29 @@ ENTRIES: tuple[Entry, ...] = (
         },
     ),
     Entry(
-        "reconfigurable-bricard-2",
+        SECOND,
         "Second reconfigurable line-symmetric Bricard 6R linkage",
         SOURCE + "eqs (5.3.14), (5.3.15)",
         reconfigurable_bricard_2,
         PARAMETERS,
         conditions=(
-            *CONDITIONS,
-            "sin(gamma - pi)/c = -sin(delta)/d of the third side d/delta of the triangle",
+            LINE_SYMMETRY,
+            TRIANGLE,
+            Condition(
+                "sin(gamma - pi)/c = -sin(delta)/d of the third side d/delta of the "
+                "triangle"
+            ),
         ),
         patterns=_patterns(reconfigurable_bricard_2, "line-symmetric"),
+        formulas=partial(_formulas, SECOND, +1, "(5.3.15)"),
+        scan=KINK_SCAN,
+        relations=RELATIONS,
         errata=(
-            TRIANGLE,
+            DENOMINATOR,
             "Song 2013, eq. (5.3.6): the two cosines must be sines",
-            "Song 2013, section 5.3.4: the Bennett form need not be Form II; it follows the roots of Form I for "
-            "the default parameters, and those of both, with two bifurcations, for most others",
+            "Song 2013, section 5.3.4: the Bennett form need not be Form II; it follows "
+            "the roots of Form I for the default parameters, and those of both, with "
+            "two bifurcations, for most others",
         ),
         facts={
             "mobility": 1,

@@ -3,22 +3,28 @@ linkage."""
 
 from __future__ import annotations
 
-from math import radians
-from typing import Any
-
 from linkages.construction.link import Link, closed_chain
-from linkages.entry import Entry, Parameter
+from linkages.construction.numbers import Number
+from linkages.construction.table_equations import zero_lengths, zero_offsets
+from linkages.entry import Condition, Entry, Parameter
 from linkages.loop import Loop
 
 __all__ = ["ENTRIES", "spherical_four_bar"]
 
+POSITION = 20
 
-def spherical_four_bar(alpha12: Any, alpha23: Any, alpha34: Any, alpha41: Any) -> Loop:
+
+def spherical_four_bar(
+    alpha12: Number, alpha23: Number, alpha34: Number, alpha41: Number
+) -> Loop:
     """Spherical 4R: lengths and offsets zero, twists (rad) free. Source: Savage (1972),
     among others."""
-    return closed_chain(
-        *(Link(0, twist) for twist in (alpha12, alpha23, alpha34, alpha41))
-    )
+    twists = (alpha12, alpha23, alpha34, alpha41)
+    return closed_chain(*(Link(0, twist) for twist in twists))
+
+
+def _twist(link: int, degrees: float) -> Parameter:
+    return Parameter.angle(f"alpha{link}", degrees, f"twist of link {link}", 60, 100)
 
 
 ENTRIES = (
@@ -27,18 +33,10 @@ ENTRIES = (
         "Spherical four-bar",
         "Savage (1972)",
         spherical_four_bar,
-        tuple(
-            Parameter(
-                f"alpha{k}",
-                radians(v),
-                "angle",
-                f"twist of link {k}",
-                radians(60),
-                radians(100),
-            )
-            for k, v in ((12, 65), (23, 75), (34, 85), (41, 95))
+        (_twist(12, 65), _twist(23, 75), _twist(34, 85), _twist(41, 95)),
+        conditions=(
+            Condition("all lengths and offsets zero", (zero_lengths(), zero_offsets())),
         ),
-        ("all lengths and offsets zero",),
         facts={"joints": 4, "mobility": 1},
     ),
 )

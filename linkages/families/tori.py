@@ -15,18 +15,48 @@ closure.
 
 from __future__ import annotations
 
+import itertools
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import Enum
 from functools import partial
-from typing import Any
+from typing import NamedTuple
 
-from linkages.construction.conditions import decided, require_positive, require_within
+import numpy as np
+
+from linkages.construction.conditions import (
+    decided,
+    require_different,
+    require_positive,
+    require_within,
+)
 from linkages.construction.link import Link, closed_chain
-from linkages.construction.numbers import atan, atan2, cos, pi_like, sin, sqrt
+from linkages.construction.numbers import Number, atan, atan2, cos, pi_like, sin, sqrt
+from linkages.construction.possible_angles import kinks
 from linkages.construction.spatial_triangle import composite_link
-from linkages.entry import Entry, Parameter
+from linkages.entry import (
+    Condition,
+    Entry,
+    Parameter,
+    ParameterKind,
+    Relation,
+    RelationKind,
+)
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["ENTRIES", "TorusLink", "companion", "torus_4r", "torus_5r", "torus_link"]
+__all__ = [
+    "ENTRIES",
+    "Companion",
+    "TorusLink",
+    "Variant",
+    "companion",
+    "torus_4r",
+    "torus_5r",
+    "torus_link",
+]
+
+POSITION = 60
 
 
 @dataclass(frozen=True)
@@ -36,21 +66,21 @@ class TorusLink:
     the length has a sign."""
 
     link: Link
-    shift: Any
+    shift: Number
 
     @property
-    def radius(self) -> Any:
+    def radius(self) -> Number:
         """Distance of the reference point from the first axis."""
         return sqrt(self.link.length**2 + (self.shift * sin(self.link.twist)) ** 2)
 
     @property
-    def normal(self) -> Any:
+    def normal(self) -> Number:
         """Angle (rad) about the first axis from the reference point to the common
         normal."""
         return atan2(self.shift * sin(self.link.twist), self.link.length)
 
     @property
-    def normal_at_end(self) -> Any:
+    def normal_at_end(self) -> Number:
         """The same angle about the second axis, in the frame Rx(chi) Ry(theta) of the
         circle."""
         return atan2(
@@ -68,135 +98,289 @@ class TorusLink:
         return TorusLink(Link(-self.link.length, pi - self.link.twist), -self.shift)
 
 
-def torus_link(radius: Any, chi: Any, theta: Any) -> TorusLink:
+class Companion(NamedTuple):
+    """The pin of a torus, the torus that is the same surface, and the pin of that
+    one."""
+
+    pin: TorusLink
+    other: TorusLink
+    other_pin: TorusLink
+
+
+def torus_link(radius: Number, chi: Number, theta: Number) -> TorusLink:
     """The link from the axis of a torus to that of its circle, with centre at
     ``radius``; angles in rad.
 
     For a pin at S give (s, zeta, kappa). Raises `GeometryError` for parallel axes.
     """
-    x, y, z = sin(theta), -sin(chi) * cos(theta), cos(chi) * cos(theta)
+    x = sin(theta)
+    y = -sin(chi) * cos(theta)
+    z = cos(chi) * cos(theta)
     sine = sqrt(x * x + y * y)
-    size = decided(sine)
-    if size is not None and size < 1e-12:
-        raise GeometryError(
-            "sine of the angle between the axes", size, "greater than 0"
-        )
-    return TorusLink(Link(-radius * y / sine, atan2(sine, z)), radius * x / sine**2)
+    require_different("sine of the angle between the axes", sine, 0, "parallel axes")
+    link = Link(-radius * y / sine, atan2(sine, z))
+    return TorusLink(link, radius * x / sine**2)
 
 
-def companion(
-    torus: TorusLink, circle: Any, mirrored: bool = False
-) -> tuple[TorusLink, TorusLink, TorusLink]:
-    """(pin, companion, its pin) of the torus with this link and radius ``circle`` of
-    its circle.
+def companion(torus: TorusLink, circle: Number, mirrored: bool = False) -> Companion:
+    """The companion of the torus with this link and radius ``circle`` of its circle.
 
-    ``pin`` leads from the axis of the circle to that of S; the companion torus is the
+    The pin leads from the axis of the circle to that of S; the companion torus is the
     same surface drawn by another circle, and the second pin leads from that circle to
     the same axis S. Two companions exist, mirror images in the axis of the torus;
     ``mirrored`` chooses the second. Raises `GeometryError` when ``circle`` is too large
     for a torus without shift. Closed form found from the Bennett closure: tan^2 of the
     pin's twist is the positive root of tau^2 u^2 + (k^2 + tau^2 - s^2) u - s^2 = 0.
     """
-    alpha, tau = torus.link.twist, torus.shift
-    k = torus.link.length / sin(alpha)
-    if tau == 0:
-        require_positive(
-            "length/sin(twist) of the torus less the radius of the circle",
-            abs(k) - circle,
-        )
-        u = circle**2 / (k**2 - circle**2)
-    else:
-        p = k**2 + tau**2 - circle**2
-        root = sqrt(p**2 + 4 * tau**2 * circle**2)
-        u = 2 * circle**2 / (p + root)
-    beta = atan(sqrt(u))
+    alpha = torus.link.twist
+    tau = torus.shift
+    sine = sin(alpha)
+    require_different("sine of the twist of the torus", sine, 0, "parallel axes")
+    k = torus.link.length / sine
+    beta = atan(sqrt(_squared_tangent(k, tau, circle)))
     t = tau / cos(beta)
     b = k * sin(beta) if mirrored else -k * sin(beta)
     pin = TorusLink(Link(b, beta), t)
-    other, other_pin = (
-        TorusLink(Link(b, beta), t * cos(alpha)),
-        TorusLink(torus.link, t),
-    )
+    other = TorusLink(Link(b, beta), t * cos(alpha))
     if mirrored:
-        return pin, other, other_pin
-    reversed_pin = Link(
-        -torus.link.length, pi_like(alpha) - alpha
-    )  # its first axis is turned round
-    return pin, other.second_reversed(), TorusLink(reversed_pin, t)
+        return Companion(pin, other, TorusLink(torus.link, t))
+    # the first axis of the second pin is turned round
+    reversed_pin = Link(-torus.link.length, pi_like(alpha) - alpha)
+    return Companion(pin, other.second_reversed(), TorusLink(reversed_pin, t))
 
 
-def torus_4r(r1: Any, s1: Any, chi1: Any, theta1: Any, mirrored: bool = False) -> Loop:
+def _squared_tangent(k: Number, tau: Number, s: Number) -> Number:
+    """tan^2 of the twist of the pin."""
+    if tau == 0:
+        size = decided(k)
+        distance = k if size is None or size >= 0 else -k
+        name = "length/sin(twist) of the torus less the radius of the circle"
+        require_positive(name, distance - s)
+        return s**2 / (k**2 - s**2)
+    p = k**2 + tau**2 - s**2
+    root = sqrt(p**2 + 4 * tau**2 * s**2)
+    require_different("circle of the torus", p + root, 0, "a point")
+    return 2 * s**2 / (p + root)
+
+
+def torus_4r(
+    r1: Number, s1: Number, chi1: Number, theta1: Number, mirrored: bool = False
+) -> Loop:
     """The 4R of two equal tori, axes Q, R1, S, R2: a Bennett linkage. Lengths in one
     unit, angles in rad."""
     torus = torus_link(r1, chi1, theta1)
-    pin, other, other_pin = companion(torus, s1, mirrored)
-    return closed_chain(torus.link, pin.link, other_pin.link, other.link)
+    pair = companion(torus, s1, mirrored)
+    links = (torus, pair.pin, pair.other_pin, pair.other)
+    return closed_chain(*(part.link for part in links))
+
+
+class Sense(Enum):
+    """Whether an axis points as the one that it coincides with, or the other way."""
+
+    PLUS = "+"
+    MINUS = "-"
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One of the sixteen ways in which two pairs of tori make a 5R.
+
+    The circle of torus ``first`` (1 or 2) carries the torus ``second`` (3, with the
+    ratio s/r below 1, or 4, above 1), Z_i1 = ``z_sense`` Z_j, U_i = ``u_sense`` Z_j1.
+    ``mirrored`` takes the second companion of the torus ``second``: the source does not
+    say which one, and both move.
+    """
+
+    first: int
+    second: int
+    z_sense: Sense
+    u_sense: Sense
+    mirrored: bool
+
+    @property
+    def name(self) -> str:
+        """Name in the catalogue."""
+        senses = f"{self.z_sense.name}-{self.u_sense.name}".lower()
+        return f"torus-5r-{self.first}{self.second}-{senses}"
+
+
+@dataclass(frozen=True)
+class _Stage:
+    """What both pairs of tori of a 5R are, before they are joined at the angle delta:
+    of the first pair the ``torus`` that carries, the ``other`` one and its pin, and the
+    companion that makes the second ``pair``."""
+
+    torus: TorusLink
+    other: TorusLink
+    other_pin: TorusLink
+    pair: Companion
+
+
+def _stage(
+    variant: Variant,
+    r1: Number,
+    s1: Number,
+    chi1: Number,
+    theta1: Number,
+    ratio: Number,
+) -> _Stage:
+    torus = torus_link(r1, chi1, theta1)
+    pin, other, other_pin = companion(torus, s1)
+    if variant.first == 2:
+        torus, pin, other, other_pin = other, other_pin, torus, pin
+    carried = pin
+    if variant.u_sense is Sense.MINUS:
+        carried = carried.second_reversed()
+    if variant.z_sense is Sense.MINUS:
+        carried = carried.first_reversed()
+    pair = companion(carried, ratio * pin.radius, variant.mirrored)
+    return _Stage(torus, other, other_pin, pair)
 
 
 def torus_5r(
-    r1: Any,
-    s1: Any,
-    chi1: Any,
-    theta1: Any,
-    ratio: Any,
-    delta: Any,
-    first: int = 1,
-    second: int = 4,
-    z_sign: int = 1,
-    u_sign: int = 1,
-    mirrored: bool = False,
+    r1: Number,
+    s1: Number,
+    chi1: Number,
+    theta1: Number,
+    ratio: Number,
+    delta: Number,
+    variant: Variant,
 ) -> Loop:
     """The 5R of two pairs of tori, axes Q1, R of the other torus of the first pair, S,
     S', R' of the second.
 
-    Torus 1 has ``r1, s1, chi1, theta1``. The circle of torus ``first`` (1 or 2) carries
-    the torus ``second`` (3, with ``ratio`` s/r below 1, or 4, above 1), Z_i1 = z_sign
-    Z_j, U_i = u_sign Z_j1; ``delta`` (rad) is where the other torus of that pair stands
-    in this frame; ``mirrored`` takes its second companion. Lengths in one unit, angles
-    in rad. Raises `GeometryError`.
+    Torus 1 has ``r1, s1, chi1, theta1``; ``ratio`` is s/r of the torus that is carried;
+    ``delta`` (rad) is where the other torus of that pair stands in this frame. Lengths
+    in one unit, angles in rad. Raises `GeometryError`.
     """
-    low, high = (0, 1) if second == 3 else (1, float("inf"))
-    require_within(f"s/r of torus {second}", ratio, low, high, "")
-    torus = torus_link(r1, chi1, theta1)
-    pin, other, other_pin = companion(torus, s1)
-    if first == 2:
-        torus, pin, other, other_pin = other, other_pin, torus, pin
-    carried = pin if u_sign > 0 else pin.second_reversed()
-    if z_sign < 0:
-        carried = carried.first_reversed()
-    pin_j, other_j, other_pin_j = companion(carried, ratio * pin.radius, mirrored)
-    if u_sign < 0:
+    low, high = (0, 1) if variant.second == 3 else (1, math.inf)
+    require_within(f"s/r of torus {variant.second}", ratio, low, high, "")
+    stage = _stage(variant, r1, s1, chi1, theta1, ratio)
+    pin_j, other_j, other_pin_j = stage.pair
+    if variant.u_sense is Sense.MINUS:
         pin_j = pin_j.first_reversed()
     turn = other_j.normal + delta
-    kink = torus.normal_at_end - turn
-    if z_sign < 0:
-        other_j, kink = (
-            other_j.first_reversed(),
-            torus.normal_at_end + pi_like(turn) + turn,
-        )
-    joined = composite_link(other_j.link, torus.link, kink)
-    links = (other.link, other_pin.link, pin_j.link, other_pin_j.link, joined.link)
-    return closed_chain(*links, offsets=(joined.after[0], 0, 0, 0, joined.before[0]))
+    at_end = stage.torus.normal_at_end
+    if variant.z_sense is Sense.MINUS:
+        other_j = other_j.first_reversed()
+        kink = at_end + pi_like(turn) + turn
+    else:
+        kink = at_end - turn
+    joined = composite_link(other_j.link, stage.torus.link, kink)
+    links = (
+        stage.other.link,
+        stage.other_pin.link,
+        pin_j.link,
+        other_pin_j.link,
+        joined.link,
+    )
+    offsets = (joined.after.offset, 0, 0, 0, joined.before.offset)
+    return closed_chain(*links, offsets=offsets)
 
 
-_FIRST_TORUS = (
-    Parameter(
-        "r1",
-        1.5,
-        "length",
-        "distance of the circle's centre from the axis of torus 1",
-        1.2,
-        2.0,
+# --- first guesses: parameters read off the table of a generalized Goldberg 5R. The
+# shift along the axis of S is redundant: it is chosen so that the ratio s/r lies on the
+# side of 1 that the variant asks for.
+
+SHIFTS = (0.0, 0.3, 0.6, 1.0, 1.7, 3.0)  # in units of the first length, either sign
+MARGIN = 1.01  # of the ratio s/r from 1
+LOOSE = 0.05  # of the mean length, and rad: a 5R that misses by more is another
+
+
+def _guesses(variant: Variant, form: np.ndarray) -> Iterator[dict[str, float]]:
+    if not _is_goldberg_like(form):
+        return
+    for shift, supplement in itertools.product(SHIFTS, (False, True)):
+        is_reached = False
+        for sign in (1, -1) if shift else (1,):
+            distance = sign * shift * form[0, 0]
+            for parameters in _guesses_at_shift(variant, form, distance, supplement):
+                is_reached = True
+                yield parameters
+        if is_reached and supplement:
+            return
+
+
+def _is_goldberg_like(form: np.ndarray) -> bool:
+    """Whether links 12 and 45 are alike, link 23 has their Bennett ratio, and joints 2,
+    3, 4 no offset, nearly."""
+    lengths, twists, offsets = form
+    unit = lengths.mean()
+    ratio_gap = lengths[1] * np.sin(twists[0]) - lengths[0] * np.sin(twists[1])
+    gaps = [lengths[0] - lengths[3], ratio_gap, *offsets[1:4]]
+    return bool(
+        min(lengths[:4]) > 0
+        and max(map(abs, gaps)) < LOOSE * unit
+        and abs(np.sin(twists[0] - twists[3])) < LOOSE
+    )
+
+
+def _guesses_at_shift(
+    variant: Variant, form: np.ndarray, shift: float, supplement: bool
+) -> Iterator[dict[str, float]]:
+    lengths = form[0].tolist()
+    twists = form[1].tolist()
+    main, side = (1, 0) if variant.first == 1 else (0, 1)
+    length = lengths[main]
+    twist = math.pi - twists[main] if supplement else twists[main]
+    radius = math.hypot(length, shift * math.sin(twist))
+    cosine = abs(math.cos(twists[side]))
+    pin = shift / cosine if cosine > 1e-9 else 0.0
+    carried = math.hypot(lengths[2], pin * math.tan(twists[2]))
+    ratio = carried / math.hypot(lengths[0], pin * math.sin(twists[0]))
+    if (ratio > 1 / MARGIN) if variant.second == 3 else (ratio < MARGIN):
+        return
+    parameters = {
+        "r1": radius,
+        "s1": math.hypot(lengths[side], pin * math.sin(twists[side])),
+        "chi1": math.atan2(length * math.sin(twist), radius * math.cos(twist)),
+        "theta1": float(np.arcsin(shift * math.sin(twist) ** 2 / radius)),
+        "ratio": ratio,
+    }
+    try:
+        stage = _stage(variant, **parameters)
+    except (GeometryError, ArithmeticError):
+        return
+    candidates = kinks(twists[2], twists[1], twists[4])
+    for kink, turn in itertools.product(candidates, (0.0, math.pi)):
+        delta = _delta(variant, stage, kink + turn)
+        yield {**parameters, "delta": (delta + math.pi) % (2 * math.pi) - math.pi}
+
+
+def _delta(variant: Variant, stage: _Stage, kink: float) -> float:
+    """The angle delta (rad) at which `torus_5r` locks its composite link at
+    ``kink``."""
+    at_end = float(stage.torus.normal_at_end)
+    normal = float(stage.pair.other.normal)
+    if variant.z_sense is Sense.MINUS:
+        return kink - (at_end + math.pi + normal)
+    return -(kink - (at_end - normal))
+
+
+def _bennett_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    yield {"r1": form[0, 0], "s1": form[0, 1], "chi1": form[1, 0], "theta1": 0.0}
+
+
+# --- entries
+
+
+def _angle(
+    name: str, default: float, meaning: str, low: float, high: float
+) -> Parameter:
+    return Parameter(name, default, ParameterKind.ANGLE, meaning, low, high)
+
+
+FIRST_TORUS = (
+    Parameter.length(
+        "r1", 1.5, "distance of the circle's centre from the axis of torus 1", 1.2, 2.0
     ),
-    Parameter("s1", 0.9, "length", "radius of the circle of torus 1", 0.4, 1.1),
-    Parameter("chi1", 0.8, "angle", "first angle of the circle's axis", 0.4, 1.3),
-    Parameter("theta1", 0.25, "angle", "second angle of the circle's axis", -0.5, 0.5),
+    Parameter.length("s1", 0.9, "radius of the circle of torus 1", 0.4, 1.1),
+    _angle("chi1", 0.8, "first angle of the circle's axis", 0.4, 1.3),
+    _angle("theta1", 0.25, "second angle of the circle's axis", -0.5, 0.5),
 )
-_DELTA = Parameter(
-    "delta", 0.6, "angle", "place of the other torus of the second pair", -2.0, 2.0
-)
-_RATIOS = {(1, 3): 0.7, (1, 4): 1.6, (2, 3): 0.45, (2, 4): 1.02}
-_MIRRORED = {
+DELTA = _angle("delta", 0.6, "place of the other torus of the second pair", -2.0, 2.0)
+RATIOS = {(1, 3): 0.7, (1, 4): 1.6, (2, 3): 0.45, (2, 4): 1.02}
+MIRRORED = {
     (1, 3, "--"),
     (1, 4, "-+"),
     (1, 4, "--"),
@@ -204,50 +388,67 @@ _MIRRORED = {
     (2, 3, "+-"),
     (2, 4, "++"),
 }
-_SIGNS = {"++": (1, 1), "+-": (1, -1), "-+": (-1, 1), "--": (-1, -1)}
-_WORDS = {"+": "plus", "-": "minus"}
-_ERRATA = (
-    "(2.1): r is added before the turn by sigma, as in (2.2); the axis of the turn by chi is X, not Y",
-    "(2.3): the terms with sin(theta) of the second and third row take the other sign; (2.5): r is missing",
-    "(2.6): the axis of the circle is Rz(sigma) (sin theta, -sin chi cos theta, cos chi cos theta)",
+ERRATA = (
+    "(2.1): r is added before the turn by sigma, as in (2.2); the axis of the turn by "
+    "chi is X, not Y",
+    "(2.3): the terms with sin(theta) of the second and third row take the other sign; "
+    "(2.5): r is missing",
+    "(2.6): the axis of the circle is Rz(sigma) (sin theta, -sin chi cos theta, "
+    "cos chi cos theta)",
     "(3.5), (3.6): the centre (r1, 0, 0) is to be turned by sigma1",
+)
+ONE_SURFACE = "r1^2 + s1^2 = r2^2 + s2^2, r1 s1 cos(theta1) = r2 s2 cos(theta2)"
+RELATIONS_5R = (
+    Relation(
+        RelationKind.SPECIAL_CASE,
+        "generalized-goldberg-5r",
+        "Bil and Budniak (2015), geometry; found by identification",
+    ),
+    Relation(
+        RelationKind.CONSTRUCTED,
+        "torus-4r",
+        "Bil and Budniak (2015)",
+        "two pairs of tori",
+    ),
 )
 
 
-def _entry(first: int, second: int, signs: str) -> Entry:
-    z_sign, u_sign = _SIGNS[signs]
-    mirrored = (
-        first,
-        second,
-        signs,
-    ) in _MIRRORED  # the source does not say which; both move
-    ratio = _RATIOS[first, second]
-    low, high = (0.3, 0.9) if second == 3 else (1.02, 1.8)
-    which = f"circle {first} on torus {second}, Z{first}1 = {signs[0]}Z{second}, U{first} = {signs[1]}Z{second}1"
+def _variants() -> tuple[Variant, ...]:
+    out = []
+    for first, second in RATIOS:
+        for z_sense, u_sense in itertools.product(Sense, Sense):
+            mirrored = (first, second, z_sense.value + u_sense.value) in MIRRORED
+            out.append(Variant(first, second, z_sense, u_sense, mirrored))
+    return tuple(out)
+
+
+def _ratio_parameter(variant: Variant) -> Parameter:
+    default = RATIOS[variant.first, variant.second]
+    low, high = (0.3, 0.9) if variant.second == 3 else (1.02, 1.8)
+    meaning = f"s/r of torus {variant.second}"
+    return Parameter("ratio", default, ParameterKind.NUMBER, meaning, low, high)
+
+
+def _entry(variant: Variant) -> Entry:
+    i, j = variant.first, variant.second
+    z, u = variant.z_sense.value, variant.u_sense.value
+    senses = f"circle {i} on torus {j}, Z{i}1 = {z}Z{j}, U{i} = {u}Z{j}1"
     return Entry(
-        f"torus-5r-{first}{second}-{_WORDS[signs[0]]}-{_WORDS[signs[1]]}",
-        f"5R of two pairs of tori, {which}",
+        variant.name,
+        f"5R of two pairs of tori, {senses}",
         "Bil and Budniak (2015), eqs 3.1 to 3.4",
-        partial(
-            torus_5r,
-            first=first,
-            second=second,
-            z_sign=z_sign,
-            u_sign=u_sign,
-            mirrored=mirrored,
+        partial(torus_5r, variant=variant),
+        (*FIRST_TORUS, _ratio_parameter(variant), DELTA),
+        conditions=(
+            Condition(f"{ONE_SURFACE}, likewise for the tori 3, 4"),
+            Condition(f"R{i} = Q{j}, s{i} = r{j}, Z{i}1 parallel to Z{j}"),
+            Condition("equivalent to the generalized Goldberg 5R"),
         ),
-        (
-            *_FIRST_TORUS,
-            Parameter("ratio", ratio, "number", f"s/r of torus {second}", low, high),
-            _DELTA,
-        ),
-        (
-            "r1^2 + s1^2 = r2^2 + s2^2, r1 s1 cos(theta1) = r2 s2 cos(theta2), likewise for the tori 3, 4",
-            f"R{first} = Q{second}, s{first} = r{second}, Z{first}1 parallel to Z{second}",
-            "equivalent to the generalized Goldberg 5R",
-        ),
-        errata=_ERRATA,
+        guesses=partial(_guesses, variant),
+        relations=RELATIONS_5R,
+        errata=ERRATA,
         facts={"joints": 5, "mobility": 1},
+        is_other_view=True,
     )
 
 
@@ -257,14 +458,28 @@ ENTRIES = (
         "4R of two equal tori",
         "Bil (2012); Bil and Budniak (2015), section 2",
         torus_4r,
-        _FIRST_TORUS,
-        (
-            "r1^2 + s1^2 = r2^2 + s2^2, r1 s1 cos(theta1) = r2 s2 cos(theta2)",
-            "s1 sin(chi1) = s2 sin(chi2), s1 sin(theta1) cos(chi1) = s2 sin(theta2) cos(chi2)",
-            "a Bennett linkage whose joints are read at points moved along one axis",
+        FIRST_TORUS,
+        conditions=(
+            Condition(ONE_SURFACE),
+            Condition(
+                "s1 sin(chi1) = s2 sin(chi2), "
+                "s1 sin(theta1) cos(chi1) = s2 sin(theta2) cos(chi2)"
+            ),
+            Condition(
+                "a Bennett linkage whose joints are read at points moved along one axis"
+            ),
         ),
-        errata=_ERRATA[:3],
+        guesses=_bennett_guesses,
+        relations=(
+            Relation(
+                RelationKind.SAME,
+                "bennett",
+                "Bil (2012); closed form of the companion torus",
+            ),
+        ),
+        errata=ERRATA[:3],
         facts={"joints": 4, "mobility": 1},
+        is_other_view=True,
     ),
-    *(_entry(*pair, signs) for pair in _RATIOS for signs in _SIGNS),
+    *(_entry(variant) for variant in _variants()),
 )

@@ -3,30 +3,39 @@ common."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from math import radians, sin
-from typing import Any
 
+import numpy as np
+
+from linkages.construction.basic_links import length_a, twist_of
 from linkages.construction.constructions import share_joint
-from linkages.construction.link import bennett_links, closed_chain
-from linkages.construction.spatial_triangle import Kink
-from linkages.entry import Entry, Parameter
-from linkages.loop import Loop
+from linkages.construction.link import Link, bennett_links, closed_chain
+from linkages.construction.numbers import Number
+from linkages.construction.possible_angles import kinks
+from linkages.construction.spatial_triangle import Kink, KinkAngle, composite_link
+from linkages.construction.table_equations import zero_offsets
+from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
+from linkages.loop import GeometryError, Loop
 
 __all__ = ["ENTRIES", "waldron_collinear", "waldron_hybrid"]
 
+POSITION = 120
+
 
 def waldron_hybrid(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    c: Any,
-    gamma: Any,
-    delta: Any,
-    kink_1: Any,
-    kink_2: Any,
-    shift: Any,
-    b: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    c: Number,
+    gamma: Number,
+    delta: Number,
+    kink_1: KinkAngle,
+    kink_2: KinkAngle,
+    shift: Number,
+    b: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Waldron's hybrid 6R of the Bennett loops a, b and c, d: links b, a, [b d], c, d,
     [c a].
@@ -36,22 +45,22 @@ def waldron_hybrid(
     (rad, or a `Kink`); ``shift`` is the distance of the loops along the common axis.
     Source: Waldron (1968); Baker (1993a) for the geometry.
     """
-    a, b = bennett_links(a, alpha, b=(beta, b))
-    c, d = bennett_links(c, gamma, d=(delta, d))
-    return share_joint(
-        closed_chain(a, b, a, b), closed_chain(d, c, d, c), kink_1, kink_2, shift
-    )
+    link_a, link_b = bennett_links(a, alpha, b=(beta, b))
+    link_c, link_d = bennett_links(c, gamma, d=(delta, d))
+    first = closed_chain(link_a, link_b, link_a, link_b)
+    second = closed_chain(link_d, link_c, link_d, link_c)
+    return share_joint(first, second, kink_1, kink_2, shift)
 
 
 def waldron_collinear(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    c: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    c: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Waldron's hybrid 6R without offsets: b and d folded upon each other, a and c in
     line.
@@ -64,26 +73,58 @@ def waldron_collinear(
     )
 
 
-def _twist(name: str, degrees: float, link: str) -> Parameter:
-    return Parameter(
-        name,
-        radians(degrees),
-        "angle",
-        f"twist of link {link}",
-        radians(15),
-        radians(110),
-    )
+def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """Kinks from the twists, the shift from a length or an offset, linear in it."""
+    lengths, twists, _ = form
+    first = kinks(twists[0], twists[4], twists[2])
+    second = kinks(twists[3], twists[1], twists[5])
+    unit = lengths[0]
+    for kink_1, kink_2 in itertools.product(first, second):
+        try:
+            shifts = _shifts(form, kink_1, unit)
+        except GeometryError:
+            continue
+        for shift in shifts:
+            yield {"kink_1": kink_1, "kink_2": kink_2, "shift": shift}
 
 
-_LOOPS = (
-    Parameter("a", 1.7 * sin(radians(35)), "length", "length of link a", 0.3, 3.0),
-    _twist("alpha", 35, "a"),
-    _twist("beta", 62, "b"),
-    Parameter("c", 1.25 * sin(radians(81)), "length", "length of link c", 0.3, 3.0),
-    _twist("gamma", 81, "c"),
-    _twist("delta", 48, "d"),
+def _shifts(form: np.ndarray, kink: float, unit: float) -> list[float]:
+    """Both shifts that give link 34, or joint 3, the size that it has in the table.
+
+    Of length and offset that is taken which depends more on the shift.
+    """
+    lengths, twists, offsets = form
+    b = Link(lengths[0], twists[0])
+    d = Link(lengths[4], twists[4])
+    at_zero = composite_link(b, d, kink, 0.0)
+    at_unit = composite_link(b, d, kink, unit)
+    zero, one, size = at_zero.link.length, at_unit.link.length, lengths[2]
+    by_length = float(one) - float(zero)
+    by_offset = float(at_unit.before.offset) - float(at_zero.before.offset)
+    if abs(by_offset) > abs(by_length):
+        zero, one, size = at_zero.before.offset, at_unit.before.offset, offsets[2]
+    slope = float(one) - float(zero)
+    return [unit * (target - float(zero)) / slope for target in (size, -size)]
+
+
+# --- entries
+
+
+def _kink(name: str, degrees: float, links: str) -> Parameter:
+    return Parameter.angle(name, degrees, f"angle between {links}", -120, 120)
+
+
+LENGTH_C = 1.25 * sin(radians(81))
+LOOPS = (
+    length_a(35),
+    twist_of("a", 35),
+    twist_of("b", 62),
+    Parameter.length("c", LENGTH_C, "length of link c", 0.3, 3.0),
+    twist_of("c", 81),
+    twist_of("d", 48),
 )
-_RATIOS = "sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d"
+RATIOS = Condition("sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d")
+FACTS = {"joints": 6, "mobility": 1}
 
 ENTRIES = (
     Entry(
@@ -92,41 +133,50 @@ ENTRIES = (
         "Waldron (1968); Baker (1993a); Song (2013), section 2.4.5",
         waldron_hybrid,
         (
-            *_LOOPS,
-            Parameter(
-                "kink_1",
-                radians(25),
-                "angle",
-                "angle between b and d",
-                radians(-120),
-                radians(120),
-            ),
-            Parameter(
-                "kink_2",
-                radians(-70),
-                "angle",
-                "angle between c and a",
-                radians(-120),
-                radians(120),
-            ),
-            Parameter(
-                "shift", 0.37, "length", "distance along the common axis", -1.0, 1.0
+            *LOOPS,
+            _kink("kink_1", 25, "b and d"),
+            _kink("kink_2", -70, "c and a"),
+            Parameter.length(
+                "shift", 0.37, "distance along the common axis", -1.0, 1.0
             ),
         ),
-        (
-            _RATIOS,
-            "links 34 and 61 and the offsets R1, R3, R4, R6 from the spatial triangles",
-            "R2 = R5 = 0",
+        conditions=(
+            RATIOS,
+            Condition(
+                "links 34 and 61 and the offsets R1, R3, R4, R6 from the spatial "
+                "triangles"
+            ),
+            Condition("R2 = R5 = 0", (zero_offsets(2, 5),)),
         ),
-        facts={"joints": 6, "mobility": 1},
+        guesses=_guesses,
+        relations=(
+            Relation(
+                RelationKind.CONSTRUCTED,
+                "bennett",
+                "Waldron (1968)",
+                "two loops on a common axis",
+            ),
+        ),
+        facts=FACTS,
     ),
     Entry(
         "waldron-collinear",
         "Waldron's hybrid 6R with collinear links",
         "Waldron (1968); Yu and Baker (1981); Song (2013), section 2.4.6",
         waldron_collinear,
-        _LOOPS,
-        (_RATIOS, "links b, a, b-d, c, d, a+c, twists likewise, R = 0"),
-        facts={"joints": 6, "mobility": 1},
+        LOOPS,
+        conditions=(
+            RATIOS,
+            Condition(
+                "links b, a, b-d, c, d, a+c, twists likewise, R = 0",
+                (zero_offsets(),),
+            ),
+        ),
+        relations=(
+            Relation(
+                RelationKind.SPECIAL_CASE, "waldron-hybrid", "Yu and Baker (1981)"
+            ),
+        ),
+        facts=FACTS,
     ),
 )

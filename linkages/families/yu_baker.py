@@ -3,9 +3,13 @@ loop."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from math import radians, sin
-from typing import Any
 
+import numpy as np
+
+from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twist_of
 from linkages.construction.link import (
     Link,
     bennett_links,
@@ -13,52 +17,58 @@ from linkages.construction.link import (
     half_angle_ratio,
     syncopated_link,
 )
-from linkages.entry import Entry, Parameter
+from linkages.construction.numbers import Number
+from linkages.construction.possible_angles import half_tangents, twists_with
+from linkages.construction.table_equations import zero_offsets
+from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
 from linkages.loop import Loop
 
 __all__ = ["ENTRIES", "yu_baker", "yu_baker_two_ratios"]
 
+POSITION = 130
+
 
 def yu_baker(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    c: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Yu and Baker's syncopated 6R of one Bennett ratio: links e - b, a + c, e - d, c,
     b - d, a.
 
     Twists in rad; the lengths b, c, d follow and are checked if given; e/epsilon
-    follows. Raises `GeometryError`. Source: Yu and Baker (1981); equation (2.4.10) in
-    Song (2013).
+    follows. Raises `GeometryError` for another ratio, and where the loop of e does not
+    exist: for alpha = beta and for gamma = delta. Source: Yu and Baker (1981); equation
+    (2.4.10) in Song (2013).
     """
-    a, b, c, d = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return _syncopated(a, b, c, d)
+    links = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    return _syncopated(*links)
 
 
 def yu_baker_two_ratios(
-    a: Any,
-    alpha: Any,
-    beta: Any,
-    c: Any,
-    gamma: Any,
-    delta: Any,
-    b: Any = None,
-    d: Any = None,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    c: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
     """Yu and Baker's syncopated 6R with one Bennett ratio for a, b and another for c,
     d.
 
-    Source: as `yu_baker`; equation (2.4.10) in Song (2013) asks for one ratio, which is
-    not needed.
+    Errors and source as `yu_baker`; equation (2.4.10) in Song (2013) asks for one
+    ratio, which is not needed.
     """
-    a, b = bennett_links(a, alpha, b=(beta, b))
-    c, d = bennett_links(c, gamma, d=(delta, d))
-    return _syncopated(a, b, c, d)
+    link_a, link_b = bennett_links(a, alpha, b=(beta, b))
+    link_c, link_d = bennett_links(c, gamma, d=(delta, d))
+    return _syncopated(link_a, link_b, link_c, link_d)
 
 
 def _syncopated(a: Link, b: Link, c: Link, d: Link) -> Loop:
@@ -67,47 +77,81 @@ def _syncopated(a: Link, b: Link, c: Link, d: Link) -> Loop:
     return closed_chain(e - b, a + c, e - d, c, b - d, a)
 
 
-_A = Parameter("a", 1.7 * sin(radians(35)), "length", "length of link a", 0.3, 3.0)
-_C = Parameter("c", 1.25 * sin(radians(81)), "length", "length of link c", 0.3, 3.0)
-_TWISTS = tuple(
-    Parameter(
-        name,
-        radians(value),
-        "angle",
-        f"twist of link {link}",
-        radians(15),
-        radians(110),
-    )
-    for name, value, link in (
-        ("alpha", 35, "a"),
-        ("beta", 62, "b"),
-        ("gamma", 81, "c"),
-        ("delta", 48, "d"),
-    )
+def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """A cubic equation for tan(beta/2): delta is beta less the twist of link 56,
+    epsilon beta plus that of link 12."""
+    twists = form[1]
+    a = float(np.tan(twists[5] / 2))
+    c = float(np.tan(twists[3] / 2))
+    x = np.poly1d([1.0, 0.0])
+    one = np.poly1d([1.0])
+    for s, r in itertools.product(_signed(twists[0]), _signed(twists[4])):
+        top, bottom = x - r, one + r * x  # of tan(delta/2)
+        left = (a * c * bottom + x * top) * (a + c) * (one - s * x)
+        right = (x + s) * (a * top + c * x * bottom) * (1 - a * c)
+        for beta in twists_with(np.roots((left - right).coeffs)):
+            half = np.tan(beta / 2 - np.arctan(r))
+            yield {"beta": beta, "delta": 2 * np.arctan(half) % np.pi}
+
+
+def _signed(twist: float) -> list[float]:
+    """Half tangents of the twist and of its opposite, each with and without a half
+    turn."""
+    return half_tangents(twist) + half_tangents(-twist)
+
+
+# --- entries
+
+A = length_a(35)
+C = Parameter.length("c", 1.25 * sin(radians(81)), "length of link c", 0.3, 3.0)
+ALPHA, BETA = twist_of("a", 35), twist_of("b", 62)
+GAMMA, DELTA = twist_of("c", 81), twist_of("d", 48)
+CONDITIONS = (
+    Condition(
+        "links e-b, a+c, e-d, c, b-d, a, twists likewise, R = 0", (zero_offsets(),)
+    ),
+    Condition(
+        "sin(epsilon)/e = sin(alpha+gamma)/(a+c), "
+        "m(alpha,beta) m(gamma,delta) = m(epsilon, alpha+gamma)"
+    ),
 )
-_CONDITIONS = (
-    "links e-b, a+c, e-d, c, b-d, a, twists likewise, R = 0",
-    "sin(epsilon)/e = sin(alpha+gamma)/(a+c), m(alpha,beta) m(gamma,delta) = m(epsilon, alpha+gamma)",
-)
+TWO_RATIOS = Condition("sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d")
+SOURCE = "Yu and Baker (1981); Song (2013), eq. 2.4.10"
+FACTS = {"joints": 6, "mobility": 1}
 
 ENTRIES = (
     Entry(
         "yu-baker",
         "Yu and Baker's syncopated 6R",
-        "Yu and Baker (1981); Song (2013), eq. 2.4.10",
+        SOURCE,
         yu_baker,
-        (_A, *_TWISTS),
-        ("sin(twist)/length is the same for the links a, b, c, d", *_CONDITIONS),
-        facts={"joints": 6, "mobility": 1},
+        (A, ALPHA, BETA, GAMMA, DELTA),
+        conditions=(EQUAL_RATIOS, *CONDITIONS),
+        guesses=_guesses,
+        relations=(
+            Relation(
+                RelationKind.SPECIAL_CASE, "yu-baker-two-ratios", "Yu and Baker (1981)"
+            ),
+        ),
+        facts=FACTS,
     ),
     Entry(
         "yu-baker-two-ratios",
         "Yu and Baker's syncopated 6R with two Bennett ratios",
-        "Yu and Baker (1981); Song (2013), eq. 2.4.10",
+        SOURCE,
         yu_baker_two_ratios,
-        (_A, *_TWISTS[:2], _C, *_TWISTS[2:]),
-        ("sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d", *_CONDITIONS),
+        (A, ALPHA, BETA, C, GAMMA, DELTA),
+        conditions=(TWO_RATIOS, *CONDITIONS),
+        guesses=_guesses,
+        relations=(
+            Relation(
+                RelationKind.CONSTRUCTED,
+                "waldron-collinear",
+                "Yu and Baker (1981)",
+                "taken from a primary Bennett loop",
+            ),
+        ),
         errata=("four equal Bennett ratios are printed; two pairs suffice",),
-        facts={"joints": 6, "mobility": 1},
+        facts=FACTS,
     ),
 )

@@ -4,13 +4,13 @@ the table."""
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
 
-from linkages.entry import Entry, Parameter
+from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.identification.equivalence import (
     Reading,
     Signs,
@@ -20,15 +20,20 @@ from linkages.identification.equivalence import (
     readings,
     table,
 )
-from linkages.identification.recovery import HINTS, SCANS, plain_guess, plain_parameters
+from linkages.identification.recovery import Row, plain_guess, plain_parameters
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["Member", "View", "best_member", "joints_of", "views_of"]
+__all__ = ["NEAR", "Member", "View", "best_member", "joints_of", "views_of"]
 
-# candidates that miss by less are fitted; relative to the characteristic length, rad
+# members that miss by less are fitted, and are near; relative to the characteristic
+# length, rad
 NEAR = 0.05
 DONE = 1e-12  # nothing is gained below
-STEPS, FITTED, STEP = 8, 3, 1e-7
+STEPS = 8  # of Gauss-Newton
+FITTED = 3  # candidates that are fitted
+STEP = 1e-7  # of a difference quotient
+PARTS = (1.0, 0.3, 0.05)  # of a step, tried in turn until it is an improvement
+LONGEST_TURN = 0.2  # rad, of a hidden angle in one step
 
 
 @dataclass(frozen=True)
@@ -38,6 +43,15 @@ class View:
     reading: Reading
     values: np.ndarray
     form: np.ndarray
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """Parameters that a view suggests, and the table (3, n) that they make."""
+
+    view: View
+    parameters: dict[str, float]
+    values: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -62,13 +76,12 @@ class Member:
 def views_of(given: np.ndarray) -> tuple[View, ...]:
     """The table ``given`` (3, n) in all its readings, one for all those that give the
     same numbers."""
-    found: dict[bytes, View] = {}
+    views: dict[bytes, View] = {}
     for reading in readings(given.shape[1]):
         values = reading.of(given)
-        found.setdefault(
-            np.round(values, 12).tobytes(), View(reading, values, normal_form(values))
-        )
-    return tuple(found.values())
+        key = np.round(values, 12).tobytes()
+        views.setdefault(key, View(reading, values, normal_form(values)))
+    return tuple(views.values())
 
 
 def joints_of(entry: Entry) -> int:
@@ -83,84 +96,82 @@ def best_member(entry: Entry, views: Sequence[View], unit: float) -> Member | No
     Lengths are measured in ``unit``. Where all views are far off, the member is the
     best guess, not fitted.
     """
-    guesses = [
-        (view, *guess) for view in views for guess in _candidates(entry, view, unit)
-    ]
-    if not guesses:
+    candidates: list[Candidate] = []
+    for view in views:
+        candidates += _candidates(entry, view, unit)
+    if not candidates:
         return None
-    targets, tables = (
-        np.array(part)
-        for part in zip(*((view.values, t) for view, _, t in guesses), strict=True)
-    )
-    found = compare(targets, tables, unit)
-    order = np.argsort(
-        np.round(found.exact, 10), kind="stable"
-    )  # of equals the first, read as given
-    near = [k for k in order[:FITTED] if found.exact[k] < NEAR] or order[:1]
-    members = [_member(entry, guesses[k][0], guesses[k][1], unit) for k in near]
-    if (
-        found.exact.min() > NEAR / 10
-    ):  # twists modulo pi and signs of offsets may have been read off wrongly
-        blind = [
-            k
-            for k in np.argsort(found.blind)[: 8 * FITTED]
-            if found.blind[k] < min(NEAR, found.exact.min() / 3)
-        ]
-        resigned = (
-            _other_signs(entry, guesses[k][0], guesses[k][1], unit) for k in blind
-        )
-        members += [m for m in resigned if m is not None]
+    targets = np.array([candidate.view.values for candidate in candidates])
+    tables = np.array([candidate.values for candidate in candidates])
+    gaps = compare(targets, tables, unit)
+    # of equals the first, read as given
+    order = np.argsort(np.round(gaps.exact, 10), kind="stable")
+    near = [k for k in order[:FITTED] if gaps.exact[k] < NEAR] or order[:1]
+    members = [_member(entry, candidates[k], unit) for k in near]
+    if gaps.exact.min() > NEAR / 10:
+        # twists modulo pi and signs of offsets may have been read off wrongly
+        limit = min(NEAR, gaps.exact.min() / 3)
+        blind = np.argsort(gaps.blind)[: 8 * FITTED]
+        alike = [candidates[k] for k in blind if gaps.blind[k] < limit]
+        members += _with_other_signs(entry, alike, unit)
     members.sort(key=lambda member: round(member.distance, 10))
-    fitted = [_fit(entry, m, unit) for m in members[:FITTED] if m.distance < NEAR]
+    near_members = [m for m in members[:FITTED] if m.distance < NEAR]
+    fitted = [_fit(entry, member, unit) for member in near_members]
     return min(fitted or members, key=lambda member: round(member.distance, 12))
 
 
 def _build(entry: Entry, parameters: Mapping[str, float]) -> np.ndarray | None:
+    """The table (3, n) of the member; None where the constructor refuses it."""
     try:
         return table(entry.construct(**parameters))
     except (GeometryError, ArithmeticError, ValueError):
         return None
 
 
-def _candidates(
-    entry: Entry, view: View, unit: float
-) -> Iterator[tuple[dict[str, float], np.ndarray]]:
+# --- candidates
+
+
+def _candidates(entry: Entry, view: View, unit: float) -> list[Candidate]:
     """Parameters that the table suggests in this view, with the members they make."""
-    form = view.form
-    plain = {**entry.defaults, **plain_guess(entry, form)}
-    if entry.name not in HINTS and entry.name not in SCANS:
-        yield from _built(entry, [plain])
-        return
-    if not _plain_part_fits(entry, plain, form, unit):
-        return
+    plain = {**entry.defaults, **plain_guess(entry, view.form)}
+    if entry.guesses is None and not entry.scan:
+        return list(_built(entry, view, [plain]))
+    if not _plain_part_fits(entry, plain, view.form, unit):
+        return []
     with np.errstate(all="ignore"):
-        if entry.name in HINTS:
-            yield from _built(
-                entry, [{**plain, **hint} for hint in HINTS[entry.name](form)]
-            )
-            return
-        axes = SCANS[entry.name]
-        grid = [
-            dict(zip(axes, map(float, at), strict=True))
-            for at in itertools.product(*axes.values())
-        ]
-        members = list(_built(entry, [{**plain, **at} for at in grid]))
-        if members:
-            gaps = compare(
-                view.values, np.array([values for _, values in members]), unit
-            ).blind
-            for k in np.argsort(gaps)[: 2 * FITTED]:
-                yield _descend(entry, members[k], view.values, unit, tuple(axes))
+        if entry.guesses is not None:
+            guesses = [{**plain, **guess} for guess in entry.guesses(view.form)]
+            return list(_built(entry, view, guesses))
+        return _scanned_candidates(entry, view, plain, unit)
+
+
+def _scanned_candidates(
+    entry: Entry, view: View, plain: Mapping[str, float], unit: float
+) -> list[Candidate]:
+    """The nearest points of the scan, each moved to the nearest member that differs in
+    the hidden angles alone."""
+    names = tuple(entry.scan)
+    guesses = []
+    for angles in itertools.product(*entry.scan.values()):
+        guesses.append({**plain, **dict(zip(names, angles, strict=True))})
+    points = list(_built(entry, view, guesses))
+    if not points:
+        return []
+    tables = np.array([point.values for point in points])
+    gaps = compare(view.values, tables, unit).blind
+    nearest = np.argsort(gaps)[: 2 * FITTED]
+    return [_descend(entry, points[k], unit, names) for k in nearest]
 
 
 def _built(
-    entry: Entry, guesses: list[dict[str, float]]
-) -> Iterator[tuple[dict[str, float], np.ndarray]]:
+    entry: Entry, view: View, guesses: Iterable[Mapping[str, float]]
+) -> Iterator[Candidate]:
+    """Those of the ``guesses`` that the constructor accepts."""
     for guess in guesses:
         parameters = {name: float(value) for name, value in guess.items()}
         values = _build(entry, parameters)
         if values is not None and np.all(np.isfinite(values)):
-            yield parameters, values
+            yield Candidate(view, parameters, values)
 
 
 def _plain_part_fits(
@@ -171,13 +182,14 @@ def _plain_part_fits(
     values = _build(entry, plain)
     if values is None:
         return True  # only the hidden parameters can tell
-    fixed, other = _unchanged(entry.construct, entry.parameters), normal_form(values)
+    fixed = _unchanged(entry.construct, entry.parameters)
+    other = normal_form(values)
     gaps = np.abs(np.abs(form) - np.abs(other)) / unit
-    turn, opposite = (np.abs(np.sin(form[1] - sign * other[1])) for sign in (1, -1))
-    short = (
-        np.minimum(form[0], other[0]) < NEAR * unit
-    )  # a link of no length may be reversed unseen
-    gaps[1] = np.where(short, np.minimum(turn, opposite), turn)
+    turn = np.abs(np.sin(form[1] - other[1]))
+    opposite = np.abs(np.sin(form[1] + other[1]))
+    # a link of no length may be reversed unseen
+    is_short = np.minimum(form[0], other[0]) < NEAR * unit
+    gaps[1] = np.where(is_short, np.minimum(turn, opposite), turn)
     return not np.any(gaps[fixed] > NEAR)
 
 
@@ -192,22 +204,17 @@ def _unchanged(
     mask = np.ones(base.shape, dtype=bool)
     for p in parameters:
         if p.name not in plain:
-            mask &= (
-                np.abs(
-                    table(construct(**{**defaults, p.name: p.default * 1.013})) - base
-                )
-                < 1e-12
-            )
+            moved = table(construct(**{**defaults, p.name: p.default * 1.013}))
+            mask &= np.abs(moved - base) < 1e-12
     return mask
 
 
-def _member(
-    entry: Entry, view: View, parameters: dict[str, float], unit: float
-) -> Member:
-    values = table(entry.construct(**parameters))
-    signs = find_signs(view.values, values, unit)
-    distance = float(np.linalg.norm(_gaps(view.values, signs.of(values), unit)))
-    return Member(parameters, values, view, signs, distance)
+def _member(entry: Entry, candidate: Candidate, unit: float) -> Member:
+    view = candidate.view
+    signs = find_signs(view.values, candidate.values, unit)
+    gaps = _gaps(view.values, signs.of(candidate.values), unit)
+    distance = float(np.linalg.norm(gaps))
+    return Member(candidate.parameters, candidate.values, view, signs, distance)
 
 
 def _gaps(read: np.ndarray, values: np.ndarray, unit: float) -> np.ndarray:
@@ -218,132 +225,141 @@ def _gaps(read: np.ndarray, values: np.ndarray, unit: float) -> np.ndarray:
     return out.ravel()
 
 
-def _other_signs(
-    entry: Entry, view: View, parameters: dict[str, float], unit: float
-) -> Member | None:
-    """The nearest member, if any, when plain twists may be half a turn more and plain
-    offsets opposite."""
+def _with_other_signs(
+    entry: Entry, candidates: Iterable[Candidate], unit: float
+) -> list[Member]:
+    """For each candidate the nearest member, if any, when plain twists may be half a
+    turn more and plain offsets opposite."""
+    members = []
+    for candidate in candidates:
+        guesses = _resigned(entry, candidate)
+        others = list(_built(entry, candidate.view, guesses))
+        if others:
+            tables = np.array([other.values for other in others])
+            gaps = compare(candidate.view.values, tables, unit).exact
+            members.append(_member(entry, others[gaps.argmin()], unit))
+    return members
+
+
+def _resigned(entry: Entry, candidate: Candidate) -> Iterator[dict[str, float]]:
+    """The parameters with every choice of half turns and signs."""
+    names = []
     choices = []
-    for name, (row, column, _) in plain_parameters(entry).items():
-        value = parameters[name]
-        if row == 1:
-            reversed_unseen = () if view.values[0, column] else (-value, np.pi - value)
-            choices.append(
-                [(name, x) for x in (value, value + np.pi, *reversed_unseen)]
-            )
-        elif row == 2:
-            choices.append([(name, value), (name, -value)])
-    tried = list(
-        _built(
-            entry,
-            [{**parameters, **dict(some)} for some in itertools.product(*choices)],
-        )
-    )
-    if not tried:
-        return None
-    best = compare(
-        view.values, np.array([values for _, values in tried]), unit
-    ).exact.argmin()
-    return _member(entry, view, tried[best][0], unit)
+    for name, place in plain_parameters(entry).items():
+        value = candidate.parameters[name]
+        values = [value]
+        if place.row is Row.TWISTS:
+            values.append(value + np.pi)
+            if not candidate.view.values[0, place.column]:  # reversed unseen
+                values += [-value, np.pi - value]
+        elif place.row is Row.OFFSETS:
+            values.append(-value)
+        names.append(name)
+        choices.append(values)
+    for choice in itertools.product(*choices):
+        yield {**candidate.parameters, **dict(zip(names, choice, strict=True))}
+
+
+# --- fitting
 
 
 def _fit(entry: Entry, member: Member, unit: float) -> Member:
     """The member at the least distance, by Gauss-Newton from ``member`` with its
     reversals held."""
     names = tuple(member.parameters)
+    scales = _scales(entry, names, unit)
     for _ in range(STEPS):
-        jacobian = _jacobian(entry, member, names, unit)
         if member.distance < DONE:
             break
+        jacobian = _jacobian(entry, member, names, unit)
         gaps = _gaps(member.view.values, member.signs.of(member.values), unit)
-        step = np.linalg.lstsq(jacobian, gaps, rcond=1e-9)[0] * _scales(
-            entry, names, unit
-        )
-        after = _stepped(
-            entry, member, dict(zip(names, step.tolist(), strict=True)), unit
-        )
+        step = np.linalg.lstsq(jacobian, gaps, rcond=1e-9)[0] * scales
+        changes = dict(zip(names, step.tolist(), strict=True))
+        after = _improved(entry, member, changes, unit)
         if after is None:
             break
-        gain, member = member.distance - after.distance, after
+        gain = member.distance - after.distance
+        member = after
         if gain < 1e-3 * member.distance:
             break
-    sizes = np.linalg.svd(_jacobian(entry, member, names, unit), compute_uv=False)
+    jacobian = _jacobian(entry, member, names, unit)
+    sizes = np.linalg.svd(jacobian, compute_uv=False)
     return replace(member, freedom=int(np.sum(sizes > 1e-6 * sizes[0])))
 
 
-def _stepped(
+def _improved(
     entry: Entry, member: Member, step: Mapping[str, float], unit: float
 ) -> Member | None:
     """The member after the step, shortened until that is an improvement; None if it
     never is."""
-    for part in (1.0, 0.3, 0.05):
-        parameters = {
-            name: value + part * step[name] for name, value in member.parameters.items()
-        }
-        if _build(entry, parameters) is not None:
-            after = _member(entry, member.view, parameters, unit)
+    for part in PARTS:
+        parameters = {}
+        for name, value in member.parameters.items():
+            parameters[name] = value + part * step[name]
+        values = _build(entry, parameters)
+        if values is not None:
+            candidate = Candidate(member.view, parameters, values)
+            after = _member(entry, candidate, unit)
             if after.distance < member.distance:
                 return after
     return None
 
 
 def _scales(entry: Entry, names: tuple[str, ...], unit: float) -> np.ndarray:
-    kinds = {p.name: p.kind for p in entry.parameters}
-    return np.array([unit if kinds[name] == "length" else 1.0 for name in names])
+    """``unit`` for lengths, 1 for other parameters (k,)."""
+    lengths = {p.name for p in entry.parameters if p.kind is ParameterKind.LENGTH}
+    return np.array([unit if name in lengths else 1.0 for name in names])
 
 
 def _jacobian(
     entry: Entry, member: Member, names: tuple[str, ...], unit: float
 ) -> np.ndarray:
     """Derivatives (3 n, k) of the signed table by the parameters, these in their
-    scales; 0 where a side is refused."""
-    base = member.signs.of(member.values)
+    scales."""
     columns = []
     for name, scale in zip(names, _scales(entry, names, unit), strict=True):
-        for step in (STEP, -STEP):
-            values = _build(
-                entry,
-                {**member.parameters, name: member.parameters[name] + step * scale},
-            )
-            if values is not None:
-                columns.append(_gaps(member.signs.of(values), base, unit) / step)
-                break
-        else:
-            columns.append(np.zeros(base.size))
+        columns.append(_derivative(entry, member, name, scale, unit))
     return np.array(columns).T
 
 
+def _derivative(
+    entry: Entry, member: Member, name: str, scale: float, unit: float
+) -> np.ndarray:
+    """Derivative (3 n,) by one parameter, from the side that the constructor accepts; 0
+    for none."""
+    base = member.signs.of(member.values)
+    for step in (STEP, -STEP):
+        moved = member.parameters[name] + step * scale
+        values = _build(entry, {**member.parameters, name: moved})
+        if values is not None:
+            return _gaps(member.signs.of(values), base, unit) / step
+    return np.zeros(base.size)
+
+
 def _descend(
-    entry: Entry,
-    start: tuple[dict[str, float], np.ndarray],
-    read: np.ndarray,
-    unit: float,
-    names: tuple[str, ...],
-) -> tuple[dict[str, float], np.ndarray]:
-    """Gauss-Newton on the hidden angles ``names`` alone, signs as found, from a point
-    of a scan."""
-    parameters, values = start
+    entry: Entry, start: Candidate, unit: float, names: tuple[str, ...]
+) -> Candidate:
+    """Gauss-Newton on the hidden angles ``names`` alone, from a point of a scan, with
+    the signs that fit best at each step."""
+    read = start.view.values
+    parameters, values = start.parameters, start.values
     for _ in range(STEPS):
         signs = find_signs(read, values, unit)
         base = signs.of(values)
         columns = []
         for name in names:
             moved = _build(entry, {**parameters, name: parameters[name] + STEP})
-            columns.append(
-                np.zeros(base.size)
-                if moved is None
-                else _gaps(signs.of(moved), base, unit) / STEP
-            )
-        step = np.linalg.lstsq(
-            np.array(columns).T, _gaps(read, base, unit), rcond=1e-9
-        )[0]
-        moved_to = {
-            n: parameters[n] + float(np.clip(d, -0.2, 0.2))
-            for n, d in zip(names, step, strict=True)
-        }
-        after = {**parameters, **moved_to}
+            if moved is None:
+                columns.append(np.zeros(base.size))
+            else:
+                columns.append(_gaps(signs.of(moved), base, unit) / STEP)
+        gaps = _gaps(read, base, unit)
+        step = np.linalg.lstsq(np.array(columns).T, gaps, rcond=1e-9)[0]
+        after = dict(parameters)
+        for name, turn in zip(names, step, strict=True):
+            after[name] += float(np.clip(turn, -LONGEST_TURN, LONGEST_TURN))
         built = _build(entry, after)
         if built is None or np.abs(step).max() < 1e-10:
             break
         parameters, values = after, built
-    return parameters, values
+    return Candidate(start.view, parameters, values)

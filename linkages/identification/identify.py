@@ -2,36 +2,61 @@
 
 The geometry of an entry follows from its free parameters by its constructor. So for
 every entry and every way to read the table, the parameters are read off
-(`linkages.identification.recovery`), the member is built and compared, and the best is
-fitted by Gauss-Newton with the reversals of axes and links held. The table is a case of
-the entry when the member so found is the same table up to
-`linkages.identification.equivalence`, within a tolerance.
+(`linkages.identification.recovery`, and the guesses of the entry), the member is built
+and compared, and the best is fitted by Gauss-Newton with the reversals of axes and
+links held. The table is a case of the entry when the member so found is the same table
+up to `linkages.identification.equivalence`, within a tolerance.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
 import numpy as np
 
+from bifurc.errors import BifurcError
 from linkages.catalogue import catalogue
 from linkages.construction.constructions import lock
 from linkages.construction.spatial_triangle import Kink
-from linkages.entry import Entry
-from linkages.identification.condition_residuals import condition_residual
+from linkages.entry import Entry, ParameterKind
 from linkages.identification.equivalence import Reading, table
-from linkages.identification.fitting import Member, best_member, joints_of, views_of
+from linkages.identification.fitting import (
+    NEAR,
+    Member,
+    best_member,
+    joints_of,
+    views_of,
+)
 from linkages.loop import MIN_JOINTS, GeometryError, Loop
 
-__all__ = ["Identification", "LockedJoint", "Match", "identify"]
+__all__ = [
+    "NEAR",
+    "Identification",
+    "LockedJoint",
+    "Match",
+    "ToleranceError",
+    "identify",
+]
 
 TOLERANCE = 1e-8
 # of fits that miss by amounts within this factor, the most special one counts as the
 # nearest
 ALIKE = 3.0
+
+
+class ToleranceError(BifurcError, ValueError):
+    """A tolerance that is no distance: ``value`` is what was given."""
+
+    def __init__(self, value: float):
+        self.value = value
+        super().__init__(
+            f"tolerance: {value} is not allowed; it must be a finite number, 0 or "
+            "greater"
+        )
 
 
 @dataclass(frozen=True)
@@ -42,9 +67,9 @@ class Match:
     the table (3, n) of that member, read and signed as the given one; ``residuals`` (3,
     n) are given less member, lengths and offsets relative to the characteristic length,
     twists in rad; ``distance`` is their norm. ``freedom`` says how many parameters
-    matter at this member, scale included; it is 0 for a guess too far off to be fitted.
-    ``conditions`` pairs each condition of the entry with how far the given table is
-    from it, see `linkages.identification.condition_residuals`.
+    matter at this member, scale included. ``conditions`` pairs the text of each
+    condition of the entry with how far the given table is from it, see
+    `linkages.entry.Condition`.
     """
 
     entry: Entry
@@ -69,8 +94,13 @@ class LockedJoint:
 
 @dataclass(frozen=True)
 class Identification:
-    """What a loop is: ``matches``, the most special first, ``nearest`` others by
-    distance, and ``locked`` joints."""
+    """What a loop is: ``matches``, the most special first, the ``nearest`` others by
+    distance, and ``locked`` joints.
+
+    The nearest are those that miss by less than `NEAR`, a twentieth of the
+    characteristic length and of a radian all numbers of the table together; a linkage
+    that is further off is not a neighbour.
+    """
 
     loop: Loop
     tolerance: float
@@ -94,53 +124,62 @@ def identify(
     reversals, mirror image and scale.
 
     ``tolerance`` bounds `Match.distance`; ``entries`` restricts the search; ``locking``
-    also locks each joint in turn.
+    also locks each joint in turn. Raises `ToleranceError` for a tolerance that is
+    negative or not finite.
     """
-    given, unit = table(loop), loop.characteristic_length
-    views, found = views_of(given), []
+    if not (math.isfinite(tolerance) and tolerance >= 0):
+        raise ToleranceError(tolerance)
+    given = table(loop)
+    unit = loop.characteristic_length
+    views = views_of(given)
+    candidates = []
     for entry in catalogue().values() if entries is None else entries:
-        member = best_member(entry, views, unit) if joints_of(entry) == loop.n else None
-        if member is not None:
-            found.append(_match(member, entry, given, unit))
-    matches = sorted(
-        (m for m in found if m.distance <= tolerance),
-        key=lambda m: (m.freedom, len(m.parameters)),
-    )
-    others = _nearest_first([m for m in found if m.distance > tolerance])
-    locked = _locked(loop, tolerance) if locking else ()
-    return Identification(loop, tolerance, tuple(matches), others, locked)
+        if joints_of(entry) == loop.n:
+            member = best_member(entry, views, unit)
+            if member is not None:
+                candidates.append(_match(member, entry, given, unit))
+    matches = [match for match in candidates if match.distance <= tolerance]
+    matches.sort(key=lambda match: (match.freedom, len(match.parameters)))
+    others = [match for match in candidates if tolerance < match.distance < NEAR]
+    locked = _locked_joints(loop, tolerance) if locking else ()
+    nearest = _nearest_first(others)
+    return Identification(loop, tolerance, tuple(matches), nearest, locked)
 
 
 def _match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> Match:
-    residuals = given - member.as_given
-    residuals[[0, 2]] /= unit
-    residuals[1] = np.mod(residuals[1] + np.pi, 2 * np.pi) - np.pi
-    kinds = {p.name: p.kind for p in entry.parameters}
-    parameters = {
-        name: float(np.mod(value + np.pi, 2 * np.pi) - np.pi)
-        if kinds[name] == "angle"
-        else value
-        for name, value in member.parameters.items()
-    }
-    expected = given - residuals * [[unit], [1.0], [unit]]
-    labelled = member.signs.of(member.view.values) / [
-        [unit],
-        [1.0],
-        [unit],
-    ]  # reversing twice is not reversing
-    conditions = tuple(
-        (text, condition_residual(text, labelled)) for text in entry.conditions
-    )
+    units = np.array([[unit], [1.0], [unit]])
+    residuals = (given - member.as_given) / units
+    residuals[1] = _wrapped(residuals[1])
+    # reversing twice is not reversing
+    labelled = member.signs.of(member.view.values) / units
+    conditions = []
+    for condition in entry.conditions:
+        conditions.append((condition.text, condition.residual(labelled)))
     return Match(
         entry,
-        parameters,
+        _wrapped_parameters(entry, member),
         member.view.reading,
-        expected,
+        given - residuals * units,
         residuals,
         member.distance,
         member.freedom,
-        conditions,
+        tuple(conditions),
     )
+
+
+def _wrapped_parameters(entry: Entry, member: Member) -> dict[str, float]:
+    """The parameters of the member, angles in [-pi, pi)."""
+    out = {}
+    for parameter in entry.parameters:
+        value = member.parameters[parameter.name]
+        if parameter.kind is ParameterKind.ANGLE:
+            value = float(_wrapped(np.array(value)))
+        out[parameter.name] = value
+    return out
+
+
+def _wrapped(angles: np.ndarray) -> np.ndarray:
+    return np.asarray(np.mod(angles + np.pi, 2 * np.pi) - np.pi)
 
 
 def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:
@@ -153,7 +192,8 @@ def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:
     left = sorted(matches, key=_spread)
     out: list[Match] = []
     while left:
-        alike = [m for m in left if _spread(m) <= ALIKE * _spread(left[0])]
+        limit = ALIKE * _spread(left[0])
+        alike = [match for match in left if _spread(match) <= limit]
         out += sorted(alike, key=lambda m: (m.freedom or 99, len(m.parameters)))
         left = left[len(alike) :]
     return tuple(out)
@@ -162,34 +202,31 @@ def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:
 def _spread(match: Match) -> float:
     """The distance per condition, of which there are as many as numbers in the table
     less the freedom."""
-    return match.distance / max(match.residuals.size - match.freedom, 1) ** 0.5
+    count = max(match.residuals.size - match.freedom, 1)
+    return float(match.distance / count**0.5)
 
 
 @cache
 def _for_locking() -> tuple[Entry, ...]:
-    """The catalogue without the linkages of tori, which are Bennett and generalized
-    Goldberg linkages."""
-    return tuple(
-        entry for entry in catalogue().values() if not entry.name.startswith("torus")
-    )
+    """The catalogue without the linkages that are others in more parameters."""
+    return tuple(entry for entry in catalogue().values() if not entry.is_other_view)
 
 
-def _locked(loop: Loop, tolerance: float) -> tuple[LockedJoint, ...]:
+def _locked_joints(loop: Loop, tolerance: float) -> tuple[LockedJoint, ...]:
     """Every joint without offset that, straight or folded, leaves a known linkage."""
+    if loop.n <= MIN_JOINTS:
+        return ()
     out = []
-    if loop.n > MIN_JOINTS:
-        for joint, kink in itertools.product(range(1, loop.n + 1), Kink):
-            if abs(loop.offsets[joint - 1]) > tolerance * loop.characteristic_length:
-                continue
-            try:
-                smaller = lock(loop, joint, kink)
-            except GeometryError:
-                continue
-            matches = identify(
-                smaller, tolerance, _for_locking(), locking=False
-            ).matches
-            if matches:
-                out.append(
-                    LockedJoint(joint, np.pi if kink is Kink.FOLDED else 0.0, matches)
-                )
+    largest = tolerance * loop.characteristic_length
+    for joint, kink in itertools.product(range(1, loop.n + 1), Kink):
+        if abs(loop.offsets[joint - 1]) > largest:
+            continue
+        try:
+            smaller = lock(loop, joint, kink)
+        except GeometryError:
+            continue
+        matches = identify(smaller, tolerance, _for_locking(), locking=False).matches
+        if matches:
+            angle = np.pi if kink is Kink.FOLDED else 0.0
+            out.append(LockedJoint(joint, angle, matches))
     return tuple(out)

@@ -1,15 +1,18 @@
 """Angles that the twists and lengths of composite links leave possible, every candidate
-of each; all in rad."""
+of each; all in rad.
+
+They read parameters off a table: what `linkages.construction.link` and
+`linkages.construction.spatial_triangle` compute, the other way round.
+"""
 
 from __future__ import annotations
 
 import itertools
 from math import pi
-from typing import Any
 
 import numpy as np
 
-__all__ = ["half_tangents", "kinks", "twist_pairs", "twists_of"]
+__all__ = ["half_tangents", "kinks", "twist_pairs", "twists_with"]
 
 BESIDE = 0.01
 # a cosine beyond this is not the rounding, or the error, of a table worth fitting
@@ -17,7 +20,9 @@ SLACK = 1.02
 
 
 def _inverse_cosine(value: float) -> float | None:
-    return float(np.arccos(np.clip(value, -1.0, 1.0))) if abs(value) < SLACK else None
+    if not abs(value) < SLACK:
+        return None
+    return float(np.arccos(np.clip(value, -1.0, 1.0)))
 
 
 def kinks(first: float, second: float, joined: float) -> list[float]:
@@ -28,13 +33,12 @@ def kinks(first: float, second: float, joined: float) -> list[float]:
     and angles beside it come too.
     """
     scale = np.sin(first) * np.sin(second)
+    if not scale:
+        return []
     out: list[float] = []
     for cosine in (np.cos(joined), -np.cos(joined)):
-        kink = (
-            _inverse_cosine((np.cos(first) * np.cos(second) - cosine) / scale)
-            if scale
-            else None
-        )
+        product = np.cos(first) * np.cos(second)
+        kink = _inverse_cosine((product - cosine) / scale)
         if kink is None:
             continue
         out += [kink, -kink]
@@ -47,20 +51,19 @@ def kinks(first: float, second: float, joined: float) -> list[float]:
 def twist_pairs(twist: float, ratio: float, sign: int) -> list[tuple[float, float]]:
     """Twists x, y in (0, pi) with x + sign y = ``twist`` modulo pi and sin x + sign sin
     y = ``ratio`` up to sign."""
+    totals = (twist, twist + pi, twist - pi)
     out = []
-    for total, size in itertools.product(
-        (twist, twist + pi, twist - pi), (ratio, -ratio)
-    ):
+    for total, size in itertools.product(totals, (ratio, -ratio)):
         sine = 2 * np.sin(total / 2)
-        other = _inverse_cosine(size / sine) if sine else None
-        if other is None:
+        half = _inverse_cosine(size / sine) if sine else None
+        if half is None:
             continue
-        pairs = (
-            [(other + total / 2, other - total / 2)]
-            if sign < 0
-            else [(total / 2 + h, total / 2 - h) for h in (other, -other)]
-        )
-        out += [pair for pair in pairs if all(0 < x < pi for x in pair)]
+        mean = total / 2
+        if sign < 0:
+            pairs = [(half + mean, half - mean)]
+        else:
+            pairs = [(mean + half, mean - half), (mean - half, mean + half)]
+        out += [(x, y) for x, y in pairs if 0 < x < pi and 0 < y < pi]
     return out
 
 
@@ -70,11 +73,11 @@ def half_tangents(twist: float) -> list[float]:
     return [t, -1 / t] if t else [0.0]
 
 
-def twists_of(tangents: Any) -> list[float]:
+def twists_with(tangents: float | np.ndarray) -> list[float]:
     """Twists in (0, pi) with these half-angle tangents, complex ones left out."""
-    values = np.atleast_1d(tangents)
-    return [
-        float(2 * np.arctan(t.real))
-        for t in values
-        if abs(t.imag) < 1e-6 * (1 + abs(t)) and t.real > 0
-    ]
+    out = []
+    for t in np.atleast_1d(tangents):
+        is_real = abs(t.imag) < 1e-6 * (1 + abs(t))
+        if is_real and t.real > 0:
+            out.append(float(2 * np.arctan(t.real)))
+    return out

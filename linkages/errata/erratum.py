@@ -1,0 +1,41 @@
+"""One misprint and the measure of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+__all__ = ["HOLDS", "Amounts", "Erratum", "median_and_largest"]
+
+HOLDS = 1e-11  # what a correct equation may leave in doubles
+
+
+class Amounts(NamedTuple):
+    """By how much the printed and the corrected equation fail."""
+
+    printed: float
+    corrected: float
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """One misprint of a ``source``; ``measure`` evaluates the printed and the corrected
+    equation for the ``linkage``."""
+
+    source: str
+    equation: str
+    linkage: str
+    printed: str
+    corrected: str
+    measure: Callable[[], Amounts]
+
+
+def median_and_largest(
+    printed: list[float] | np.ndarray, corrected: list[float] | np.ndarray
+) -> Amounts:
+    """The median of what the print leaves along a path, and the largest of what the
+    correction leaves."""
+    return Amounts(float(np.median(printed)), float(np.max(corrected)))
