@@ -20,8 +20,7 @@ import numpy as np
 from bifurc.atlas import Atlas
 from linkages.app.scene_figure import draw_configuration
 from linkages.app.texts import count_of
-from linkages.catalogue import FAMILIES, catalogue
-from linkages.closed_forms.all_forms import closed_forms
+from linkages.catalogue import catalogue, families
 from linkages.entry import Entry, Parameter
 from linkages.linkage import load
 from linkages.mapping import map_linkage
@@ -54,7 +53,7 @@ def make_page(counts: Mapping[str, str]) -> str:
         rows.append(f"| [{entry.name}](#{entry.name}) | {joints} | {entry.title} |")
         sections.append(_section(entry, counts.get(entry.name, NOT_COUNTED)))
     table = "\n".join(["| name | joints | title |", "|---|---|---|", *rows])
-    size = f"{len(FAMILIES)} families, {len(rows)} linkages."
+    size = f"{len(families())} families, {len(rows)} linkages."
     return "\n".join([HEAD, f"{size}\n\n{table}\n", *sections])
 
 
@@ -86,9 +85,9 @@ def _section(entry: Entry, count: str) -> str:
     parts = [
         f"## {entry.name}\n\n{entry.title}. Source: {entry.source}.",
         f"Parameters: {parameters}.",
-        _list("Conditions", entry.conditions),
+        _list("Conditions", [condition.text for condition in entry.conditions]),
         _list("Relations", _relations(entry.name)),
-        _list("Closed forms", _closed_forms(entry.name)),
+        _list("Closed forms", _closed_forms(entry)),
         _list("Misprints in the source", entry.errata),
         f"Map: {count}.",
     ]
@@ -105,7 +104,7 @@ def _parameter(parameter: Parameter) -> str:
 def _relations(name: str) -> list[str]:
     lines = []
     for relation in relations_of(name):
-        other = relation.second if relation.first == name else relation.first
+        other = relation.other
         words = relation.kind.value
         if relation.kind is RelationKind.SAME:
             words = "the same linkage as"
@@ -114,11 +113,11 @@ def _relations(name: str) -> list[str]:
     return lines
 
 
-def _closed_forms(name: str) -> list[str]:
+def _closed_forms(entry: Entry) -> list[str]:
     """Name, source and LaTeX of every closed form of a linkage, u_x being tan(x/2) and
     t_i tan(theta_i/2)."""
     lines = []
-    for form in closed_forms(name):
+    for form in entry.closed_forms:
         equations = form.latex().items()
         shown = [f"  - ${left} = {right}$" for left, right in equations]
         lines.append("\n".join([f"{form.form} ({form.source}):", *shown]))

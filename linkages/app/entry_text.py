@@ -22,7 +22,7 @@ def describe_entry(entry: Entry) -> str:
     parts = [
         f"{entry.name}\n{entry.title}\nSource: {entry.source}",
         f"Parameters\n{parameters}",
-        _list("Conditions", entry.conditions),
+        _list("Conditions", [condition.text for condition in entry.conditions]),
         describe_geometry(entry.build()),
         _list("Published facts", facts),
         _list("Misprints in the source", entry.errata),

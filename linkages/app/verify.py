@@ -13,7 +13,6 @@ from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import singular_values
 from linkages.catalogue import entry
-from linkages.closed_forms.all_forms import closed_forms
 from linkages.closed_forms.closed_form import ClosedForm
 from linkages.closed_forms.comparison import compare
 from linkages.closed_forms.proof import prove
@@ -140,14 +139,14 @@ def verify(name: str, members: int = 1, points: int = 6, seed: int = 0) -> Verif
     `UnknownLinkageError`."""
     family = entry(name)
     rng = np.random.default_rng(seed)
-    proofs = [_check_form(form, points, seed) for form in closed_forms(name)]
+    proofs = [_check_form(form, family, points, seed) for form in family.closed_forms]
     parameters = [family.defaults]
     parameters += [family.draw(rng) for _ in range(members - 1)]
     errata = [ErratumCheck(e.equation, *e.measure()) for e in errata_of(name)]
     checks = [check_member(family, values, seed) for values in parameters]
     return Verification(
         name=name,
-        conditions=family.conditions,
+        conditions=tuple(condition.text for condition in family.conditions),
         closed_forms=tuple(proofs),
         members=tuple(checks),
         errata=tuple(errata),
@@ -155,8 +154,10 @@ def verify(name: str, members: int = 1, points: int = 6, seed: int = 0) -> Verif
     )
 
 
-def _check_form(form: ClosedForm, points: int, seed: int) -> ClosedFormCheck:
-    proof = prove(form, points, seed)
+def _check_form(
+    form: ClosedForm, family: Entry, points: int, seed: int
+) -> ClosedFormCheck:
+    proof = prove(form, family, points, seed)
     return ClosedFormCheck(
         form.form, form.source, proof.proved, proof.points, proof.doubt
     )
@@ -169,7 +170,7 @@ def check_member(family: Entry, values: Mapping[str, float], seed: int) -> Membe
         loop = family.build(**values)
     except GeometryError as refusal:
         return MemberCheck(values, refused=str(refusal))
-    forms = closed_forms(family.name)
+    forms = family.closed_forms
     starts = _starts_on(forms, values, seed)
     has_surfaces = False
     if not len(starts):

@@ -83,10 +83,15 @@ def _distances(branch: Branch, s: np.ndarray, configurations: np.ndarray) -> np.
         direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
         gap = np.remainder(configurations - points + np.pi, 2 * np.pi) - np.pi
         shift = np.nan_to_num(np.sum(gap * direction, axis=1))
-        foot = foot + np.clip(shift, -LONGEST_STEP, LONGEST_STEP)
-        if branch.closed:
-            foot = np.remainder(foot, branch.length)
-        else:
-            foot = np.clip(foot, 0.0, branch.length)
+        step = np.clip(shift, -LONGEST_STEP, LONGEST_STEP)
+        foot = _on_branch(branch, foot + step)
     across = np.linalg.norm(gap - shift[:, None] * direction, axis=1)
     return np.where(np.abs(shift) < FOOT, across, np.inf)
+
+
+def _on_branch(branch: Branch, s: np.ndarray) -> np.ndarray:
+    """Arclengths (k,) brought onto the branch: round a closed one, to the ends of an
+    open one."""
+    if branch.closed:
+        return np.asarray(np.remainder(s, branch.length))
+    return np.asarray(np.clip(s, 0.0, branch.length))

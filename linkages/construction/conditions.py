@@ -61,14 +61,20 @@ def require_equal(name: str, value: Number, expected: Number, meaning: str) -> N
         raise GeometryError(name, f"{left:.10g}", allowed)
 
 
-def require_different(name: str, value: Number, other: Number, meaning: str) -> None:
+def require_different(
+    name: str, value: Number, other: Number, meaning: str, scale: Number = 1.0
+) -> None:
     """Raise `GeometryError` when the two differ by rounding alone, so that nothing can
-    be divided by the difference; ``meaning`` says what ``other`` is."""
-    left, right = decided(value), decided(other)
-    if left is None or right is None:
+    be divided by the difference; ``meaning`` says what ``other`` is.
+
+    ``scale`` is the size of what the two were computed from: 1 for sines and tangents,
+    a length, or 0 for numbers that are no differences.
+    """
+    left, right, size = decided(value), decided(other), decided(scale)
+    if left is None or right is None or size is None:
         return
-    scale = max(abs(left), abs(right), 1.0)
-    if not abs(left - right) > ROUNDING * scale:
+    largest = max(abs(left), abs(right), abs(size))
+    if not abs(left - right) > ROUNDING * largest:
         allowed = f"different from {right:.6g}, {meaning}"
         raise GeometryError(name, f"{left:.6g}", allowed)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
+from importlib import import_module
 from types import ModuleType
 from typing import Any, Protocol, TypeAlias
 
@@ -53,16 +54,9 @@ def _library(*values: Number) -> ModuleType:
     """The module whose functions fit the widest type among ``values``: sympy, mpmath,
     exact numbers, math."""
     roots = {type(v).__module__.split(".")[0] for v in values}
-    if "sympy" in roots:
-        import sympy
-
-        library: ModuleType = sympy
-        return library
-    if "mpmath" in roots:
-        import mpmath
-
-        library = mpmath
-        return library
+    for name in ("sympy", "mpmath"):
+        if name in roots:
+            return import_module(name)
     some_exact = any(isinstance(v, EXACT) for v in values)
     if some_exact and not any(isinstance(v, float) for v in values):
         return exact

@@ -59,9 +59,8 @@ def twist_pairs(twist: float, ratio: float, sign: int) -> list[tuple[float, floa
         if half is None:
             continue
         mean = total / 2
-        if sign < 0:
-            pairs = [(half + mean, half - mean)]
-        else:
+        pairs = [(half + mean, half - mean)]
+        if sign > 0:
             pairs = [(mean + half, mean - half), (mean - half, mean + half)]
         out += [(x, y) for x, y in pairs if 0 < x < pi and 0 < y < pi]
     return out

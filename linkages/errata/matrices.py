@@ -145,7 +145,7 @@ def _sixth_angle() -> Amounts:
     value = np.pi + first - other
 
     def gaps(i: int) -> np.ndarray:
-        return np.abs(np.sin((path[:, i] - value) / 2))
+        return np.asarray(np.abs(np.sin((path[:, i] - value) / 2)))
 
     return median_and_largest(gaps(2), gaps(5))
 

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
+from linkages.construction.basic_links import EQUAL_RATIOS, length_a
 from linkages.construction.conditions import require_different, require_equal
 from linkages.construction.link import Link, bennett_links, closed_chain
 from linkages.construction.numbers import Number, atan, tan

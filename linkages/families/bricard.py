@@ -400,7 +400,7 @@ def _closed_form(
             constants[f"{letter}_{number}"] = value
     s, c = joint(2)
     quadratic = _quadratic(2)
-    half = ((joint(1),), (joint(2),), _third_pairs())
+    half: tuple[tuple[Pair, ...], ...] = ((joint(1),), (joint(2),), _third_pairs())
     other = half
     if sign < 0:
         other = tuple(tuple(negative(pair) for pair in pairs) for pairs in half)

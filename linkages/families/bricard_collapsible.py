@@ -63,8 +63,12 @@ def doubly_collapsible_octahedral(
     for i, corner in enumerate(corners):
         sides.append(corners[(i + 1) % 6] - corner)
     offsets = [side.norm for side in sides]
+    perimeter: Number = 0
+    for offset in offsets:
+        perimeter = perimeter + offset
     for i, offset in enumerate(offsets, start=1):
-        require_different(f"side {i} of the hexagon", offset, 0, "a point")
+        name = f"side {i} of the hexagon"
+        require_different(name, offset, 0, "a point", scale=perimeter)
     twists = []
     for i, side in enumerate(sides):
         following = sides[(i + 1) % 6]

@@ -120,7 +120,7 @@ def plane_symmetric_octahedral(
     R6, R5 = _outer_offsets(R1, alpha45, alpha61, "alpha45 + alpha61")
     base = R2**2 + R3**2 + 2 * R2 * R3 * cos(alpha23)
     product = 2 * R5 * R6
-    require_different("2 R5 R6", product, 0, "an offset of no length")
+    require_different("2 R5 R6", product, 0, "an offset of no length", scale=R1**2)
     cosine = (base - R5**2 - R6**2) / product
     value = decided(cosine)
     if value is not None and abs(value) > 1:

@@ -43,7 +43,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -64,6 +64,7 @@ from linkages.closed_forms.closed_form import (
 from linkages.construction.basic_links import length_a
 from linkages.construction.conditions import (
     bennett_length,
+    require_different,
     require_equal,
     require_positive,
     require_within,
@@ -124,6 +125,8 @@ def _loop(
     link_d = Link(bennett_length("d/delta", delta, d, a, alpha), delta)
     joined = Link(a + sign * length_c, alpha + sign * gamma)
     require_positive("length of links 12 and 45", joined.length)
+    if sign < 0:
+        require_different("length c", length_c, a, "the length of a", scale=0)
     return closed_chain(joined, link_d, link_b, joined, link_b, link_d)
 
 
@@ -233,14 +236,26 @@ def _constructive(sign: int, alpha: float, gamma: float, x: float) -> float:
     return _ratio(x, alpha) * _ratio(x, sign * gamma)
 
 
-def _non_constructive(sign: int, alpha: float, gamma: float, x: float) -> float:
+class _Fraction(NamedTuple):
+    """A quotient whose denominator may vanish."""
+
+    top: float
+    bottom: float
+
+    @property
+    def value(self) -> float:
+        """The quotient."""
+        return self.top / self.bottom
+
+
+def _non_constructive(sign: int, alpha: float, gamma: float, x: float) -> _Fraction:
     """t_i t_j of the joints on either side of link x, in Forms III and IV."""
     g = sign * gamma
     total = math.sin(alpha) + math.sin(g)
     part = math.sin(x)
     top = total + part + math.sin(alpha + g + x)
     bottom = total - part + math.sin(alpha + g - x)
-    return -top / bottom
+    return _Fraction(-top, bottom)
 
 
 def _products(sign: int, k_d: float, k_b: float) -> Function:
@@ -302,12 +317,16 @@ def _on_side(base: Function, circuit: Function, side: int) -> Function:
 def _non_constructive_patterns(
     sign: int, alpha: float, beta: float, gamma: float, delta: float
 ) -> tuple[FormPattern, ...]:
-    k_d = _non_constructive(sign, alpha, gamma, delta)
-    k_b = _non_constructive(sign, alpha, gamma, beta)
+    fraction_d = _non_constructive(sign, alpha, gamma, delta)
+    fraction_b = _non_constructive(sign, alpha, gamma, beta)
+    if min(abs(fraction_d.bottom), abs(fraction_b.bottom)) < ALIKE:
+        return ()
+    k_d, k_b = fraction_d.value, fraction_b.value
     base = _products(-1, k_d, k_b)
     # with t2 and t5 negated this is the curve of the module's head, of products -k_d
-    # and -k_b
-    slope = (1 + k_b) / (1 + k_d)
+    # and -k_b; the slope is (1 + k_b) / (1 + k_d), which is 0/0 for alpha + gamma = pi
+    slope_top = math.sin(beta) * fraction_d.bottom
+    slope = slope_top / (math.sin(delta) * fraction_b.bottom)
     circuit = _circuit(-k_d, -k_b, slope, t1_infinite=False, t4_infinite=False)
     return (
         FormPattern(FORM_III, _on_side(base, circuit, +1)),
@@ -326,7 +345,7 @@ def patterns(
     """The four forms of the WDG (``sign`` +1) or the DSG (-1) with these twists, rad.
 
     Empty when two of the basic links are alike, where the ratios of Song 2013, eq.
-    (5.2.3), are infinite.
+    (5.2.3), are infinite; without Forms III and IV where K_d or K_b is.
     """
     if _has_equal_links(alpha, beta, gamma, delta):
         return ()

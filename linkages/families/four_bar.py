@@ -108,14 +108,13 @@ def _folded(first: int) -> FormPattern:
     2`` (from 1)."""
     second = first + 2
 
-    def first_cosine(h: np.ndarray) -> np.ndarray:
-        return np.cos(h[..., first - 1])
-
-    def second_cosine(h: np.ndarray) -> np.ndarray:
-        return np.cos(h[..., second - 1])
-
     name = f"folded form (joints {first},{second} inactive)"
-    return FormPattern(name, _pairs(-1, first_cosine, second_cosine))
+    residual = _pairs(
+        -1,
+        lambda h: np.cos(h[..., first - 1]),
+        lambda h: np.cos(h[..., second - 1]),
+    )
+    return FormPattern(name, residual)
 
 
 def _kite(axis: int) -> FormPattern:
@@ -125,8 +124,8 @@ def _kite(axis: int) -> FormPattern:
     j = (axis + 2) % 4
 
     def residual(theta: np.ndarray) -> np.ndarray:
-        difference = theta[..., i] - theta[..., j]
-        return np.sin(difference / 2)[..., None]
+        difference = np.asarray(theta[..., i] - theta[..., j])
+        return np.stack([np.sin(difference / 2)], axis=-1)
 
     return FormPattern("kite form", residual)
 

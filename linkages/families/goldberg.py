@@ -27,6 +27,7 @@ from linkages.closed_forms.closed_form import (
 )
 from linkages.construction.conditions import (
     bennett_length,
+    require_different,
     require_positive,
     require_within,
 )
@@ -68,6 +69,8 @@ def _loop(
     c = bennett_length("c/gamma", gamma, c, a, alpha)
     joined = a + sign * c
     require_positive("length of link 23", joined)
+    if sign < 0:
+        require_different("length c", c, a, "the length of a", scale=0)
     lengths = (b, joined, b, c, a)
     twists = (beta, alpha + sign * gamma, beta, gamma, alpha)
     return Loop(lengths, twists, (0,) * 5, name)

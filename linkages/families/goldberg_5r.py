@@ -149,7 +149,7 @@ def _middle_twist(
     """alpha34 of the extended Myard linkage."""
     if offset == 0:
         return half_turn - 2 * alpha
-    require_different("length of link b", b.length, 0, "which holds no offset")
+    require_different("length of link b", b.length, 0, "which holds no offset", scale=0)
     shear = offset * numbers.sin(beta) / b.length
     return 2 * numbers.acos(numbers.sin(alpha) / numbers.sqrt(1 + shear**2))
 

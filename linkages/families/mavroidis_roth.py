@@ -66,11 +66,9 @@ def mavroidis_roth(
         OffsetPattern.REFLECTED: (R3, R2),
         OffsetPattern.NEGATIVE: (-R2, -R3),
     }[pattern]
-    if exchanged:
-        links = (link_a, free, link_c, link_a, free, link_c)
-    else:
-        links = (link_a, free, link_a, link_c, free, link_c)
-    return closed_chain(*links, offsets=(0, R2, R3, 0, R5, R6))
+    offsets = (0, R2, R3, 0, R5, R6)
+    third, fourth = (link_c, link_a) if exchanged else (link_a, link_c)
+    return closed_chain(link_a, free, third, fourth, free, link_c, offsets=offsets)
 
 
 # --- entries

@@ -124,8 +124,10 @@ def double_goldberg_type(
     3.3.1 and 3.5.3, equations (3.4.3) to (3.4.22). The latter's "alpha34 = alpha +
     gamma" in (3.4.11) is alpha45.
     """
-    links = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
-    return double_goldberg_chain(*links, order, kind)
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
+    )
+    return double_goldberg_chain(link_a, link_b, link_c, link_d, order, kind)
 
 
 def double_goldberg_chain(

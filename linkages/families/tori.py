@@ -132,6 +132,7 @@ def companion(torus: TorusLink, circle: Number, mirrored: bool = False) -> Compa
     for a torus without shift. Closed form found from the Bennett closure: tan^2 of the
     pin's twist is the positive root of tau^2 u^2 + (k^2 + tau^2 - s^2) u - s^2 = 0.
     """
+    require_positive("radius of the circle of the torus", circle)
     alpha = torus.link.twist
     tau = torus.shift
     sine = sin(alpha)
@@ -159,7 +160,7 @@ def _squared_tangent(k: Number, tau: Number, s: Number) -> Number:
         return s**2 / (k**2 - s**2)
     p = k**2 + tau**2 - s**2
     root = sqrt(p**2 + 4 * tau**2 * s**2)
-    require_different("circle of the torus", p + root, 0, "a point")
+    require_different("circle of the torus", p + root, 0, "a point", scale=0)
     return 2 * s**2 / (p + root)
 
 
@@ -204,6 +205,9 @@ class Variant:
         return f"torus-5r-{self.first}{self.second}-{senses}"
 
 
+STANDARD = Variant(1, 4, Sense.PLUS, Sense.PLUS, mirrored=False)
+
+
 @dataclass(frozen=True)
 class _Stage:
     """What both pairs of tori of a 5R are, before they are joined at the angle delta:
@@ -244,7 +248,7 @@ def torus_5r(
     theta1: Number,
     ratio: Number,
     delta: Number,
-    variant: Variant,
+    variant: Variant = STANDARD,
 ) -> Loop:
     """The 5R of two pairs of tori, axes Q1, R of the other torus of the first pair, S,
     S', R' of the second.

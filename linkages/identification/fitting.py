@@ -206,7 +206,7 @@ def _unchanged(
         if p.name not in plain:
             moved = table(construct(**{**defaults, p.name: p.default * 1.013}))
             mask &= np.abs(moved - base) < 1e-12
-    return mask
+    return np.asarray(mask)
 
 
 def _member(entry: Entry, candidate: Candidate, unit: float) -> Member:

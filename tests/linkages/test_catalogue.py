@@ -63,11 +63,6 @@ def test_every_default_lies_in_its_range():
             )
 
 
-def test_an_unknown_parameter_is_refused_with_the_known_ones():
-    with pytest.raises(GeometryError, match="alpha, beta"):
-        entry("bennett").build(delta=1.0)
-
-
 def test_every_reference_configuration_closes(reference_cases, closure_gap):
     for case in reference_cases:
         loop = entry(case["linkage"]).build(**case["parameters"])

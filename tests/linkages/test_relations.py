@@ -8,7 +8,7 @@ from linkages.catalogue import catalogue, entry
 from linkages.construction.constructions import isomerize
 from linkages.identification.identify import identify
 from linkages.loop import GeometryError, Loop
-from linkages.relations import RELATIONS, RelationKind, relation_graph, relations_of
+from linkages.relations import RelationKind, relation_graph, relations_of
 
 
 def members(name, rng, count=2):
@@ -26,56 +26,60 @@ def is_case(loop, name, tolerance=1e-8):
     return identify(loop, tolerance, [entry(name)], locking=False).names == (name,)
 
 
+def stated_relations():
+    """Every relation with the linkage that states it."""
+    return [(name, r) for name, found in catalogue().items() for r in found.relations]
+
+
 def of_kind(*kinds, tori=True):
     chosen = [
-        r
-        for r in RELATIONS
-        if r.kind in kinds and (tori or not r.first.startswith("torus"))
+        (name, r)
+        for name, r in stated_relations()
+        if r.kind in kinds and (tori or not entry(name).is_other_view)
     ]
-    return pytest.mark.parametrize(
-        "relation", chosen, ids=[f"{r.first}-{r.second}" for r in chosen]
-    )
+    ids = [f"{name}-{r.other}" for name, r in chosen]
+    return pytest.mark.parametrize(("name", "relation"), chosen, ids=ids)
 
 
 @of_kind(RelationKind.SPECIAL_CASE, RelationKind.SAME)
-def test_members_of_the_special_linkage_are_members_of_the_general_one(relation):
+def test_members_of_the_special_linkage_are_members_of_the_general_one(name, relation):
     assert all(
-        is_case(loop, relation.second)
-        for loop in members(relation.first, np.random.default_rng(11))
+        is_case(loop, relation.other)
+        for loop in members(name, np.random.default_rng(11))
     )
 
 
 @of_kind(
     RelationKind.SPECIAL_CASE, tori=False
 )  # each of their variants has members of most shapes
-def test_not_every_member_of_the_general_linkage_is_a_special_one(relation):
-    (loop,) = members(relation.second, np.random.default_rng(12), 1)
-    assert not is_case(loop, relation.first)
+def test_not_every_member_of_the_general_linkage_is_a_special_one(name, relation):
+    (loop,) = members(relation.other, np.random.default_rng(12), 1)
+    assert not is_case(loop, name)
 
 
 @of_kind(RelationKind.SAME)
-def test_linkages_that_are_the_same_are_so_both_ways(relation):
+def test_linkages_that_are_the_same_are_so_both_ways(name, relation):
     assert all(
-        is_case(loop, relation.first)
-        for loop in members(relation.second, np.random.default_rng(13))
+        is_case(loop, name)
+        for loop in members(relation.other, np.random.default_rng(13))
     )
 
 
 @of_kind(RelationKind.ISOMER)
-def test_exchanging_the_links_at_the_joint_gives_the_isomer(relation):
-    (loop,) = members(relation.second, np.random.default_rng(14), 1)
-    assert is_case(isomerize(loop, relation.joint), relation.first)
+def test_exchanging_the_links_at_the_joint_gives_the_isomer(name, relation):
+    (loop,) = members(relation.other, np.random.default_rng(14), 1)
+    assert is_case(isomerize(loop, relation.joint), name)
 
 
 @of_kind(RelationKind.DEGENERATE)
-def test_without_the_vanishing_link_the_smaller_linkage_is_left(relation):
-    loop = entry(relation.first).build(**{relation.vanishing: 1e-7})
+def test_without_the_vanishing_link_the_smaller_linkage_is_left(name, relation):
+    loop = entry(name).build(**{relation.vanishing: 1e-7})
     k = int(np.argmin(loop.lengths))
     lengths, twists, offsets = (
         v[:k] + v[k + 1 :] for v in (loop.lengths, loop.twists, loop.offsets)
     )
     assert loop.lengths[k] < 1e-6
-    assert is_case(Loop(lengths, twists, offsets), relation.second, 1e-6)
+    assert is_case(Loop(lengths, twists, offsets), relation.other, 1e-6)
 
 
 def test_the_special_cases_make_no_circle():
@@ -92,11 +96,21 @@ def test_the_graph_has_every_linkage_and_nothing_else():
     graph = relation_graph()
     assert set(graph) == set(catalogue())
     assert all(data["source"] for _, _, data in graph.edges(data=True))
-    assert graph.number_of_edges() == len(RELATIONS)
+    assert graph.number_of_edges() == len(stated_relations())
 
 
 def test_a_linkage_knows_what_it_is_a_case_of():
     kinds = {
-        (r.kind, r.second) for r in relations_of("special-double-subtractive-goldberg")
+        (r.kind, r.other) for r in relations_of("special-double-subtractive-goldberg")
     }
     assert (RelationKind.SPECIAL_CASE, "double-subtractive-goldberg") in kinds
+
+
+def test_the_same_linkage_knows_it_from_both_sides():
+    for one, other in (("bennett", "bennett-lb-2"), ("bennett-lb-2", "bennett")):
+        same = {r.other for r in relations_of(one) if r.kind is RelationKind.SAME}
+        assert other in same
+
+
+def test_every_relation_leads_to_a_linkage_of_the_catalogue():
+    assert {r.other for _, r in stated_relations()} <= set(catalogue())

@@ -12,9 +12,8 @@ from linkages.app.exit_codes import ExitCode
 from linkages.app.verify import ErratumCheck, verify
 from linkages.app.verify_text import describe_verification
 from linkages.catalogue import catalogue
-from linkages.closed_forms.all_forms import all_closed_forms
 
-WITH_CLOSED_FORM = list(dict.fromkeys(form.linkage for form in all_closed_forms()))
+WITH_CLOSED_FORM = [name for name, found in catalogue().items() if found.closed_forms]
 WITHOUT = [name for name in catalogue() if name not in WITH_CLOSED_FORM]
 
 

@@ -7,12 +7,11 @@ import sys
 import numpy as np
 import pytest
 
-from linkages.catalogue import entry
-from linkages.closed_forms.all_forms import all_closed_forms, closed_forms
+from linkages.catalogue import catalogue, entry
 from linkages.closed_forms.closed_form import ZERO, joint, minus, plus
 from linkages.loop import GeometryError
 
-FORMS = all_closed_forms()
+FORMS = [form for linkage in catalogue().values() for form in linkage.closed_forms]
 IDS = [f"{form.linkage}: {form.form}" for form in FORMS]
 POLES = np.array(
     [0.0, np.pi, 1e-9, np.pi - 1e-9, 1e-5 - np.pi]
@@ -78,7 +77,7 @@ def test_the_two_roots_are_different_configurations(form):
 
 def test_motion_of_the_mixed_linkage_loses_no_digits_beside_a_pole():
     """The printed quotient for Q loses ten digits there; pairs lose none."""
-    form = closed_forms("mixed-double-goldberg-type-i")[0]
+    form = entry("mixed-double-goldberg-type-i").closed_forms[0]
     values = entry(form.linkage).defaults
     theta = form.configurations(np.array([0.7, 0.9, 1.1]), values)
     assert (
@@ -103,13 +102,13 @@ def test_latex_names_every_joint_and_every_constant(form):
 
 def test_latex_of_bennett_is_the_textbook_formula():
     assert (
-        closed_forms("bennett")[0].latex()[r"\tan\frac{\theta_2}{2}"]
+        entry("bennett").closed_forms[0].latex()[r"\tan\frac{\theta_2}{2}"]
         == r"\frac{m}{t_{1}}"
     )
 
 
 def test_linkage_without_closed_form_has_none():
-    assert closed_forms("dietmaier") == ()
+    assert entry("dietmaier").closed_forms == ()
 
 
 def test_catalogue_does_not_import_sympy():

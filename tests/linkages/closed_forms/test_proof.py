@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from linkages.catalogue import entry
-from linkages.closed_forms.all_forms import all_closed_forms, closed_forms
+from linkages.catalogue import catalogue, entry
 from linkages.closed_forms.proof import (
     closing_defects,
     exact_parameters,
@@ -19,13 +18,13 @@ from linkages.closed_forms.proof import (
 from linkages.construction import exact
 from linkages.construction.exact import Angle, Quadratic
 
-FORMS = all_closed_forms()
+FORMS = [form for linkage in catalogue().values() for form in linkage.closed_forms]
 IDS = [f"{form.linkage}: {form.form}" for form in FORMS]
 
 
 @pytest.mark.parametrize("form", FORMS, ids=IDS)
 def test_closed_form_closes_exactly(form):
-    proof = prove(form, points=4, seed=2)
+    proof = prove(form, entry(form.linkage), points=4, seed=2)
     assert proof.proved and proof.points == 4
     assert proof.doubt < 1e-12
 
@@ -34,7 +33,7 @@ def test_closed_form_closes_exactly(form):
     "name", ["bennett", "bennett-ab-2", "bennett-line-symmetric", "bennett-lb-2"]
 )
 def test_bennett_closes_identically_in_all_symbols(name):
-    assert prove_symbolically(closed_forms(name)[0])
+    assert prove_symbolically(entry(name).closed_forms[0], entry(name))
 
 
 @pytest.mark.parametrize("form", FORMS[::4], ids=IDS[::4])
@@ -48,13 +47,13 @@ def test_closed_form_with_one_joint_turned_round_is_refuted(form):
             *form.half_tangents[3:],
         ),
     )
-    assert prove(wrong, points=2).closed == 0
+    assert prove(wrong, entry(wrong.linkage), points=2).closed == 0
 
 
 def test_symbolic_proof_refutes_a_wrong_sign():
-    form = closed_forms("bennett")[0]
+    form = entry("bennett").closed_forms[0]
     wrong = dataclasses.replace(form, constants={"m": -sp.sympify(form.constants["m"])})
-    assert not prove_symbolically(wrong)
+    assert not prove_symbolically(wrong, entry(wrong.linkage))
 
 
 def test_a_float_is_no_proof():

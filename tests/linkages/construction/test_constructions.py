@@ -33,8 +33,8 @@ from linkages.families.goldberg_5r import generalized_goldberg, syncopated_goldb
 from linkages.families.goldberg_6r import l_shape_goldberg, serial_goldberg
 from linkages.families.mavroidis_roth import OffsetPattern, mavroidis_roth
 from linkages.families.mixed_double_goldberg import (
-    KINDS,
-    TYPES,
+    Kind,
+    Order,
     double_goldberg_chain,
     double_goldberg_type,
 )
@@ -218,13 +218,12 @@ def test_common_link_pair_closes_where_the_common_joint_agrees():
 
 def test_type_iii_is_a_goldberg_linkage_with_a_locked_joint():
     values = (A, ALPHA, BETA, GAMMA, DELTA)
-    mixed = lock(double_goldberg_type(*values, order="III", kind="mixed"), 3)
+    mixed = lock(double_goldberg_type(*values, order=Order.III, kind=Kind.MIXED), 3)
     assert same(mixed, goldberg(A * np.sin(BETA) / np.sin(ALPHA), BETA, ALPHA, DELTA))
     a, b, _, d = LINKS
-    for kind in ("goldberg", "subtractive"):
-        made = lock(
-            double_goldberg_type(*values, order="III", kind=kind), 3, Kink.FOLDED
-        )
+    for kind in (Kind.GOLDBERG, Kind.SUBTRACTIVE):
+        type_iii = double_goldberg_type(*values, order=Order.III, kind=kind)
+        made = lock(type_iii, 3, Kink.FOLDED)
         assert same_up_to_link_direction(made, closed_chain(a, b - d, a, d, b))
 
 
@@ -253,12 +252,12 @@ def type_of(loop: Loop) -> str:
     """Which mixed Type the links of ``loop`` make, for some naming of the basic links
     and some sign of c."""
     found = {
-        order
+        order.name
         for a, b, c, d in itertools.permutations(LINKS)
-        for order in TYPES
+        for order in Order
         for signed in (c, -c)
         if same_up_to_link_direction(
-            loop, double_goldberg_chain(a, b, signed, d, order, "mixed")
+            loop, double_goldberg_chain(a, b, signed, d, order, Kind.MIXED)
         )
     }
     assert len(found) == 1, found
@@ -288,9 +287,8 @@ def test_eighteen_combinations_give_the_six_mixed_types():
 
 def test_two_equal_kinds_of_five_bars_give_the_twelve_counterparts():
     _, b, _, d = LINKS
-    for kind, (sign, _) in KINDS.items():
-        if kind == "mixed":
-            continue
+    for kind in (Kind.GOLDBERG, Kind.SUBTRACTIVE):
+        sign = kind.value.first
         first, second = five_bars(sign, b), five_bars(sign, d)
         pairs = {
             "I": (2, 2, False),
@@ -307,7 +305,7 @@ def test_two_equal_kinds_of_five_bars_give_the_twelve_counterparts():
             else:
                 made = superpose(s, ending_with(second[j], *pair), shared=2)
             wanted = double_goldberg_type(
-                A, ALPHA, BETA, GAMMA, DELTA, order=order, kind=kind
+                A, ALPHA, BETA, GAMMA, DELTA, order=Order[order], kind=kind
             )
             assert same_up_to_link_direction(made, wanted), (kind, order)
 
@@ -327,9 +325,9 @@ def same_up_to_link_direction(one: Loop, other: Loop) -> bool:
 def test_kinked_pair_has_the_plain_linkages_as_limits():
     values = (A, ALPHA, BETA, GAMMA, DELTA)
     kinks = {
-        "mixed": (Kink.FOLDED, Kink.STRAIGHT),
-        "goldberg": (Kink.STRAIGHT, Kink.STRAIGHT),
-        "subtractive": (Kink.FOLDED, Kink.FOLDED),
+        Kind.MIXED: (Kink.FOLDED, Kink.STRAIGHT),
+        Kind.GOLDBERG: (Kink.STRAIGHT, Kink.STRAIGHT),
+        Kind.SUBTRACTIVE: (Kink.FOLDED, Kink.FOLDED),
     }
     for kind, pair in kinks.items():
         made = generalized_double_goldberg(*values, *pair)

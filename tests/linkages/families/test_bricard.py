@@ -6,8 +6,8 @@ from linkages.families.bricard import (
     bricard_line_symmetric,
     bricard_line_symmetric_zero_offset,
     bricard_octahedral_line_symmetric,
+    patterns,
 )
-from linkages.families.bricard_forms import patterns
 from linkages.loop import GeometryError
 
 TWISTS = (0.6981317007977318, 1.3962634015954636, 2.2689280275926285)

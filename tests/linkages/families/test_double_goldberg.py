@@ -6,11 +6,11 @@ import pytest
 from linkages.catalogue import entry
 from linkages.families.double_goldberg import (
     double_subtractive_goldberg,
+    patterns,
     special_double_subtractive_goldberg,
     special_wohlhart_double_goldberg,
     wohlhart_double_goldberg,
 )
-from linkages.families.double_goldberg_forms import patterns
 from linkages.loop import GeometryError
 
 PUBLISHED = (

@@ -19,8 +19,8 @@ from linkages.identification.equivalence import (
     readings,
     table,
 )
-from linkages.identification.identify import ALIKE, identify
-from linkages.identification.recovery import HINTS, SCANS, plain_parameters
+from linkages.identification.identify import ALIKE, NEAR, ToleranceError, identify
+from linkages.identification.recovery import plain_parameters
 
 CASES = json.loads(
     (Path(__file__).parents[3] / "data" / "catalogue_cases.json").read_text()
@@ -189,11 +189,11 @@ def test_one_sign_of_an_offset_is_not_an_equivalence():
 def test_parameters_stand_in_the_table_or_have_a_formula(name):
     found = entry(name)
     hidden = {p.name for p in found.parameters} - set(plain_parameters(found))
-    if name in SCANS:
-        assert hidden == set(SCANS[name])
+    if found.scan:
+        assert hidden == set(found.scan)
     elif hidden:
-        hints = list(HINTS[name](normal_form(table(found.build()))))
-        assert not hints or hidden <= set(hints[0])
+        guesses = list(found.guesses(normal_form(table(found.build()))))
+        assert not guesses or hidden <= set(guesses[0])
 
 
 @pytest.mark.parametrize("kind", ["mixed-double", "double-subtractive"])
@@ -203,3 +203,21 @@ def test_a_difference_of_links_may_be_negative(kind, order):
     loop = found.build(beta=0.4, gamma=0.9)
     assert min(loop.lengths) < 0
     assert identify(loop, entries=[found], locking=False).names == (found.name,)
+
+
+@pytest.mark.parametrize("tolerance", [np.nan, np.inf, -1e-9])
+def test_a_tolerance_that_is_no_distance_is_refused(tolerance):
+    with pytest.raises(ToleranceError, match="finite number, 0 or greater"):
+        identify(entry("bennett").build(), tolerance)
+
+
+def test_a_tolerance_of_zero_is_a_tolerance():
+    assert identify(entry("bennett").build(), 0.0, locking=False).tolerance == 0.0
+
+
+def test_no_linkage_is_near_that_misses_by_more_than_the_scale():
+    rng = np.random.default_rng(3)
+    for _ in range(3):
+        found = identify(as_loop(rng.uniform(0.3, 2.0, (3, 6))), locking=False)
+        assert all(match.distance < NEAR for match in found.nearest)
+        assert all(match.freedom > 0 for match in found.nearest)
