@@ -30,7 +30,8 @@ class UnknownLinkageError(BifurcError, KeyError):
     most like it."""
 
     def __init__(self, name: str, nearest: tuple[str, ...]):
-        self.name, self.nearest = name, nearest
+        self.name = name
+        self.nearest = nearest
         super().__init__(name)
 
     def __str__(self) -> str:
@@ -73,12 +74,12 @@ def catalogue() -> dict[str, Entry]:
 def entry(name: str) -> Entry:
     """The entry called ``name``; raises `UnknownLinkageError`, which lists the nearest
     names."""
-    known = _entries()
-    if name in known:
-        return known[name]
+    entries = _entries()
+    if name in entries:
+        return entries[name]
     plain = name.strip().lower().replace("_", "-").replace(" ", "-")
-    nearest = difflib.get_close_matches(plain, known, n=3, cutoff=0.5)
-    for other in known:
+    nearest = difflib.get_close_matches(plain, entries, n=3, cutoff=0.5)
+    for other in entries:
         is_part = bool(plain) and (plain in other or other in plain)
         if is_part and other not in nearest:
             nearest.append(other)

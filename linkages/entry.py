@@ -38,11 +38,13 @@ BY_IDENTIFICATION = "found by identification"  # the source of a relation withou
 
 class UnknownParameterError(BifurcError):
     """A linkage has no parameter of that name: ``linkage``, the ``name`` asked for and
-    the names that it has, ``known``."""
+    its ``parameters``."""
 
-    def __init__(self, linkage: str, name: str, known: tuple[str, ...]):
-        self.linkage, self.name, self.known = linkage, name, known
-        allowed = "one of " + ", ".join(known)
+    def __init__(self, linkage: str, name: str, parameters: tuple[str, ...]):
+        self.linkage = linkage
+        self.name = name
+        self.parameters = parameters
+        allowed = "one of " + ", ".join(parameters)
         super().__init__(
             f"parameter of {linkage}: {name!r} is not allowed; it must be {allowed}"
         )
@@ -200,11 +202,11 @@ class Entry:
 
     def complete(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """``values`` completed by the defaults; raises `UnknownParameterError`."""
-        known = self.defaults
+        defaults = self.defaults
         for name in values:
-            if name not in known:
-                raise UnknownParameterError(self.name, name, tuple(known))
-        return {**known, **values}
+            if name not in defaults:
+                raise UnknownParameterError(self.name, name, tuple(defaults))
+        return {**defaults, **values}
 
     def build(self, **values: Number) -> Loop:
         """The member with the given parameters, the others at their defaults, named

@@ -324,8 +324,10 @@ def _root(a: np.ndarray, b: np.ndarray, c: np.ndarray, sign: int) -> _Root:
     size = np.abs(a) + np.abs(b) + np.abs(c)
     is_real = square > -ROUNDING * size**2
     root = sign * np.sqrt(np.maximum(square, 0.0))
-    one_y, one_x = root - b, 2 * a
-    other_y, other_x = 2 * c, -b - root
+    one_y = root - b
+    one_x = 2 * a
+    other_y = 2 * c
+    other_x = -b - root
     one_length = np.hypot(one_y, one_x)
     other_length = np.hypot(other_y, other_x)
     is_one = one_length >= other_length

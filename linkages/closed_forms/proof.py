@@ -82,7 +82,8 @@ def exact_parameters(linkage: Entry, rng: np.random.Generator) -> ExactParameter
     out: ExactParameters = {}
     for p in linkage.parameters:
         if p.kind is ParameterKind.ANGLE:
-            low, high = np.tan(p.low / 2), np.tan(p.high / 2)
+            low = np.tan(p.low / 2)
+            high = np.tan(p.high / 2)
             out[p.name] = Angle(_random_fraction(rng, low, high))
         else:
             out[p.name] = _random_fraction(rng, p.low, p.high)
@@ -151,9 +152,12 @@ def closing_defects(loop: Loop, theta: Sequence[Angle]) -> list[Exact]:
 
 def _transform(angle: Angle, loop: Loop, i: int) -> list[list[Exact]]:
     """The transform of joint ``i`` (from 0) and its link."""
-    c, s = exact.cos(angle), exact.sin(angle)
-    ca, sa = numbers.cos(loop.twists[i]), numbers.sin(loop.twists[i])
-    length, offset = loop.lengths[i], loop.offsets[i]
+    c = exact.cos(angle)
+    s = exact.sin(angle)
+    ca = numbers.cos(loop.twists[i])
+    sa = numbers.sin(loop.twists[i])
+    length = loop.lengths[i]
+    offset = loop.offsets[i]
     rows = (
         (c, -s * ca, s * sa, length * c),
         (s, c * ca, -c * sa, length * s),
@@ -180,7 +184,8 @@ def prove(form: ClosedForm, linkage: Entry, points: int = 6, seed: int = 0) -> P
     constructor refuses all parameters that are drawn.
     """
     rng = np.random.default_rng(seed)
-    tried = closed = 0
+    count = 0
+    closures = 0
     for attempt in range(ATTEMPTS * points):
         parameters = exact_parameters(linkage, rng)
         t_1 = Fraction(int(rng.integers(-3 * VALUES, 3 * VALUES)), VALUES)
@@ -192,24 +197,24 @@ def prove(form: ClosedForm, linkage: Entry, points: int = 6, seed: int = 0) -> P
         angles = exact_angles(form, parameters, t_1, root)
         if angles is None:
             continue
-        tried += 1
-        closed += _closes(loop, angles)
-        if tried == points:
+        count += 1
+        closures += _closes(loop, angles)
+        if count == points:
             break
-    if not tried:
+    if not count:
         name = f"exact member of {form.linkage}"
         raise GeometryError(name, "none", "one that the constructor accepts")
     bound = degree(form)
-    doubt = min(1.0, 20 * bound / VALUES) ** tried
-    return Proof(form.linkage, form.form, tried, closed, bound, doubt)
+    doubt = min(1.0, 20 * bound / VALUES) ** count
+    return Proof(form.linkage, form.form, count, closures, bound, doubt)
 
 
 def _closes(loop: Loop, angles: list[list[Angle]]) -> bool:
     """Whether the angles of each joint agree, and close the loop."""
-    for alike in angles:
-        if any(angle != alike[0] for angle in alike):
+    for of_joint in angles:
+        if any(angle != of_joint[0] for angle in of_joint):
             return False
-    defects = closing_defects(loop, [alike[0] for alike in angles])
+    defects = closing_defects(loop, [of_joint[0] for of_joint in angles])
     return all(defect == 0 for defect in defects)
 
 
@@ -256,19 +261,23 @@ def prove_symbolically(form: ClosedForm, linkage: Entry) -> bool:
     symbols = {name: sp.Symbol(name, positive=True) for name in linkage.defaults}
     loop = linkage.build(**symbols)
     pairs = _symbolic_pairs(form)
-    turns = [_turn(alike[0]) for alike in pairs]
+    turns = [_turn(of_joint[0]) for of_joint in pairs]
     values = _half_angle_values([symbols[name] for name in form.angles], form.angles)
     links = []
     for length, twist in zip(loop.lengths, loop.twists, strict=True):
         links.append(_link(length, twist, values))
+    steps = list(zip(turns, links, strict=True))
     middle = (loop.n + 1) // 2
     forth = sp.eye(4)
-    for turn, link in zip(turns[:middle], links[:middle], strict=True):
-        forth = (forth * turn * link).applyfunc(sp.factor)
+    for turn, link in steps[:middle]:
+        forth = forth * turn * link
+        forth = forth.applyfunc(sp.factor)
     back = sp.eye(4)
-    for turn, link in zip(turns[middle:], links[middle:], strict=True):
-        back = (_inverse(link) * turn.T * back).applyfunc(sp.factor)
-    gap = (forth - back).applyfunc(_expanded_numerator)
+    for turn, link in steps[middle:]:
+        back = _inverse(link) * turn.T * back
+        back = back.applyfunc(sp.factor)
+    gap = forth - back
+    gap = gap.applyfunc(_expanded_numerator)
     return bool(gap.is_zero_matrix)
 
 
@@ -294,9 +303,17 @@ def _half_angle_values(
 def _turn(pair: Pair) -> sp.Matrix:
     """The rotation about z by the angle of the pair."""
     y, x = pair
-    c = (x**2 - y**2) / (x**2 + y**2)
-    s = 2 * x * y / (x**2 + y**2)
-    return sp.Matrix([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
+    norm = x**2 + y**2
+    c = (x**2 - y**2) / norm
+    s = 2 * x * y / norm
+    return sp.Matrix(
+        [
+            [c, -s, 0, 0],
+            [s, c, 0, 0],
+            [0, 0, 1, 0],
+            [0, 0, 0, 1],
+        ]
+    )
 
 
 def _link(
@@ -306,7 +323,14 @@ def _link(
     a = _in_tangents(length, values)
     ca = _in_tangents(sp.cos(twist), values)
     sa = _in_tangents(sp.sin(twist), values)
-    return sp.Matrix([[1, 0, 0, a], [0, ca, -sa, 0], [0, sa, ca, 0], [0, 0, 0, 1]])
+    return sp.Matrix(
+        [
+            [1, 0, 0, a],
+            [0, ca, -sa, 0],
+            [0, sa, ca, 0],
+            [0, 0, 0, 1],
+        ]
+    )
 
 
 def _in_tangents(value: object, values: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:

@@ -52,7 +52,8 @@ def require_within(
 def require_equal(name: str, value: Number, expected: Number, meaning: str) -> None:
     """Raise `GeometryError` unless the two agree to a relative 1e-9; ``meaning`` says
     what is expected."""
-    left, right = decided(value), decided(expected)
+    left = decided(value)
+    right = decided(expected)
     if left is None or right is None:
         return
     amount = abs(left - right)
@@ -70,7 +71,9 @@ def require_different(
     ``scale`` is the size of what the two were computed from: 1 for sines and tangents,
     a length, or 0 for numbers that are no differences.
     """
-    left, right, size = decided(value), decided(other), decided(scale)
+    left = decided(value)
+    right = decided(other)
+    size = decided(scale)
     if left is None or right is None or size is None:
         return
     largest = max(abs(left), abs(right), abs(size))

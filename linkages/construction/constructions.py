@@ -91,10 +91,10 @@ def ending_with(loop: Loop, *links: Link) -> Loop:
             last = _links(reading)[-len(links) :]
             if len(last) == len(links) and all(map(_is_same, last, links)):
                 return reading
-    wanted = ", ".join(f"{link.length}/{link.twist}" for link in links)
+    names = ", ".join(f"{link.length}/{link.twist}" for link in links)
     raise GeometryError(
         "shared links",
-        wanted,
+        names,
         "neighbouring links of the loop, in this order or reversed",
     )
 
@@ -192,9 +192,12 @@ def isomerized_angles(loop: Loop, joint: int, theta: np.ndarray) -> np.ndarray:
     out = np.array(theta, dtype=float)
     first = float(links[i - 1].twist)
     second = float(links[i].twist)
-    c1, s1 = np.cos(first), np.sin(first)
-    c2, s2 = np.cos(second), np.sin(second)
-    ck, sk = np.cos(out[..., i]), np.sin(out[..., i])
+    c1 = np.cos(first)
+    s1 = np.sin(first)
+    c2 = np.cos(second)
+    s2 = np.sin(second)
+    ck = np.cos(out[..., i])
+    sk = np.sin(out[..., i])
     before = np.arctan2(s2 * sk, ck * s2 * c1 + c2 * s1)
     after = np.arctan2(s1 * sk, ck * s1 * c2 + c1 * s2)
     turn = before - after
@@ -266,7 +269,8 @@ def _refuse_different(one: Link, other: Link, name: str) -> None:
 def _refuse_no_bennett(loop: Loop, joint: int) -> None:
     i = _index(loop, joint)
     links = _links(loop)
-    before, after = links[i - 1], links[i]
+    before = links[i - 1]
+    after = links[i]
     require_equal(
         f"links at joint {joint}: length times sine of the other twist",
         after.length * sin(before.twist),

@@ -147,7 +147,8 @@ class Angle:
     c: Exact = Fraction(1)
 
     def __post_init__(self) -> None:
-        s, c = self.s, self.c
+        s = self.s
+        c = self.c
         if isinstance(s, float) or isinstance(c, float):
             raise TypeError(f"{s}/{c} is a floating-point number, which is not exact")
         if s == 0 and c == 0:

@@ -82,7 +82,8 @@ def equal_twists(*pairs: tuple[int, int]) -> Term:
 
 def equal_links(*pairs: tuple[int, int]) -> Term:
     """Lengths and twists of every pair of links are equal."""
-    lengths, twists = equal_lengths(*pairs), equal_twists(*pairs)
+    lengths = equal_lengths(*pairs)
+    twists = equal_twists(*pairs)
     return lambda table: max(lengths(table), twists(table))
 
 

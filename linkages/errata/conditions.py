@@ -97,8 +97,9 @@ def _printed_syncopated() -> Loop:
 
 def _printed_dietmaier() -> Loop:
     alpha12, alpha61, alpha34, alpha45 = (radians(x) for x in (50, 75, 35, 62))
-    scale = (cos(alpha34) + cos(alpha45)) / (cos(alpha12) + cos(alpha61))
-    length34 = 1.3 / sin(alpha12) * scale * sin(alpha34)
+    first = cos(alpha12) + cos(alpha61)
+    second = cos(alpha34) + cos(alpha45)
+    length34 = 1.3 / sin(alpha12) * (second / first) * sin(alpha34)
     link12, link61 = bennett_links(1.3, alpha12, a61=(alpha61, None))
     link34, link45 = bennett_links(length34, alpha34, a45=(alpha45, None))
     free = Link(1.13, 1.27)

@@ -41,8 +41,10 @@ def _cosine_multipliers() -> Amounts:
 def _triangle_offset() -> Amounts:
     """Equation (5.3.2): R3 over sin(alpha31) sin(theta3), or over sin(alpha23)
     sin(theta2)."""
-    a, alpha = 0.9, radians(35)
-    b, beta = 2.0, radians(60)
+    a = 0.9
+    alpha = radians(35)
+    b = 2.0
+    beta = radians(60)
     theta_2 = radians(-70)
     triangle = composite_link(Link(a, alpha), Link(b, beta), theta_2, 0.7)
     d = float(triangle.link.length)
@@ -83,10 +85,17 @@ def _circle_direction() -> Amounts:
 
 def _direction_length_gap(sign: int) -> float:
     """How far the length of the vector is from 1, with this sign of sin(theta)."""
-    chi, theta, phi, kappa, zeta = 0.8, 0.25, 0.6, 0.3, -0.4
-    ck, sk = cos(kappa), sin(kappa)
-    cz, sz = cos(zeta), sin(zeta)
-    cp, sp = cos(phi), sin(phi)
+    chi = 0.8
+    theta = 0.25
+    phi = 0.6
+    kappa = 0.3
+    zeta = -0.4
+    ck = cos(kappa)
+    sk = sin(kappa)
+    cz = cos(zeta)
+    sz = sin(zeta)
+    cp = cos(phi)
+    sp = sin(phi)
     along = cz * sk * cp + sz * sp
     across = cz * sk * sp - sz * cp
     x = along * cos(theta) + cz * ck * sin(theta)

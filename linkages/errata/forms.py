@@ -101,7 +101,8 @@ def _other_signs(form: ClosedForm) -> ClosedForm:
 
 def _printed_type_one(form: ClosedForm) -> ClosedForm:
     """Type I with m2, m4 and m6 in the places of m1, m3 and m4."""
-    first, fourth = joint(1), joint(4)
+    first = joint(1)
+    fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
     m2, m4, m6 = (constant(f"m_{k}") for k in (2, 4, 6))

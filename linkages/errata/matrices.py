@@ -83,7 +83,8 @@ def _factors() -> Amounts:
     loop = entry("bricard-line-symmetric").build()
     transform = _steps(loop, ANGLES)[0]
     link = _steps(loop, 0 * ANGLES)[0]
-    c, s = np.cos(ANGLES[0]), np.sin(ANGLES[0])
+    c = np.cos(ANGLES[0])
+    s = np.sin(ANGLES[0])
     joint = np.eye(4)
     joint[:2, :2] = [[c, -s], [s, c]]
     return Amounts(_gap(link @ joint, transform), _gap(joint @ link, transform))
@@ -92,18 +93,22 @@ def _factors() -> Amounts:
 def _corrector() -> Amounts:
     """Equation (A17), 0.05 rad off: closure defect after one correction with E, and
     after five with -E."""
+    return Amounts(_defect_after(+1, 1), _defect_after(-1, 5))
+
+
+def _defect_after(sign: int, corrections: int) -> float:
     loop, path = path_along("bricard-line-symmetric")
-
-    def after(sign: int, corrections: int) -> float:
-        theta = path[7] + 0.05 * np.array([1, -1, 0.5, 0.3, 1, -0.6])
-        for _ in range(corrections):
-            error = loop.frames(theta)[-1] - np.eye(4)
-            six = np.array([error[2, 1], error[0, 2], error[1, 0], *error[:3, 3]])
-            screws = loop.joint_screws(theta)
-            theta = theta + np.linalg.lstsq(screws, sign * six, rcond=1e-6)[0]
-        return _gap(loop.frames(theta)[-1], np.eye(4))
-
-    return Amounts(after(+1, 1), after(-1, 5))
+    theta = path[7] + 0.05 * np.array([1, -1, 0.5, 0.3, 1, -0.6])
+    identity = np.eye(4)
+    for _ in range(corrections):
+        error = loop.frames(theta)[-1] - identity
+        rotation = [error[2, 1], error[0, 2], error[1, 0]]
+        shift = error[:3, 3].tolist()
+        six = np.array([*rotation, *shift])
+        screws = loop.joint_screws(theta)
+        solution = np.linalg.lstsq(screws, sign * six, rcond=1e-6)
+        theta = theta + solution[0]
+    return _gap(loop.frames(theta)[-1], identity)
 
 
 def _free_ratio() -> Amounts:
@@ -138,10 +143,11 @@ def _sixth_angle() -> Amounts:
     u_d = np.tan(values["delta"] / 2)
     m1 = (u_b + u_a) / (u_b - u_a)
     m3 = (u_d + u_a) / (u_d - u_a)
-    half = path / 2
     # theta1 = theta2S and theta5 = -theta2G
-    first = 2 * np.arctan2(-m1 * np.cos(half[:, 0]), np.sin(half[:, 0]))
-    other = 2 * np.arctan2(m3 * np.cos(half[:, 4]), np.sin(half[:, 4]))
+    first_half = path[:, 0] / 2
+    other_half = path[:, 4] / 2
+    first = 2 * np.arctan2(-m1 * np.cos(first_half), np.sin(first_half))
+    other = 2 * np.arctan2(m3 * np.cos(other_half), np.sin(other_half))
     value = np.pi + first - other
 
     def gaps(i: int) -> np.ndarray:

@@ -38,43 +38,65 @@ def _configurations() -> _Configurations:
 def _even_plane() -> Amounts:
     """Equation (17): the normal of the plane O2 O4 O6 is at right angles to O6 O2 and
     O6 O4."""
+    x, y, _ = _configurations()
+    return median_and_largest(
+        _gaps_of_normal(np.cos(x) + 1), _gaps_of_normal(np.cos(y) + 1)
+    )
+
+
+def _gaps_of_normal(factor: np.ndarray) -> np.ndarray:
+    """Largest products (k,) of the normal, with ``factor`` in C3, and the sides."""
     x, y, joints = _configurations()
-    sx, cx = np.sin(x), np.cos(x)
-    sy, cy = np.sin(y), np.cos(y)
-    s, c = SIN_TWIST, COS_TWIST
+    sx = np.sin(x)
+    cx = np.cos(x)
+    sy = np.sin(y)
+    cy = np.cos(y)
+    s = SIN_TWIST
+    c = COS_TWIST
     area = LENGTH**2
-    first = area * sy * s * (sx * cy + cx * sy * c - sy * c + sx)
-    second = -area * sy * s * (cx + cy + cx * cy - sx * sy * c + 1)
-    one = sy * c * (cx * cy - sx * sy * c + cx)
-    other = sx * cy + cx * sy * c + sx
-
-    def gaps(factor: np.ndarray) -> np.ndarray:
-        third = area * (one + factor * other)
-        normal = np.stack([first, second, third], axis=-1)
-        products = np.einsum("ki,kji->kj", normal, joints[:, [1, 3]])
-        return np.asarray(np.abs(products).max(axis=1))
-
-    return median_and_largest(gaps(cx + 1), gaps(cy + 1))
+    mixed = sx * cy + cx * sy * c
+    product = cx * cy - sx * sy * c
+    first = area * sy * s * (mixed - sy * c + sx)
+    second = -area * sy * s * (cx + cy + product + 1)
+    third = area * (sy * c * (product + cx) + factor * (mixed + sx))
+    normal = np.stack([first, second, third], axis=-1)
+    sides = joints[:, [1, 3]]
+    products = np.einsum("ki,kji->kj", normal, sides)
+    return np.asarray(np.abs(products).max(axis=1))
 
 
 def _distance_of_planes() -> Amounts:
     """Equation (29): the distance of O1 from the plane O2 O4 O6."""
-    x, y, joints = _configurations()
+    x, y, _ = _configurations()
+    twists = np.full_like(y, TWIST)
+    printed = _gaps_of_distance(twists, x)
+    return median_and_largest(printed, _gaps_of_distance(y, y))
+
+
+def _gaps_of_distance(other: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """What (29) misses with the angle ``other`` beside theta, and ``first`` under the
+    root, where O2, O4, O6 span a plane."""
+    x, _, joints = _configurations()
     o1, o2, o4, o6 = (joints[:, i] for i in (0, 1, 3, 5))
     normal = np.cross(o2 - o6, o4 - o6)
     size = np.linalg.norm(normal, axis=1)
-    distance = np.abs(np.einsum("ki,ki->k", normal, o1 - o6)) / size
+    height = np.einsum("ki,ki->k", normal, o1 - o6)
+    distance = np.abs(height) / size
+    sx = np.sin(x / 2)
+    cx = np.cos(x / 2)
+    so = np.sin(other / 2)
+    co = np.cos(other / 2)
+    top = np.abs(LENGTH * sx * so * SIN_TWIST)
+    mixed = sx * co + cx * so * COS_TWIST
+    single = np.sin(first / 2) * SIN_TWIST
+    bottom = np.sqrt(single**2 + mixed**2)
+    gaps = np.abs(top / bottom - distance)
     is_plane = size > 1e-3
+    return np.asarray(gaps[is_plane])
 
-    def gaps(other: np.ndarray, first: np.ndarray) -> np.ndarray:
-        sx, cx = np.sin(x / 2), np.cos(x / 2)
-        so, co = np.sin(other / 2), np.cos(other / 2)
-        top = np.abs(LENGTH * sx * so * SIN_TWIST)
-        mixed = sx * co + cx * so * COS_TWIST
-        square = np.sin(first / 2) ** 2 * SIN_TWIST**2 + mixed**2
-        return np.asarray(np.abs(top / np.sqrt(square) - distance)[is_plane])
 
-    return median_and_largest(gaps(np.full_like(y, TWIST), x), gaps(y, y))
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 class _Line(NamedTuple):
@@ -104,13 +126,15 @@ def _line_of_meetings() -> Amounts:
             continue
         frames = loop.frames(theta)
         axes = [_Line(frame[:3, 3], frame[:3, 2]) for frame in frames]
-        line = _meeting(axes[6], axes[4]) - _meeting(axes[1], axes[5])
-        line = line / np.linalg.norm(line)
+        line = _unit(_meeting(axes[6], axes[4]) - _meeting(axes[1], axes[5]))
+        second = -np.sin(x) / (1 - np.cos(x))
         by_x = (np.cos(x) + 1) / np.sin(x) / np.tan(TWIST)
         by_y = (np.cos(y) + 1) / (np.sin(y) * SIN_TWIST)
-        n = np.array([1, -np.sin(x) / (1 - np.cos(x)), by_x + by_y])
-        printed.append(float(np.abs(n - line).max()))
-        corrected.append(float(np.abs(n / np.linalg.norm(n) - line).max()))
+        n = np.array([1, second, by_x + by_y])
+        printed_gap = np.abs(n - line)
+        corrected_gap = np.abs(_unit(n) - line)
+        printed.append(float(printed_gap.max()))
+        corrected.append(float(corrected_gap.max()))
     return median_and_largest(printed, corrected)
 
 

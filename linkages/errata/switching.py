@@ -114,8 +114,10 @@ def _paper_place() -> Amounts:
     """The modulus of Song and Chen's q, which is imaginary, beside sqrt(-m1 m2); b and
     d have changed places there."""
     alpha, beta, gamma, delta = CROSSING
-    m1, m2 = _m(delta, alpha), _m(delta, gamma)
-    m3, m4 = _m(beta, alpha), _m(beta, gamma)
+    m1 = _m(delta, alpha)
+    m2 = _m(delta, gamma)
+    m3 = _m(beta, alpha)
+    m4 = _m(beta, gamma)
     top = (m2 + m3) - m2 * m3 * (m1 + m4)
     bottom = m1 * m4 * (m2 + m3) - (m1 + m4)
     place = abs(m1) * sqrt(abs(top / bottom))

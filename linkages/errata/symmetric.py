@@ -37,7 +37,9 @@ class _Symbols(NamedTuple):
 
 
 def _symbols() -> _Symbols:
-    u12, u23, u34 = tangent("alpha12"), tangent("alpha23"), tangent("alpha34")
+    u12 = tangent("alpha12")
+    u23 = tangent("alpha23")
+    u34 = tangent("alpha34")
     return _Symbols(
         (constant("a12"), constant("a23"), constant("a34")),
         (cosine_of(u12), cosine_of(u23), cosine_of(u34)),
@@ -130,11 +132,9 @@ def _left(t: float, first: int, third: int) -> float:
         other = k[x] + third * k[y]
         return one * t * t + 2 * k[z] * t + other
 
-    by_sine, by_cosine, free = (
-        term("A", "F", "E"),
-        term("B", "H", "G"),
-        term("L", "D", "C"),
-    )
+    by_sine = term("A", "F", "E")
+    by_cosine = term("B", "H", "G")
+    free = term("L", "D", "C")
     theta_1 = -float(_triangle().before.angle)
     gaps = []
     for x in (theta_1, theta_1 + np.pi):
@@ -160,8 +160,10 @@ def _asymmetric_ratio() -> Amounts:
     the triangle."""
     lengths, twists, offsets = entry(FIRST).build().arrays
     x = np.pi - float(_triangle().before.angle)
-    sin_x, cos_x = np.sin(x), np.cos(x)
-    sin_k, cos_k = np.sin(_kink()), np.cos(_kink())
+    sin_x = np.sin(x)
+    cos_x = np.cos(x)
+    sin_k = np.sin(_kink())
+    cos_k = np.cos(_kink())
     c12, c23 = np.cos(twists[:2])
     s12, s23 = np.sin(twists[:2])
     top = s23 * sin_k * sin_x - c23 * s12 * cos_x - c12 * cos_k * s23 * cos_x

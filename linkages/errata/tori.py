@@ -56,7 +56,8 @@ def _off_axis(axis: np.ndarray) -> float:
 
 def _surface() -> Amounts:
     """Equation (2.1): r added after or before the turn by sigma."""
-    by_sigma, by_chi = _rotation(2, SIGMA), _rotation(0, CHI)
+    by_sigma = _rotation(2, SIGMA)
+    by_chi = _rotation(0, CHI)
     shift = np.array([R, 0, 0])
     printed = corrected = 0.0
     for phi in PHIS:
@@ -87,14 +88,19 @@ def _centres() -> Amounts:
 def _axis_of_circle() -> Amounts:
     """Equation (2.6): the direction of the circle's axis."""
     phi = PHIS[0]
-    along = cos(THETA) * cos(phi)
-    across = cos(CHI) * sin(phi) - sin(CHI) * sin(THETA) * cos(phi)
+    sp = sin(phi)
+    cp = cos(phi)
+    along = cos(THETA) * cp
+    across = cos(CHI) * sp - sin(CHI) * sin(THETA) * cp
     x = along * cos(SIGMA) + across * sin(SIGMA)
     y = along * sin(SIGMA) - across * cos(SIGMA)
-    z = -sin(CHI) * sin(phi) - cos(CHI) * sin(THETA) * cos(phi)
-    local = np.array([sin(THETA), -sin(CHI) * cos(THETA), cos(CHI) * cos(THETA)])
+    z = -sin(CHI) * sp - cos(CHI) * sin(THETA) * cp
+    printed = np.array([x, y, z])
+    local_y = -sin(CHI) * cos(THETA)
+    local_z = cos(CHI) * cos(THETA)
+    local = np.array([sin(THETA), local_y, local_z])
     corrected = _rotation(2, SIGMA) @ local
-    return Amounts(_off_axis(np.array([x, y, z])), _off_axis(corrected))
+    return Amounts(_off_axis(printed), _off_axis(corrected))
 
 
 def _carried_centre() -> Amounts:

@@ -129,15 +129,17 @@ def _patterns(
         total = (alpha + second_twist(beta)) / 2
         difference = (second_twist(beta) - alpha) / 2
         f = math.cos if sign > 0 else math.sin
-        top, bottom = f(total), f(difference)
+        top = f(total)
+        bottom = f(difference)
 
         def residual(theta: np.ndarray) -> np.ndarray:
-            h = np.asarray(theta) / 2
-            s, c = np.sin(h), np.cos(h)
+            h = np.moveaxis(np.asarray(theta) / 2, -1, 0)
+            s = np.sin(h)
+            c = np.cos(h)
             rows = [
-                np.sin(h[..., 2] - sign * h[..., 0]),
-                np.sin(h[..., 3] - sign * h[..., 1]),
-                bottom * s[..., 0] * s[..., 1] - top * c[..., 0] * c[..., 1],
+                np.sin(h[2] - sign * h[0]),
+                np.sin(h[3] - sign * h[1]),
+                bottom * s[0] * s[1] - top * c[0] * c[1],
             ]
             return np.stack(rows, axis=-1)
 
@@ -166,12 +168,14 @@ def _closed_form(
 
 
 def _quotient_of_sums() -> Number:
-    u, v = tangent("alpha"), tangent("beta")
+    u = tangent("alpha")
+    v = tangent("beta")
     return (v + u) / (v - u)
 
 
 def _quotient_of_products() -> Number:
-    u, v = tangent("alpha"), tangent("beta")
+    u = tangent("alpha")
+    v = tangent("beta")
     return (1 + u * v) / (1 - u * v)
 
 

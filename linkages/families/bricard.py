@@ -243,12 +243,15 @@ def _value_and_slope(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The equation with coefficients ``k`` in theta1 = ``x``, theta = ``y``; its
     derivative by ``y``."""
-    s, c = np.sin(x), np.cos(x)
+    s = np.sin(x)
+    c = np.cos(x)
     free = k[0] * s + k[1] * c + k[8]
     by_sin = k[2] + k[4] * s + k[6] * c
     by_cos = k[3] + k[5] * s + k[7] * c
-    value = free + by_sin * np.sin(y) + by_cos * np.cos(y)
-    slope = by_sin * np.cos(y) - by_cos * np.sin(y)
+    sine = np.sin(y)
+    cosine = np.cos(y)
+    value = free + by_sin * sine + by_cos * cosine
+    slope = by_sin * cosine - by_cos * sine
     return value, slope
 
 
@@ -267,7 +270,8 @@ def _residual(
     that its sign names the root, without poles and without regard to where the form is
     entered.
     """
-    second, third = _scaled(equations.second), _scaled(equations.third)
+    second = _scaled(equations.second)
+    third = _scaled(equations.third)
 
     def residual(theta: np.ndarray) -> np.ndarray:
         theta = np.asarray(theta)
@@ -316,9 +320,11 @@ def patterns(
     s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
     R = (R1, R2, R3)
     out = _three_patterns("original", "", +1, original_equations(a, c, s, R))
+    has_lengths = max(a) > 0
     has_offsets = max(abs(R1), abs(R2), abs(R3)) > 0
-    if not has_offsets and max(a) > 0:
-        out += _three_patterns("revised", "'", -1, revised_equations(a, c, s, R))
+    if has_lengths and not has_offsets:
+        revised = revised_equations(a, c, s, R)
+        out += _three_patterns("revised", "'", -1, revised)
     return tuple(out)
 
 
@@ -359,7 +365,8 @@ def _quadratic(number: int) -> _Quadratic:
 
 def _third_pairs() -> tuple[Pair, ...]:
     """The pairs of joint 3: its root has the sign opposite to that of joint 2."""
-    second, third = _quadratic(2), _quadratic(3)
+    second = _quadratic(2)
+    third = _quadratic(3)
     s, c = joint(2)
     # the square root, as two quotients
     roots = (
@@ -373,9 +380,9 @@ def _third_pairs() -> tuple[Pair, ...]:
     return tuple(out)
 
 
-def _symbols(names: tuple[str, ...], known: tuple[str, ...]) -> Three:
-    """The symbols of ``names``, or 0 for those that are not parameters."""
-    x, y, z = (constant(name) if name in known else 0 for name in names)
+def _symbols(names: tuple[str, ...], parameters: tuple[str, ...]) -> Three:
+    """The symbols of ``names``, or 0 for those that are none of the ``parameters``."""
+    x, y, z = (constant(name) if name in parameters else 0 for name in names)
     return x, y, z
 
 

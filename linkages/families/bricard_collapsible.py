@@ -55,7 +55,8 @@ def doubly_collapsible_octahedral(
     equation (2.4.18) in Song (2013) is that product alone, which is necessary and not
     sufficient.
     """
-    a, a_opposite = Point(x1, y1), Point(x2, y2)
+    a = Point(x1, y1)
+    a_opposite = Point(x2, y2)
     b, b_opposite = _corners(a, a_opposite, radius_1)
     c, c_opposite = _corners(a, a_opposite, radius_2)
     corners = (c_opposite, a, b, c, a_opposite, b_opposite)
@@ -108,7 +109,8 @@ def _corners(first: Point, opposite: Point, radius: Number) -> tuple[Point, Poin
 def _normals(point: Point, radius: Number) -> _Normals:
     """The normals of the tangents from ``point`` to the circle about the origin."""
     distance = point.norm
-    size, reach = decided(radius), decided(distance)
+    size = decided(radius)
+    reach = decided(distance)
     if size is not None and reach is not None and not reach > size > 0:
         allowed = f"between 0 and {reach}, the distance of a corner"
         raise GeometryError("radius of a circle", size, allowed)
@@ -169,7 +171,8 @@ def _guesses_by_hexagon(walk: np.ndarray) -> Iterator[dict[str, float]]:
             continue
         along = (np.conj(a_opposite - a) * second).imag / cross
         centre = a + first * along
-        p, q = a - centre, a_opposite - centre
+        p = a - centre
+        q = a_opposite - centre
         for mirror in (1, -1):
             yield {
                 "x1": float(p.real),

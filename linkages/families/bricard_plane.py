@@ -186,11 +186,14 @@ def _sixth_gap(t: TableNumbers) -> float:
 
 def _bases_gap(t: TableNumbers) -> float:
     """R2^2 + R3^2 + 2 R2 R3 cos(alpha23) = R5^2 + R6^2 + 2 R5 R6 cos(alpha56)."""
-    cross_23 = 2 * t.R(2) * t.R(3) * math.cos(t.alpha(23))
-    cross_56 = 2 * t.R(5) * t.R(6) * math.cos(t.alpha(56))
-    one = t.R(2) ** 2 + t.R(3) ** 2 + cross_23
-    other = t.R(5) ** 2 + t.R(6) ** 2 + cross_56
+    one = _squared_base(t.R(2), t.R(3), t.alpha(23))
+    other = _squared_base(t.R(5), t.R(6), t.alpha(56))
     return one - other
+
+
+def _squared_base(x: float, y: float, angle: float) -> float:
+    """The squared third side of a triangle with the turn ``angle`` between two."""
+    return x**2 + y**2 + 2 * x * y * math.cos(angle)
 
 
 MIRRORED_LENGTHS = Condition(

@@ -79,11 +79,14 @@ def _second_ratio_gap(t: TableNumbers) -> float:
 
 def _cosines_gap(t: TableNumbers) -> float:
     """The condition on the cosines, see `dietmaier`."""
-    first = math.cos(t.alpha(12)) + math.cos(t.alpha(61))
-    second = math.cos(t.alpha(34)) + math.cos(t.alpha(45))
-    left = t.a(12) / math.sin(t.alpha(12)) * first
-    right = t.a(34) / math.sin(t.alpha(34)) * second
-    return left - right
+    return _scaled_cosines(t, 12, 61) - _scaled_cosines(t, 34, 45)
+
+
+def _scaled_cosines(t: TableNumbers, link: int, other: int) -> float:
+    """a/sin(alpha) of ``link`` times the sum of both cosines."""
+    twist = t.alpha(link)
+    total = math.cos(twist) + math.cos(t.alpha(other))
+    return t.a(link) / math.sin(twist) * total
 
 
 # --- entry

@@ -265,14 +265,18 @@ def _products(sign: int, k_d: float, k_b: float) -> Function:
     norm_b = math.hypot(1, k_b)
 
     def residual(theta: np.ndarray) -> np.ndarray:
-        h = np.asarray(theta) / 2
-        s, c = np.sin(h), np.cos(h)
-        closing = h[..., 0] + sign * h[..., 1] + sign * (h[..., 3] + sign * h[..., 4])
+        h = np.moveaxis(np.asarray(theta) / 2, -1, 0)
+        s = np.sin(h)
+        c = np.cos(h)
+        before = h[0] + sign * h[1]
+        after = h[3] + sign * h[4]
+        by_d = s[0] * s[1] - k_d * c[0] * c[1]
+        by_b = s[3] * s[4] - k_b * c[3] * c[4]
         rows = [
-            np.sin(h[..., 5] + sign * h[..., 2]),
-            np.sin(closing),
-            (s[..., 0] * s[..., 1] - k_d * c[..., 0] * c[..., 1]) / norm_d,
-            (s[..., 3] * s[..., 4] - k_b * c[..., 3] * c[..., 4]) / norm_b,
+            np.sin(h[5] + sign * h[2]),
+            np.sin(before + sign * after),
+            by_d / norm_d,
+            by_b / norm_b,
         ]
         return np.stack(rows, axis=-1)
 
@@ -321,7 +325,8 @@ def _non_constructive_patterns(
     fraction_b = _non_constructive(sign, alpha, gamma, beta)
     if min(abs(fraction_d.bottom), abs(fraction_b.bottom)) < ALIKE:
         return ()
-    k_d, k_b = fraction_d.value, fraction_b.value
+    k_d = fraction_d.value
+    k_b = fraction_b.value
     base = _products(-1, k_d, k_b)
     # with t2 and t5 negated this is the curve of the module's head, of products -k_d
     # and -k_b; the slope is (1 + k_b) / (1 + k_d), which is 0/0 for alpha + gamma = pi
@@ -360,8 +365,10 @@ def patterns(
     # (DSG)
     t4_infinite = k_b < 1
     if sign < 0:
-        m1, m3 = _ratio(beta, alpha), _ratio(delta, alpha)
-        m4, m6 = _ratio(delta, gamma), _ratio(beta, gamma)
+        m1 = _ratio(beta, alpha)
+        m3 = _ratio(delta, alpha)
+        m4 = _ratio(delta, gamma)
+        m6 = _ratio(beta, gamma)
         t4_infinite = (m6 - m1) * m4 * (m4 - m3) > 0
     slope = (1 - k_b) / (k_d - 1)
     circuit = _circuit(k_d, k_b, slope, t1_infinite=True, t4_infinite=t4_infinite)
@@ -476,7 +483,8 @@ def constructive_closed_form(
 ) -> ClosedForm:
     """Forms I and II; ``exchanged`` where links b and d have changed places."""
     tangents = _Tangents(sign, exchanged=exchanged)
-    first, fourth = joint(1), joint(4)
+    first = joint(1)
+    fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
     k_d = constant("m_da") * constant("m_dc")
@@ -511,13 +519,18 @@ def non_constructive_closed_form(
     """Forms III and IV, by t1 and t3: for nearly equal links b and d the difference of
     t1 and t4 loses digits."""
     tangents = _Tangents(sign, special, exchanged)
-    first, third = joint(1), joint(3)
+    first = joint(1)
+    third = joint(3)
     s1, c1 = first
     s3, c3 = third
-    b, d = constant("b"), constant("d")
-    n_b, d_b = constant("N_b"), constant("D_b")
-    n_d, d_d = constant("N_d"), constant("D_d")
-    e, f = constant("E"), constant("F")
+    b = constant("b")
+    d = constant("d")
+    n_b = constant("N_b")
+    d_b = constant("D_b")
+    n_d = constant("N_d")
+    d_d = constant("D_d")
+    e = constant("E")
+    f = constant("F")
     cross = b * (n_d * c1**2 - d_d * s1**2)
     relation = e * s1 * c1 * s3**2 + cross * s3 * c3 + f * s1 * c1 * c3**2
     fourth = (
@@ -539,8 +552,11 @@ def non_constructive_closed_form(
 
 
 def _non_constructive_constants(tangents: _Tangents) -> dict[str, Number]:
-    g, v, w = constant("g"), constant("v"), constant("w")
-    b, d = constant("b"), constant("d")
+    g = constant("g")
+    v = constant("v")
+    w = constant("w")
+    b = constant("b")
+    d = constant("d")
     constants = {
         "b": tangents.b,
         "d": tangents.d,

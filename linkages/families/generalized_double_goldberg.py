@@ -58,14 +58,17 @@ def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
     ratio = lengths[0] / np.sin(twists[0])
     joined = twists[1]
     for twist, sign in itertools.product((joined, joined + np.pi), (1, -1)):
+        cosine = np.cos(twist)
         total = sign * lengths[1] / ratio / np.tan(twist / 2)
-        shear = offsets[1] / ratio * (1 + np.cos(twist))
-        top = np.cos(twist) ** 2 + shear**2 - 1 + total**2
-        product = top / (2 * (1 + np.cos(twist)))
-        root = np.sqrt(max(total**2 / 4 - product, 0.0))
-        if abs(total / 2) + root >= 1:
+        shear = offsets[1] / ratio * (1 + cosine)
+        top = cosine**2 + shear**2 - 1 + total**2
+        product = top / (2 * (1 + cosine))
+        mean = total / 2
+        square = max(mean**2 - product, 0.0)
+        root = np.sqrt(square)
+        if abs(mean) + root >= 1:
             continue
-        pair = np.arccos([total / 2 + root, total / 2 - root])
+        pair = np.arccos([mean + root, mean - root])
         for gamma, alpha in itertools.permutations(pair):
             links = {"a": ratio * np.sin(alpha), "alpha": alpha, "gamma": gamma}
             yield from _kink_guesses(links, twists)

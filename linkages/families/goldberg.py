@@ -122,9 +122,9 @@ def _pattern(name: str, sign: int) -> Callable[..., tuple[FormPattern, ...]]:
     zero = np.cos if sign > 0 else np.sin
 
     def residual(theta: np.ndarray) -> np.ndarray:
-        h = np.asarray(theta) / 2
-        opposite = zero(h[..., 0] + h[..., 3])
-        others = zero(h[..., 1] + h[..., 2] + h[..., 4])
+        h = np.moveaxis(np.asarray(theta) / 2, -1, 0)
+        opposite = zero(h[0] + h[3])
+        others = zero(h[1] + h[2] + h[4])
         return np.stack([opposite, others], axis=-1)
 
     return lambda **values: (FormPattern(name, residual),)

@@ -197,7 +197,8 @@ def _syncopated_formulas() -> tuple[ClosedForm, ...]:
 
 
 def _myard_formulas() -> tuple[ClosedForm, ...]:
-    alpha, beta = tangent("alpha"), tangent("beta")
+    alpha = tangent("alpha")
+    beta = tangent("beta")
     form = goldberg_closed_form(
         "myard-asymmetric-5r", +1, alpha, beta, alpha, ("alpha", "beta"), {}
     )

@@ -116,7 +116,8 @@ def l_shape_goldberg(
     link_a, link_b, link_c, link_d = bennett_links(
         a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
     )
-    first, second = link_b + link_d, link_a + link_c
+    first = link_b + link_d
+    second = link_a + link_c
     return closed_chain(first, second, link_b, link_c, link_d, link_a)
 
 
@@ -142,7 +143,8 @@ def syncopated_l_shape_goldberg(
     product = half_angle_ratio(alpha, beta) * half_angle_ratio(gamma, beta)
     joined = link_a + link_c
     link_e = syncopated_link(joined, product)
-    first, third = link_b + link_d - link_e, link_e - link_b
+    first = link_b + link_d - link_e
+    third = link_e - link_b
     return closed_chain(first, joined, third, link_c, link_d, link_a)
 
 
@@ -164,7 +166,8 @@ def serial_variant(
     link_a, link_b, link_c, link_d = bennett_links(
         a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
     )
-    second, fifth = link_a + link_c, link_c + link_d
+    second = link_a + link_c
+    fifth = link_c + link_d
     return closed_chain(link_b, second, link_d, link_b, fifth, link_a)
 
 
@@ -186,7 +189,8 @@ def l_shape_variant(
     link_a, link_b, link_c, link_d = bennett_links(
         a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
     )
-    first, fifth = link_b + link_d, link_c + link_d
+    first = link_b + link_d
+    fifth = link_c + link_d
     return closed_chain(first, link_a, link_c, link_b, fifth, link_a)
 
 

@@ -180,11 +180,14 @@ def _form(
 
 
 def _type_one() -> tuple[ClosedForm, ...]:
-    first, fourth = joint(1), joint(4)
+    first = joint(1)
+    fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
-    m1, m3 = constant("m_1"), constant("m_3")
-    m4, m6 = constant("m_4"), constant("m_6")
+    m1 = constant("m_1")
+    m3 = constant("m_3")
+    m4 = constant("m_4")
+    m6 = constant("m_6")
     q = reciprocal(fourth, -m4)
     outer = plus(q, reciprocal(first, m1))
     # (m1 + m6 x^2) (Q^2 + m4/m3) = (1/m3 - m4) (m1 - m6) x Q, times m3 t4^2 / m4
@@ -207,11 +210,14 @@ def _type_one() -> tuple[ClosedForm, ...]:
 
 
 def _type_two() -> tuple[ClosedForm, ...]:
-    first, fourth = joint(1), joint(4)
+    first = joint(1)
+    fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
-    m1, m2 = constant("m_1"), constant("m_2")
-    m3, m4 = constant("m_3"), constant("m_4")
+    m1 = constant("m_1")
+    m2 = constant("m_2")
+    m3 = constant("m_3")
+    m4 = constant("m_4")
     p, r = reciprocal(fourth, -m3)
     # m4 x P^2 - (m3 m4 - 1) P + m3 x = 0, times t4^2 / m3
     relation = m3 * m4 * s1 * c4**2 + (m3 * m4 - 1) * s4 * c4 * c1 + s1 * s4**2
@@ -233,7 +239,8 @@ def _type_two() -> tuple[ClosedForm, ...]:
 def _type_three() -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1, m3 = constant("m_1"), constant("m_3")
+    m1 = constant("m_1")
+    m3 = constant("m_3")
     angles = (
         first,
         reciprocal(first, m1),
@@ -249,7 +256,9 @@ def _type_three() -> tuple[ClosedForm, ...]:
 def _type_four() -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1, m2, m3 = constant("m_1"), constant("m_2"), constant("m_3")
+    m1 = constant("m_1")
+    m2 = constant("m_2")
+    m3 = constant("m_3")
     angles = (
         first,
         reciprocal(first, m1),
@@ -264,7 +273,8 @@ def _type_four() -> tuple[ClosedForm, ...]:
 def _type_five() -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1, m4 = constant("m_1"), constant("m_4")
+    m1 = constant("m_1")
+    m4 = constant("m_4")
     third = (c1, m4 * s1)
     angles = (
         first,
@@ -280,7 +290,9 @@ def _type_five() -> tuple[ClosedForm, ...]:
 def _type_six() -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1, m2, m4 = constant("m_1"), constant("m_2"), constant("m_4")
+    m1 = constant("m_1")
+    m2 = constant("m_2")
+    m4 = constant("m_4")
     sixth = (
         (m4 * s1**2 + (m1 * m2 * m4 + m1 - m2) * c1**2) * s1,
         ((m1 * m4 - m2 * m4 - 1) * s1**2 - m1 * m2 * c1**2) * c1,

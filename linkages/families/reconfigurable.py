@@ -150,13 +150,20 @@ def _triangle_constants() -> dict[str, Number]:
     """The constants of the closed form, by the half tangents of alpha, beta, kink,
     gamma: the spatial triangle, as in `composite_link`, and the product m of the
     Bennett loop on its third side."""
-    u_a, u_b = tangent("alpha"), tangent("beta")
-    u_k, u_g = tangent("kink"), tangent("gamma")
-    s_a, c_a = sine_of(u_a), cosine_of(u_a)
-    s_b, c_b = sine_of(u_b), cosine_of(u_b)
-    s_k, c_k = sine_of(u_k), cosine_of(u_k)
-    x_1, y_1 = constant("x_1"), constant("y_1")
-    sin_d, u_d = constant("sin_delta"), constant("u_delta")
+    u_a = tangent("alpha")
+    u_b = tangent("beta")
+    u_k = tangent("kink")
+    u_g = tangent("gamma")
+    s_a = sine_of(u_a)
+    c_a = cosine_of(u_a)
+    s_b = sine_of(u_b)
+    c_b = cosine_of(u_b)
+    s_k = sine_of(u_k)
+    c_k = cosine_of(u_k)
+    x_1 = constant("x_1")
+    y_1 = constant("y_1")
+    sin_d = constant("sin_delta")
+    u_d = constant("u_delta")
     return {
         "k": u_k,
         "x_1": c_k * s_b * c_a + c_b * s_a,

@@ -322,33 +322,46 @@ def _is_goldberg_like(form: np.ndarray) -> bool:
 def _guesses_at_shift(
     variant: Variant, form: np.ndarray, shift: float, supplement: bool
 ) -> Iterator[dict[str, float]]:
+    parameters = _parameters_at_shift(variant, form, shift, supplement)
+    is_below_one = parameters["ratio"] < 1 / MARGIN
+    is_above_one = parameters["ratio"] >= MARGIN
+    if not (is_below_one if variant.second == 3 else is_above_one):
+        return
+    try:
+        stage = _stage(variant, **parameters)
+    except (GeometryError, ArithmeticError):
+        return
+    twists = form[1].tolist()
+    candidates = kinks(twists[2], twists[1], twists[4])
+    for kink, turn in itertools.product(candidates, (0.0, math.pi)):
+        delta = _delta(variant, stage, kink + turn)
+        wrapped = (delta + math.pi) % (2 * math.pi) - math.pi
+        yield {**parameters, "delta": wrapped}
+
+
+def _parameters_at_shift(
+    variant: Variant, form: np.ndarray, shift: float, supplement: bool
+) -> dict[str, float]:
+    """The parameters but delta, for a shift of the reference points on the axis of
+    S."""
     lengths = form[0].tolist()
     twists = form[1].tolist()
     main, side = (1, 0) if variant.first == 1 else (0, 1)
     length = lengths[main]
     twist = math.pi - twists[main] if supplement else twists[main]
-    radius = math.hypot(length, shift * math.sin(twist))
+    sine = math.sin(twist)
+    radius = math.hypot(length, shift * sine)
     cosine = abs(math.cos(twists[side]))
     pin = shift / cosine if cosine > 1e-9 else 0.0
     carried = math.hypot(lengths[2], pin * math.tan(twists[2]))
-    ratio = carried / math.hypot(lengths[0], pin * math.sin(twists[0]))
-    if (ratio > 1 / MARGIN) if variant.second == 3 else (ratio < MARGIN):
-        return
-    parameters = {
+    carrying = math.hypot(lengths[0], pin * math.sin(twists[0]))
+    return {
         "r1": radius,
         "s1": math.hypot(lengths[side], pin * math.sin(twists[side])),
-        "chi1": math.atan2(length * math.sin(twist), radius * math.cos(twist)),
-        "theta1": float(np.arcsin(shift * math.sin(twist) ** 2 / radius)),
-        "ratio": ratio,
+        "chi1": math.atan2(length * sine, radius * math.cos(twist)),
+        "theta1": float(np.arcsin(shift * sine**2 / radius)),
+        "ratio": carried / carrying,
     }
-    try:
-        stage = _stage(variant, **parameters)
-    except (GeometryError, ArithmeticError):
-        return
-    candidates = kinks(twists[2], twists[1], twists[4])
-    for kink, turn in itertools.product(candidates, (0.0, math.pi)):
-        delta = _delta(variant, stage, kink + turn)
-        yield {**parameters, "delta": (delta + math.pi) % (2 * math.pi) - math.pi}
 
 
 def _delta(variant: Variant, stage: _Stage, kink: float) -> float:
@@ -434,8 +447,10 @@ def _ratio_parameter(variant: Variant) -> Parameter:
 
 
 def _entry(variant: Variant) -> Entry:
-    i, j = variant.first, variant.second
-    z, u = variant.z_sense.value, variant.u_sense.value
+    i = variant.first
+    j = variant.second
+    z = variant.z_sense.value
+    u = variant.u_sense.value
     senses = f"circle {i} on torus {j}, Z{i}1 = {z}Z{j}, U{i} = {u}Z{j}1"
     return Entry(
         variant.name,

@@ -98,11 +98,15 @@ def _shifts(form: np.ndarray, kink: float, unit: float) -> list[float]:
     d = Link(lengths[4], twists[4])
     at_zero = composite_link(b, d, kink, 0.0)
     at_unit = composite_link(b, d, kink, unit)
-    zero, one, size = at_zero.link.length, at_unit.link.length, lengths[2]
+    zero = at_zero.link.length
+    one = at_unit.link.length
+    size = lengths[2]
     by_length = float(one) - float(zero)
     by_offset = float(at_unit.before.offset) - float(at_zero.before.offset)
     if abs(by_offset) > abs(by_length):
-        zero, one, size = at_zero.before.offset, at_unit.before.offset, offsets[2]
+        zero = at_zero.before.offset
+        one = at_unit.before.offset
+        size = offsets[2]
     slope = float(one) - float(zero)
     return [unit * (target - float(zero)) / slope for target in (size, -size)]
 

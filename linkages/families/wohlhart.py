@@ -58,12 +58,14 @@ def wohlhart_symmetric(a: Number, alpha: Number) -> Loop:
 
 
 def _patterns(a: float, alpha: float) -> tuple[FormPattern, ...]:
-    c, s = math.cos(alpha), math.sin(alpha)
+    c = math.cos(alpha)
+    s = math.sin(alpha)
 
     def residual(theta: np.ndarray) -> np.ndarray:
         theta = np.asarray(theta)
         odd_gaps = np.sin((np.roll(theta, -2, axis=-1) - theta) / 2)
-        x, y = theta[..., 0], theta[..., 1]
+        x = theta[..., 0]
+        y = theta[..., 1]
         closure = (
             (1 + c * c) * np.cos(x) * np.cos(y)
             + s * s * (np.cos(x) + np.cos(y))
@@ -79,11 +81,16 @@ def _formulas() -> tuple[ClosedForm, ...]:
     """Odd joints at theta, even joints at phi."""
     import sympy as sp
 
-    c, s = constant("c"), constant("s")
+    c = constant("c")
+    s = constant("s")
     s1, c1 = joint(1)
     s2, c2 = joint(2)
-    sine1, cosine1, one1 = 2 * s1 * c1, c1**2 - s1**2, s1**2 + c1**2
-    sine2, cosine2, one2 = 2 * s2 * c2, c2**2 - s2**2, s2**2 + c2**2
+    sine1 = 2 * s1 * c1
+    cosine1 = c1**2 - s1**2
+    one1 = s1**2 + c1**2
+    sine2 = 2 * s2 * c2
+    cosine2 = c2**2 - s2**2
+    one2 = s2**2 + c2**2
     relation = (
         (1 + c**2) * cosine1 * cosine2
         + s**2 * (cosine1 * one2 + cosine2 * one1)

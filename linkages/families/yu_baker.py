@@ -81,17 +81,30 @@ def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
     """A cubic equation for tan(beta/2): delta is beta less the twist of link 56,
     epsilon beta plus that of link 12."""
     twists = form[1]
-    a = float(np.tan(twists[5] / 2))
-    c = float(np.tan(twists[3] / 2))
+    half_twists = twists / 2
+    a = float(np.tan(half_twists[5]))
+    c = float(np.tan(half_twists[3]))
+    firsts = _signed(twists[0])
+    fifths = _signed(twists[4])
+    for s, r in itertools.product(firsts, fifths):
+        cubic = _cubic(a, c, s, r)
+        for beta in twists_with(np.roots(cubic.coeffs)):
+            half_delta = np.tan(beta / 2 - np.arctan(r))
+            delta = 2 * np.arctan(half_delta)
+            yield {"beta": beta, "delta": delta % np.pi}
+
+
+def _cubic(a: float, c: float, s: float, r: float) -> np.poly1d:
+    """The equation for tan(beta/2) by the half tangents of a, c and of the links 12,
+    56."""
     x = np.poly1d([1.0, 0.0])
     one = np.poly1d([1.0])
-    for s, r in itertools.product(_signed(twists[0]), _signed(twists[4])):
-        top, bottom = x - r, one + r * x  # of tan(delta/2)
-        left = (a * c * bottom + x * top) * (a + c) * (one - s * x)
-        right = (x + s) * (a * top + c * x * bottom) * (1 - a * c)
-        for beta in twists_with(np.roots((left - right).coeffs)):
-            half = np.tan(beta / 2 - np.arctan(r))
-            yield {"beta": beta, "delta": 2 * np.arctan(half) % np.pi}
+    # numerator and denominator of tan(delta/2)
+    top = x - r
+    bottom = one + r * x
+    left = (a * c * bottom + x * top) * (a + c) * (one - s * x)
+    right = (x + s) * (a * top + c * x * bottom) * (1 - a * c)
+    return left - right
 
 
 def _signed(twist: float) -> list[float]:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -141,17 +142,30 @@ class Comparison:
     axes: np.ndarray
 
 
+@dataclass(frozen=True)
+class _AxisChoices:
+    """All 2^n patterns of reversed axes: their ``signs`` (2^n, n), and one-hot matrices
+    (2 n, 2^n) that choose from the costs of twists and of offsets."""
+
+    signs: np.ndarray
+    of_twists: np.ndarray
+    of_offsets: np.ndarray
+
+
 @cache
-def _patterns(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Axis signs (2^n, n), and one-hot matrices (2 n, 2^n) that choose from costs of
-    twists and of offsets."""
-    flips = (np.arange(2**n)[:, None] >> np.arange(n)) & 1
+def _axis_choices(n: int) -> _AxisChoices:
+    numbers = np.arange(2**n)
+    flips = (numbers[:, None] >> np.arange(n)) & 1
     turns = flips ^ np.roll(flips, -1, axis=1)
-    choose = [
-        np.stack([1 - which, which], axis=-1).reshape(2**n, 2 * n).T.astype(float)
-        for which in (turns, flips)
-    ]
-    return 1.0 - 2.0 * flips, choose[0], choose[1]
+    return _AxisChoices(1.0 - 2.0 * flips, _one_hot(turns), _one_hot(flips))
+
+
+def _one_hot(choices: np.ndarray) -> np.ndarray:
+    """The matrix (2 n, k) that takes the first or the second of n pairs, for ``choices``
+    (k, n) of 0 or 1."""
+    k, n = choices.shape
+    pairs = np.stack([1 - choices, choices], axis=-1)
+    return pairs.reshape(k, 2 * n).T.astype(float)
 
 
 def compare(target: np.ndarray, candidates: np.ndarray, unit: float) -> Comparison:
@@ -161,41 +175,60 @@ def compare(target: np.ndarray, candidates: np.ndarray, unit: float) -> Comparis
     Lengths and offsets are measured in ``unit``.
     """
     k, _, n = candidates.shape
-    links, _ = _link_costs(target, candidates, unit)
-    wanted, offsets = np.atleast_2d(target[..., 2, :]), candidates[:, 2]
-    joints = (
-        np.stack([(wanted - offsets) ** 2, (wanted + offsets) ** 2], axis=-1) / unit**2
-    )  # (k, n, 2)
-    _, of_twists, of_offsets = _patterns(n)
-    total = (
-        links.reshape(k, 2 * n) @ of_twists + joints.reshape(k, 2 * n) @ of_offsets
-    )  # (k, 2^n)
+    links = _link_costs(target, candidates, unit).least
+    joints = _joint_costs(target, candidates, unit)
+    choices = _axis_choices(n)
+    by_twists = links.reshape(k, 2 * n) @ choices.of_twists
+    by_offsets = joints.reshape(k, 2 * n) @ choices.of_offsets
+    total = by_twists + by_offsets  # (k, 2^n)
     best = total.argmin(axis=1)
-    blind = links.min(axis=2).sum(axis=1) + joints.min(axis=2).sum(axis=1)
     exact = total[np.arange(k), best]
-    return Comparison(np.sqrt(blind), np.sqrt(exact), best)
+    blind_links = links.min(axis=2).sum(axis=1)
+    blind_joints = joints.min(axis=2).sum(axis=1)
+    return Comparison(np.sqrt(blind_links + blind_joints), np.sqrt(exact), best)
 
 
 def find_signs(target: np.ndarray, candidate: np.ndarray, unit: float) -> Signs:
     """The reversals that bring ``candidate`` (3, n) as near to ``target`` (3, n) as
     they can."""
-    found = compare(target, candidate[None], unit)
     n = candidate.shape[1]
-    axes = _patterns(n)[0][found.axes[0]]
-    _, reverse = _link_costs(target, candidate[None], unit)
+    best = compare(target, candidate[None], unit).axes[0]
+    axes = _axis_choices(n).signs[best]
     turns = (axes * np.roll(axes, -1) < 0).astype(int)
-    return Signs(np.where(reverse[0, np.arange(n), turns], -1.0, 1.0), axes)
+    is_reversed = _link_costs(target, candidate[None], unit).is_reversed[0]
+    reverse = is_reversed[np.arange(n), turns]
+    return Signs(np.where(reverse, -1.0, 1.0), axes)
 
 
-def _link_costs(
-    target: np.ndarray, candidates: np.ndarray, unit: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Squared distances (k, n, 2) of links without and with pi added to the twist, and
-    whether reversed."""
-    costs = []
-    for sign in (1.0, -1.0):
-        length = (target[..., 0, :] - sign * candidates[:, 0]) / unit
-        half = (target[..., 1, :] - sign * candidates[:, 1]) / 2
-        plain, turned = (length**2 + 4 * f(half) ** 2 for f in (np.sin, np.cos))
-        costs.append(np.stack([plain, turned], axis=-1))
-    return np.minimum(*costs), costs[1] < costs[0]
+class _LinkCosts(NamedTuple):
+    """Squared distances (k, n, 2) of links without and with pi added to the twist, the
+    ``least`` of both senses of the link, and whether that is the reversed one."""
+
+    least: np.ndarray
+    is_reversed: np.ndarray
+
+
+def _link_costs(target: np.ndarray, candidates: np.ndarray, unit: float) -> _LinkCosts:
+    plain = _sense_costs(target, candidates, unit, 1.0)
+    other = _sense_costs(target, candidates, unit, -1.0)
+    return _LinkCosts(np.minimum(plain, other), other < plain)
+
+
+def _sense_costs(
+    target: np.ndarray, candidates: np.ndarray, unit: float, sign: float
+) -> np.ndarray:
+    """The costs (k, n, 2) of links, all reversed for ``sign`` -1."""
+    length = (target[..., 0, :] - sign * candidates[:, 0]) / unit
+    half = (target[..., 1, :] - sign * candidates[:, 1]) / 2
+    square = length**2
+    without = square + 4 * np.sin(half) ** 2
+    turned = square + 4 * np.cos(half) ** 2
+    return np.stack([without, turned], axis=-1)
+
+
+def _joint_costs(target: np.ndarray, candidates: np.ndarray, unit: float) -> np.ndarray:
+    """Squared distances (k, n, 2) of offsets as they are and with the other sign."""
+    given = np.atleast_2d(target[..., 2, :])
+    offsets = candidates[:, 2]
+    squares = [(given - offsets) ** 2, (given + offsets) ** 2]
+    return np.asarray(np.stack(squares, axis=-1) / unit**2)

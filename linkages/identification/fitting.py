@@ -106,18 +106,20 @@ def best_member(entry: Entry, views: Sequence[View], unit: float) -> Member | No
     gaps = compare(targets, tables, unit)
     # of equals the first, read as given
     order = np.argsort(np.round(gaps.exact, 10), kind="stable")
-    near = [k for k in order[:FITTED] if gaps.exact[k] < NEAR] or order[:1]
-    members = [_member(entry, candidates[k], unit) for k in near]
-    if gaps.exact.min() > NEAR / 10:
+    near = [k for k in order[:FITTED] if gaps.exact[k] < NEAR]
+    chosen = near or order[:1]
+    members = [_member(entry, candidates[k], unit) for k in chosen]
+    least = gaps.exact.min()
+    if least > NEAR / 10:
         # twists modulo pi and signs of offsets may have been read off wrongly
-        limit = min(NEAR, gaps.exact.min() / 3)
+        limit = min(NEAR, least / 3)
         blind = np.argsort(gaps.blind)[: 8 * FITTED]
-        alike = [candidates[k] for k in blind if gaps.blind[k] < limit]
-        members += _with_other_signs(entry, alike, unit)
+        others = [candidates[k] for k in blind if gaps.blind[k] < limit]
+        members += _with_other_signs(entry, others, unit)
     members.sort(key=lambda member: round(member.distance, 10))
-    near_members = [m for m in members[:FITTED] if m.distance < NEAR]
-    fitted = [_fit(entry, member, unit) for member in near_members]
-    return min(fitted or members, key=lambda member: round(member.distance, 12))
+    starts = [member for member in members[:FITTED] if member.distance < NEAR]
+    fits = [_fit(entry, member, unit) for member in starts]
+    return min(fits or members, key=lambda member: round(member.distance, 12))
 
 
 def _build(entry: Entry, parameters: Mapping[str, float]) -> np.ndarray | None:
@@ -220,7 +222,7 @@ def _member(entry: Entry, candidate: Candidate, unit: float) -> Member:
 def _gaps(read: np.ndarray, values: np.ndarray, unit: float) -> np.ndarray:
     """Differences (3 n,) of two tables: lengths and offsets in ``unit``, chords of
     twists."""
-    out = (read - values) / unit
+    out: np.ndarray = (read - values) / unit
     out[1] = 2 * np.sin((read[1] - values[1]) / 2)
     return out.ravel()
 
@@ -342,7 +344,8 @@ def _descend(
     """Gauss-Newton on the hidden angles ``names`` alone, from a point of a scan, with
     the signs that fit best at each step."""
     read = start.view.values
-    parameters, values = start.parameters, start.values
+    parameters = start.parameters
+    values = start.values
     for _ in range(STEPS):
         signs = find_signs(read, values, unit)
         base = signs.of(values)
@@ -361,5 +364,6 @@ def _descend(
         built = _build(entry, after)
         if built is None or np.abs(step).max() < 1e-10:
             break
-        parameters, values = after, built
+        parameters = after
+        values = built
     return Candidate(start.view, parameters, values)

@@ -193,9 +193,9 @@ def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:
     out: list[Match] = []
     while left:
         limit = ALIKE * _spread(left[0])
-        alike = [match for match in left if _spread(match) <= limit]
-        out += sorted(alike, key=lambda m: (m.freedom or 99, len(m.parameters)))
-        left = left[len(alike) :]
+        group = [match for match in left if _spread(match) <= limit]
+        out += sorted(group, key=lambda m: (m.freedom or 99, len(m.parameters)))
+        left = left[len(group) :]
     return tuple(out)
 
 

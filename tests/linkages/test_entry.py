@@ -71,6 +71,6 @@ def test_an_unknown_parameter_is_an_error_of_usage_that_names_the_known_ones():
         entry("bennett").build(delta=1.0)
     assert caught.value.name == "delta"
     assert caught.value.linkage == "bennett"
-    assert caught.value.known == ("a", "alpha", "beta")
+    assert caught.value.parameters == ("a", "alpha", "beta")
     assert isinstance(caught.value, BifurcError)
     assert not isinstance(caught.value, GeometryError)
