@@ -11,6 +11,7 @@ from linkages.construction.numbers import Number, sin
 from linkages.loop import GeometryError
 
 __all__ = [
+    "ROUNDING",
     "bennett_length",
     "decided",
     "require_different",

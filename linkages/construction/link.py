@@ -7,16 +7,19 @@ them back on each other, a-c/alpha-gamma. Here ``a + c`` and ``a - c`` mean just
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from linkages.construction.conditions import (
+    ROUNDING,
     bennett_length,
+    decided,
     require_different,
     require_positive,
 )
 from linkages.construction.numbers import Number, atan, sin, tan
-from linkages.loop import Loop
+from linkages.loop import GeometryError, Loop
 
 __all__ = [
     "Link",
@@ -79,8 +82,22 @@ def half_angle_ratio(x: Number, y: Number) -> Number:
     """
     p = tan(x / 2)
     q = tan(y / 2)
-    require_different("half tangent of a twist", p, q, "that of the next link")
+    _refuse_equal_twists(p, q)
     return (p + q) / (p - q)
+
+
+def _refuse_equal_twists(p: Number, q: Number) -> None:
+    """Raise `GeometryError` when the twists with these half tangents are equal."""
+    one = decided(p)
+    other = decided(q)
+    if one is None or other is None:
+        return
+    x = 2 * math.atan(one)
+    y = 2 * math.atan(other)
+    if abs(math.sin((x - y) / 2)) > ROUNDING:
+        return
+    allowed = f"different from {y:.6g} rad, the twist of its neighbour"
+    raise GeometryError("twist of a link", f"{x:.6g} rad", allowed)
 
 
 def syncopated_link(base: Link, product: Number) -> Link:

@@ -314,9 +314,9 @@ ENTRIES: tuple[Entry, ...] = (
         errata=(
             DENOMINATOR,
             "Song 2013, eq. (5.3.6): the two cosines must be sines",
-            "Song 2013, section 5.3.4: the Bennett form need not be Form II; it follows "
-            "the roots of Form I for the default parameters, and those of both, with "
-            "two bifurcations, for most others",
+            "Song 2013, section 5.3.4: the Bennett form need not be Form II; it "
+            "follows the roots of Form I for the default parameters, and those of "
+            "both, with two bifurcations, for most others",
         ),
         facts={
             "mobility": 1,

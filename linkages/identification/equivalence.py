@@ -5,7 +5,8 @@ mirror image, has many: it can be read from another joint or the other way round
 (`Reading`), every joint axis and every link can be reversed (`Signs`), and a half turn
 about x turns the sign of all offsets, which is the reversal of all axes:
 
-    axis i reversed   R_i -> -R_i, alpha_{i-1,i} -> alpha_{i-1,i} + pi, alpha_{i,i+1} -> alpha_{i,i+1} + pi
+    axis i reversed   R_i -> -R_i, alpha_{i-1,i} -> alpha_{i-1,i} + pi,
+                      alpha_{i,i+1} -> alpha_{i,i+1} + pi
     link i reversed   a_{i,i+1} -> -a_{i,i+1}, alpha_{i,i+1} -> -alpha_{i,i+1}
 """
 
@@ -161,8 +162,8 @@ def _axis_choices(n: int) -> _AxisChoices:
 
 
 def _one_hot(choices: np.ndarray) -> np.ndarray:
-    """The matrix (2 n, k) that takes the first or the second of n pairs, for ``choices``
-    (k, n) of 0 or 1."""
+    """The matrix (2 n, k) that takes the first or the second of n pairs, by the
+    ``choices`` (k, n) of 0 or 1."""
     k, n = choices.shape
     pairs = np.stack([1 - choices, choices], axis=-1)
     return pairs.reshape(k, 2 * n).T.astype(float)

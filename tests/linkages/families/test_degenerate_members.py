@@ -69,7 +69,7 @@ def test_special_parameters_make_a_loop_or_are_refused(name):
 
 def test_equal_twists_of_a_syncopated_goldberg_linkage_are_refused_by_name():
     alpha, beta, gamma = np.radians([30.0, 45.0, 45.0])
-    with pytest.raises(GeometryError, match=r"half tangent of a twist: 0\.414214"):
+    with pytest.raises(GeometryError, match=r"twist of a link: 0\.785398 rad"):
         syncopated_goldberg(1.0, float(alpha), float(beta), float(gamma))
 
 
