@@ -9,6 +9,7 @@ follow along the graph.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import networkx as nx
@@ -31,21 +32,23 @@ def relation_graph() -> nx.MultiDiGraph:
         graph.add_node(name, title=linkage.title)
     for kind in RelationKind:
         for name, linkage in catalogue().items():
-            for relation in linkage.relations:
-                if relation.kind is kind:
-                    _add_edge(graph, name, relation)
+            relations = [r for r in linkage.relations if r.kind is kind]
+            _add_edges(graph, name, relations)
     return graph
 
 
-def _add_edge(graph: nx.MultiDiGraph, name: str, relation: Relation) -> None:
-    graph.add_edge(
-        name,
-        relation.other,
-        relation.kind.value,
-        kind=relation.kind,
-        source=relation.source,
-        detail=relation.detail,
-    )
+def _add_edges(
+    graph: nx.MultiDiGraph, name: str, relations: Iterable[Relation]
+) -> None:
+    for relation in relations:
+        graph.add_edge(
+            name,
+            relation.other,
+            relation.kind.value,
+            kind=relation.kind,
+            source=relation.source,
+            detail=relation.detail,
+        )
 
 
 def relations_of(name: str) -> tuple[Relation, ...]:

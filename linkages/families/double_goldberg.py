@@ -126,7 +126,7 @@ def _loop(
     joined = Link(a + sign * length_c, alpha + sign * gamma)
     require_positive("length of links 12 and 45", joined.length)
     if sign < 0:
-        require_different("length c", length_c, a, "the length of a", scale=0)
+        require_different("twist gamma", gamma, alpha, "alpha, whose link it cancels")
     return closed_chain(joined, link_d, link_b, joined, link_b, link_d)
 
 

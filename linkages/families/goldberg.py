@@ -70,7 +70,7 @@ def _loop(
     joined = a + sign * c
     require_positive("length of link 23", joined)
     if sign < 0:
-        require_different("length c", c, a, "the length of a", scale=0)
+        require_different("twist gamma", gamma, alpha, "alpha, whose link it cancels")
     lengths = (b, joined, b, c, a)
     twists = (beta, alpha + sign * gamma, beta, gamma, alpha)
     return Loop(lengths, twists, (0,) * 5, name)

@@ -89,7 +89,9 @@ def test_a_wohlhart_linkage_with_supplementary_twists_has_its_four_forms():
     assert len(found.patterns(**parameters)) == 4
 
 
-def test_links_whose_difference_is_rounding_are_refused():
-    found = entry("double-subtractive-goldberg")
-    with pytest.raises(GeometryError, match="length"):
-        found.build(alpha=np.radians(135.0), gamma=np.radians(45.0))
+@pytest.mark.parametrize(
+    "name", ["subtractive-goldberg-5r", "double-subtractive-goldberg"]
+)
+def test_equal_links_of_a_subtractive_linkage_cancel_and_are_refused(name):
+    with pytest.raises(GeometryError, match=r"greater than 0|alpha"):
+        entry(name).build(alpha=0.9, gamma=0.9)
