@@ -52,8 +52,9 @@ def load(source: str | Path, **parameters: float) -> Linkage:
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. Raises `UnknownLinkageError` with the nearest names,
-    `LinkageFileError` for a file that cannot be used, and `GeometryError` for
-    parameters that make no linkage.
+    `LinkageFileError` for a file that cannot be used, `UnknownParameterError` for a
+    parameter that the family does not have, and `GeometryError` for values that make no
+    linkage.
     """
     if not isinstance(source, str | Path):
         allowed = "a name of the catalogue or the path of a TOML file"

@@ -6,9 +6,10 @@ import pytest
 from bifurc.errors import BifurcError
 from bifurc.search.settings import SearchSettings
 from linkages.catalogue import UnknownLinkageError, entry
+from linkages.entry import UnknownParameterError
 from linkages.labels import FormLabels
 from linkages.linkage import load
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.mapping import map_linkage
 
 
@@ -43,7 +44,7 @@ def test_a_loop_without_a_source_is_mapped_too():
 def test_a_name_or_a_parameter_that_does_not_exist_is_refused():
     with pytest.raises(UnknownLinkageError, match="bennett"):
         map_linkage(load("benet"))
-    with pytest.raises(BifurcError, match="one of a, alpha, beta"):
+    with pytest.raises(UnknownParameterError, match="one of a, alpha, beta"):
         map_linkage(load("bennett", gamma=1.0))
 
 
