@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from bifurc.errors import BifurcError
 from bifurc.search.settings import SearchSettings
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import UnknownParameterError
 from linkages.labels import FormLabels
 from linkages.linkage import load
-from linkages.loop import Loop
+from linkages.loop import GeometryError, Loop
 from linkages.mapping import map_linkage
 
 
