@@ -104,11 +104,12 @@ def _parameter(parameter: Parameter) -> str:
 def _relations(name: str) -> list[str]:
     lines = []
     for relation in relations_of(name):
+        other = relation.other
         words = relation.kind.value
         if relation.kind is RelationKind.SAME:
             words = "the same linkage as"
         detail = f", {relation.detail}" if relation.detail else ""
-        lines.append(f"{words} [{relation.other}](#{relation.other}){detail} ({relation.source})")
+        lines.append(f"{words} [{other}](#{other}){detail} ({relation.source})")
     return lines
 
 

@@ -9,7 +9,12 @@ from typing import TypedDict
 import numpy as np
 
 from linkages.app.texts import count_of, link_name
-from linkages.identification.identify import NEAR, Identification, LockedJoint, Match
+from linkages.identification.identify import (
+    NEAR,
+    Identification,
+    LockedJoint,
+    Match,
+)
 
 __all__ = ["describe_identification", "make_identification_document"]
 
@@ -35,7 +40,7 @@ def describe_identification(identification: Identification) -> str:
         sentence = f"No linkage of the catalogue has this geometry, to {tolerance}."
         parts = [_near(match) for match in identification.nearest[:NEAREST]]
         if not parts:
-            parts.append(f"None misses by less than {NEAR:g}, so that none is near.")
+            parts = [f"None misses by less than {NEAR:g}, so that none is near."]
     parts += [_locked(joint) for joint in identification.locked]
     return "\n\n".join([f"{name}\n{sentence}", *parts])
 
