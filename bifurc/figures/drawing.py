@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from bifurc.atlas import Atlas
 from bifurc.figures.planes import copies_in_frame, place_in_frame, scale_of
-from bifurc.singular.locate import Kind
+from bifurc.singular.point import Kind
 
 __all__ = [
     "SETTINGS",

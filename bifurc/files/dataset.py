@@ -31,7 +31,7 @@ from bifurc.files.layout import Variable, atlas_variables, split_rows, variable
 from bifurc.files.surface_layout import read_surfaces
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
-from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.singular.point import Kind, SingularPoint
 
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 

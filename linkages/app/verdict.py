@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bifurc.atlas import Atlas
-from bifurc.singular.locate import Kind
+from bifurc.singular.point import Kind
 from linkages.app.status import ExitCode
 
 __all__ = ["Verdict", "counted", "judge"]

@@ -19,7 +19,7 @@ from bifurc.routes.route import find_route
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
-from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap
 
 PERIOD = 6.0

@@ -22,7 +22,7 @@ from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
 from bifurc.singular.dimension import local_dimensions
-from bifurc.singular.locate import Kind
+from bifurc.singular.point import Kind
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.geodesic import shortest_path
