@@ -82,7 +82,8 @@ class Route:
         """Total turning (n,) of each unknown."""
         if not self.legs:
             return np.zeros(self.path.shape[1])
-        total: np.ndarray = np.sum([leg.travel for leg in self.legs], axis=0)
+        travels = [leg.travel for leg in self.legs]
+        total: np.ndarray = np.sum(travels, axis=0)
         return total
 
     def __repr__(self) -> str:
@@ -138,11 +139,10 @@ def find_route(
         raise RouteError(_no_route(atlas, ways, start, goal))
     length = max(sum(stage.length for stage in chain), NO_WAY)
     legs = [_make_leg(search, stage, count / length) for stage in chain]
-    if isinstance(start, str):
+    origin = start
+    if isinstance(origin, str):
         origin = wrap(legs[0].path[0], atlas.periods)
-    else:
-        origin = np.asarray(start, dtype=float)
-    return _join(legs, origin, atlas.periods)
+    return _join(legs, np.asarray(origin, dtype=float), atlas.periods)
 
 
 # --- legs -----------------------------------------------------------------------------
@@ -180,12 +180,12 @@ def _leg_over_surface(
     """The leg along a measured crossing of a surface."""
     assert crossing.path is not None, "a chain of ways has only measured crossings"
     k = crossing.surface
-    travel = np.abs(np.diff(crossing.path, axis=0)).sum(axis=0)
-    path = crossing.path if forwards else crossing.path[::-1]
+    steps = np.diff(crossing.path, axis=0)
+    travel = np.abs(steps).sum(axis=0)
+    way = crossing.path if forwards else crossing.path[::-1]
+    path = way[:1]
     if intervals:
-        path = resample(search.surface_problem(k), search.charts[k], path, intervals)
-    else:
-        path = path[:1]
+        path = resample(search.surface_problem(k), search.charts[k], way, intervals)
     name = search.atlas.surfaces[k].name
     return Leg(name, 0.0, crossing.length, at, travel, 2, path)
 

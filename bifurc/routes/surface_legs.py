@@ -73,7 +73,8 @@ def foot_on(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> Foot:
         foot, residuals = correct_normal(problem, point[None], plane)
         plane = tangent_planes(problem, foot, plane)
     if residuals[0] < SOLVED and len(entrances(problem, charts, foot[0])):
-        return Foot(float(np.linalg.norm(foot[0] - point)), foot[0])
+        distance = np.linalg.norm(foot[0] - point)
+        return Foot(float(distance), foot[0])
     beyond = np.maximum(gap - charts.radii, RIM * charts.radii)
     return Foot(float(beyond.min()), None)
 
@@ -92,6 +93,7 @@ def middle_of(charts: ChartAtlas, points: Iterable[np.ndarray]) -> np.ndarray:
     graph.add_nodes_from(range(len(charts)))
     distance = nx.multi_source_dijkstra_path_length(graph, sources)
     # of charts as far but for rounding the first: the same on every machine
-    farthest = max(sorted(distance), key=lambda k: round(distance[k], 9))
+    numbers = sorted(distance)
+    farthest = max(numbers, key=lambda k: round(distance[k], 9))
     center: np.ndarray = charts.centers[farthest]
     return center

@@ -153,7 +153,8 @@ class WayGraph:
         edges = []
         for a, b in pairwise(nodes):
             between = self._graph[a][b]
-            key = min(between, key=lambda k, between=between: between[k]["length"])
+            lengths = {key: edge["length"] for key, edge in between.items()}
+            key = min(lengths, key=lengths.__getitem__)
             edges.append(_Edge(a, b, key, between[key]["way"]))
         return edges
 

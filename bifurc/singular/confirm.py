@@ -70,7 +70,8 @@ class Confirmation:
     def agreeing_digits(self) -> float:
         """Digits after the point that the double result has right; no more than the
         refinement itself has."""
-        return float(-mpmath.log10(max(self.distance, self.error, 10.0**-self.digits)))
+        doubt = max(self.distance, self.error, 10.0**-self.digits)
+        return float(-mpmath.log10(doubt))
 
 
 def confirm_singular_point(
@@ -142,7 +143,8 @@ class _Differences:
 
     def jacobian(self, u: mpmath.matrix) -> mpmath.matrix:
         """F' (m, n)."""
-        return _columns([self.along(u, _unit(len(u), i)) for i in range(len(u))])
+        n = len(u)
+        return _columns([self.along(u, _unit(n, i)) for i in range(n)])
 
     def bend(self, u: mpmath.matrix, direction: mpmath.matrix) -> mpmath.matrix:
         """F'' times a direction, (m, n)."""
@@ -205,19 +207,27 @@ def _augmented_system(
     jacobian = derivatives.jacobian(u)
     value = derivatives.value(u)
     m = len(value)
-    matrix = mpmath.zeros(m + k * (m + k), n + k * n)
-    right_side = mpmath.zeros(m + k * (m + k), 1)
+    rows = m + k * m + k * k
+    matrix = mpmath.zeros(rows, n + k * n)
+    right_side = mpmath.zeros(rows, 1)
     matrix[:m, :n] = jacobian
     right_side[:m, 0] = -value
     for j in range(k):
-        null = m + j * m  # first row of F'' v_j
-        across = m + k * m + j * k  # first row of V^T
-        column = n + j * n  # first column of dv_j
-        matrix[null : null + m, :n] = derivatives.bend(u, basis[:, j])
-        matrix[null : null + m, column : column + n] = jacobian
-        right_side[null : null + m, 0] = -jacobian * basis[:, j]
-        matrix[across : across + k, column : column + n] = basis.T
+        v = basis[:, j]
+        null = _block(m, j, m)  # rows of F'' v_j
+        across = _block(m + k * m, j, k)  # rows of V^T
+        column = _block(n, j, n)  # columns of dv_j
+        matrix[null, :n] = derivatives.bend(u, v)
+        matrix[null, column] = jacobian
+        right_side[null, 0] = -jacobian * v
+        matrix[across, column] = basis.T
     return matrix, right_side
+
+
+def _block(begin: int, number: int, size: int) -> slice:
+    """Block of a ``number``, all of one ``size``, the first of which is at ``begin``."""
+    start = begin + number * size
+    return slice(start, start + size)
 
 
 # --- least squares --------------------------------------------------------------------

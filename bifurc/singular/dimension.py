@@ -171,7 +171,7 @@ def _probe(
 def _probe_directions(k: int) -> np.ndarray:
     """Unit vectors (2 k + 2, k): both ways along axes turned at random, and two more."""
     rng = np.random.default_rng(k)
-    axes = np.linalg.qr(rng.normal(size=(k, k)))[0]
+    axes, _ = np.linalg.qr(rng.normal(size=(k, k)))
     extra = rng.normal(size=(2, k))
     extra /= np.linalg.norm(extra, axis=1)[:, None]
     return np.concatenate([axes, -axes, extra])
@@ -205,5 +205,6 @@ def _dimension_from_ends(
 
 def _dimension_of_span(coordinates: np.ndarray) -> int:
     """Dimension of the space that vectors (p, k) span, but for curvature."""
-    spread = np.linalg.svd(coordinates, compute_uv=False) / np.sqrt(len(coordinates))
+    sigma = np.linalg.svd(coordinates, compute_uv=False)
+    spread = sigma / np.sqrt(len(coordinates))
     return int(np.count_nonzero(spread > LOST))

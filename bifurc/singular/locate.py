@@ -52,7 +52,7 @@ def locate_singular_point(
     comes back.
     """
     run = _iterate(problem, start, nullity, reach)
-    if run is None or not run.moves or run.moves[-1] > UNSETTLED * problem.scale:
+    if run is None or run.moves[-1] > UNSETTLED * problem.scale:
         return None
     u = _solve_regular_equations(problem, run.u, nullity)
     if not _is_singular_solution(problem, u, nullity):
@@ -99,8 +99,8 @@ def _iterate(
     """Gauss-Newton on the augmented system until its steps are rounding or stagnate;
     None where it leaves the ``reach``."""
     u = start.copy()
-    right_vectors = np.linalg.svd(problem.jacobians(u[None])[0])[2]
-    basis = right_vectors[problem.n - nullity :].T
+    _, _, right = np.linalg.svd(problem.jacobians(u[None])[0])
+    basis = right[problem.n - nullity :].T
     moves: list[float] = []
     rank, condition, weak = 0, 0.0, np.empty((0, problem.n))
     for _ in range(ITERATIONS):
@@ -162,19 +162,26 @@ def _augmented_system(
     jacobian = problem.jacobians(u[None])[0] / problem.magnitude
     hessian = problem.hessian(u) / problem.magnitude
     m = len(jacobian)
-    matrix = np.zeros((m + k * (m + k), n + k * n))
-    right_side = np.zeros(m + k * (m + k))
+    rows = m + k * m + k * k
+    matrix = np.zeros((rows, n + k * n))
+    right_side = np.zeros(rows)
     matrix[:m, :n] = jacobian
     right_side[:m] = -residual
     for j in range(k):
-        null = slice(m + j * m, m + (j + 1) * m)
-        across = slice(m + k * m + j * k, m + k * m + (j + 1) * k)
-        column = slice(n + j * n, n + (j + 1) * n)
+        null = _block(m, j, m)  # rows of F'' v_j
+        across = _block(m + k * m, j, k)  # rows of V^T
+        column = _block(n, j, n)  # columns of dv_j
         matrix[null, :n] = hessian @ basis[:, j]
         matrix[null, column] = jacobian
         right_side[null] = -jacobian @ basis[:, j]
         matrix[across, column] = basis.T
     return matrix, right_side
+
+
+def _block(begin: int, number: int, size: int) -> slice:
+    """Block of a ``number``, all of one ``size``, the first of which is at ``begin``."""
+    start = begin + number * size
+    return slice(start, start + size)
 
 
 # --- after the iteration --------------------------------------------------------------
@@ -200,9 +207,10 @@ def _solve_regular_equations(
 
 def _is_singular_solution(problem: Problem, u: np.ndarray, nullity: int) -> bool:
     """Whether F = 0 at ``u`` (n,) and F' has a null space of dimension ``nullity``."""
-    residual = np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude
+    residual = problem.residuals(u[None])[0]
+    gap = np.linalg.norm(residual) / problem.magnitude
     largest_null = _largest_null_values(problem, u[None], nullity)[0]
-    return bool(residual <= SOLVED and largest_null <= NULL)
+    return bool(gap <= SOLVED and largest_null <= NULL)
 
 
 def _largest_null_values(
@@ -223,7 +231,9 @@ def _location_error(moves: list[float], condition: float) -> float:
     quadratic; where it was linear, the rest of the geometric series, twice."""
     rounding = 1e-15 * condition
     last = moves[-1]
-    ratio = last / moves[-2] if len(moves) > 1 and moves[-2] > 0 else 0.0
+    ratio = 0.0
+    if len(moves) > 1 and moves[-2] > 0:
+        ratio = last / moves[-2]
     if last <= 10 * rounding and ratio < 0.1 and condition < HIGHER_ORDER:
         return rounding + last
     ratio = min(max(ratio, 0.5), 0.9)
@@ -246,7 +256,8 @@ def _hidden_stretch(
     cannot be told from rounding: the exact point lies on it."""
     ahead = _hidden_length(problem, u, direction, nullity, reach)
     behind = _hidden_length(problem, u, -direction, nullity, reach)
-    return _Stretch(u + 0.5 * (ahead - behind) * direction, 0.5 * (ahead + behind))
+    middle = u + 0.5 * (ahead - behind) * direction
+    return _Stretch(middle, 0.5 * (ahead + behind))
 
 
 def _hidden_length(

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.numerics.directions import unit_vectors
 from bifurc.problem import Problem
 
 __all__ = ["second_order_tangents"]
@@ -45,7 +46,8 @@ def second_order_tangents(
     if discriminant < 0:
         return np.empty((0, len(point)))
     roots = _real_roots(a, b, c)
-    common = np.all(np.abs(_values(forms, roots)) < ZERO, axis=1)
+    values = _values(forms, roots)
+    common = np.all(np.abs(values) < ZERO, axis=1)
     if not np.any(common) and len(forms) == 2 and _have_common_root(forms):
         return None
     tangents: np.ndarray = roots[common] @ null_space.T
@@ -57,20 +59,25 @@ def _reduced_forms(
 ) -> np.ndarray:
     """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x)."""
     jacobian = problem.jacobians(point[None])[0] / problem.magnitude
-    left_null_space = np.linalg.svd(jacobian)[0][:, problem.n - 2 :]
+    left, _, _ = np.linalg.svd(jacobian)
+    left_null_space = left[:, problem.n - 2 :]
     hessian = problem.hessian(point) / problem.magnitude
     forms = np.einsum(
         "mw,mij,ia,jb->wab", left_null_space, hessian, null_space, null_space
     )
-    return np.stack([forms[:, 0, 0], 2 * forms[:, 0, 1], forms[:, 1, 1]], axis=1)
+    xx = forms[:, 0, 0]
+    xy = 2 * forms[:, 0, 1]
+    yy = forms[:, 1, 1]
+    return np.stack([xx, xy, yy], axis=1)
 
 
 def _independent_forms(forms: np.ndarray) -> np.ndarray:
     """Independent forms (i, 3), of unit length, that span the given ones (w, 3)."""
     _, sigma, right = np.linalg.svd(forms, full_matrices=False)
     if not len(sigma) or sigma[0] < NO_FORM:
-        return right[:0]
-    return right[sigma > DEPENDENT * sigma[0]]
+        return np.empty((0, 3))
+    independent: np.ndarray = right[sigma > DEPENDENT * sigma[0]]
+    return independent
 
 
 def _real_roots(a: float, b: float, c: float) -> np.ndarray:
@@ -79,14 +86,17 @@ def _real_roots(a: float, b: float, c: float) -> np.ndarray:
     # With x = cos t, y = sin t: (a + c)/2 + (a - c)/2 cos 2t + b/2 sin 2t = 0.
     phase = np.arctan2(b, a - c)
     size = np.hypot(b, a - c)
-    offset = np.arccos(np.clip(-(a + c) / size, -1.0, 1.0))
-    angles = np.array([(phase + offset) / 2, (phase - offset) / 2]) % np.pi
-    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    cosine = np.clip(-(a + c) / size, -1.0, 1.0)
+    offset = np.arccos(cosine)
+    first = (phase + offset) / 2
+    second = (phase - offset) / 2
+    return unit_vectors(np.array([first, second]) % np.pi)
 
 
-def _values(forms: np.ndarray, x: np.ndarray) -> np.ndarray:
+def _values(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Values (k, i) of forms (i, 3) at vectors (k, 2)."""
-    powers = np.stack([x[:, 0] ** 2, x[:, 0] * x[:, 1], x[:, 1] ** 2], axis=1)
+    x, y = vectors.T
+    powers = np.stack([x**2, x * y, y**2], axis=1)
     values: np.ndarray = powers @ forms.T
     return values
 
@@ -94,5 +104,7 @@ def _values(forms: np.ndarray, x: np.ndarray) -> np.ndarray:
 def _have_common_root(pair: np.ndarray) -> bool:
     """Whether the resultant of two forms (2, 3) vanishes."""
     (a, b, c), (d, e, f) = pair
-    resultant = (a * f - c * d) ** 2 - (a * e - b * d) * (b * f - c * e)
-    return bool(abs(resultant) < ZERO)
+    outer = a * f - c * d
+    low = a * e - b * d
+    high = b * f - c * e
+    return bool(abs(outer**2 - low * high) < ZERO)

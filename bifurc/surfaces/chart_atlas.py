@@ -113,7 +113,8 @@ class ChartAtlas:
         aa = np.einsum("ti,ti->t", a, a)
         bb = np.einsum("ti,ti->t", b, b)
         ab = np.einsum("ti,ti->t", a, b)
-        areas: np.ndarray = 0.5 * np.sqrt(np.maximum(aa * bb - ab**2, 0.0))
+        gram = aa * bb - ab**2
+        areas: np.ndarray = 0.5 * np.sqrt(np.maximum(gram, 0.0))
         return areas
 
     @cached_property
@@ -145,9 +146,8 @@ class ChartAtlas:
         """Number (c,) of the connected surface that each chart belongs to; number 0 has
         most charts."""
         links = np.ones(len(self.neighbours))
-        graph = csr_array(
-            (links, tuple(self.neighbours.T)), shape=(len(self), len(self))
-        )
+        size = len(self)
+        graph = csr_array((links, tuple(self.neighbours.T)), shape=(size, size))
         count, label = connected_components(graph, directed=False)
         sizes = np.bincount(label, minlength=count)
         largest_first = np.argsort(-sizes, kind="stable")
@@ -157,7 +157,10 @@ class ChartAtlas:
     def parts(self) -> tuple[ChartAtlas, ...]:
         """The connected surfaces, the one with most charts first."""
         count = int(self.part.max(initial=-1)) + 1
-        return tuple(self._only(np.flatnonzero(self.part == k)) for k in range(count))
+        parts = []
+        for k in range(count):
+            parts.append(self._only(np.flatnonzero(self.part == k)))
+        return tuple(parts)
 
     def _only(self, charts: np.ndarray) -> ChartAtlas:
         """The atlas of the charts of these numbers (k,) alone."""
@@ -183,11 +186,12 @@ class ChartAtlas:
     def chart_at(self, points: np.ndarray) -> np.ndarray:
         """Numbers (k,) of charts in which solutions (k, n) lie, one for each; -1 where
         there is none."""
-        count = min(NEAREST, len(self))
-        _, near = self._tree.query(self._in_box(points), k=np.arange(1, count + 1))
+        order = np.arange(1, min(NEAREST, len(self)) + 1)
+        _, near = self._tree.query(self._in_box(points), k=order)
         holds = self._hold(points, near)  # (k, count)
-        first = near[np.arange(len(near)), np.argmax(holds, axis=1)]
-        return np.where(holds.any(axis=1), first, -1)
+        nearest = np.argmax(holds, axis=1)
+        numbers = near[np.arange(len(near)), nearest]
+        return np.where(holds.any(axis=1), numbers, -1)
 
     def covers(self, points: np.ndarray) -> np.ndarray:
         """Which solutions (k, n) lie in a chart (k,)."""
@@ -200,7 +204,8 @@ class ChartAtlas:
 
     def charts_about(self, point: np.ndarray) -> np.ndarray:
         """Numbers (k,) of all charts in which a solution (n,) lies."""
-        holds = self._hold(point[None], np.arange(len(self))[None])
+        charts = np.arange(len(self))
+        holds = self._hold(point[None], charts[None])
         return np.flatnonzero(holds[0])
 
     def charts_next_to(self, point: np.ndarray) -> np.ndarray:
@@ -229,9 +234,7 @@ class ChartAtlas:
     @cached_property
     def _tree(self) -> cKDTree:
         """The centres of the charts, for the search of the nearest."""
-        return cKDTree(
-            self._in_box(self.centers), boxsize=torus.tree_box(self.periods)
-        )
+        return cKDTree(self._in_box(self.centers), boxsize=torus.tree_box(self.periods))
 
     def _in_box(self, points: np.ndarray) -> np.ndarray:
         """Points with periodic unknowns taken into [0, period)."""
@@ -252,8 +255,10 @@ class ChartAtlas:
     @cached_property
     def _polygons_at_edge(self) -> np.ndarray:
         """To how many polygons (e,) each edge belongs."""
-        pairs = np.stack([self._edges.begin, self._edges.end], axis=1)
-        return np.unique(np.sort(pairs, axis=1), axis=0, return_counts=True)[1]
+        edges = self._edges
+        pairs = np.sort(np.stack([edges.begin, edges.end], axis=1), axis=1)
+        _, counts = np.unique(pairs, axis=0, return_counts=True)
+        return counts
 
 
 class _Edges(NamedTuple):

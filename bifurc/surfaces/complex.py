@@ -104,14 +104,13 @@ def _neighbours(polygons: list[Polygon]) -> np.ndarray:
 def _lift_corners(problem: Problem, charts: FlatCharts) -> _Corners:
     """The corners of all polygons, no farther out than the disks, on the surface above
     the tangent planes; in them, where the surface is out of reach."""
-    sizes = np.array([len(polygon.vertices) for polygon in charts.polygons], dtype=int)
+    sizes = _sizes(charts.polygons)
     owner = np.repeat(np.arange(len(sizes)), sizes)
-    y = np.concatenate(
-        [np.empty((0, 2)), *(polygon.vertices for polygon in charts.polygons)]
-    )
-    distance = np.linalg.norm(y, axis=1)
+    vertices = [polygon.vertices for polygon in charts.polygons]
+    y = np.concatenate([np.empty((0, 2)), *vertices])
     radii = charts.radii[owner]
-    y *= np.minimum(1.0, radii / np.maximum(distance, 1e-300))[:, None]
+    distance = np.maximum(np.linalg.norm(y, axis=1), 1e-300)
+    y *= np.minimum(1.0, radii / distance)[:, None]
     bases = charts.bases[owner]
     flat = charts.centers[owner] + np.einsum("kij,kj->ki", bases, y)
     lifted, gaps = correct_normal(problem, flat, bases)
@@ -136,12 +135,12 @@ def _merge_corners(
     reach = MERGED * radii.max()
     i, j = tree.query_pairs(reach, output_type="ndarray").T
     distance = np.linalg.norm(problem.difference(points[i], points[j]), axis=1)
-    smaller = np.minimum(radii[owner[i]], radii[owner[j]])
-    same = (distance < MERGED * smaller) & _are_adjacent(
-        owner[i], owner[j], neighbours, len(radii)
-    )
+    one, other = owner[i], owner[j]
+    near = distance < MERGED * np.minimum(radii[one], radii[other])
+    same = near & _are_adjacent(one, other, neighbours, len(radii))
     links = np.ones(np.count_nonzero(same))
-    graph = csr_array((links, (i[same], j[same])), shape=(len(points), len(points)))
+    count = len(points)
+    graph = csr_array((links, (i[same], j[same])), shape=(count, count))
     vertex: np.ndarray = connected_components(graph, directed=False)[1]
     return vertex
 
@@ -160,8 +159,13 @@ def _are_adjacent(
 
 def _previous_vertex(vertex: np.ndarray, polygons: list[Polygon]) -> np.ndarray:
     """The vertex (v,) before each corner, around its polygon."""
-    sizes = np.array([len(polygon.vertices) for polygon in polygons], dtype=int)
+    sizes = _sizes(polygons)
     ends = np.cumsum(sizes)
     previous = np.roll(vertex, 1)
     previous[ends - sizes] = vertex[ends - 1]
     return previous
+
+
+def _sizes(polygons: list[Polygon]) -> np.ndarray:
+    """Number (c,) of vertices of each polygon."""
+    return np.array([len(polygon.vertices) for polygon in polygons], dtype=int)

@@ -23,6 +23,7 @@ import numpy as np
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
+from bifurc.numerics.directions import cosines_between_planes, unit_vectors
 from bifurc.problem import Problem
 from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
@@ -144,12 +145,14 @@ class _Cover:
     def covers(self, point: np.ndarray) -> bool:
         """Whether a solution (n,) lies in a chart."""
         away = self._problem.difference(point, self._centers)
-        near = np.flatnonzero(np.linalg.norm(away, axis=1) < RIM * self._radii)
+        distance = np.linalg.norm(away, axis=1)
+        near = np.flatnonzero(distance < RIM * self._radii)
         bases = self._bases[near]
         y = np.einsum("ki,kij->kj", away[near], bases)
         in_plane = np.einsum("kij,kj->ki", bases, y)
         height = np.linalg.norm(away[near] - in_plane, axis=1)
-        return bool(np.any(height < STEEPEST * np.linalg.norm(y, axis=1) + ROUNDING))
+        limit = STEEPEST * np.linalg.norm(y, axis=1) + ROUNDING
+        return bool(np.any(height < limit))
 
     # --- growing ----------------------------------------------------------------------
 
@@ -210,7 +213,7 @@ class _Cover:
         distance = np.linalg.norm(center - start)
         if gaps[0] > SOLVED or distance > TOO_FAR * self._largest:
             return Placement.UNFIT
-        if _cosines(basis, turned)[-1] < SMOOTH:
+        if cosines_between_planes(basis, turned)[-1] < SMOOTH:
             return Placement.UNFIT
         if self._is_close_to_a_center(center, turned):
             return Placement.COVERED
@@ -232,8 +235,7 @@ class _Cover:
     ) -> float | None:
         """The largest one up to ``radius`` at which the surface stays close to the disk
         and tangent planes agree; None if too small."""
-        angles = np.pi / 4 * np.arange(8)
-        circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        circle = unit_vectors(np.pi / 4 * np.arange(8))
         planes = np.broadcast_to(basis, (8, *basis.shape))
         while radius >= SMALLEST * self._largest:
             rim = center + radius * circle @ basis.T
@@ -241,7 +243,8 @@ class _Cover:
             height = np.linalg.norm(points - rim, axis=1).max() / radius
             if gaps.max() < SOLVED_ON_DISK and height < BEND:
                 turned = tangent_planes(self._problem, points, basis)
-                if _cosines(basis, turned)[:, -1].min() > AGREE:
+                cosines = cosines_between_planes(basis, turned)
+                if cosines[:, -1].min() > AGREE:
                     return radius
             shrink = 0.5
             if np.isfinite(height):
@@ -309,7 +312,8 @@ class _Cover:
         # in two disks of radius R that touch, bent by BEND, one centre lies up to 4
         # BEND R above the other's plane
         is_low = height < 3 * BEND * np.maximum(radius, distance[near])
-        same_sheet = is_low & (_cosines(self._bases[near], basis)[:, -1] > AGREE)
+        cosines = cosines_between_planes(self._bases[near], basis)
+        same_sheet = is_low & (cosines[:, -1] > AGREE)
         return _Overlaps(near[same_sheet], x[same_sheet], height[same_sheet])
 
 
@@ -329,11 +333,3 @@ def _cut(
     bent = distance**2 + 0.5 * height**2
     offset = (bent + radius**2 - other_radius**2) / (2.0 * distance)
     return polygon.clip(x / distance, offset, label)
-
-
-def _cosines(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Cosines (..., 2) of the angles between planes with bases (..., n, 2)."""
-    cosines: np.ndarray = np.linalg.svd(
-        np.swapaxes(one, -1, -2) @ other, compute_uv=False
-    )
-    return cosines

@@ -113,10 +113,9 @@ def chart_graph(charts: ChartAtlas) -> nx.Graph:
     i, j = charts.neighbours.T
     gaps = charts.difference(charts.centers[i], charts.centers[j])
     distances = np.linalg.norm(gaps, axis=1)
+    columns = (i.tolist(), j.tolist(), distances.tolist())
     graph = nx.Graph()
-    graph.add_weighted_edges_from(
-        zip(i.tolist(), j.tolist(), distances.tolist(), strict=True)
-    )
+    graph.add_weighted_edges_from(zip(*columns, strict=True))
     return graph
 
 
@@ -141,7 +140,8 @@ def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.nda
     off_line = np.linalg.norm(ends - lines, axis=1)
     length = np.linalg.norm(steps, axis=2).ravel()
     joined = (gaps < SOLVED) & (off_line / length < OFF_LINE)
-    return near[np.all(joined.reshape(steps.shape[:2]), axis=1)]
+    joined = joined.reshape(steps.shape[:2])  # (k, 12)
+    return near[np.all(joined, axis=1)]
 
 
 def _chart_chains(
@@ -196,7 +196,8 @@ def _points_along(
 ) -> np.ndarray:
     """The start, the centres of the inner charts of a chain, and the goal (k, n),
     without jumps of a period."""
-    points = np.array([start, *charts.centers[chain[1:-1]], goal], dtype=float)
+    inner = charts.centers[chain[1:-1]]
+    points = np.array([start, *inner, goal], dtype=float)
     steps = charts.difference(points[1:], points[:-1])
     points[1:] = points[0] + np.cumsum(steps, axis=0)
     return points
@@ -262,8 +263,8 @@ class _PulledPath:
         if -slope < TIGHT * self._energy:
             return False
         step = np.einsum("kij,kj->ki", self._planes, pull)
-        longest = TOO_FAR * self._charts.radii.max()
-        share = min(self._share, longest / np.linalg.norm(step, axis=1).max())
+        size = np.linalg.norm(step, axis=1).max()
+        share = min(self._share, TOO_FAR * self._charts.radii.max() / size)
         moved = self._moved(inner + share * step)
         energy = _energy(moved)
         self._share = _next_share(energy - self._energy, slope, share)
@@ -291,8 +292,9 @@ def _energy(path: np.ndarray) -> float:
 
 def _force(path: np.ndarray, planes: np.ndarray) -> np.ndarray:
     """The forces (k - 2, 2) on the inner points in their ``planes`` (k - 2, n, 2)."""
-    bend = path[2:] - 2.0 * path[1:-1] + path[:-2]
-    return np.einsum("kij,ki->kj", planes, bend)
+    before, inner, after = path[:-2], path[1:-1], path[2:]
+    forces: np.ndarray = np.einsum("kij,ki->kj", planes, after - 2.0 * inner + before)
+    return forces
 
 
 def _solve_for_pull(force: np.ndarray, planes: np.ndarray) -> np.ndarray:
@@ -304,7 +306,8 @@ def _solve_for_pull(force: np.ndarray, planes: np.ndarray) -> np.ndarray:
     #     [         -C_2^T  2 I   -C_3   ] [ y_3 ]   [ f_3 ]
     #     [                  :     :     ] [  :  ]   [  :  ]
     count = len(planes)
-    coupling = -np.swapaxes(planes[:-1], 1, 2) @ planes[1:]
+    across = np.swapaxes(planes[:-1], 1, 2)
+    coupling = -across @ planes[1:]
     bands = np.zeros((4, 2 * count))  # the upper ones of the matrix, the diagonal last
     bands[3] = 2.0
     for a in range(2):
@@ -338,13 +341,15 @@ def _correct(
 
 def _chord_lengths(points: np.ndarray) -> np.ndarray:
     """Distances (k - 1,) between neighbouring points (k, n)."""
-    lengths: np.ndarray = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    chords = np.diff(points, axis=0)
+    lengths: np.ndarray = np.linalg.norm(chords, axis=1)
     return lengths
 
 
 def _count_intervals(points: np.ndarray, spacing: float) -> int:
     """How many intervals of about ``spacing`` the chords make: an even number."""
-    return 2 * max(1, round(float(_chord_lengths(points).sum()) / (2.0 * spacing)))
+    length = float(_chord_lengths(points).sum())
+    return 2 * max(1, round(length / (2.0 * spacing)))
 
 
 def _place_evenly(points: np.ndarray, intervals: int) -> np.ndarray:

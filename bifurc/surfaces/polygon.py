@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.numerics.directions import unit_vectors
+
 __all__ = ["OUTLINE", "Polygon", "octagon"]
 
 OUTLINE = -1  # label of an edge that nothing has cut yet
@@ -42,14 +44,14 @@ class Polygon(NamedTuple):
         edges = range(count)
         leaves = next(i for i in edges if height[i] <= 0.0 < following[i])
         enters = next(i for i in edges if following[i] <= 0.0 < height[i])
-        inside = [(enters + 1 + i) % count for i in range((leaves - enters) % count)]
-        corners = [
-            self._crossing(leaves, height[leaves], following[leaves]),
-            self._crossing(enters, height[enters], following[enters]),
-        ]
+        remaining = (leaves - enters) % count
+        inside = [(enters + 1 + i) % count for i in range(remaining)]
+        begin = self._crossing(leaves, height[leaves], following[leaves])
+        end = self._crossing(enters, height[enters], following[enters])
+        new_labels = [label, self.labels[enters]]
         return Polygon(
-            np.concatenate([self.vertices[inside], corners]),
-            np.concatenate([self.labels[inside], [label, self.labels[enters]]]),
+            np.concatenate([self.vertices[inside], [begin, end]]),
+            np.concatenate([self.labels[inside], new_labels]),
         )
 
     def _crossing(self, edge: int, begin: float, end: float) -> np.ndarray:
@@ -64,5 +66,4 @@ def octagon(radius: float) -> Polygon:
     """The octagon around the circle of ``radius``."""
     angles = np.pi / 4 * (np.arange(8) + 0.5)
     size = radius / np.cos(np.pi / 8)
-    vertices = size * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    return Polygon(vertices, np.full(8, OUTLINE))
+    return Polygon(size * unit_vectors(angles), np.full(8, OUTLINE))

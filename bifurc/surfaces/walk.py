@@ -7,6 +7,7 @@ import numpy as np
 
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
+from bifurc.numerics.directions import cosines_between_planes
 from bifurc.problem import Problem
 from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas
@@ -106,17 +107,16 @@ class _Walk:
         direction = np.einsum("kij,klj,kl->ki", planes, planes, away)
         distance = np.linalg.norm(direction, axis=1)
         # small where singular points are near
-        longest = np.minimum(self.length[walking], LONGEST * self.charts.radii[nearest])
-        step = direction * np.minimum(1.0, longest / (distance + 1e-300))[:, None]
+        local = LONGEST * self.charts.radii[nearest]
+        longest = np.minimum(self.length[walking], local)
+        share = np.minimum(1.0, longest / (distance + 1e-300))
+        step = direction * share[:, None]
 
         ends, gaps = correct_normal(self.problem, at + step, planes)
         turned = tangent_planes(self.problem, ends, planes)
-        taken = (
-            (gaps < SOLVED)
-            & self._is_inside(ends)
-            & _is_flat(planes, turned)
-            & _is_near(ends - at - step, step)
-        )
+        is_flat = cosines_between_planes(planes, turned)[:, -1] > SMOOTH
+        is_near = _is_near(ends - at - step, step)
+        taken = (gaps < SOLVED) & self._is_inside(ends) & is_flat & is_near
         self.at[walking[taken]] = ends[taken]
         self.planes[walking[taken]] = turned[taken]
         longer = np.minimum(LONGER * self.length[walking], self.longest)
@@ -129,13 +129,6 @@ class _Walk:
         low, high = self.problem.bounds.T
         inside: np.ndarray = np.all((points >= low) & (points <= high), axis=1)
         return inside
-
-
-def _is_flat(planes: np.ndarray, turned: np.ndarray) -> np.ndarray:
-    """Whether planes (k, n, 2) are turned so little that they belong to one sheet."""
-    cosines = np.linalg.svd(np.swapaxes(planes, 1, 2) @ turned, compute_uv=False)
-    flat: np.ndarray = cosines[:, -1] > SMOOTH
-    return flat
 
 
 def _is_near(heights: np.ndarray, steps: np.ndarray) -> np.ndarray:
