@@ -10,6 +10,7 @@ import networkx as nx
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.torus import wrap
 
 __all__ = ["ArcAttributes", "arc_attributes", "arc_graph", "transition_graph"]
 
@@ -87,7 +88,8 @@ def arc_graph(atlas: Atlas) -> nx.MultiGraph:
         stops = _singular_stops(atlas, index)
         for end in _free_ends(form, stops):
             kind = "regular" if branch.closed else "end"
-            graph.add_node(end.node, kind=kind, u=branch(end.s))
+            u = wrap(branch(end.s), atlas.periods)
+            graph.add_node(end.node, kind=kind, u=u)
             stops.append(end)
         stops.sort()
         if branch.closed:

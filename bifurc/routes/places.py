@@ -106,7 +106,8 @@ def _place_of_name(search: RouteSearch, name: str) -> Place:
         hint = sampled_components(search.atlas)
         raise RouteError(f"{full_name}: no route leads there{hint}")
     singular = [p.point.u for p in search.atlas.points if k in p.surfaces]
-    return Place(on_surfaces={k: middle_of(search.charts[k], singular)})
+    middle = middle_of(search.charts[k], singular)
+    return Place(on_surfaces={k: middle})
 
 
 def _middle_of_longest_arc(arcs: nx.MultiGraph, form: int) -> float:

@@ -67,8 +67,9 @@ class Foot(NamedTuple):
 
 def foot_on(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> Foot:
     """The foot of a point (n,) on a surface."""
-    gap = np.linalg.norm(charts.difference(charts.centers, point), axis=1)
-    plane = charts.bases[np.argmin(gap / charts.radii)][None]
+    gap = _distances(charts, point)
+    nearest = np.argmin(gap / charts.radii)
+    plane = charts.bases[nearest][None]
     for _ in range(4):
         foot, residuals = correct_normal(problem, point[None], plane)
         plane = tangent_planes(problem, foot, plane)
@@ -84,8 +85,8 @@ def middle_of(charts: ChartAtlas, points: Iterable[np.ndarray]) -> np.ndarray:
     ``points`` (n,); that of the first chart where there is none."""
     sources = set()
     for u in points:
-        gaps = np.linalg.norm(charts.difference(charts.centers, u), axis=1)
-        sources.add(int(np.argmin(gaps)))
+        nearest = np.argmin(_distances(charts, u))
+        sources.add(int(nearest))
     if not sources:
         first: np.ndarray = charts.centers[0]
         return first
@@ -97,3 +98,10 @@ def middle_of(charts: ChartAtlas, points: Iterable[np.ndarray]) -> np.ndarray:
     farthest = max(numbers, key=lambda k: round(distance[k], 9))
     center: np.ndarray = charts.centers[farthest]
     return center
+
+
+def _distances(charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
+    """Distances (c,) of the centres from a point (n,)."""
+    gaps = charts.difference(charts.centers, point)
+    distances: np.ndarray = np.linalg.norm(gaps, axis=1)
+    return distances

@@ -24,9 +24,9 @@ OTHER_RADII = (4e-2, 8e-2, 5e-3, 1.25e-3)
 def classify_singular_point(problem: Problem, located: LocatedPoint) -> SingularPoint:
     """The located point with its half-branches, tangents and local dimension.
 
-    The half-branches are those of a section with a small sphere at whose radius and at
-    half of it the same is seen. Tangents of second order are kept where their number
-    agrees with the section.
+    The half-branches are those of a section with a small sphere, at whose radius and
+    at half of it the same is seen; both are larger than the error of the point.
+    Tangents of second order are kept where their number agrees with the section.
     """
     cut = _choose_sections(problem, located)
     no_directions = np.empty((0, problem.n))
@@ -53,22 +53,16 @@ def classify_singular_point(problem: Problem, located: LocatedPoint) -> Singular
 
 
 class _Sections(NamedTuple):
-    """The sections with a sphere of ``radius`` and with one half as large."""
+    """The sections with a sphere of ``radius`` and with one half as large.
+
+    They ``agree`` where both show the same dimension and as many half-branches, and the
+    exact point lies inside both spheres; they ``are_clear`` where neither is in doubt.
+    """
 
     radius: float
     outer: Section
-    inner: Section
-
-    @property
-    def agree(self) -> bool:
-        """Whether both show the same dimension and as many half-branches."""
-        same_dimension = self.outer.dimension == self.inner.dimension
-        return same_dimension and len(self.outer.points) == len(self.inner.points)
-
-    @property
-    def are_clear(self) -> bool:
-        """Whether neither is in doubt."""
-        return not (self.outer.doubtful or self.inner.doubtful)
+    agree: bool
+    are_clear: bool
 
 
 def _choose_sections(problem: Problem, located: LocatedPoint) -> _Sections:
@@ -78,6 +72,8 @@ def _choose_sections(problem: Problem, located: LocatedPoint) -> _Sections:
     for radius in OTHER_RADII:
         if chosen.agree and chosen.are_clear:
             break
+        if radius * problem.scale / 2 < located.error:
+            continue  # the exact point may lie outside of the smaller sphere
         cut = _cut(problem, located, radius)
         if cut.agree and (cut.are_clear or not chosen.agree):
             chosen = cut
@@ -89,4 +85,12 @@ def _cut(problem: Problem, located: LocatedPoint, radius: float) -> _Sections:
     size = radius * problem.scale
     outer = section(problem, located.u, located.null_space, size)
     inner = section(problem, located.u, located.null_space, size / 2)
-    return _Sections(size, outer, inner)
+    same_dimension = outer.dimension == inner.dimension
+    same_count = len(outer.points) == len(inner.points)
+    holds_point = size / 2 > located.error
+    return _Sections(
+        radius=size,
+        outer=outer,
+        agree=same_dimension and same_count and holds_point,
+        are_clear=not (outer.doubtful or inner.doubtful),
+    )

@@ -271,8 +271,8 @@ def _orthogonalise(
     pivots: list[_Pivot] = []
     largest = mpmath.mpf(0)
     while columns:
-        squares = {j: mpmath.fdot(column, column) for j, column in columns.items()}
-        longest = max(columns, key=lambda j: squares[j])
+        squares = {j: mpmath.fdot(v, v) for j, v in columns.items()}
+        longest = max(squares, key=squares.__getitem__)
         length = mpmath.sqrt(squares[longest])
         largest = max(largest, length)
         if length <= negligible * largest:
@@ -332,7 +332,8 @@ def _judge(
 def _singular_values(matrix: mpmath.matrix) -> list[mpmath.mpf]:
     """Singular values of a matrix (m, n), n of them, in decreasing order."""
     squares = mpmath.eigsy(matrix.T * matrix, eigvals_only=True)
-    return sorted((mpmath.sqrt(abs(x)) for x in squares), reverse=True)
+    values = [mpmath.sqrt(abs(x)) for x in squares]
+    return sorted(values, reverse=True)
 
 
 def _judge_moves(

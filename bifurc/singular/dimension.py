@@ -60,8 +60,9 @@ def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.nd
     singular vectors (k, n, n)."""
     jacobians = problem.jacobians(points) / problem.magnitude
     _, sigma, right = np.linalg.svd(jacobians)
+    count = sigma.shape[1]
     padded = np.zeros((len(points), problem.n))
-    padded[:, : sigma.shape[1]] = sigma[:, : problem.n]
+    padded[:, :count] = sigma
     return padded, right
 
 

@@ -99,10 +99,13 @@ def _iterate(
     """Gauss-Newton on the augmented system until its steps are rounding or stagnate;
     None where it leaves the ``reach``."""
     u = start.copy()
-    _, _, right = np.linalg.svd(problem.jacobians(u[None])[0])
+    jacobian = problem.jacobians(u[None])[0]
+    _, _, right = np.linalg.svd(jacobian)
     basis = right[problem.n - nullity :].T
     moves: list[float] = []
-    rank, condition, weak = 0, 0.0, np.empty((0, problem.n))
+    rank = 0
+    condition = 0.0
+    weak = np.empty((0, problem.n))
     for _ in range(ITERATIONS):
         step = _augmented_step(problem, u, basis)
         weak = step.weak
@@ -267,7 +270,9 @@ def _hidden_length(
     singular point: up to ``reach``."""
     distances = reach * np.geomspace(1e-7, 1.0, 120)
     line = u + distances[:, None] * direction
-    residuals = np.linalg.norm(problem.residuals(line), axis=1) / problem.magnitude
-    misfit = _largest_null_values(problem, line, nullity) + residuals
-    visible = np.flatnonzero(misfit > HIDDEN)
-    return float(distances[visible[0]]) if len(visible) else reach
+    gaps = np.linalg.norm(problem.residuals(line), axis=1) / problem.magnitude
+    misfits = _largest_null_values(problem, line, nullity) + gaps
+    visible = np.flatnonzero(misfits > HIDDEN)
+    if not len(visible):
+        return reach
+    return float(distances[visible[0]])

@@ -83,7 +83,8 @@ def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
     nullity = local.nullity[0]
     if not local.dimension[0] == nullity > 1:
         return False
-    _, _, right = np.linalg.svd(problem.jacobians(point[None])[0])
+    jacobian = problem.jacobians(point[None])[0]
+    _, _, right = np.linalg.svd(jacobian)
     null_space = right[problem.n - nullity :].T
     cut = section(problem, point, null_space, SURFACE_RADIUS * problem.scale)
     return cut.dimension > 1
@@ -113,8 +114,9 @@ class _ReducedEquations:
         self._point = point
         self._null_space = null_space
         self._radius = radius
-        across = right[:rank].T  # (n, rank)
-        self._inverse = (across / sigma[:rank]) @ left[:, :rank].T
+        row_space = right[:rank].T  # (n, rank)
+        column_space = left[:, :rank]  # (m, rank)
+        self._inverse = (row_space / sigma[:rank]) @ column_space.T
         self._left_null_space = left[:, rank:]
         self.noise = ROUNDING / radius**2
         self.n = problem.n
@@ -123,13 +125,15 @@ class _ReducedEquations:
         """Points (k, n) that solve the independent equations above unit vectors x (k,
         nullity)."""
         base = self._point + self._radius * x @ self._null_space.T
+        smallest = LAST_STEP * self._problem.scale
         w = np.zeros_like(base)
         for _ in range(ROUNDS):
             step = self._residuals(base + w) @ self._inverse.T
             w -= step
-            if np.abs(step).max(initial=0.0) < LAST_STEP * self._problem.scale:
+            if np.abs(step).max(initial=0.0) < smallest:
                 break
-        return base + w
+        points: np.ndarray = base + w
+        return points
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
         """The reduced equations (k, codimension) at unit vectors x (k, nullity)."""
@@ -186,7 +190,8 @@ class _FourierSeries:
 
     def __call__(self, angles: np.ndarray) -> np.ndarray:
         """Values at angles (...)."""
-        phases = (np.asarray(angles)[..., None] - FIRST) * self._rates
+        turned = np.asarray(angles) - FIRST
+        phases = turned[..., None] * self._rates
         waves = np.exp(1j * phases)
         values: np.ndarray = (waves @ self._coefficients).real
         return values
@@ -232,9 +237,11 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
 def _dips(samples: np.ndarray) -> np.ndarray:
     """Numbers (d,) of the samples on the circle that are nearer to zero than their
     neighbours, which have the same sign."""
-    size, sign = np.abs(samples), np.sign(samples)
-    before, after = np.roll(samples, 1), np.roll(samples, -1)
+    before = np.roll(samples, 1)
+    after = np.roll(samples, -1)
+    size = np.abs(samples)
     is_lowest = (size <= np.abs(before)) & (size < np.abs(after))
+    sign = np.sign(samples)
     same_sign = (sign == np.sign(before)) & (sign == np.sign(after))
     return np.flatnonzero(is_lowest & same_sign)
 

@@ -35,8 +35,8 @@ class Covering(Enum):
 
     COMPLETE = "complete: every part of the surface inside the bounds is covered"
     SINGULAR = (
-        "incomplete: no chart fits at some places; look for singular points of the "
-        "surface there"
+        "incomplete: no chart fits at some places, or a sheet that is not covered "
+        "crosses; look for singular points of the surface there"
     )
     CHART_LIMIT = (
         "incomplete: the largest number of charts is reached; allow more of them, or a "
@@ -199,7 +199,8 @@ class ChartAtlas:
 
     def nearest_charts(self, points: np.ndarray) -> np.ndarray:
         """Numbers (k,) of the charts whose centres are nearest to points (k, n)."""
-        numbers: np.ndarray = self._tree.query(self._in_box(points))[1]
+        _, nearest = self._tree.query(self._in_box(points))
+        numbers: np.ndarray = nearest
         return numbers
 
     def charts_about(self, point: np.ndarray) -> np.ndarray:
@@ -214,7 +215,8 @@ class ChartAtlas:
 
         As at the tip of a cone: charts are the smaller the nearer they are to it.
         """
-        distance = np.linalg.norm(self.difference(point, self.centers), axis=1)
+        gaps = self.difference(point, self.centers)
+        distance = np.linalg.norm(gaps, axis=1)
         by_radius = distance < NEXT_TO * self.radii
         by_nearest = distance < NEAR_THE_NEAREST * distance.min(initial=np.inf)
         return np.flatnonzero(by_radius & by_nearest)
@@ -228,13 +230,16 @@ class ChartAtlas:
         distance = np.linalg.norm(y, axis=2)
         in_plane = np.einsum("kcij,kcj->kci", bases, y)
         height = np.linalg.norm(offset - in_plane, axis=2)
-        inside: np.ndarray = distance < RIM * self.radii[charts]
-        return inside & (height < STEEPEST * distance + ROUNDING)
+        is_inside = distance < RIM * self.radii[charts]
+        is_low = height < STEEPEST * distance + ROUNDING
+        holds: np.ndarray = is_inside & is_low
+        return holds
 
     @cached_property
     def _tree(self) -> cKDTree:
         """The centres of the charts, for the search of the nearest."""
-        return cKDTree(self._in_box(self.centers), boxsize=torus.tree_box(self.periods))
+        box = torus.tree_box(self.periods)
+        return cKDTree(self._in_box(self.centers), boxsize=box)
 
     def _in_box(self, points: np.ndarray) -> np.ndarray:
         """Points with periodic unknowns taken into [0, period)."""
@@ -256,7 +261,8 @@ class ChartAtlas:
     def _polygons_at_edge(self) -> np.ndarray:
         """To how many polygons (e,) each edge belongs."""
         edges = self._edges
-        pairs = np.sort(np.stack([edges.begin, edges.end], axis=1), axis=1)
+        pairs = np.stack([edges.begin, edges.end], axis=1)
+        pairs.sort(axis=1)
         _, counts = np.unique(pairs, axis=0, return_counts=True)
         return counts
 

@@ -77,7 +77,7 @@ def assemble_charts(
 
 def _without_empty_polygons(charts: FlatCharts) -> FlatCharts:
     """The charts with a polygon, numbered anew."""
-    remain = np.array([not polygon.is_empty for polygon in charts.polygons], dtype=bool)
+    remain = _sizes(charts.polygons) > 0
     if np.all(remain):
         return charts
     number = np.where(remain, np.cumsum(remain) - 1, -1)
@@ -87,7 +87,10 @@ def _without_empty_polygons(charts: FlatCharts) -> FlatCharts:
             renumbered = np.where(labels >= 0, number[labels], labels)
             polygons.append(Polygon(vertices, renumbered))
     return FlatCharts(
-        charts.centers[remain], charts.bases[remain], charts.radii[remain], polygons
+        centers=charts.centers[remain],
+        bases=charts.bases[remain],
+        radii=charts.radii[remain],
+        polygons=polygons,
     )
 
 
@@ -134,13 +137,14 @@ def _merge_corners(
     )
     reach = MERGED * radii.max()
     i, j = tree.query_pairs(reach, output_type="ndarray").T
-    distance = np.linalg.norm(problem.difference(points[i], points[j]), axis=1)
+    gaps = problem.difference(points[i], points[j])
+    distance = np.linalg.norm(gaps, axis=1)
     one, other = owner[i], owner[j]
     near = distance < MERGED * np.minimum(radii[one], radii[other])
     same = near & _are_adjacent(one, other, neighbours, len(radii))
-    links = np.ones(np.count_nonzero(same))
+    i, j = i[same], j[same]
     count = len(points)
-    graph = csr_array((links, (i[same], j[same])), shape=(count, count))
+    graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
     vertex: np.ndarray = connected_components(graph, directed=False)[1]
     return vertex
 
@@ -151,7 +155,8 @@ def _are_adjacent(
     """Whether the charts ``i`` and ``j`` (k,), of ``count`` in all, are the same or
     neighbours."""
     # a pair of charts (low, high) as one number
-    pairs = np.minimum(i, j) * count + np.maximum(i, j)
+    low, high = np.minimum(i, j), np.maximum(i, j)
+    pairs = low * count + high
     adjacent = neighbours[:, 0] * count + neighbours[:, 1]
     same = np.arange(count) * (count + 1)
     return np.isin(pairs, np.concatenate([adjacent, same]))

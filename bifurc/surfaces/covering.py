@@ -15,6 +15,7 @@ both charts are cut along the same line up to fourth order.
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
 from enum import Enum
 from typing import NamedTuple
 
@@ -28,6 +29,7 @@ from bifurc.problem import Problem
 from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import FlatCharts, assemble_charts
+from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.polygon import Polygon, octagon
 
 __all__ = ["cover_surface"]
@@ -57,8 +59,9 @@ TOO_FAR = 0.5
 SOLVED, SOLVED_ON_DISK = 1e-10, 1e-9
 # Cosine between directions that lead to the same place.
 TOWARDS = 0.97
-# Share of the radius by which a vertex is outside the disk only by rounding.
-ON_DISK = 1e-9
+# Share of the radius by which a vertex is outside the disk only by rounding, and by
+# which it shows a hole at the end.
+ON_DISK, HOLE = 1e-9, 1e-3
 # Label of the edges along the bounds.
 BORDER = -2
 
@@ -96,7 +99,12 @@ def cover_surface(
             break
         if not cover.covers(seed) and cover.start(seed) is Placement.MADE:
             outcome = cover.grow(charts, deadline)
-    return assemble_charts(problem, cover.charts, outcome)
+    if outcome is Covering.COMPLETE and cover.has_holes():
+        outcome = Covering.SINGULAR
+    covering = assemble_charts(problem, cover.charts, outcome)
+    if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
+        return replace(covering, outcome=Covering.SINGULAR)
+    return covering
 
 
 class Placement(Enum):
@@ -104,7 +112,14 @@ class Placement(Enum):
 
     MADE = "there is a chart now"
     COVERED = "charts cover it already, although the polygon does not show it"
-    UNFIT = "no chart fits there"
+    UNFIT = "no chart fits there: others may cover it later, else it is a hole"
+
+
+class _UnfitPlace(NamedTuple):
+    """A direction (2,) in the plane of a chart in which no chart fits."""
+
+    chart: int
+    direction: np.ndarray
 
 
 class _Overlaps(NamedTuple):
@@ -118,12 +133,7 @@ class _Overlaps(NamedTuple):
 
 class _Cover:
     """The charts made so far, their polygons in the tangent planes, and the charts
-    whose polygons may be open.
-
-    ``dead`` lists for each chart the directions in which no chart could be made,
-    ``unfit`` those (chart, direction) in which none fits, ``lost`` the seeds about
-    which none fits.
-    """
+    whose polygons may be open."""
 
     def __init__(self, problem: Problem, largest: float):
         self._problem = problem
@@ -134,8 +144,9 @@ class _Cover:
         self._polygons: list[Polygon] = []
         # directions of each chart in which no chart could be made
         self._dead_ends: list[list[np.ndarray]] = []
+        self._unfit_places: list[_UnfitPlace] = []
+        self._unfit_seeds: list[np.ndarray] = []
         self._open: deque[int] = deque()
-        self._has_unfit_places = False
 
     @property
     def charts(self) -> FlatCharts:
@@ -159,7 +170,11 @@ class _Cover:
     def start(self, seed: np.ndarray) -> Placement:
         """Make the first chart of a surface about a regular solution (n,)."""
         _, right = null_spaces(self._problem, seed[None])
-        return self._make(seed, right[0, -2:].T, self._largest)
+        plane = right[0, -2:].T
+        placement = self._make(seed, plane, self._largest)
+        if placement is Placement.UNFIT:
+            self._unfit_seeds.append(seed)
+        return placement
 
     def grow(self, charts: int, deadline: Deadline) -> Covering:
         """Add charts at open vertices until there are none, or until a limit is
@@ -180,7 +195,24 @@ class _Cover:
             placement = self._make(start, self._bases[i], GROWTH * self._radii[i])
             if placement is not Placement.MADE:
                 self._dead_ends[i].append(direction)
-        return Covering.SINGULAR if self._has_unfit_places else Covering.COMPLETE
+            if placement is Placement.UNFIT:
+                self._unfit_places.append(_UnfitPlace(i, direction))
+        return Covering.COMPLETE
+
+    def has_holes(self) -> bool:
+        """Whether places at which no chart fits are still uncovered by the charts next
+        to them."""
+        if any(self._is_hole(place) for place in self._unfit_places):
+            return True
+        return not all(self.covers(seed) for seed in self._unfit_seeds)
+
+    def _is_hole(self, place: _UnfitPlace) -> bool:
+        """Whether the polygon of a chart has a vertex outside the disk there."""
+        vertices = self._polygons[place.chart].vertices
+        size = np.linalg.norm(vertices, axis=1)
+        is_there = vertices @ place.direction >= TOWARDS * size
+        is_outside = size > (1.0 + HOLE) * self._radii[place.chart]
+        return bool(np.any(is_there & is_outside))
 
     def _open_vertex(self, i: int) -> np.ndarray | None:
         """The vertex (2,) of polygon i farthest outside the disk, in no direction that
@@ -198,15 +230,6 @@ class _Cover:
     def _make(self, start: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
         """Make the chart, of at most ``radius``, about the solution above ``start`` in
         the plane ``basis``."""
-        placement = self._try_to_make(start, basis, min(radius, self._largest))
-        if placement is Placement.UNFIT:
-            self._has_unfit_places = True
-        return placement
-
-    def _try_to_make(
-        self, start: np.ndarray, basis: np.ndarray, radius: float
-    ) -> Placement:
-        """The same, without taking note of where no chart fits."""
         centers, gaps = correct_normal(self._problem, start[None], basis[None])
         turned = tangent_planes(self._problem, centers, basis)[0]
         center = centers[0]
@@ -217,7 +240,7 @@ class _Cover:
             return Placement.UNFIT
         if self._is_close_to_a_center(center, turned):
             return Placement.COVERED
-        fitting = self._fitting_radius(center, turned, radius)
+        fitting = self._fitting_radius(center, turned, min(radius, self._largest))
         if fitting is None:
             return Placement.UNFIT
         self.add(center, turned, fitting)
@@ -308,7 +331,8 @@ class _Cover:
         distance = np.linalg.norm(away, axis=1)
         near = np.flatnonzero(distance < radius + self._radii)
         x = away[near] @ basis
-        height = np.linalg.norm(away[near] - x @ basis.T, axis=1)
+        in_plane = x @ basis.T
+        height = np.linalg.norm(away[near] - in_plane, axis=1)
         # in two disks of radius R that touch, bent by BEND, one centre lies up to 4
         # BEND R above the other's plane
         is_low = height < 3 * BEND * np.maximum(radius, distance[near])

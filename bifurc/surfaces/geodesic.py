@@ -76,7 +76,8 @@ def shortest_path(
     paths = []
     for chain in _chart_chains(problem, charts, start, goal):
         points = _points_along(charts, chain, start, goal)
-        coarse = max(spacing, COARSE * float(np.median(charts.radii[chain])))
+        radius = float(np.median(charts.radii[chain]))
+        coarse = max(spacing, COARSE * radius)
         intervals = _count_intervals(points, coarse)
         paths.append(_spread(problem, charts, points, intervals, ROUNDS))
     path = min(paths, key=path_length)
@@ -264,7 +265,8 @@ class _PulledPath:
             return False
         step = np.einsum("kij,kj->ki", self._planes, pull)
         size = np.linalg.norm(step, axis=1).max()
-        share = min(self._share, TOO_FAR * self._charts.radii.max() / size)
+        longest = TOO_FAR * self._charts.radii.max()
+        share = min(self._share, longest / size)
         moved = self._moved(inner + share * step)
         energy = _energy(moved)
         self._share = _next_share(energy - self._energy, slope, share)
@@ -292,8 +294,11 @@ def _energy(path: np.ndarray) -> float:
 
 def _force(path: np.ndarray, planes: np.ndarray) -> np.ndarray:
     """The forces (k - 2, 2) on the inner points in their ``planes`` (k - 2, n, 2)."""
-    before, inner, after = path[:-2], path[1:-1], path[2:]
-    forces: np.ndarray = np.einsum("kij,ki->kj", planes, after - 2.0 * inner + before)
+    before = path[:-2]
+    inner = path[1:-1]
+    after = path[2:]
+    bend = after - 2.0 * inner + before
+    forces: np.ndarray = np.einsum("kij,ki->kj", planes, bend)
     return forces
 
 
@@ -313,7 +318,8 @@ def _solve_for_pull(force: np.ndarray, planes: np.ndarray) -> np.ndarray:
     for a in range(2):
         for b in range(2):
             bands[1 + a - b, 2 + b :: 2] = coupling[:, a, b]
-    steps: np.ndarray = solveh_banded(bands, force.ravel()).reshape(count, 2)
+    flat_steps = solveh_banded(bands, force.ravel())
+    steps: np.ndarray = flat_steps.reshape(count, 2)
     return steps
 
 
@@ -333,7 +339,8 @@ def _correct(
     (k,) are solutions nearby."""
     lifted, gaps = correct_normal(problem, points, planes)
     height = np.linalg.norm(lifted - points, axis=1)
-    return lifted, (gaps < SOLVED) & (height < TOO_FAR * charts.radii.max())
+    is_near = height < TOO_FAR * charts.radii.max()
+    return lifted, (gaps < SOLVED) & is_near
 
 
 # --- chords ---------------------------------------------------------------------------

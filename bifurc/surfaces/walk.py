@@ -45,7 +45,9 @@ def reached_charts(
     reached = np.full(len(points), -1)
     for attempt in range(WALKS):
         waiting = np.flatnonzero(reached < 0)
-        goals = rng.integers(len(charts), size=len(waiting)) if attempt else None
+        goals = None
+        if attempt:
+            goals = rng.integers(len(charts), size=len(waiting))
         for begin in range(0, len(waiting), CHUNK):
             if deadline.passed:
                 return reached
@@ -127,7 +129,8 @@ class _Walk:
     def _is_inside(self, points: np.ndarray) -> np.ndarray:
         """Which points (k, n) lie inside the bounds (k,)."""
         low, high = self.problem.bounds.T
-        inside: np.ndarray = np.all((points >= low) & (points <= high), axis=1)
+        is_between = (points >= low) & (points <= high)
+        inside: np.ndarray = np.all(is_between, axis=1)
         return inside
 
 
@@ -135,5 +138,6 @@ def _is_near(heights: np.ndarray, steps: np.ndarray) -> np.ndarray:
     """Whether the ends of steps (k, n) were corrected by ``heights`` (k, n) that are
     small against them."""
     height = np.linalg.norm(heights, axis=1)
-    near: np.ndarray = height < HIGH * np.linalg.norm(steps, axis=1)
+    length = np.linalg.norm(steps, axis=1)
+    near: np.ndarray = height < HIGH * length
     return near

@@ -10,6 +10,17 @@ from bifurc.torus import wrap
 from tests.bifurc.drawn_atlas import draw, ring
 
 
+def test_wrapped_angles_lie_within_half_a_period_and_its_ends_are_one() -> None:
+    periods = np.array([2 * np.pi, np.inf])
+    angles = np.pi * np.array([-1, -1 + 1e-14, -1 - 1e-14, 1 + 1e-14, 3, -5, 1])
+    points = np.stack([angles, angles], axis=1)
+    wrapped = wrap(points, periods)
+    assert np.all(wrapped[:, 0] == np.pi)
+    assert np.all(wrapped[:, 1] == angles)
+    near_the_end = wrap(np.array([-np.pi + 1e-9, 7.0]), periods)
+    assert near_the_end == pytest.approx([-np.pi + 1e-9, 7.0], abs=1e-15)
+
+
 def test_a_form_is_found_by_its_name_or_an_unambiguous_part() -> None:
     branches = {"Form I": ring(0.0), "Form II": ring(1.0), "Bennett 4R": ring(2.0)}
     atlas = draw(branches, {})

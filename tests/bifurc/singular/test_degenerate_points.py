@@ -12,7 +12,8 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, assemble_atlas
 from bifurc.search.settings import SearchSettings
-from bifurc.singular.point import Kind
+from bifurc.seeds import Seeds
+from bifurc.singular.point import Kind, SingularPoint
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

@@ -83,6 +83,22 @@ def test_the_charts_of_a_sphere_do_not_go_over_to_one_that_it_crosses() -> None:
     assert charts.polygon_sizes.min() > 2
 
 
+@pytest.mark.parametrize("angle", [0.4, 1.1, 2.0])
+def test_a_sheet_that_crosses_is_missed_wherever_the_charts_begin(angle: float) -> None:
+    direction = np.array([np.cos(angle), np.sin(angle), 0])
+    start = np.array([-0.4, 0, 0]) - 0.5 * direction
+    charts = cover_surface(two_spheres(0.4), start[None], radius=0.4)
+    assert charts.outcome is Covering.SINGULAR
+    assert charts.area == pytest.approx(np.pi, rel=0.02)
+
+
+def test_where_both_sheets_that_cross_are_covered_nothing_is_missed() -> None:
+    starts = np.array([[-0.9, 0, 0], [1.0, 0, 0]])
+    charts = cover_surface(two_spheres(0.4), starts, radius=0.4)
+    assert charts.outcome is Covering.COMPLETE
+    assert charts.area == pytest.approx(2.44 * np.pi, rel=0.02)
+
+
 def test_two_planes_that_cross_are_two_surfaces() -> None:
     problem = FunctionProblem(lambda u: np.array([u[1] * u[2]]), [(-1, 1)] * 3)
     starts = np.array([[0.3, 0.4, 0.0], [-0.2, 0.0, 0.7]])
