@@ -29,7 +29,7 @@ from .search.explore import explore as explore
 from .search.settings import SearchSettings as SearchSettings
 from .seeds import Completeness as Completeness
 from .seeds import Seeds as Seeds
-from .singular.locate import Kind as Kind
-from .singular.locate import SingularPoint as SingularPoint
+from .singular.point import Kind as Kind
+from .singular.point import SingularPoint as SingularPoint
 
 __version__: str

@@ -14,7 +14,7 @@ from bifurc.curves.monitor import Profile
 from bifurc.errors import ProblemError, RouteError
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
-from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
 __all__ = ["Atlas", "Event", "Form", "MeetingPoint", "Provenance", "Surface"]

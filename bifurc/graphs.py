@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Hashable
 from itertools import combinations, pairwise, product
-from typing import TypedDict
+from typing import NamedTuple, TypedDict
 
 import networkx as nx
 import numpy as np
 
-from bifurc.atlas import Atlas, Form
+from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.torus import wrap
 
 __all__ = ["ArcAttributes", "arc_attributes", "arc_graph", "transition_graph"]
@@ -51,19 +51,26 @@ def transition_graph(atlas: Atlas) -> nx.MultiGraph:
             length=form.branch.length,
             closed=form.branch.closed,
         )
+    for surface in atlas.surfaces:
+        graph.add_node(surface.name, dimension=surface.dimension)
     for point in atlas.bifurcations:
         passing = sorted(form for form, _ in point.passes)
         for i, j in sorted(set(combinations(passing, 2))):
-            one, other = atlas.forms[i].name, atlas.forms[j].name
-            graph.add_edge(one, other, key=point.name, bifurcation=point.name)
-    for surface in atlas.surfaces:
-        graph.add_node(surface.name, dimension=surface.dimension)
+            first, second = atlas.forms[i].name, atlas.forms[j].name
+            graph.add_edge(first, second, key=point.name, bifurcation=point.name)
     for point in atlas.points:
-        surfaces = [atlas.surfaces[k].name for k in point.surfaces]
-        forms = [atlas.forms[i].name for i in sorted({i for i, _ in point.passes})]
-        for one, other in [*product(forms, surfaces), *combinations(surfaces, 2)]:
-            graph.add_edge(one, other, key=point.name, bifurcation=point.name)
+        for first, second in _meetings_on_surfaces(atlas, point):
+            graph.add_edge(first, second, key=point.name, bifurcation=point.name)
     return graph
+
+
+def _meetings_on_surfaces(atlas: Atlas, point: MeetingPoint) -> list[tuple[str, str]]:
+    """Names of every form and surface, and of every two surfaces, that meet at a
+    singular point."""
+    surfaces = [atlas.surfaces[k].name for k in point.surfaces]
+    passing = sorted({form for form, _ in point.passes})
+    forms = [atlas.forms[i].name for i in passing]
+    return [*product(forms, surfaces), *combinations(surfaces, 2)]
 
 
 def arc_graph(atlas: Atlas) -> nx.MultiGraph:
@@ -77,19 +84,19 @@ def arc_graph(atlas: Atlas) -> nx.MultiGraph:
     for point in atlas.points:
         graph.add_node(point.name, kind=point.kind.value, u=point.point.u)
     for index, form in enumerate(atlas.forms):
+        branch = form.branch
         stops = _singular_stops(atlas, index)
-        for s, node in _free_ends(form, [s for s, _ in stops]):
-            kind = "regular" if form.branch.closed else "end"
-            u = wrap(form.branch(s), atlas.periods)
-            graph.add_node(node, kind=kind, u=u)
-            stops.append((s, node))
+        for end in _free_ends(form, stops):
+            kind = "regular" if branch.closed else "end"
+            u = wrap(branch(end.s), atlas.periods)
+            graph.add_node(end.node, kind=kind, u=u)
+            stops.append(end)
         stops.sort()
-        if form.branch.closed:
-            start, first = stops[0]
-            stops.append((start + form.branch.length, first))
-        for (start, first), (end, last) in pairwise(stops):
-            arc = arc_attributes(atlas, index, start, end, first, last)
-            graph.add_edge(first, last, **arc)
+        if branch.closed:
+            stops.append(_Stop(stops[0].s + branch.length, stops[0].node))
+        for begin, end in pairwise(stops):
+            arc = arc_attributes(atlas, index, begin.s, end.s, begin.node, end.node)
+            graph.add_edge(begin.node, end.node, **arc)
     return graph
 
 
@@ -98,36 +105,59 @@ def arc_attributes(
 ) -> ArcAttributes:
     """What the edge of the arc of a form (by its index) from arclength ``start`` to
     ``end`` holds, between the nodes ``first`` and ``last``."""
-    branch = atlas.forms[form].branch
-    turns = (0.0, branch.length) if branch.closed else (0.0,)
-    travel = np.empty(branch.n)
-    for i in range(branch.n):
-        own = [e.s for e in atlas.dead_points if (e.form, e.index) == (form, i)]
-        dead = sorted(s + turn for s in own for turn in turns)
-        stops = [start, *(s for s in dead if start < s < end), end]
-        travel[i] = np.abs(np.diff(branch(np.array(stops))[:, i])).sum()
     return {
         "form": form,
         "start": start,
         "end": end,
         "length": end - start,
-        "travel": travel,
+        "travel": _travel(atlas, form, start, end),
         "first": first,
         "last": last,
     }
 
 
-def _singular_stops(atlas: Atlas, form: int) -> list[tuple[float, str]]:
-    """Arclength and name of every singular point that a form passes."""
-    return [(s, p.name) for p in atlas.points for i, s in p.passes if i == form]
+def _travel(atlas: Atlas, form: int, start: float, end: float) -> np.ndarray:
+    """Total turning (n,) of each unknown between two arclengths of a form: an unknown
+    turns one way between its dead points."""
+    branch = atlas.forms[form].branch
+    turns = (0.0, branch.length) if branch.closed else (0.0,)
+    travel = np.empty(branch.n)
+    for i in range(branch.n):
+        stops = [start, end]
+        for event in atlas.dead_points:
+            if (event.form, event.index) == (form, i):
+                passes = [event.s + turn for turn in turns]
+                stops += [s for s in passes if start < s < end]
+        values = branch(np.array(sorted(stops)))[:, i]
+        travel[i] = np.abs(np.diff(values)).sum()
+    return travel
 
 
-def _free_ends(form: Form, stops: list[float]) -> list[tuple[float, str]]:
-    """Arclengths and nodes at which the arcs of a form begin or end beside its singular
-    points: the ends of an open form, and anywhere on a closed one that has none."""
+class _Stop(NamedTuple):
+    """An arclength of a form at which an arc begins or ends, and the node there."""
+
+    s: float
+    node: str
+
+
+def _singular_stops(atlas: Atlas, form: int) -> list[_Stop]:
+    """The singular points that a form passes."""
+    stops = []
+    for point in atlas.points:
+        stops += [_Stop(s, point.name) for i, s in point.passes if i == form]
+    return stops
+
+
+def _free_ends(form: Form, stops: list[_Stop]) -> list[_Stop]:
+    """Where the arcs of a form begin or end besides its singular points: the ends of an
+    open form, and anywhere on a closed one that has none."""
     branch = form.branch
+    begin = _Stop(0.0, f"{form.name} start")
     if branch.closed:
-        return [] if stops else [(0.0, f"{form.name} start")]
+        return [] if stops else [begin]
     near = SAME_STOP * max(branch.length, 1.0)
-    ends = [(0.0, f"{form.name} start"), (branch.length, f"{form.name} end")]
-    return [(s, node) for s, node in ends if all(abs(s - at) > near for at in stops)]
+    free_ends = []
+    for end in (begin, _Stop(branch.length, f"{form.name} end")):
+        if all(abs(end.s - stop.s) > near for stop in stops):
+            free_ends.append(end)
+    return free_ends

@@ -7,7 +7,9 @@ import pytest
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
-from bifurc.singular.locate import Kind, classify_singular_point
+from bifurc.singular.classify import classify_singular_point
+from bifurc.singular.locate import LocatedPoint
+from bifurc.singular.point import Kind
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
@@ -91,6 +93,6 @@ def test_the_double_watt_mechanism_has_a_cusp_in_the_middle(seed):
 def test_a_cusp_too_sharp_for_a_small_sphere_is_looked_at_on_a_larger_one():
     problem, middle = double_watt(2.0, 0.5, 0.8)
     null_space = np.linalg.svd(problem.jacobians(middle[None])[0])[2][6:].T
-    point = classify_singular_point(problem, middle, null_space, 1e-14)
+    point = classify_singular_point(problem, LocatedPoint(middle, null_space, 1e-14))
     assert point.kind is Kind.CUSP
     assert point.radius > 0.02 * problem.scale

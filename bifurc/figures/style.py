@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple, TypeAlias
 
-from bifurc.singular.locate import Kind
+from bifurc.singular.point import Kind
 
 __all__ = ["RC", "Dashes", "Mark", "Style", "form_style", "mark_of"]
 

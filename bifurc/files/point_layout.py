@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from bifurc.atlas import Event, MeetingPoint
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
-from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.singular.point import Kind, SingularPoint
 
 __all__ = [
     "DEAD_POINTS",

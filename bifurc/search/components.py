@@ -167,7 +167,7 @@ def singular_points_of(
         located = locate_singular_point(problem, charts.centers[c], 3, reach)
         if located is None:
             continue
-        on_curve = located[2] > 0.1 * reach or is_on_singular_curve(problem, *located)
+        on_curve = located[2] > 0.1 * reach or is_on_singular_curve(problem, located)
         point, null_space, error = located
         if (
             on_curve

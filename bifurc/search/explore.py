@@ -26,11 +26,9 @@ from bifurc.search.findings import SAME, Findings, assemble_atlas
 from bifurc.search.settings import SearchSettings
 from bifurc.seeding import CLOSED
 from bifurc.seeds import Seeds
-from bifurc.singular.locate import (
-    SingularPoint,
-    classify_singular_point,
-    locate_singular_point,
-)
+from bifurc.singular.classify import classify_singular_point
+from bifurc.singular.locate import LocatedPoint, locate_singular_point
+from bifurc.singular.point import SingularPoint
 from bifurc.singular.sphere import is_on_surface
 
 __all__ = ["explore"]
@@ -466,7 +464,7 @@ def _point_of(
     known = _known_point(problem, u, error, found)
     if known is not None:
         return known
-    point = classify_singular_point(problem, u, null_space, error)
+    point = classify_singular_point(problem, LocatedPoint(u, null_space, error))
     found.points.append(point)
     return point
 

@@ -17,7 +17,7 @@ from bifurc.problem import Problem
 from bifurc.search.components import Components, lies_on
 from bifurc.seeding import missed_probability
 from bifurc.seeds import Audit, Completeness, Seeds
-from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap
 
 __all__ = ["SAME", "Findings", "assemble_atlas"]

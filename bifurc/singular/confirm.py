@@ -4,9 +4,9 @@ right."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import NamedTuple
 
 import mpmath
 import numpy as np
@@ -15,13 +15,19 @@ from bifurc.errors import ProblemError
 
 __all__ = ["Confirmation", "Convergence", "Residual", "confirm_singular_point"]
 
-Residual = Callable[[Sequence[Any]], Sequence[Any]]
-"""F over mpmath numbers: n of them in, m out, right to whatever precision is set when it is called."""
+Residual = Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]
+"""F over mpmath numbers: n of them in, m out, right to whatever precision is set when
+it is called."""
 
 ITERATIONS = 40
-LINEAR = (
-    1e-3  # a step this much shorter than the one before, or less, is linear convergence
-)
+# A step this much shorter than the one before, or less, is linear convergence.
+LINEAR = 1e-3
+# A step longer than this share of the one before does not converge.
+STALLED = 0.9
+# Length of the last step above which the refinement has not settled.
+UNSETTLED = "1e-7"
+# Residual and singular values, over the magnitude, that may be zero at most.
+NOT_ZERO = "1e-6"
 
 
 class Convergence(Enum):
@@ -29,23 +35,27 @@ class Convergence(Enum):
 
     QUADRATIC = "quadratic: a simple singular point, exact to all digits asked for"
     LINEAR = "linear: a singular point of higher order, exact to the stated error only"
-    INCONSISTENT = "closure gap: the equations contradict each other; this is the point that violates them least"
+    INCONSISTENT = (
+        "closure gap: the equations contradict each other; this is the point that "
+        "violates them least"
+    )
     NONE = "none: there is no singular point of this nullity close by"
 
 
 @dataclass(frozen=True)
 class Confirmation:
-    """A singular point refined at high precision, beside the double result it was
-    refined from.
+    """A singular point refined at high precision, compared with the double result from
+    which it was refined.
 
-    ``u`` (n,) and ``null_space`` (n, k) are mpmath matrices, ``error`` bounds what may
-    be wrong with ``u``, ``residual`` is |F| there. ``distance`` of the double result,
-    and ``angle`` (rad) between its null space and this. ``singular_values`` (n,) of F'
-    at ``u`` in decreasing order; ``nullity`` of them are zero to the precision reached.
+    ``u`` (n, 1) and ``null_space`` (n, k) are mpmath matrices, ``error`` bounds what
+    may be wrong with ``u``, ``residual`` is |F| there. ``distance`` of the double
+    result, and ``angle`` (rad) between its null space and this. ``singular_values``
+    (n,) of F' at ``u`` in decreasing order; ``nullity`` of them are zero to the
+    precision reached.
     """
 
-    u: Any
-    null_space: Any
+    u: mpmath.matrix
+    null_space: mpmath.matrix
     error: float
     residual: float
     distance: float
@@ -60,7 +70,8 @@ class Confirmation:
     def agreeing_digits(self) -> float:
         """Digits after the point that the double result has right; no more than the
         refinement itself has."""
-        return float(-mpmath.log10(max(self.distance, self.error, 10.0**-self.digits)))
+        doubt = max(self.distance, self.error, 10.0**-self.digits)
+        return float(-mpmath.log10(doubt))
 
 
 def confirm_singular_point(
@@ -85,18 +96,30 @@ def confirm_singular_point(
     if not 20 <= digits <= 1000:
         raise ProblemError("digits", digits, "from 20 to 1000")
     with mpmath.workdps(3 * digits + 30):
-        system = _Differences(residual, mpmath.mpf(10) ** -(digits + 5))
-        u, basis = (
-            mpmath.matrix(point.tolist()),
-            _orthonormal(mpmath.matrix(null_space.tolist())),
-        )
-        moves = _refine(system, u, basis, mpmath.mpf(10) ** -digits)
-        return _compare(
-            system, u, basis, moves, point, null_space, digits, mpmath.mpf(magnitude)
+        derivatives = _Differences(residual, mpmath.mpf(10) ** -(digits + 5))
+        start = mpmath.matrix(point.tolist())
+        start_basis = _orthonormal(mpmath.matrix(null_space.tolist()))
+        refinement = _Refinement(start.copy(), start_basis.copy())
+        precision = mpmath.mpf(10) ** -digits
+        refinement.run(derivatives, precision)
+        verdict = _judge(derivatives, refinement, precision, mpmath.mpf(magnitude))
+        across = refinement.basis * (refinement.basis.T * start_basis)
+        return Confirmation(
+            u=refinement.u,
+            null_space=refinement.basis,
+            error=float(verdict.error),
+            residual=float(verdict.residual),
+            distance=float(mpmath.norm(start - refinement.u)),
+            angle=float(mpmath.norm(start_basis - across)),
+            singular_values=tuple(float(x) for x in verdict.singular_values),
+            nullity=verdict.nullity,
+            convergence=verdict.convergence,
+            iterations=len(refinement.moves),
+            digits=digits,
         )
 
 
-# --- the iteration ------------------------------------------------------------------------------------
+# --- the iteration --------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -105,190 +128,267 @@ class _Differences:
     is set."""
 
     function: Residual
-    step: Any
+    step: mpmath.mpf
 
-    def value(self, u: Any) -> Any:
+    def value(self, u: mpmath.matrix) -> mpmath.matrix:
         """F as a column (m, 1)."""
         return mpmath.matrix(list(self.function(list(u))))
 
-    def along(self, u: Any, direction: Any) -> Any:
+    def along(self, u: mpmath.matrix, direction: mpmath.matrix) -> mpmath.matrix:
         """F' times a direction, (m, 1)."""
         h = self.step
-        return (self.value(u + h * direction) - self.value(u - h * direction)) / (2 * h)
+        ahead = self.value(u + h * direction)
+        behind = self.value(u - h * direction)
+        return (ahead - behind) / (2 * h)
 
-    def jacobian(self, u: Any) -> Any:
+    def jacobian(self, u: mpmath.matrix) -> mpmath.matrix:
         """F' (m, n)."""
-        return _columns([self.along(u, _unit(len(u), i)) for i in range(len(u))])
+        n = len(u)
+        return _columns([self.along(u, _unit(n, i)) for i in range(n)])
 
-    def bend(self, u: Any, direction: Any) -> Any:
+    def bend(self, u: mpmath.matrix, direction: mpmath.matrix) -> mpmath.matrix:
         """F'' times a direction, (m, n)."""
         h = self.step
-        return (self.jacobian(u + h * direction) - self.jacobian(u - h * direction)) / (
-            2 * h
-        )
+        ahead = self.jacobian(u + h * direction)
+        behind = self.jacobian(u - h * direction)
+        return (ahead - behind) / (2 * h)
 
 
-def _refine(system: _Differences, u: Any, basis: Any, goal: Any) -> list[Any]:
-    """Gauss-Newton in place on ``u`` (n, 1) and ``basis`` (n, k); the lengths of its
-    steps come back."""
-    n, k = basis.rows, basis.cols
-    moves: list[Any] = []
-    for _ in range(ITERATIONS):
-        matrix, right = _augmented(system, u, basis)
-        step = _least_squares(matrix, right, goal**2)
+@dataclass
+class _Refinement:
+    """The point ``u`` (n, 1), the ``basis`` (n, k) of its null space, and the lengths
+    of the ``moves`` that led there."""
+
+    u: mpmath.matrix
+    basis: mpmath.matrix
+    moves: list[mpmath.mpf] = field(default_factory=list)
+
+    @property
+    def last_ratio(self) -> mpmath.mpf:
+        """Length of the last move over that of the one before; 0 where there is none."""
+        if len(self.moves) < 2 or not self.moves[-2]:
+            return mpmath.mpf(0)
+        return self.moves[-1] / self.moves[-2]
+
+    def run(self, derivatives: _Differences, precision: mpmath.mpf) -> None:
+        """Take steps of Gauss-Newton until they are below the ``precision``, or too
+        long to converge."""
+        for _ in range(ITERATIONS):
+            matrix, right_side = _augmented_system(derivatives, self.u, self.basis)
+            self._move(_least_squares(matrix, right_side, precision**2))
+            if self.moves[-1] < precision or self.moves[-1] > 1:
+                break
+
+    def _move(self, step: list[mpmath.mpf]) -> None:
+        """Add a step (n + k n,) of the point and of its null space."""
+        n, k = self.basis.rows, self.basis.cols
         for i in range(n):
-            u[i] += step[i]
+            self.u[i] += step[i]
             for j in range(k):
-                basis[i, j] += step[n + j * n + i]
-        basis[:, :] = _orthonormal(basis)
-        moves.append(mpmath.norm(step[:n]))
-        if moves[-1] < goal or moves[-1] > 1:
-            break
-    return moves
+                self.basis[i, j] += step[n + j * n + i]
+        self.basis = _orthonormal(self.basis)
+        self.moves.append(mpmath.norm(step[:n]))
 
 
-def _augmented(system: _Differences, u: Any, basis: Any) -> tuple[Any, Any]:
-    """Matrix and right-hand side of a step: rows F', then for every column v of V
-    [F''v, F'] and V^T dv = 0."""
+def _augmented_system(
+    derivatives: _Differences, u: mpmath.matrix, basis: mpmath.matrix
+) -> tuple[mpmath.matrix, mpmath.matrix]:
+    """Matrix and right-hand side of a step for the point and its null space."""
+    # The columns v_1 ... v_k of V move across V only:
+    #
+    #     [ F'                            ] [ du   ]     [ F      ]
+    #     [ F'' v_1   F'                  ] [ dv_1 ]     [ F' v_1 ]
+    #     [   :             ...           ] [  :   ] = - [   :    ]
+    #     [ F'' v_k               F'      ] [ dv_k ]     [ F' v_k ]
+    #     [           V^T                 ]              [ 0      ]
+    #     [                 ...           ]              [ :      ]
+    #     [                       V^T     ]              [ 0      ]
     n, k = basis.rows, basis.cols
-    jacobian, value = system.jacobian(u), system.value(u)
+    jacobian = derivatives.jacobian(u)
+    value = derivatives.value(u)
     m = len(value)
-    matrix, right = (
-        mpmath.zeros(m + k * (m + k), n + k * n),
-        mpmath.zeros(m + k * (m + k), 1),
-    )
-    matrix[:m, :n], right[:m, 0] = jacobian, -value
+    rows = m + k * m + k * k
+    matrix = mpmath.zeros(rows, n + k * n)
+    right_side = mpmath.zeros(rows, 1)
+    matrix[:m, :n] = jacobian
+    right_side[:m, 0] = -value
     for j in range(k):
-        top, across, own = m + j * m, m + k * m + j * k, n + j * n
-        matrix[top : top + m, :n] = system.bend(u, basis[:, j])
-        matrix[top : top + m, own : own + n] = jacobian
-        right[top : top + m, 0] = -jacobian * basis[:, j]
-        matrix[across : across + k, own : own + n] = basis.T
-    return matrix, right
+        v = basis[:, j]
+        null = _block(m, j, m)  # rows of F'' v_j
+        across = _block(m + k * m, j, k)  # rows of V^T
+        column = _block(n, j, n)  # columns of dv_j
+        matrix[null, :n] = derivatives.bend(u, v)
+        matrix[null, column] = jacobian
+        right_side[null, 0] = -jacobian * v
+        matrix[across, column] = basis.T
+    return matrix, right_side
 
 
-def _least_squares(matrix: Any, right: Any, negligible: Any) -> list[Any]:
-    """A least-squares solution by modified Gram-Schmidt with column pivoting; columns
-    that add nothing get zero."""
-    count = matrix.cols
-    columns, rest = [list(matrix[:, j]) for j in range(count)], list(right)
-    chosen: list[
-        tuple[int, Any, list[Any], dict[int, Any]]
-    ] = []  # column, length, projection of the right-hand side
-    left = set(range(count))
-    upper: dict[int, dict[int, Any]] = {j: {} for j in range(count)}
-    largest = mpmath.mpf(0)
-    while left:
-        sizes = {j: mpmath.fdot(columns[j], columns[j]) for j in left}
-        pivot = max(left, key=lambda j: sizes[j])
-        size = mpmath.sqrt(sizes[pivot])
-        largest = max(largest, size)
-        if size <= negligible * largest:
-            break
-        left.remove(pivot)
-        direction = [x / size for x in columns[pivot]]
-        for j in left:
-            upper[j][pivot] = mpmath.fdot(direction, columns[j])
-            columns[j] = [
-                x - upper[j][pivot] * d
-                for x, d in zip(columns[j], direction, strict=True)
-            ]
-        onto = mpmath.fdot(direction, rest)
-        rest = [x - onto * d for x, d in zip(rest, direction, strict=True)]
-        chosen.append((pivot, size, onto, upper[pivot]))
-    solution = [mpmath.mpf(0)] * count
-    order = [pivot for pivot, *_ in chosen]
-    for place in range(len(chosen) - 1, -1, -1):
-        pivot, size, onto, _ = chosen[place]
-        solution[pivot] = (
-            onto - sum(upper[j][pivot] * solution[j] for j in order[place + 1 :])
-        ) / size
+def _block(begin: int, number: int, size: int) -> slice:
+    """Block of a ``number``, all of one ``size``, the first of which is at ``begin``."""
+    start = begin + number * size
+    return slice(start, start + size)
+
+
+# --- least squares --------------------------------------------------------------------
+
+
+class _Pivot(NamedTuple):
+    """A row of the triangular factor, in the order in which columns are taken.
+
+    The number of the ``column``, its ``length`` (the entry on the diagonal), the other
+    entries of the ``row`` by column, and what the orthogonal factor makes of the
+    right-hand side.
+    """
+
+    column: int
+    length: mpmath.mpf
+    row: dict[int, mpmath.mpf]
+    right_side: mpmath.mpf
+
+
+def _least_squares(
+    matrix: mpmath.matrix, right_side: mpmath.matrix, negligible: mpmath.mpf
+) -> list[mpmath.mpf]:
+    """A least-squares solution by QR with column pivoting; columns that add less than
+    the share ``negligible`` of the largest get zero."""
+    solution = [mpmath.mpf(0)] * matrix.cols
+    pivots = _orthogonalise(matrix, right_side, negligible)
+    for place in range(len(pivots) - 1, -1, -1):
+        pivot = pivots[place]
+        later = [other.column for other in pivots[place + 1 :]]
+        total = sum(pivot.row[j] * solution[j] for j in later)
+        solution[pivot.column] = (pivot.right_side - total) / pivot.length
     return solution
 
 
-# --- the verdict --------------------------------------------------------------------------------------
+def _orthogonalise(
+    matrix: mpmath.matrix, right_side: mpmath.matrix, negligible: mpmath.mpf
+) -> list[_Pivot]:
+    """The triangular factor by modified Gram-Schmidt, the longest column first."""
+    columns = {j: list(matrix[:, j]) for j in range(matrix.cols)}
+    rest = list(right_side)
+    pivots: list[_Pivot] = []
+    largest = mpmath.mpf(0)
+    while columns:
+        squares = {j: mpmath.fdot(v, v) for j, v in columns.items()}
+        longest = max(squares, key=squares.__getitem__)
+        length = mpmath.sqrt(squares[longest])
+        largest = max(largest, length)
+        if length <= negligible * largest:
+            break
+        direction = [x / length for x in columns.pop(longest)]
+        row: dict[int, mpmath.mpf] = {}
+        for j, column in columns.items():
+            row[j] = mpmath.fdot(direction, column)
+            columns[j] = _without(column, row[j], direction)
+        share = mpmath.fdot(direction, rest)
+        rest = _without(rest, share, direction)
+        pivots.append(_Pivot(longest, length, row, share))
+    return pivots
 
 
-def _compare(
-    system: _Differences,
-    u: Any,
-    basis: Any,
-    moves: list[Any],
-    point: np.ndarray,
-    null_space: np.ndarray,
-    digits: int,
-    magnitude: Any,
-) -> Confirmation:
-    """What the refinement says of the double result."""
-    jacobian = system.jacobian(u)
-    squares = mpmath.eigsy(jacobian.T * jacobian, eigvals_only=True)
-    sigma = sorted((mpmath.sqrt(abs(x)) for x in squares), reverse=True)
-    residual = mpmath.norm(system.value(u))
-    precise = mpmath.mpf(10) ** -digits
-    convergence = _judge(
-        moves, residual / magnitude, sigma[len(sigma) - basis.cols] / magnitude, precise
-    )
-    ratio = moves[-1] / moves[-2] if len(moves) > 1 and moves[-2] else mpmath.mpf(0)
-    tail = ratio / (1 - ratio) if ratio < 1 else mpmath.inf
-    error = max(
-        moves[-1]
-        * min(tail, 1 if convergence is Convergence.QUADRATIC else mpmath.inf),
-        precise,
-    )
-    before = _orthonormal(mpmath.matrix(null_space.tolist()))
-    return Confirmation(
-        u=u,
-        null_space=basis,
-        error=float(error),
-        residual=float(residual),
-        distance=float(mpmath.norm(mpmath.matrix(point.tolist()) - u)),
-        angle=float(mpmath.norm(before - basis * (basis.T * before))),
-        singular_values=tuple(float(x) for x in sigma),
-        nullity=sum(
-            1 for x in sigma if x <= magnitude * max(100 * error, mpmath.sqrt(precise))
-        ),
-        convergence=convergence,
-        iterations=len(moves),
-        digits=digits,
-    )
+def _without(
+    vector: list[mpmath.mpf], share: mpmath.mpf, direction: list[mpmath.mpf]
+) -> list[mpmath.mpf]:
+    """The vector less ``share`` times a direction."""
+    return [x - share * d for x, d in zip(vector, direction, strict=True)]
+
+
+# --- the verdict ----------------------------------------------------------------------
+
+
+class _Verdict(NamedTuple):
+    """What the refinement and the equations at its end say of the point."""
+
+    convergence: Convergence
+    error: mpmath.mpf
+    residual: mpmath.mpf
+    singular_values: list[mpmath.mpf]
+    nullity: int
 
 
 def _judge(
-    moves: list[Any], residual: Any, largest_zero: Any, precise: Any
+    derivatives: _Differences,
+    refinement: _Refinement,
+    precision: mpmath.mpf,
+    magnitude: mpmath.mpf,
+) -> _Verdict:
+    """How the refinement converged, how exact it is, and the rank of F' at its end."""
+    singular_values = _singular_values(derivatives.jacobian(refinement.u))
+    residual = mpmath.norm(derivatives.value(refinement.u))
+    rank = len(singular_values) - refinement.basis.cols
+    misfit = max(singular_values[rank], residual) / magnitude
+    if misfit > mpmath.mpf(NOT_ZERO):
+        convergence = Convergence.NONE
+    else:
+        convergence = _judge_moves(refinement, residual / magnitude, precision)
+    error = _refinement_error(refinement, convergence, precision)
+    zero = magnitude * max(100 * error, mpmath.sqrt(precision))
+    nullity = sum(1 for x in singular_values if x <= zero)
+    return _Verdict(convergence, error, residual, singular_values, nullity)
+
+
+def _singular_values(matrix: mpmath.matrix) -> list[mpmath.mpf]:
+    """Singular values of a matrix (m, n), n of them, in decreasing order."""
+    squares = mpmath.eigsy(matrix.T * matrix, eigvals_only=True)
+    values = [mpmath.sqrt(abs(x)) for x in squares]
+    return sorted(values, reverse=True)
+
+
+def _judge_moves(
+    refinement: _Refinement, residual: mpmath.mpf, precision: mpmath.mpf
 ) -> Convergence:
-    """What the lengths of the steps say, and what is left of F and F' V."""
-    shrinking = len(moves) < 2 or moves[-1] < 0.9 * moves[-2] or moves[-1] < precise
-    settled = moves[-1] < mpmath.mpf("1e-7")
-    if not (shrinking and settled) or max(largest_zero, residual) > mpmath.mpf("1e-6"):
+    """What the lengths of the steps say, and the ``residual`` over the magnitude."""
+    moves = refinement.moves
+    last = moves[-1]
+    is_first = len(moves) < 2
+    is_shrinking = is_first or last < STALLED * moves[-2] or last < precision
+    if not is_shrinking or last >= mpmath.mpf(UNSETTLED):
         return Convergence.NONE
-    if residual > max(mpmath.sqrt(precise), moves[-1]):
+    if residual > max(mpmath.sqrt(precision), last):
         return Convergence.INCONSISTENT
-    quick = moves[-1] < precise and (len(moves) < 2 or moves[-1] <= LINEAR * moves[-2])
-    return Convergence.QUADRATIC if quick else Convergence.LINEAR
+    if last < precision and (is_first or last <= LINEAR * moves[-2]):
+        return Convergence.QUADRATIC
+    return Convergence.LINEAR
 
 
-# --- small matrices -----------------------------------------------------------------------------------
+def _refinement_error(
+    refinement: _Refinement, convergence: Convergence, precision: mpmath.mpf
+) -> mpmath.mpf:
+    """A bound of the error: the rest of the geometric series of the steps, the last
+    step where convergence was quadratic, and the precision at least."""
+    ratio = refinement.last_ratio
+    tail = ratio / (1 - ratio) if ratio < 1 else mpmath.inf
+    if convergence is Convergence.QUADRATIC:
+        tail = min(tail, 1)
+    return max(refinement.moves[-1] * tail, precision)
 
 
-def _unit(n: int, i: int) -> Any:
+# --- small matrices -------------------------------------------------------------------
+
+
+def _unit(n: int, i: int) -> mpmath.matrix:
+    """Unit vector (n, 1) number i."""
     out = mpmath.zeros(n, 1)
     out[i] = 1
     return out
 
 
-def _columns(columns: list[Any]) -> Any:
+def _columns(columns: list[mpmath.matrix]) -> mpmath.matrix:
+    """The matrix (n, k) of k columns (n, 1)."""
     out = mpmath.zeros(len(columns[0]), len(columns))
     for j, column in enumerate(columns):
         out[:, j] = column
     return out
 
 
-def _orthonormal(matrix: Any) -> Any:
+def _orthonormal(matrix: mpmath.matrix) -> mpmath.matrix:
     """An orthonormal basis (n, k) of the columns, by Gram and Schmidt."""
-    done: list[Any] = []
+    basis: list[mpmath.matrix] = []
     for j in range(matrix.cols):
         column = matrix[:, j]
-        for other in done:
+        for other in basis:
             column = column - other * (other.T * column)[0]
-        done.append(column / mpmath.norm(column))
-    return _columns(done)
+        basis.append(column / mpmath.norm(column))
+    return _columns(basis)

@@ -10,6 +10,7 @@ probed.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,16 +19,25 @@ from bifurc.problem import Problem
 
 __all__ = ["LocalDimensions", "local_dimensions", "null_spaces", "tangent_planes"]
 
-# singular value, over the problem's magnitude, below which a direction belongs to the
-# null space
+# Singular value, over the problem's magnitude, below which a direction belongs to the
+# null space.
 NULL = 1e-7
-# of the probes, over the scale: at much less, degenerate singular points would look
-# like surfaces
+# The same at the ends of probes, which are less exact.
+NULL_AT_ENDS = 10 * NULL
+# Length of the probes, over the scale: at much less, degenerate singular points would
+# look like surfaces.
 RADIUS = 5e-3
-# a probe that loses a larger share of itself when it is projected does not lie along
-# the solutions
-KEPT = 0.05
-CHUNK = 256  # points probed between two looks at the clock
+# Length, over that, of the probes about the end of a probe.
+AT_END = 0.01
+# A probe that loses a larger share of itself when it is projected does not lie along
+# the solutions.
+LOST = 0.05
+# Share of its length that a probe must keep for its end to be beside the point.
+AWAY = 0.1
+# Relative residual above which the end of a probe is no solution.
+SOLVED = 1e-10
+# Points probed between two looks at the clock.
+CHUNK = 256
 
 
 @dataclass(frozen=True)
@@ -48,9 +58,11 @@ class LocalDimensions:
 def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Singular values (k, n) of F' over its magnitude, padded with zeros, and right
     singular vectors (k, n, n)."""
-    _, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude)
+    jacobians = problem.jacobians(points) / problem.magnitude
+    _, sigma, right = np.linalg.svd(jacobians)
+    count = sigma.shape[1]
     padded = np.zeros((len(points), problem.n))
-    padded[:, : sigma.shape[1]] = sigma[:, : problem.n]
+    padded[:, :count] = sigma
     return padded, right
 
 
@@ -65,10 +77,13 @@ def tangent_planes(
     """
     sigma, right = null_spaces(problem, points)
     nullity = np.maximum(np.count_nonzero(sigma < NULL, axis=1), 2)
-    most = int(nullity.max(initial=2))
-    null = right[:, -most:] * (np.arange(most, 0, -1) <= nullity[:, None])[:, :, None]
+    largest = int(nullity.max(initial=2))
+    belongs = np.arange(largest, 0, -1) <= nullity[:, None]  # (k, largest)
+    null = right[:, -largest:] * belongs[:, :, None]
+    # of all bases of a plane the one nearest to ``near``: the orthogonal polar factor
     left, _, across = np.linalg.svd(null @ near, full_matrices=False)
-    return np.swapaxes(null, 1, 2) @ left @ across
+    planes: np.ndarray = np.swapaxes(null, 1, 2) @ left @ across
+    return planes
 
 
 def local_dimensions(
@@ -86,7 +101,8 @@ def local_dimensions(
     """
     deadline = deadline or Deadline()
     count = len(points)
-    dimension, nullity = np.full(count, -1), np.zeros(count, dtype=int)
+    dimension = np.full(count, -1)
+    nullity = np.zeros(count, dtype=int)
     regular = np.zeros(count, dtype=bool)
     for begin in range(0, count, CHUNK):
         if deadline.passed:
@@ -97,9 +113,8 @@ def local_dimensions(
         for k in np.unique(nullity[part]):
             rows = begin + np.flatnonzero(nullity[part] == k)
             basis = right[rows - begin, problem.n - k :]
-            dimension[rows], regular[rows] = _dimensions_of_nullity(
-                problem, points[rows], basis
-            )
+            own = _dimensions_of_nullity(problem, points[rows], basis)
+            dimension[rows], regular[rows] = own
     return LocalDimensions(dimension, nullity, regular)
 
 
@@ -111,58 +126,86 @@ def _dimensions_of_nullity(
     count, k = basis.shape[:2]
     if k == 0:
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
-    ends, reached, loss = _probe(problem, points, basis, RADIUS)
-    regular = loss.max(axis=1) < KEPT
+    probes = _probe(problem, points, basis, RADIUS)
+    regular = probes.loss.max(axis=1) < LOST
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
-        kept = np.isfinite(loss[i])
-        dimension[i] = _dimension_beside(problem, ends[i, kept], reached[i, kept])
+        arrived = np.isfinite(probes.loss[i])
+        ends = probes.ends[i, arrived]
+        coordinates = probes.coordinates[i, arrived]
+        dimension[i] = _dimension_from_ends(problem, ends, coordinates)
     return dimension, regular
+
+
+class _Probes(NamedTuple):
+    """Probes p along the null spaces, of dimension k, of points b, after projection.
+
+    ``ends`` (b, p, n) are solutions, ``coordinates`` (b, p, k) where they lie in the
+    null space, over the length of the probes. ``loss`` (b, p) is the share of a probe
+    that projection takes away, infinite where its end is no solution.
+    """
+
+    ends: np.ndarray
+    coordinates: np.ndarray
+    loss: np.ndarray
 
 
 def _probe(
     problem: Problem, points: np.ndarray, basis: np.ndarray, radius: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Ends (b, p, n) of probes, their coordinates (b, p, k) in the null space over the
-    radius, and losses (b, p)."""
+) -> _Probes:
+    """Probes of length ``radius`` (over the scale) about points (b, n) in their null
+    spaces (b, k, n)."""
     count, k, n = basis.shape
-    rng = np.random.default_rng(k)
-    axes = np.linalg.qr(rng.normal(size=(k, k)))[0]
-    extra = rng.normal(size=(2, k))
-    x = np.concatenate([axes, -axes, extra / np.linalg.norm(extra, axis=1)[:, None]])
+    directions = _probe_directions(k)
     length = radius * problem.scale
-    starts = points[:, None] + length * (x @ basis)
-    ends, gaps = problem.project(starts.reshape(-1, n))
-    ends, gaps = ends.reshape(starts.shape), gaps.reshape(count, len(x))
-    reached = (
-        np.einsum("bpn,bkn->bpk", problem.difference(ends, points[:, None]), basis)
-        / length
-    )
-    loss = np.linalg.norm(reached - x, axis=2)
-    loss[gaps > 1e-10] = np.inf
-    return ends, reached, loss
+    starts = points[:, None] + length * (directions @ basis)
+    flat_ends, flat_gaps = problem.project(starts.reshape(-1, n))
+    ends = flat_ends.reshape(starts.shape)
+    gaps = flat_gaps.reshape(count, len(directions))
+    away = problem.difference(ends, points[:, None])
+    coordinates = np.einsum("bpn,bkn->bpk", away, basis) / length
+    loss = np.linalg.norm(coordinates - directions, axis=2)
+    loss[gaps > SOLVED] = np.inf
+    return _Probes(ends, coordinates, loss)
 
 
-def _dimension_beside(problem: Problem, ends: np.ndarray, reached: np.ndarray) -> int:
+def _probe_directions(k: int) -> np.ndarray:
+    """Unit vectors (2 k + 2, k): both ways along axes turned at random, and two more."""
+    rng = np.random.default_rng(k)
+    axes, _ = np.linalg.qr(rng.normal(size=(k, k)))
+    extra = rng.normal(size=(2, k))
+    extra /= np.linalg.norm(extra, axis=1)[:, None]
+    return np.concatenate([axes, -axes, extra])
+
+
+def _dimension_from_ends(
+    problem: Problem, ends: np.ndarray, coordinates: np.ndarray
+) -> int:
     """Dimension about a point that lost probes, from the ``ends`` (p, n) of the others
-    and where they ``reached``."""
-    away = np.linalg.norm(reached, axis=1) > 0.1
+    and their ``coordinates`` (p, k); -1 where the ends do not tell."""
+    away = np.linalg.norm(coordinates, axis=1) > AWAY
     if not np.any(away):
         return 0
-    sigma, right = null_spaces(problem, ends[away])
-    nullity = np.count_nonzero(sigma < 10 * NULL, axis=1)
-    found = 0
-    for i in np.flatnonzero(
-        nullity < reached.shape[1]
-    ):  # the rank is higher there: the point itself is singular
-        own = right[i, problem.n - nullity[i] :][None]
-        if nullity[i] <= found or not nullity[i]:
+    ends, coordinates = ends[away], coordinates[away]
+    sigma, right = null_spaces(problem, ends)
+    nullity = np.count_nonzero(sigma < NULL_AT_ENDS, axis=1)
+    of_higher_rank = np.flatnonzero(nullity < coordinates.shape[1])
+    if not len(of_higher_rank):
+        return _dimension_of_span(coordinates)
+    # the point itself is singular: the solutions are a manifold about the ends
+    largest = 0
+    for i in of_higher_rank:
+        if nullity[i] <= largest:
             continue
-        if _probe(problem, ends[away][i][None], own, 0.01 * RADIUS)[2].max() < KEPT:
-            found = int(nullity[i])
-    if found or np.any(nullity < reached.shape[1]):
-        return found if found else -1
-    spread = np.linalg.svd(reached[away], compute_uv=False) / np.sqrt(
-        np.count_nonzero(away)
-    )
-    return int(np.count_nonzero(spread > KEPT))
+        basis = right[i, problem.n - nullity[i] :][None]
+        probes = _probe(problem, ends[i][None], basis, AT_END * RADIUS)
+        if probes.loss.max() < LOST:
+            largest = int(nullity[i])
+    return largest if largest else -1
+
+
+def _dimension_of_span(coordinates: np.ndarray) -> int:
+    """Dimension of the space that vectors (p, k) span, but for curvature."""
+    sigma = np.linalg.svd(coordinates, compute_uv=False)
+    spread = sigma / np.sqrt(len(coordinates))
+    return int(np.count_nonzero(spread > LOST))

@@ -8,9 +8,8 @@ which their tangents or curvatures separate.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize.elementwise import find_minimum
@@ -18,89 +17,49 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.roots import bracketed_roots
+from bifurc.problem import Problem
 from bifurc.singular.dimension import NULL, local_dimensions, null_spaces
 
-if TYPE_CHECKING:
-    from bifurc.problem import Problem
+__all__ = ["Section", "is_on_surface", "section"]
 
-__all__ = ["ReducedEquations", "Section", "is_on_surface", "section"]
-
-ANGLES, FIRST = (
-    96,
-    0.01,
-)  # samples on the circle of a null space of dimension 2, and the angle of the first
-MARGIN = (
-    8.0  # times the rounding of the reduced equations: what is smaller counts as zero
-)
-ROOT, TOUCH = (
-    1e-10,
-    1e-6,
-)  # of the largest value on the circle: what counts as zero at a root, and where h touches zero
-MOST_TESTED = (
-    40  # solutions of higher nullity on a sphere whose local dimension is looked at
-)
+# Samples on the circle of a null space of dimension 2, and the angle of the first.
+COUNT, FIRST = 96, 0.01
+ANGLES = FIRST + 2 * np.pi * np.arange(COUNT) / COUNT
+# Rounding of the equations, of size 1, and how many times that counts as zero.
+ROUNDING, MARGIN = 4e-15, 8.0
+# Of the largest value on the circle: where a function touches zero, and what counts as
+# zero in the other equations at a root and at a touching point, which has half the
+# digits.
+TOUCHES, ROOT, TOUCH = 1e-9, 1e-10, 1e-6
+ROOT_TOLERANCE = 1e-12
+# Rounds of the chord iteration, and the step over the scale at which it ends.
+ROUNDS, LAST_STEP = 10, 1e-15
+# Of a point on a sphere, over the radius: last step of the iteration, and distance from
+# another one that is the same.
+SETTLED, SAME = 1e-4, 1e-4
+# Residual of a point on a sphere, over the radius squared, and rounding.
+SOLVED, SOLVED_ROUNDING = 1e-8, 5e-15
+# Solutions of higher nullity on a sphere whose local dimension is looked at.
+MOST_TESTED = 40
+# Radius, over the scale, of the section that says whether a point is on a surface.
+SURFACE_RADIUS = 2e-2
 
 
 @dataclass(frozen=True)
 class Section:
-    """Solutions on a small sphere about a point: ``points`` (h, n), one for each
-    half-branch of a curve, and the local ``dimension`` of the solution set: where it is
-    2 or more, the sphere meets more than the curves. Where one of the points is a zero
-    that is none but for rounding, which may stand for two or for none, ``doubtful``
-    says so."""
+    """Solutions on a small sphere about a point.
+
+    ``points`` (h, n), one for each half-branch of a curve, and the local ``dimension``
+    of the solution set: where it is 2 or more, the sphere meets more than the curves.
+    ``doubtful`` says whether one of the points is a zero but for rounding, which may
+    stand for two half-branches or for none.
+    """
 
     points: np.ndarray
     dimension: int
     doubtful: bool = False
-
-
-class ReducedEquations:
-    """The Liapunov-Schmidt reduction at a singular point, on the sphere of ``radius``
-    in its null space.
-
-    For a unit vector x of the null space V (n, k) the point is u + radius V x + w(x),
-    where w solves the independent equations; what is left is W^T F / radius^2, with W
-    the left null space. The chord iteration for w uses the one factorisation made here
-    and gains a factor of about the radius each time.
-    """
-
-    def __init__(
-        self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
-    ):
-        jacobian = problem.jacobians(point[None])[0] / problem.magnitude
-        left, sigma, right = np.linalg.svd(jacobian)
-        rank = problem.n - null_space.shape[1]
-        self._problem, self._point, self._null_space, self._radius = (
-            problem,
-            point,
-            null_space,
-            radius,
-        )
-        self._inverse = (right[:rank].T / sigma[:rank]) @ left[:, :rank].T
-        self._left = left[:, rank:]
-        self.noise = 4e-15 / radius**2
-
-    def points(self, x: np.ndarray) -> np.ndarray:
-        """Points (k, n) that solve the independent equations above unit vectors x (k,
-        nullity)."""
-        base = self._point + self._radius * x @ self._null_space.T
-        w = np.zeros_like(base)
-        for _ in range(10):
-            step = (
-                self._problem.residuals(base + w)
-                / self._problem.magnitude
-                @ self._inverse.T
-            )
-            w -= step
-            if np.abs(step).max(initial=0.0) < 1e-15 * self._problem.scale:
-                break
-        return base + w
-
-    def __call__(self, x: np.ndarray) -> np.ndarray:
-        """The reduced equations (k, codimension) at unit vectors x (k, nullity)."""
-        residual = self._problem.residuals(self.points(x)) / self._problem.magnitude
-        return residual @ self._left / self._radius**2
 
 
 def section(
@@ -109,7 +68,7 @@ def section(
     """Intersection of the solution set with a sphere of ``radius`` about a singular
     point (n,)."""
     if null_space.shape[1] == 2:
-        return _circle_section(ReducedEquations(problem, point, null_space, radius))
+        return _circle_section(_ReducedEquations(problem, point, null_space, radius))
     return _sphere_section(problem, point, null_space, radius)
 
 
@@ -120,136 +79,227 @@ def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
     Where many branches meet, F is so flat that probes nearby look like solutions: the
     section has the last word.
     """
-    found = local_dimensions(problem, point[None])
-    if not found.dimension[0] == found.nullity[0] > 1:
+    local = local_dimensions(problem, point[None])
+    nullity = local.nullity[0]
+    if not local.dimension[0] == nullity > 1:
         return False
-    null_space = np.linalg.svd(problem.jacobians(point[None])[0])[2][
-        problem.n - found.nullity[0] :
-    ].T
-    return section(problem, point, null_space, 2e-2 * problem.scale).dimension > 1
+    jacobian = problem.jacobians(point[None])[0]
+    _, _, right = np.linalg.svd(jacobian)
+    null_space = right[problem.n - nullity :].T
+    cut = section(problem, point, null_space, SURFACE_RADIUS * problem.scale)
+    return cut.dimension > 1
 
 
-# --- nullity 2: every zero on a circle ----------------------------------------------------------------
+# --- the reduced equations ------------------------------------------------------------
 
 
-def _circle_section(equations: ReducedEquations) -> Section:
-    """All zeros on the circle: sign changes of the leading combination of the
-    equations, also those that its minima between two samples reveal; what does not
-    solve the other equations is dropped."""
-    angles = FIRST + 2 * np.pi * np.arange(ANGLES) / ANGLES
-    values = equations(_unit(angles))
-    size = float(np.linalg.norm(values, axis=1).max())
-    if size < MARGIN * equations.noise:
-        return Section(equations.points(_unit(angles))[:0], 2)
-    h = values @ np.linalg.svd(values, full_matrices=False)[2][0]
-    # on a small circle term k of the Fourier series is of the order of radius^(k - 2):
-    # the samples hold all of it
-    series = np.fft.rfft(h) / ANGLES
-    series[1:-1] *= 2
-    rates = np.arange(len(series))
+class _ReducedEquations:
+    """The Liapunov-Schmidt reduction at a singular point, on the sphere of ``radius``
+    in its null space.
 
-    def combined(angle: np.ndarray, sign: np.ndarray) -> np.ndarray:
-        return np.asarray(
-            sign
-            * (
-                np.exp(1j * (np.asarray(angle)[..., None] - FIRST) * rates) @ series
-            ).real
-        )
+    For a unit vector x of the null space V (n, k) the point is u + radius V x + w(x),
+    where w solves the independent equations; what is left is W^T F / radius^2, with W
+    the left null space. The chord iteration for w uses the one factorisation made here
+    and gains a factor of about the radius each time. ``noise`` is the rounding of the
+    reduced equations.
+    """
 
-    low, high, touching = _brackets(
-        angles, h, combined, MARGIN * equations.noise + 1e-9 * size
-    )
-    roots = (
-        bracketed_roots(lambda x: combined(x, np.ones_like(x)), low, high, 1e-12)
-        if len(low)
-        else np.empty(0)
-    )
-    candidates = np.concatenate([roots, touching])
-    if not len(candidates):
-        return Section(np.empty((0, len(equations.points(_unit(angles[:1]))[0]))), 0)
-    left_over = np.linalg.norm(equations(_unit(candidates)), axis=1)
-    # a root is exact to rounding, so that all equations hold there or not; a touching
-    # point has half the digits
-    good = (
-        np.repeat([ROOT, TOUCH], [len(roots), len(touching)]) * size
-        + MARGIN * equations.noise
-    )
-    kept = left_over < good
-    found = equations.points(_unit(candidates[kept]))
-    return Section(found, 1 if len(found) else 0, bool(np.any(kept[len(roots) :])))
+    def __init__(
+        self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
+    ):
+        jacobian = problem.jacobians(point[None])[0] / problem.magnitude
+        left, sigma, right = np.linalg.svd(jacobian)
+        rank = problem.n - null_space.shape[1]
+        self._problem = problem
+        self._point = point
+        self._null_space = null_space
+        self._radius = radius
+        row_space = right[:rank].T  # (n, rank)
+        column_space = left[:, :rank]  # (m, rank)
+        self._inverse = (row_space / sigma[:rank]) @ column_space.T
+        self._left_null_space = left[:, rank:]
+        self.noise = ROUNDING / radius**2
+        self.n = problem.n
 
+    def points(self, x: np.ndarray) -> np.ndarray:
+        """Points (k, n) that solve the independent equations above unit vectors x (k,
+        nullity)."""
+        base = self._point + self._radius * x @ self._null_space.T
+        smallest = LAST_STEP * self._problem.scale
+        w = np.zeros_like(base)
+        for _ in range(ROUNDS):
+            step = self._residuals(base + w) @ self._inverse.T
+            w -= step
+            if np.abs(step).max(initial=0.0) < smallest:
+                break
+        points: np.ndarray = base + w
+        return points
 
-def _brackets(
-    angles: np.ndarray,
-    h: np.ndarray,
-    combined: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    zero: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Brackets (low, high) of the sign changes of ``h`` on the circle, and the angles
-    where it only touches zero."""
-    step, after = angles[1] - angles[0], np.roll(h, -1)
-    changes = np.flatnonzero(np.sign(h) * np.sign(after) < 0)
-    low, high = angles[changes], angles[changes] + step
-    dips = np.flatnonzero(
-        (np.abs(h) <= np.abs(np.roll(h, 1))) & (np.abs(h) < np.abs(after))
-    )
-    dips = dips[
-        (np.sign(h[dips]) == np.sign(after[dips]))
-        & (np.sign(h[dips]) == np.sign(np.roll(h, 1)[dips]))
-    ]
-    if not len(dips):
-        return low, high, np.empty(0)
-    at, sign = angles[dips], np.sign(h[dips])
-    bottom = find_minimum(combined, (at - step, at, at + step), args=(sign,))
-    below = bottom.f_x < -zero
-    low = np.concatenate([low, at[below] - step, bottom.x[below]])
-    high = np.concatenate([high, bottom.x[below], at[below] + step])
-    return low, high, bottom.x[np.abs(bottom.f_x) <= zero]
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """The reduced equations (k, codimension) at unit vectors x (k, nullity)."""
+        residuals = self._residuals(self.points(x))
+        reduced: np.ndarray = residuals @ self._left_null_space / self._radius**2
+        return reduced
+
+    def _residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m), over the magnitude, at points (k, n)."""
+        return self._problem.residuals(points) / self._problem.magnitude
 
 
-def _unit(angles: np.ndarray) -> np.ndarray:
-    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
+# --- nullity 2: every zero on a circle ------------------------------------------------
 
 
-# --- nullity 3 and more: many starts on a sphere ------------------------------------------------------
+def _circle_section(equations: _ReducedEquations) -> Section:
+    """All zeros on the circle: those of the leading combination of the equations at
+    which the other equations hold as well."""
+    no_points = np.empty((0, equations.n))
+    values = equations(unit_vectors(ANGLES))
+    sizes = np.linalg.norm(values, axis=1)
+    size = float(sizes.max())
+    noise = MARGIN * equations.noise
+    if size < noise:
+        return Section(no_points, 2)
+    _, _, right = np.linalg.svd(values, full_matrices=False)
+    leading = _FourierSeries(values @ right[0])
+    zeros = _find_zeros(leading, noise + TOUCHES * size)
+    angles = np.concatenate([zeros.crossing, zeros.touching])
+    if not len(angles):
+        return Section(no_points, 0)
+    # a root is exact to rounding, so that all equations hold there or not
+    crosses = np.arange(len(angles)) < len(zeros.crossing)
+    limit = np.where(crosses, ROOT, TOUCH) * size + noise
+    left_over = np.linalg.norm(equations(unit_vectors(angles)), axis=1)
+    solved = left_over < limit
+    points = equations.points(unit_vectors(angles[solved]))
+    is_doubtful = bool(np.any(solved & ~crosses))
+    return Section(points, 1 if len(points) else 0, is_doubtful)
+
+
+class _FourierSeries:
+    """A function on the circle through ``samples`` (`COUNT`,) at the `ANGLES`.
+
+    On a small circle term k of the series is of the order of radius^(k - 2): the
+    samples hold all of it.
+    """
+
+    def __init__(self, samples: np.ndarray):
+        self.samples = samples
+        self._coefficients = np.fft.rfft(samples) / COUNT
+        self._coefficients[1:-1] *= 2
+        self._rates = np.arange(len(self._coefficients))
+
+    def __call__(self, angles: np.ndarray) -> np.ndarray:
+        """Values at angles (...)."""
+        turned = np.asarray(angles) - FIRST
+        phases = turned[..., None] * self._rates
+        waves = np.exp(1j * phases)
+        values: np.ndarray = (waves @ self._coefficients).real
+        return values
+
+    def times_sign(self, angles: np.ndarray, signs: np.ndarray) -> np.ndarray:
+        """Values at angles (...), times ``signs`` (...)."""
+        return np.asarray(signs * self(angles))
+
+
+class _Zeros(NamedTuple):
+    """Angles at which a function crosses zero (k,), and at which it only touches it
+    (t,), but for rounding."""
+
+    crossing: np.ndarray
+    touching: np.ndarray
+
+
+def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
+    """All zeros on the circle: sign changes from sample to sample, and those that dips
+    between samples reveal. A value below ``zero`` may be zero."""
+    step = ANGLES[1] - ANGLES[0]
+    signs = np.sign(function.samples)
+    changes = ANGLES[signs * np.roll(signs, -1) < 0]
+    low, high = changes, changes + step
+    touching = np.empty(0)
+    dips = _dips(function.samples)
+    if len(dips):
+        at = ANGLES[dips]
+        bracket = (at - step, at, at + step)
+        bottom = find_minimum(function.times_sign, bracket, args=(signs[dips],))
+        # a dip that goes through zero has a sign change on either side
+        through = bottom.f_x < -zero
+        middle = bottom.x[through]
+        low = np.concatenate([low, at[through] - step, middle])
+        high = np.concatenate([high, middle, at[through] + step])
+        touching = bottom.x[np.abs(bottom.f_x) <= zero]
+    crossing = np.empty(0)
+    if len(low):
+        crossing = bracketed_roots(function, low, high, ROOT_TOLERANCE)
+    return _Zeros(crossing, touching)
+
+
+def _dips(samples: np.ndarray) -> np.ndarray:
+    """Numbers (d,) of the samples on the circle that are nearer to zero than their
+    neighbours, which have the same sign."""
+    before = np.roll(samples, 1)
+    after = np.roll(samples, -1)
+    size = np.abs(samples)
+    is_lowest = (size <= np.abs(before)) & (size < np.abs(after))
+    sign = np.sign(samples)
+    same_sign = (sign == np.sign(before)) & (sign == np.sign(after))
+    return np.flatnonzero(is_lowest & same_sign)
+
+
+# --- nullity 3 and more: many starts on a sphere --------------------------------------
 
 
 def _sphere_section(
     problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
 ) -> Section:
     """What Gauss-Newton reaches from starts spread over the sphere."""
-    k = null_space.shape[1]
-    half = np.random.default_rng(k).normal(size=(100 * (k - 1), k))
-    half /= np.linalg.norm(half, axis=1)[:, None]
-    starts = point + radius * np.concatenate([half, -half]) @ null_space.T
-    found, gaps, last = problem.project_to_sphere(starts, point, radius)
+    directions = _spread_directions(null_space.shape[1])
+    starts = point + radius * directions @ null_space.T
+    ends, gaps, last_steps = problem.project_to_sphere(starts, point, radius)
     # next to the point F is of order radius^2 whatever the direction: the residual must
     # be far below that
-    good = found[
-        (gaps < 1e-8 * (radius / problem.scale) ** 2 + 5e-15) & (last < 1e-4 * radius)
-    ]
-    if not len(good):
+    limit = SOLVED * (radius / problem.scale) ** 2 + SOLVED_ROUNDING
+    solved = (gaps < limit) & (last_steps < SETTLED * radius)
+    if not np.any(solved):
         return Section(np.empty((0, problem.n)), 0)
-    near = cKDTree(good).query_pairs(1e-4 * radius, output_type="ndarray")
-    links = csr_array((np.ones(len(near)), tuple(near.T)), shape=(len(good),) * 2)
-    clusters = good[
-        np.unique(connected_components(links, directed=False)[1], return_index=True)[1]
-    ]
-    return _told_apart(problem, clusters)
+    points = _without_duplicates(ends[solved], SAME * radius)
+    return _separate_surfaces(problem, points)
 
 
-def _told_apart(problem: Problem, found: np.ndarray) -> Section:
+def _spread_directions(k: int) -> np.ndarray:
+    """Unit vectors (200 (k - 1), k) at random, half of them the opposites of the others."""
+    rng = np.random.default_rng(k)
+    half = rng.normal(size=(100 * (k - 1), k))
+    half /= np.linalg.norm(half, axis=1)[:, None]
+    return np.concatenate([half, -half])
+
+
+def _without_duplicates(points: np.ndarray, within: float) -> np.ndarray:
+    """One of every cluster of points (k, n) that are joined by gaps below ``within``,
+    the first."""
+    count = len(points)
+    pairs = cKDTree(points).query_pairs(within, output_type="ndarray")
+    links = np.ones(len(pairs))
+    graph = csr_array((links, tuple(pairs.T)), shape=(count, count))
+    _, cluster = connected_components(graph, directed=False)
+    _, first = np.unique(cluster, return_index=True)
+    distinct: np.ndarray = points[first]
+    return distinct
+
+
+def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
     """The section of solutions (h, n) on a sphere: those on curves are its points,
     those on surfaces its dimension.
 
     A curve may be shaky, and a solution of higher nullity on it; the dimension of the
     nearby solutions decides.
     """
-    sigma, _ = null_spaces(problem, found)
-    doubtful = np.flatnonzero(sigma[:, -2] < NULL)
-    tested = doubtful[:: max(1, len(doubtful) // MOST_TESTED)]
-    dimension = local_dimensions(problem, found[tested]).dimension
+    sigma, _ = null_spaces(problem, points)
+    is_of_higher_nullity = sigma[:, -2] < NULL
+    candidates = np.flatnonzero(is_of_higher_nullity)
+    stride = max(1, len(candidates) // MOST_TESTED)
+    tested = candidates[::stride]
+    dimension = local_dimensions(problem, points[tested]).dimension
     if np.all(dimension < 2):
-        return Section(found, 1)
-    apart = np.setdiff1d(np.arange(len(found)), doubtful)
-    return Section(found[apart], int(dimension.max()))
+        return Section(points, 1)
+    return Section(points[~is_of_higher_nullity], int(dimension.max()))

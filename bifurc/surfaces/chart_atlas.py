@@ -1,22 +1,33 @@
 """A surface of solutions as an atlas of charts: area, Euler characteristic, connected
-parts and paths."""
+parts, and the charts about a point."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from bifurc import torus
+
 __all__ = ["ChartAtlas", "Covering"]
 
-NEAREST = 16  # charts near a point, one of which holds it if any does
-# distance of a chart from a singular point next to it, over its radius, at most
-BESIDE = 12.0
+# Charts near a point, one of which holds it if any does.
+NEAREST = 16
+# Distance of a chart from a singular point next to it, over its radius, at most.
+NEXT_TO = 12.0
+# The same, over the distance of the nearest chart.
+NEAR_THE_NEAREST = 2.0
+# Distance from the centre, over the radius, up to which a chart holds a solution.
+RIM = 1.1
+# Height of a solution above the plane of a chart that holds it, over the distance in
+# the plane, at most; rounding is allowed for.
+STEEPEST, ROUNDING = 0.25, 1e-9
 
 
 class Covering(Enum):
@@ -24,10 +35,13 @@ class Covering(Enum):
 
     COMPLETE = "complete: every part of the surface inside the bounds is covered"
     SINGULAR = (
-        "incomplete: no chart fits at some places, or a sheet that is not covered crosses; "
-        "look for singular points of the surface there"
+        "incomplete: no chart fits at some places, or a sheet that is not covered "
+        "crosses; look for singular points of the surface there"
     )
-    CHART_LIMIT = "incomplete: the largest number of charts is reached; allow more of them, or a larger radius"
+    CHART_LIMIT = (
+        "incomplete: the largest number of charts is reached; allow more of them, or a "
+        "larger radius"
+    )
     OUT_OF_TIME = (
         "incomplete: the time is over; allow more of it and continue from these charts"
     )
@@ -58,10 +72,24 @@ class ChartAtlas:
     def __len__(self) -> int:
         return len(self.centers)
 
+    def __repr__(self) -> str:
+        euler = self.euler_characteristic
+        return (
+            f"ChartAtlas({len(self)} charts, {self.outcome.name},\n"
+            f"           area {self.area:.6g}, "
+            f"Euler characteristic {'unknown' if euler is None else euler})"
+        )
+
     @property
     def complete(self) -> bool:
         """Whether the whole surface inside the bounds is covered."""
         return self.outcome is Covering.COMPLETE
+
+    def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
+        return torus.difference(a, b, self.periods)
+
+    # --- size and shape ---------------------------------------------------------------
 
     @cached_property
     def triangles(self) -> np.ndarray:
@@ -71,12 +99,23 @@ class ChartAtlas:
         The corners are solutions; those of one triangle lie together, across the ends
         of a period where need be.
         """
-        owner, first, second = self._edges
-        corners = self.centers[owner]
-        sides = [
-            corners + self.apart(self.vertices[v], corners) for v in (first, second)
-        ]
-        return np.stack([corners, *sides], axis=1)
+        edges = self._edges
+        tip = self.centers[edges.chart]
+        begin = tip + self.difference(self.vertices[edges.begin], tip)
+        end = tip + self.difference(self.vertices[edges.end], tip)
+        return np.stack([tip, begin, end], axis=1)
+
+    @cached_property
+    def triangle_areas(self) -> np.ndarray:
+        """Area (t,) of every triangle."""
+        a = self.triangles[:, 1] - self.triangles[:, 0]
+        b = self.triangles[:, 2] - self.triangles[:, 0]
+        aa = np.einsum("ti,ti->t", a, a)
+        bb = np.einsum("ti,ti->t", b, b)
+        ab = np.einsum("ti,ti->t", a, b)
+        gram = aa * bb - ab**2
+        areas: np.ndarray = 0.5 * np.sqrt(np.maximum(gram, 0.0))
+        return areas
 
     @cached_property
     def area(self) -> float:
@@ -85,163 +124,153 @@ class ChartAtlas:
         return float(self.triangle_areas.sum())
 
     @cached_property
-    def triangle_areas(self) -> np.ndarray:
-        """Area (t,) of every triangle."""
-        a, b = (self.triangles[:, k] - self.triangles[:, 0] for k in (1, 2))
-        gram = (
-            np.einsum("ti,ti->t", a, a) * np.einsum("ti,ti->t", b, b)
-            - np.einsum("ti,ti->t", a, b) ** 2
-        )
-        return 0.5 * np.sqrt(np.maximum(gram, 0.0))
-
-    @cached_property
     def border(self) -> int:
         """Number of edges that belong to one polygon alone: where surface meets bounds,
         or the covering ends."""
-        return int(np.count_nonzero(self._edge_counts == 1))
+        return int(np.count_nonzero(self._polygons_at_edge == 1))
 
     @cached_property
     def euler_characteristic(self) -> int | None:
         """Vertices - edges + polygons; None for an incomplete covering, or where
         polygons do not fit together."""
-        counts = self._edge_counts
-        if not self.complete or np.any(counts > 2):
+        if not self.complete or np.any(self._polygons_at_edge > 2):
             return None
-        return len(np.unique(self._edges[1])) - len(counts) + len(self.centers)
+        vertices = len(np.unique(self.polygons))
+        edges = len(self._polygons_at_edge)
+        return vertices - edges + len(self)
+
+    # --- connected parts --------------------------------------------------------------
 
     @cached_property
     def part(self) -> np.ndarray:
         """Number (c,) of the connected surface that each chart belongs to; number 0 has
         most charts."""
-        count, label = connected_components(
-            csr_array(
-                (np.ones(len(self.neighbours)), tuple(self.neighbours.T)),
-                shape=(len(self),) * 2,
-            ),
-            directed=False,
-        )
-        return np.argsort(
-            np.argsort(-np.bincount(label, minlength=count), kind="stable")
-        )[label]
+        links = np.ones(len(self.neighbours))
+        size = len(self)
+        graph = csr_array((links, tuple(self.neighbours.T)), shape=(size, size))
+        count, label = connected_components(graph, directed=False)
+        sizes = np.bincount(label, minlength=count)
+        largest_first = np.argsort(-sizes, kind="stable")
+        number: np.ndarray = np.argsort(largest_first)[label]
+        return number
 
     def parts(self) -> tuple[ChartAtlas, ...]:
         """The connected surfaces, the one with most charts first."""
-        return tuple(
-            self._only(np.flatnonzero(self.part == k))
-            for k in range(int(self.part.max(initial=-1)) + 1)
+        count = int(self.part.max(initial=-1)) + 1
+        parts = []
+        for k in range(count):
+            parts.append(self._only(np.flatnonzero(self.part == k)))
+        return tuple(parts)
+
+    def _only(self, charts: np.ndarray) -> ChartAtlas:
+        """The atlas of the charts of these numbers (k,) alone."""
+        number = np.full(len(self), -1)
+        number[charts] = np.arange(len(charts))
+        inside = np.all(number[self.neighbours] >= 0, axis=1)
+        corners = self.polygons[np.repeat(number >= 0, self.polygon_sizes)]
+        vertices, renumbered = np.unique(corners, return_inverse=True)
+        return ChartAtlas(
+            centers=self.centers[charts],
+            bases=self.bases[charts],
+            radii=self.radii[charts],
+            neighbours=number[self.neighbours[inside]],
+            vertices=self.vertices[vertices],
+            polygons=renumbered,
+            polygon_sizes=self.polygon_sizes[charts],
+            periods=self.periods,
+            outcome=self.outcome,
         )
+
+    # --- charts about a point ---------------------------------------------------------
 
     def chart_at(self, points: np.ndarray) -> np.ndarray:
         """Numbers (k,) of charts in which solutions (k, n) lie, one for each; -1 where
         there is none."""
-        count = min(NEAREST, len(self))
-        near = self._tree.query(self._in_box(points), k=np.arange(1, count + 1))[
-            1
-        ]  # (k, count)
-        inside = self._inside(points, near)
-        return np.where(
-            inside.any(axis=1),
-            near[np.arange(len(near)), np.argmax(inside, axis=1)],
-            -1,
-        )
+        order = np.arange(1, min(NEAREST, len(self)) + 1)
+        _, near = self._tree.query(self._in_box(points), k=order)
+        holds = self._hold(points, near)  # (k, count)
+        nearest = np.argmax(holds, axis=1)
+        numbers = near[np.arange(len(near)), nearest]
+        return np.where(holds.any(axis=1), numbers, -1)
 
-    def nearest(self, points: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of the charts whose centres are nearest to points (k, n)."""
-        return self._tree.query(self._in_box(points))[1]
-
-    def holds(self, points: np.ndarray) -> np.ndarray:
+    def covers(self, points: np.ndarray) -> np.ndarray:
         """Which solutions (k, n) lie in a chart (k,)."""
         return self.chart_at(points) >= 0
 
-    # --- charts about a point ----------------------------------------------------------------------------------------
+    def nearest_charts(self, points: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of the charts whose centres are nearest to points (k, n)."""
+        _, nearest = self._tree.query(self._in_box(points))
+        numbers: np.ndarray = nearest
+        return numbers
 
-    def holding(self, point: np.ndarray) -> np.ndarray:
+    def charts_about(self, point: np.ndarray) -> np.ndarray:
         """Numbers (k,) of all charts in which a solution (n,) lies."""
-        return np.flatnonzero(self._inside(point[None], np.arange(len(self))[None])[0])
+        charts = np.arange(len(self))
+        holds = self._hold(point[None], charts[None])
+        return np.flatnonzero(holds[0])
 
-    def beside(self, point: np.ndarray) -> np.ndarray:
+    def charts_next_to(self, point: np.ndarray) -> np.ndarray:
         """Numbers (k,) of the charts that may be next to a singular point (n,) about
         which there is none.
 
         As at the tip of a cone: charts are the smaller the nearer they are to it.
         """
-        distance = np.linalg.norm(self.apart(point, self.centers), axis=1)
-        return np.flatnonzero(
-            (distance < BESIDE * self.radii)
-            & (distance < 2.0 * distance.min(initial=np.inf))
-        )
+        gaps = self.difference(point, self.centers)
+        distance = np.linalg.norm(gaps, axis=1)
+        by_radius = distance < NEXT_TO * self.radii
+        by_nearest = distance < NEAR_THE_NEAREST * distance.min(initial=np.inf)
+        return np.flatnonzero(by_radius & by_nearest)
 
-    def apart(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """a - b with periodic unknowns taken to within half a period of zero."""
-        gap = a - b
-        periodic = np.isfinite(self.periods)
-        gap[..., periodic] -= self.periods[periodic] * np.round(
-            gap[..., periodic] / self.periods[periodic]
-        )
-        return gap
-
-    def _inside(self, points: np.ndarray, charts: np.ndarray) -> np.ndarray:
+    def _hold(self, points: np.ndarray, charts: np.ndarray) -> np.ndarray:
         """Whether solutions (k, n) lie in the disks of ``charts`` (k, c), and not well
         above them: (k, c)."""
-        away = self.apart(points[:, None], self.centers[charts])
-        y = np.einsum("kci,kcij->kcj", away, self.bases[charts])
-        size = np.linalg.norm(y, axis=2)
-        height = np.linalg.norm(
-            away - np.einsum("kcij,kcj->kci", self.bases[charts], y), axis=2
-        )
-        return (size < 1.1 * self.radii[charts]) & (height < 0.25 * size + 1e-9)
+        bases = self.bases[charts]
+        offset = self.difference(points[:, None], self.centers[charts])
+        y = np.einsum("kci,kcij->kcj", offset, bases)
+        distance = np.linalg.norm(y, axis=2)
+        in_plane = np.einsum("kcij,kcj->kci", bases, y)
+        height = np.linalg.norm(offset - in_plane, axis=2)
+        is_inside = distance < RIM * self.radii[charts]
+        is_low = height < STEEPEST * distance + ROUNDING
+        holds: np.ndarray = is_inside & is_low
+        return holds
 
     @cached_property
     def _tree(self) -> cKDTree:
-        return cKDTree(
-            self._in_box(self.centers),
-            boxsize=np.where(np.isfinite(self.periods), self.periods, 0.0),
-        )
+        """The centres of the charts, for the search of the nearest."""
+        box = torus.tree_box(self.periods)
+        return cKDTree(self._in_box(self.centers), boxsize=box)
 
     def _in_box(self, points: np.ndarray) -> np.ndarray:
         """Points with periodic unknowns taken into [0, period)."""
-        periodic = np.isfinite(self.periods)
-        out = points.copy()
-        out[:, periodic] %= self.periods[periodic]
-        out[:, periodic] = np.where(
-            out[:, periodic] >= self.periods[periodic], 0.0, out[:, periodic]
-        )
-        return out
+        return torus.into_box(points, self.periods)
 
-    # --- the complex of polygons ----------------------------------------------------------------------
+    # --- the complex of polygons ------------------------------------------------------
 
     @cached_property
-    def _edges(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Chart (e,), first and second vertex (e,) of every edge of every polygon."""
-        owner = np.repeat(np.arange(len(self.centers)), self.polygon_sizes)
+    def _edges(self) -> _Edges:
+        """The edges of all polygons."""
+        chart = np.repeat(np.arange(len(self)), self.polygon_sizes)
         ends = np.cumsum(self.polygon_sizes)
         following = np.arange(1, len(self.polygons) + 1)
         full = self.polygon_sizes > 0
         following[ends[full] - 1] = (ends - self.polygon_sizes)[full]
-        return owner, self.polygons, self.polygons[following]
+        return _Edges(chart, self.polygons, self.polygons[following])
 
     @cached_property
-    def _edge_counts(self) -> np.ndarray:
-        """To how many polygons each edge belongs."""
-        _, first, second = self._edges
-        pairs = np.sort(np.stack([first, second], axis=1), axis=1)
-        return np.unique(pairs, axis=0, return_counts=True)[1]
+    def _polygons_at_edge(self) -> np.ndarray:
+        """To how many polygons (e,) each edge belongs."""
+        edges = self._edges
+        pairs = np.stack([edges.begin, edges.end], axis=1)
+        pairs.sort(axis=1)
+        _, counts = np.unique(pairs, axis=0, return_counts=True)
+        return counts
 
-    def _only(self, charts: np.ndarray) -> ChartAtlas:
-        """The atlas of these charts alone."""
-        number = np.full(len(self.centers), -1)
-        number[charts] = np.arange(len(charts))
-        inside = np.all(number[self.neighbours] >= 0, axis=1)
-        polygons = self.polygons[np.repeat(number >= 0, self.polygon_sizes)]
-        used, renumbered = np.unique(polygons, return_inverse=True)
-        return ChartAtlas(
-            self.centers[charts],
-            self.bases[charts],
-            self.radii[charts],
-            number[self.neighbours[inside]],
-            self.vertices[used],
-            renumbered,
-            self.polygon_sizes[charts],
-            self.periods,
-            self.outcome,
-        )
+
+class _Edges(NamedTuple):
+    """The edges of all polygons one behind the other: number (e,) of the chart, first
+    and second vertex (e,)."""
+
+    chart: np.ndarray
+    begin: np.ndarray
+    end: np.ndarray

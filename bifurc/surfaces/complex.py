@@ -2,111 +2,175 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from bifurc import torus
 from bifurc.numerics.corrector import correct_normal
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
+from bifurc.surfaces.polygon import Polygon
 
-__all__ = ["assemble_charts"]
+__all__ = ["FlatCharts", "assemble_charts"]
 
-# corners of neighbouring polygons closer than this, over their charts' radius, are one
-# vertex
+# Corners of neighbouring polygons closer than this, over their charts' radius, are one
+# vertex.
 MERGED = 0.15
+# Relative residual above which a corner could not be lifted.
+SOLVED = 1e-9
+# Height over the radius above which a corner was lifted onto another sheet.
+TOO_HIGH = 0.5
+
+
+class FlatCharts(NamedTuple):
+    """Charts as they are made: ``centers`` (c, n), ``bases`` (c, n, 2) of the tangent
+    planes, ``radii`` (c,) of the disks, and c polygons in these planes, whose labels
+    are the numbers of the charts on the other side of each edge."""
+
+    centers: np.ndarray
+    bases: np.ndarray
+    radii: np.ndarray
+    polygons: list[Polygon]
+
+
+class _Corners(NamedTuple):
+    """The corners of all polygons one behind the other: where they lie on the surface
+    (v, n), and the number (v,) of the chart to whose polygon each belongs."""
+
+    points: np.ndarray
+    owner: np.ndarray
 
 
 def assemble_charts(
-    problem: Problem,
-    centers: np.ndarray,
-    bases: np.ndarray,
-    radii: np.ndarray,
-    polygons: Sequence[np.ndarray],
-    labels: Sequence[np.ndarray],
-    outcome: Covering,
+    problem: Problem, charts: FlatCharts, outcome: Covering
 ) -> ChartAtlas:
-    """The atlas of charts with ``polygons`` in their tangent planes, ``labels`` naming
-    the neighbour at each edge.
+    """The atlas of ``charts``, the polygons fitted together.
 
     Vertices are lifted onto the surface; those of neighbouring charts that nearly
     coincide become one, so that the polygons are the faces of a closed complex although
     each was cut in a plane of its own. Charts of whose polygons the others leave
     nothing are left out.
     """
-    kept = np.array([len(p) > 0 for p in polygons], dtype=bool)
-    if not np.all(kept):
-        number = np.where(kept, np.cumsum(kept) - 1, -1)
-        centers, bases, radii = centers[kept], bases[kept], radii[kept]
-        polygons = [p for p in polygons if len(p)]
-        labels = [np.where(own >= 0, number[own], own) for own in labels if len(own)]
-    sizes = np.array([len(p) for p in polygons], dtype=int)
-    owner = np.repeat(np.arange(len(sizes)), sizes)
-    y = np.concatenate([np.empty((0, 2)), *polygons])
-    if len(y):
-        y *= np.minimum(
-            1.0, radii[owner] / np.maximum(np.linalg.norm(y, axis=1), 1e-300)
-        )[:, None]
-    flat = centers[owner] + np.einsum("kij,kj->ki", bases[owner], y)
-    lifted, gaps = correct_normal(problem, flat, bases[owner])
-    bad = (gaps > 1e-9) | (np.linalg.norm(lifted - flat, axis=1) > 0.5 * radii[owner])
-    lifted[bad] = flat[bad]
-    pairs = {
-        (min(i, j), max(i, j))
-        for i, others in enumerate(labels)
-        for j in others.tolist()
-        if j >= 0
-    }
-    neighbours = np.array(sorted(pairs), dtype=int).reshape(-1, 2)
-    vertex = _merged(problem, lifted, owner, radii, neighbours)
-    first = np.unique(vertex, return_index=True)[1]
-    previous = np.roll(vertex, 1)
-    starts = np.cumsum(sizes)[sizes > 0] - sizes[sizes > 0]
-    previous[starts] = vertex[np.cumsum(sizes)[sizes > 0] - 1]
-    distinct = vertex != previous
+    charts = _without_empty_polygons(charts)
+    neighbours = _neighbours(charts.polygons)
+    corners = _lift_corners(problem, charts)
+    vertex = _merge_corners(problem, corners, charts.radii, neighbours)
+    first_corner = np.unique(vertex, return_index=True)[1]
+    distinct = vertex != _previous_vertex(vertex, charts.polygons)
+    sizes = np.bincount(corners.owner[distinct], minlength=len(charts.polygons))
     return ChartAtlas(
-        centers,
-        bases,
-        radii,
-        neighbours,
-        lifted[first],
-        vertex[distinct],
-        np.bincount(owner[distinct], minlength=len(sizes)),
-        problem.periods,
-        outcome,
+        centers=charts.centers,
+        bases=charts.bases,
+        radii=charts.radii,
+        neighbours=neighbours,
+        vertices=corners.points[first_corner],
+        polygons=vertex[distinct],
+        polygon_sizes=sizes,
+        periods=problem.periods,
+        outcome=outcome,
     )
 
 
-def _merged(
-    problem: Problem,
-    points: np.ndarray,
-    owner: np.ndarray,
-    radii: np.ndarray,
-    neighbours: np.ndarray,
+def _without_empty_polygons(charts: FlatCharts) -> FlatCharts:
+    """The charts with a polygon, numbered anew."""
+    remain = _sizes(charts.polygons) > 0
+    if np.all(remain):
+        return charts
+    number = np.where(remain, np.cumsum(remain) - 1, -1)
+    polygons = []
+    for vertices, labels in charts.polygons:
+        if len(vertices):
+            renumbered = np.where(labels >= 0, number[labels], labels)
+            polygons.append(Polygon(vertices, renumbered))
+    return FlatCharts(
+        centers=charts.centers[remain],
+        bases=charts.bases[remain],
+        radii=charts.radii[remain],
+        polygons=polygons,
+    )
+
+
+def _neighbours(polygons: list[Polygon]) -> np.ndarray:
+    """Pairs (p, 2) of the numbers of polygons with an edge in common, in order."""
+    pairs = set()
+    for i, polygon in enumerate(polygons):
+        for j in polygon.labels.tolist():
+            if j >= 0:
+                pairs.add((min(i, j), max(i, j)))
+    return np.array(sorted(pairs), dtype=int).reshape(-1, 2)
+
+
+def _lift_corners(problem: Problem, charts: FlatCharts) -> _Corners:
+    """The corners of all polygons, no farther out than the disks, on the surface above
+    the tangent planes; in them, where the surface is out of reach."""
+    sizes = _sizes(charts.polygons)
+    owner = np.repeat(np.arange(len(sizes)), sizes)
+    vertices = [polygon.vertices for polygon in charts.polygons]
+    y = np.concatenate([np.empty((0, 2)), *vertices])
+    radii = charts.radii[owner]
+    distance = np.maximum(np.linalg.norm(y, axis=1), 1e-300)
+    y *= np.minimum(1.0, radii / distance)[:, None]
+    bases = charts.bases[owner]
+    flat = charts.centers[owner] + np.einsum("kij,kj->ki", bases, y)
+    lifted, gaps = correct_normal(problem, flat, bases)
+    height = np.linalg.norm(lifted - flat, axis=1)
+    failed = (gaps > SOLVED) | (height > TOO_HIGH * radii)
+    lifted[failed] = flat[failed]
+    return _Corners(lifted, owner)
+
+
+def _merge_corners(
+    problem: Problem, corners: _Corners, radii: np.ndarray, neighbours: np.ndarray
 ) -> np.ndarray:
-    """Number (v,) of the vertex that each corner (v, n) of a polygon is: corners that
-    nearly coincide are one."""
+    """Number (v,) of the vertex that each corner is: corners that nearly coincide, of
+    one polygon or of two neighbours, are one."""
+    points, owner = corners
     if not len(points):
         return np.empty(0, dtype=int)
-    box = np.where(np.isfinite(problem.periods), problem.periods, 0.0)
-    wrapped = np.where(box > 0, points % np.where(box > 0, box, 1.0), points)
-    wrapped = np.where((box > 0) & (wrapped >= box), 0.0, wrapped)
-    i, j = (
-        cKDTree(wrapped, boxsize=box)
-        .query_pairs(MERGED * radii.max(), output_type="ndarray")
-        .T
+    tree = cKDTree(
+        torus.into_box(points, problem.periods),
+        boxsize=torus.tree_box(problem.periods),
     )
-    count = len(radii)
-    adjacent = np.concatenate([neighbours @ [count, 1], np.arange(count) * (count + 1)])
-    low, high = np.minimum(owner[i], owner[j]), np.maximum(owner[i], owner[j])
-    distance = np.linalg.norm(problem.difference(points[i], points[j]), axis=1)
-    same = np.isin(low * count + high, adjacent) & (
-        distance < MERGED * np.minimum(radii[owner[i]], radii[owner[j]])
-    )
-    graph = csr_array(
-        (np.ones(np.count_nonzero(same)), (i[same], j[same])), shape=(len(points),) * 2
-    )
-    return connected_components(graph, directed=False)[1]
+    reach = MERGED * radii.max()
+    i, j = tree.query_pairs(reach, output_type="ndarray").T
+    gaps = problem.difference(points[i], points[j])
+    distance = np.linalg.norm(gaps, axis=1)
+    one, other = owner[i], owner[j]
+    near = distance < MERGED * np.minimum(radii[one], radii[other])
+    same = near & _are_adjacent(one, other, neighbours, len(radii))
+    i, j = i[same], j[same]
+    count = len(points)
+    graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
+    vertex: np.ndarray = connected_components(graph, directed=False)[1]
+    return vertex
+
+
+def _are_adjacent(
+    i: np.ndarray, j: np.ndarray, neighbours: np.ndarray, count: int
+) -> np.ndarray:
+    """Whether the charts ``i`` and ``j`` (k,), of ``count`` in all, are the same or
+    neighbours."""
+    # a pair of charts (low, high) as one number
+    low, high = np.minimum(i, j), np.maximum(i, j)
+    pairs = low * count + high
+    adjacent = neighbours[:, 0] * count + neighbours[:, 1]
+    same = np.arange(count) * (count + 1)
+    return np.isin(pairs, np.concatenate([adjacent, same]))
+
+
+def _previous_vertex(vertex: np.ndarray, polygons: list[Polygon]) -> np.ndarray:
+    """The vertex (v,) before each corner, around its polygon."""
+    sizes = _sizes(polygons)
+    ends = np.cumsum(sizes)
+    previous = np.roll(vertex, 1)
+    previous[ends - sizes] = vertex[ends - 1]
+    return previous
+
+
+def _sizes(polygons: list[Polygon]) -> np.ndarray:
+    """Number (c,) of vertices of each polygon."""
+    return np.array([len(polygon.vertices) for polygon in polygons], dtype=int)

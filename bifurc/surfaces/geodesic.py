@@ -3,7 +3,7 @@
 A path of points x_i, evenly spread, is shortest where sum |x_(i+1) - x_i|^2 is
 smallest. Every round moves the inner points in their tangent planes T_i by the y_i that
 minimise that sum to first order in the bend of the surface: one linear system, block
-tridiagonal with 2 I on the diagonal and -T_i^T T_(i+1) beside it. Then the points are
+tridiagonal with 2 I on the diagonal and -T_i^T T_(i+1) next to it. Then the points are
 corrected onto the surface straight above where they went. As the bend is left out of
 the system, the share of the step that is taken comes from how the sum went down in the
 round before. The number of rounds does not grow with that of the points.
@@ -17,19 +17,45 @@ import networkx as nx
 import numpy as np
 from scipy.linalg import solveh_banded
 
+from bifurc.errors import BifurcError
 from bifurc.numerics.corrector import correct_normal
 from bifurc.problem import Problem
 from bifurc.singular.dimension import tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = ["entrances", "path_length", "resample", "shortest_path"]
+__all__ = [
+    "SurfacePathError",
+    "chart_graph",
+    "entrances",
+    "path_length",
+    "resample",
+    "shortest_path",
+]
 
 ROUNDS, FINAL_ROUNDS = 40, 4
-TIGHT = 1e-11  # share of the sum of squares still to be gained at which a path is tight
-# how much longer a second chain of charts may be: chains are longer than geodesics by
-# up to a sixth
+# Share of the sum of squares still to be gained at which a path is tight.
+TIGHT = 1e-11
+# How much longer a second chain of charts may be: chains are longer than geodesics by
+# up to a sixth.
 DETOUR = 1.4
-SOLVED = 1e-10  # relative residual above which a point could not be corrected
+# Relative residual above which a point could not be corrected.
+SOLVED = 1e-10
+# Height above a plane, over the largest radius, above which a point was corrected onto
+# another sheet; the longest step of a round is no longer either.
+TOO_FAR = 0.5
+# Shortest spacing of points while they are pulled, over the median radius of charts.
+COARSE = 0.3
+# Shares of the way from a singular point to a chart at which solutions are looked for,
+# and how far these may lie from the straight line, over the distance.
+SHARES = np.geomspace(1e-3, 1.0, 12)
+OFF_LINE = 0.3
+
+START, GOAL = "start", "goal"  # nodes of the graph of charts: the charts are numbers
+
+
+class SurfacePathError(BifurcError, ValueError):
+    """There is no path on a surface: an end lies outside its charts, no chain of them
+    leads from one end to the other, or points cannot be corrected onto it."""
 
 
 def shortest_path(
@@ -39,74 +65,59 @@ def shortest_path(
     goal: np.ndarray,
     spacing: float,
 ) -> np.ndarray:
-    """Solutions (k, n) about ``spacing`` apart from ``start`` to ``goal`` (n,), as
-    short as pulling makes them.
+    """Solutions (k, n) about ``spacing`` from each other, from ``start`` to ``goal``
+    (n,), as short as pulling makes them.
 
     The shorter one of the geodesics near the shortest chain of charts and near another
-    chain beside it: where there are more ways round holes, nearly as long, it may not
+    chain next to it: where there are more ways round holes, nearly as long, it may not
     be the shortest of all. The goal comes out shifted by whole periods, k is odd.
-    Raises `ValueError` where an end lies beside the charts, no chain of them leads from
-    one end to the other, or points cannot be corrected onto the surface.
+    Raises `SurfacePathError`.
     """
-    paths = [
-        _pulled(problem, charts, start, goal, chain, spacing)
-        for chain in _chains(problem, charts, start, goal)
-    ]
+    paths = []
+    for chain in _chart_chains(problem, charts, start, goal):
+        points = _points_along(charts, chain, start, goal)
+        radius = float(np.median(charts.radii[chain]))
+        coarse = max(spacing, COARSE * radius)
+        intervals = _count_intervals(points, coarse)
+        paths.append(_spread(problem, charts, points, intervals, ROUNDS))
     path = min(paths, key=path_length)
-    intervals = _intervals(path, spacing)
-    return (
-        resample(problem, charts, path, intervals)
-        if 2 * len(path) < 3 * intervals
-        else path
-    )
-
-
-def _pulled(
-    problem: Problem,
-    charts: ChartAtlas,
-    start: np.ndarray,
-    goal: np.ndarray,
-    chain: list[int],
-    spacing: float,
-) -> np.ndarray:
-    """The path along a chain of charts, pulled tight; its points lie ``spacing`` apart,
-    or as far as charts allow."""
-    points = np.array([start, *charts.centers[chain[1:-1]], goal], dtype=float)
-    points[1:] = points[0] + np.cumsum(charts.apart(points[1:], points[:-1]), axis=0)
-    spacing = max(spacing, 0.3 * float(np.median(charts.radii[chain])))
-    return _tightened(
-        problem,
-        charts,
-        _lifted(problem, charts, _evenly(points, _intervals(points, spacing))),
-        ROUNDS,
-    )
+    intervals = _count_intervals(path, spacing)
+    if 2 * len(path) < 3 * intervals:
+        return resample(problem, charts, path, intervals)
+    return path
 
 
 def resample(
     problem: Problem, charts: ChartAtlas, path: np.ndarray, intervals: int
 ) -> np.ndarray:
     """A path (intervals + 1, n) on the surface along a tight one (k, n), evenly spread
-    and tight as well.
-
-    Raises `ValueError` where points cannot be corrected onto the surface.
-    """
-    return _tightened(
-        problem,
-        charts,
-        _lifted(problem, charts, _evenly(path, intervals)),
-        FINAL_ROUNDS,
-    )
+    and tight as well. Raises `SurfacePathError`."""
+    return _spread(problem, charts, path, intervals, FINAL_ROUNDS)
 
 
 def path_length(path: np.ndarray) -> float:
     """Length of a smooth curve through points (k, n), evenly spread: of the chords,
     extrapolated where k is odd."""
-    fine = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
+    fine = float(_chord_lengths(path).sum())
     if len(path) % 2 == 0 or len(path) < 5:
-        return float(fine)
-    return float(
-        (4.0 * fine - np.linalg.norm(np.diff(path[::2], axis=0), axis=1).sum()) / 3.0
-    )
+        return fine
+    coarse = float(_chord_lengths(path[::2]).sum())
+    return (4.0 * fine - coarse) / 3.0
+
+
+# --- chains of charts -----------------------------------------------------------------
+
+
+def chart_graph(charts: ChartAtlas) -> nx.Graph:
+    """The charts by their numbers, neighbours joined by edges that have the distance of
+    their centres as ``weight``."""
+    i, j = charts.neighbours.T
+    gaps = charts.difference(charts.centers[i], charts.centers[j])
+    distances = np.linalg.norm(gaps, axis=1)
+    columns = (i.tolist(), j.tolist(), distances.tolist())
+    graph = nx.Graph()
+    graph.add_weighted_edges_from(zip(*columns, strict=True))
+    return graph
 
 
 def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.ndarray:
@@ -116,27 +127,25 @@ def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.nda
     joined to it by solutions: these stay near the straight line, the nearer the closer
     to it.
     """
-    found = charts.holding(point)
-    if len(found):
-        return found
-    found = charts.beside(point)
-    if not len(found):
-        return found
-    share = np.geomspace(1e-3, 1.0, 12)
-    steps = (
-        share[:, None] * charts.apart(charts.centers[found], point)[:, None]
-    )  # (k, 12, n)
+    about = charts.charts_about(point)
+    if len(about):
+        return about
+    near = charts.charts_next_to(point)
+    if not len(near):
+        return near
+    away = charts.difference(charts.centers[near], point)
+    steps = SHARES[:, None] * away[:, None]  # (k, 12, n)
     lines = (point + steps).reshape(-1, len(point))
-    ends, gaps = correct_normal(
-        problem, lines, np.repeat(charts.bases[found], len(share), axis=0)
-    )
-    off = np.linalg.norm(ends - lines, axis=1) / np.linalg.norm(steps, axis=2).ravel()
-    return found[
-        np.all(((gaps < SOLVED) & (off < 0.3)).reshape(steps.shape[:2]), axis=1)
-    ]
+    bases = np.repeat(charts.bases[near], len(SHARES), axis=0)
+    ends, gaps = correct_normal(problem, lines, bases)
+    off_line = np.linalg.norm(ends - lines, axis=1)
+    length = np.linalg.norm(steps, axis=2).ravel()
+    joined = (gaps < SOLVED) & (off_line / length < OFF_LINE)
+    joined = joined.reshape(steps.shape[:2])  # (k, 12)
+    return near[np.all(joined, axis=1)]
 
 
-def _chains(
+def _chart_chains(
     problem: Problem, charts: ChartAtlas, start: np.ndarray, goal: np.ndarray
 ) -> list[list[int]]:
     """Numbers of the charts on the shortest way, from one about the start to one about
@@ -144,84 +153,138 @@ def _chains(
 
     Then those on the shortest way that keeps off them, where it is not much longer.
     """
-    graph = nx.Graph()
-    i, j = charts.neighbours.T
-    lengths = np.linalg.norm(charts.apart(charts.centers[i], charts.centers[j]), axis=1)
-    graph.add_weighted_edges_from(
-        zip(i.tolist(), j.tolist(), lengths.tolist(), strict=True)
-    )
-    for name, point in (("start", start), ("goal", goal)):
-        about = entrances(problem, charts, point)
-        if not len(about):
-            raise ValueError(f"the {name} lies in no chart of the surface")
-        away = np.linalg.norm(charts.apart(charts.centers[about], point), axis=1)
-        graph.add_weighted_edges_from(
-            (name, k, d) for k, d in zip(about.tolist(), away.tolist(), strict=True)
-        )
+    graph = chart_graph(charts)
+    _add_end(graph, problem, charts, START, start)
+    _add_end(graph, problem, charts, GOAL, goal)
     try:
-        first = nx.shortest_path(graph, "start", "goal", weight="weight")
+        first = nx.shortest_path(graph, START, GOAL, weight="weight")
     except nx.NetworkXNoPath:
-        raise ValueError(
-            "no chain of charts leads from the start to the goal"
-        ) from None
-    used = set(first[1:-1])
+        message = "no chain of charts leads from the start to the goal"
+        raise SurfacePathError(message) from None
+    on_first = set(first[1:-1])
 
-    def keeping_off(a: Hashable, b: Hashable, edge: dict[str, float]) -> float:
-        return edge["weight"] * (DETOUR if a in used or b in used else 1.0)
+    def weight_off_first(a: Hashable, b: Hashable, edge: dict[str, float]) -> float:
+        touches = a in on_first or b in on_first
+        return edge["weight"] * (DETOUR if touches else 1.0)
 
-    other = nx.shortest_path(graph, "start", "goal", weight=keeping_off)
-    lengths_of = [nx.path_weight(graph, chain, "weight") for chain in (first, other)]
-    worth = used.isdisjoint(other[2:-2]) and lengths_of[1] < DETOUR * lengths_of[0]
-    return [first[1:-1], other[1:-1]] if worth else [first[1:-1]]
-
-
-def _lifted(problem: Problem, charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
-    """The points (k, n) with the inner ones corrected onto the surface straight above
-    the planes of the charts."""
-    out = points.copy()
-    if len(points) > 2:
-        out[1:-1], solved = _corrected(
-            problem, charts, points[1:-1], charts.bases[charts.nearest(points[1:-1])]
-        )
-        if not np.all(solved):
-            raise ValueError(
-                "the path between the charts cannot be corrected onto the surface"
-            )
-    return out
+    second = nx.shortest_path(graph, START, GOAL, weight=weight_off_first)
+    keeps_off = on_first.isdisjoint(second[2:-2])
+    limit = DETOUR * nx.path_weight(graph, first, "weight")
+    if keeps_off and nx.path_weight(graph, second, "weight") < limit:
+        return [first[1:-1], second[1:-1]]
+    return [first[1:-1]]
 
 
-def _tightened(
-    problem: Problem, charts: ChartAtlas, path: np.ndarray, rounds: int
+def _add_end(
+    graph: nx.Graph,
+    problem: Problem,
+    charts: ChartAtlas,
+    name: str,
+    point: np.ndarray,
+) -> None:
+    """Join a node for an end (n,) of the path to the charts in which it lies."""
+    about = entrances(problem, charts, point)
+    if not len(about):
+        raise SurfacePathError(f"the {name} lies in no chart of the surface")
+    gaps = charts.difference(charts.centers[about], point)
+    distances = np.linalg.norm(gaps, axis=1)
+    for k, distance in zip(about.tolist(), distances.tolist(), strict=True):
+        graph.add_edge(name, k, weight=distance)
+
+
+def _points_along(
+    charts: ChartAtlas, chain: list[int], start: np.ndarray, goal: np.ndarray
 ) -> np.ndarray:
-    """The path after up to so many rounds of pulling. Its ends stay, and points that
-    would leave surface or bounds."""
-    spacing = np.linalg.norm(np.diff(path, axis=0), axis=1).mean()
-    if len(path) < 3 or spacing == 0:
+    """The start, the centres of the inner charts of a chain, and the goal (k, n),
+    without jumps of a period."""
+    inner = charts.centers[chain[1:-1]]
+    points = np.array([start, *inner, goal], dtype=float)
+    steps = charts.difference(points[1:], points[:-1])
+    points[1:] = points[0] + np.cumsum(steps, axis=0)
+    return points
+
+
+# --- pulling --------------------------------------------------------------------------
+
+
+def _spread(
+    problem: Problem,
+    charts: ChartAtlas,
+    points: np.ndarray,
+    intervals: int,
+    rounds: int,
+) -> np.ndarray:
+    """A path (intervals + 1, n) on the surface, evenly spread along the chords between
+    ``points`` (k, n), after up to so many rounds of pulling."""
+    path = _place_evenly(points, intervals)
+    _lift(problem, charts, path)
+    if len(path) < 3 or _chord_lengths(path).mean() == 0:
         return path
-    path = path.copy()
-    inner, (low, high) = path[1:-1], problem.bounds.T
-    planes, share, energy = charts.bases[charts.nearest(inner)], 1.0, _energy(path)
+    pulled = _PulledPath(problem, charts, path)
     for _ in range(rounds):
-        planes = tangent_planes(problem, inner, planes)
-        force, pull = _pull(path, planes)
-        slope = -2.0 * float(
-            np.sum(force * pull)
-        )  # of the energy, by the share of the pull
-        if -slope < TIGHT * energy:
+        if not pulled.pull():
             break
-        step = np.einsum("kij,kj->ki", planes, pull)
+    return pulled.path
+
+
+def _lift(problem: Problem, charts: ChartAtlas, path: np.ndarray) -> None:
+    """Correct the inner points of a path (k, n) onto the surface, in place, straight
+    above the planes of the nearest charts."""
+    inner = path[1:-1]
+    if not len(inner):
+        return
+    planes = charts.bases[charts.nearest_charts(inner)]
+    lifted, solved = _correct(problem, charts, inner, planes)
+    if not np.all(solved):
+        raise SurfacePathError(
+            "the path between the charts cannot be corrected onto the surface"
+        )
+    path[1:-1] = lifted
+
+
+class _PulledPath:
+    """A ``path`` (k, n) that is pulled tight round by round. Its ends stay, and points
+    that would leave surface or bounds."""
+
+    def __init__(self, problem: Problem, charts: ChartAtlas, path: np.ndarray):
+        self.path = path
+        self._problem = problem
+        self._charts = charts
+        self._planes = charts.bases[charts.nearest_charts(path[1:-1])]  # (k - 2, n, 2)
+        self._share = 1.0  # of the pull that is taken
+        self._energy = _energy(path)
+
+    def pull(self) -> bool:
+        """Pull once; False where the path is tight already."""
+        inner = self.path[1:-1]
+        self._planes = tangent_planes(self._problem, inner, self._planes)
+        force = _force(self.path, self._planes)
+        pull = _solve_for_pull(force, self._planes)
+        slope = -2.0 * float(np.sum(force * pull))  # of the energy, by the share
+        if -slope < TIGHT * self._energy:
+            return False
+        step = np.einsum("kij,kj->ki", self._planes, pull)
         size = np.linalg.norm(step, axis=1).max()
-        share = min(share, 0.5 * charts.radii.max() / size)
-        moved, good = _corrected(problem, charts, inner + share * step, planes)
-        good &= np.all((moved >= low) & (moved <= high), axis=1)
-        before = inner.copy()
-        inner[good] = moved[good]
-        bend = (_energy(path) - energy - slope * share) / share**2
-        if _energy(path) > energy:
-            inner[:] = before
-        energy = _energy(path)
-        share = float(np.clip(-0.5 * slope / bend, 0.1, 2.0)) if bend > 0 else 1.0
-    return path
+        longest = TOO_FAR * self._charts.radii.max()
+        share = min(self._share, longest / size)
+        moved = self._moved(inner + share * step)
+        energy = _energy(moved)
+        self._share = _next_share(energy - self._energy, slope, share)
+        if energy <= self._energy:
+            self.path = moved
+            self._energy = energy
+        return True
+
+    def _moved(self, points: np.ndarray) -> np.ndarray:
+        """The path with the inner points above ``points`` (k - 2, n), where these are
+        solutions inside the bounds."""
+        low, high = self._problem.bounds.T
+        lifted, solved = _correct(self._problem, self._charts, points, self._planes)
+        inside = np.all((lifted >= low) & (lifted <= high), axis=1)
+        movable = solved & inside
+        path = self.path.copy()
+        path[1:-1][movable] = lifted[movable]
+        return path
 
 
 def _energy(path: np.ndarray) -> float:
@@ -229,44 +292,77 @@ def _energy(path: np.ndarray) -> float:
     return float(np.sum(np.diff(path, axis=0) ** 2))
 
 
-def _pull(path: np.ndarray, planes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The forces (k - 2, 2) on the inner points in their ``planes`` (k - 2, n, 2), and
-    the steps y that follow."""
+def _force(path: np.ndarray, planes: np.ndarray) -> np.ndarray:
+    """The forces (k - 2, 2) on the inner points in their ``planes`` (k - 2, n, 2)."""
+    before = path[:-2]
+    inner = path[1:-1]
+    after = path[2:]
+    bend = after - 2.0 * inner + before
+    forces: np.ndarray = np.einsum("kij,ki->kj", planes, bend)
+    return forces
+
+
+def _solve_for_pull(force: np.ndarray, planes: np.ndarray) -> np.ndarray:
+    """The steps y (k - 2, 2) in their ``planes`` that the ``force`` asks for."""
+    # With C_i = T_i^T T_(i+1), of two rows and columns:
+    #
+    #     [  2 I    -C_1                 ] [ y_1 ]   [ f_1 ]
+    #     [ -C_1^T   2 I   -C_2          ] [ y_2 ] = [ f_2 ]
+    #     [         -C_2^T  2 I   -C_3   ] [ y_3 ]   [ f_3 ]
+    #     [                  :     :     ] [  :  ]   [  :  ]
     count = len(planes)
+    across = np.swapaxes(planes[:-1], 1, 2)
+    coupling = -across @ planes[1:]
     bands = np.zeros((4, 2 * count))  # the upper ones of the matrix, the diagonal last
     bands[3] = 2.0
-    beside = -np.swapaxes(planes[:-1], 1, 2) @ planes[1:]
     for a in range(2):
         for b in range(2):
-            bands[1 + a - b, 2 + b :: 2] = beside[:, a, b]
-    force = np.einsum("kij,ki->kj", planes, path[2:] - 2.0 * path[1:-1] + path[:-2])
-    return force, solveh_banded(bands, force.ravel()).reshape(count, 2)
+            bands[1 + a - b, 2 + b :: 2] = coupling[:, a, b]
+    flat_steps = solveh_banded(bands, force.ravel())
+    steps: np.ndarray = flat_steps.reshape(count, 2)
+    return steps
 
 
-def _corrected(
+def _next_share(gain: float, slope: float, share: float) -> float:
+    """The share of the next pull: where the parabola through the energy, whose
+    ``slope`` is known and which rose by ``gain`` at ``share``, is lowest."""
+    bend = (gain - slope * share) / share**2
+    if bend > 0:
+        return float(np.clip(-0.5 * slope / bend, 0.1, 2.0))
+    return 1.0
+
+
+def _correct(
     problem: Problem, charts: ChartAtlas, points: np.ndarray, planes: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) straight above ``points`` of ``planes`` (k, n, 2), and which
     (k,) are solutions nearby."""
-    found, gaps = correct_normal(problem, points, planes)
-    return found, (gaps < SOLVED) & (
-        np.linalg.norm(found - points, axis=1) < 0.5 * charts.radii.max()
-    )
+    lifted, gaps = correct_normal(problem, points, planes)
+    height = np.linalg.norm(lifted - points, axis=1)
+    is_near = height < TOO_FAR * charts.radii.max()
+    return lifted, (gaps < SOLVED) & is_near
 
 
-def _intervals(points: np.ndarray, spacing: float) -> int:
+# --- chords ---------------------------------------------------------------------------
+
+
+def _chord_lengths(points: np.ndarray) -> np.ndarray:
+    """Distances (k - 1,) between neighbouring points (k, n)."""
+    chords = np.diff(points, axis=0)
+    lengths: np.ndarray = np.linalg.norm(chords, axis=1)
+    return lengths
+
+
+def _count_intervals(points: np.ndarray, spacing: float) -> int:
     """How many intervals of about ``spacing`` the chords make: an even number."""
-    return 2 * max(
-        1,
-        round(np.linalg.norm(np.diff(points, axis=0), axis=1).sum() / (2.0 * spacing)),
-    )
+    length = float(_chord_lengths(points).sum())
+    return 2 * max(1, round(length / (2.0 * spacing)))
 
 
-def _evenly(points: np.ndarray, intervals: int) -> np.ndarray:
+def _place_evenly(points: np.ndarray, intervals: int) -> np.ndarray:
     """Points (intervals + 1, n) evenly spread along the chords between ``points`` (k,
     n), the ends included."""
-    s = np.concatenate(
-        [[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    )
-    at = np.linspace(0.0, s[-1], intervals + 1)
-    return np.stack([np.interp(at, s, column) for column in points.T], axis=1)
+    arclengths = np.concatenate([[0.0], np.cumsum(_chord_lengths(points))])
+    at = np.linspace(0.0, arclengths[-1], intervals + 1)
+    columns = [np.interp(at, arclengths, column) for column in points.T]
+    return np.stack(columns, axis=1)

@@ -3,55 +3,67 @@ made it."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-__all__ = ["OUTLINE", "clip", "octagon"]
+from bifurc.numerics.directions import unit_vectors
+
+__all__ = ["OUTLINE", "Polygon", "octagon"]
 
 OUTLINE = -1  # label of an edge that nothing has cut yet
 
 
-def octagon(radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (8, 2) of the octagon around the circle of ``radius``, and the labels
-    (8,) of its edges.
+class Polygon(NamedTuple):
+    """Vertices (v, 2), counterclockwise, and the labels (v,) of the edges: edge i runs
+    from vertex i to the next one."""
 
-    Edge i runs from vertex i to the next one, counterclockwise.
-    """
-    angles = np.pi / 4 * (np.arange(8) + 0.5)
-    size = radius / np.cos(np.pi / 8)
-    return size * np.stack([np.cos(angles), np.sin(angles)], axis=1), np.full(
-        8, OUTLINE
-    )
+    vertices: np.ndarray
+    labels: np.ndarray
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is left of it."""
+        return len(self.vertices) == 0
 
-def clip(
-    vertices: np.ndarray,
-    labels: np.ndarray,
-    normal: np.ndarray,
-    offset: float,
-    label: int,
-) -> tuple[np.ndarray, np.ndarray]:
-    """The part of a polygon where ``normal . y <= offset``; the edge along the cut gets
-    ``label``.
+    def clip(self, normal: np.ndarray, offset: float, label: int) -> Polygon:
+        """The part where ``normal . y <= offset``; the edge along the cut gets
+        ``label``.
 
-    The same polygon where the line misses it, nothing where nothing is left.
-    """
-    height = (vertices @ normal - offset).tolist()
-    if max(height) <= 0.0:
-        return vertices, labels
-    if min(height) > 0.0:
-        return vertices[:0], labels[:0]
-    count = len(height)
-    after = height[1:] + height[:1]
-    leaves = next(
-        i for i in range(count) if height[i] <= 0.0 < after[i]
-    )  # the edge on which the polygon goes out
-    enters = next(i for i in range(count) if height[i] > 0.0 >= after[i])
-
-    def crossing(i: int) -> np.ndarray:
-        return vertices[i] + height[i] / (height[i] - after[i]) * (
-            vertices[(i + 1) % count] - vertices[i]
+        The same polygon where the line misses it, an empty one where nothing is left.
+        """
+        if self.is_empty:
+            return self
+        height: list[float] = (self.vertices @ normal - offset).tolist()
+        if max(height) <= 0.0:
+            return self
+        if min(height) > 0.0:
+            return Polygon(self.vertices[:0], self.labels[:0])
+        count = len(height)
+        following = height[1:] + height[:1]
+        edges = range(count)
+        leaves = next(i for i in edges if height[i] <= 0.0 < following[i])
+        enters = next(i for i in edges if following[i] <= 0.0 < height[i])
+        remaining = (leaves - enters) % count
+        inside = [(enters + 1 + i) % count for i in range(remaining)]
+        begin = self._crossing(leaves, height[leaves], following[leaves])
+        end = self._crossing(enters, height[enters], following[enters])
+        new_labels = [label, self.labels[enters]]
+        return Polygon(
+            np.concatenate([self.vertices[inside], [begin, end]]),
+            np.concatenate([self.labels[inside], new_labels]),
         )
 
-    kept = [(enters + 1 + i) % count for i in range((leaves - enters) % count)]
-    new = np.concatenate([vertices[kept], [crossing(leaves), crossing(enters)]])
-    return new, np.concatenate([labels[kept], [label, labels[enters]]])
+    def _crossing(self, edge: int, begin: float, end: float) -> np.ndarray:
+        """The point (2,) of an edge on the line, from the heights of its two ends."""
+        first = self.vertices[edge]
+        last = self.vertices[(edge + 1) % len(self.vertices)]
+        point: np.ndarray = first + begin / (begin - end) * (last - first)
+        return point
+
+
+def octagon(radius: float) -> Polygon:
+    """The octagon around the circle of ``radius``."""
+    angles = np.pi / 4 * (np.arange(8) + 0.5)
+    size = radius / np.cos(np.pi / 8)
+    return Polygon(size * unit_vectors(angles), np.full(8, OUTLINE))

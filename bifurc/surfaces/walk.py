@@ -1,4 +1,4 @@
-"""Which solutions beside the charts of a surface are joined to them: each walks over
+"""Which solutions outside the charts of a surface are joined to them: each walks over
 the surface to a chart."""
 
 from __future__ import annotations
@@ -7,6 +7,7 @@ import numpy as np
 
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
+from bifurc.numerics.directions import cosines_between_planes
 from bifurc.problem import Problem
 from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas
@@ -14,7 +15,19 @@ from bifurc.surfaces.chart_atlas import ChartAtlas
 __all__ = ["reached_charts"]
 
 WALKS, STEPS = 6, 100
-LONGEST, SHORTEST = 0.5, 1e-3  # of a step, over the radius of a chart
+# Length of a step, over the radius of a chart.
+LONGEST, SHORTEST = 0.5, 1e-3
+# Growth of the length after a step that was taken, and after one that was not.
+LONGER, SHORTER = 1.3, 0.5
+# Smallest cosine between the tangent planes before and after a step on one sheet.
+SMOOTH = 0.8
+# Height of the surface above a step, over its length, at most.
+HIGH = 0.3
+# Relative residual above which the end of a step is no solution.
+SOLVED = 1e-10
+# Distance in the plane from a goal, over its radius, at which a walker outside its
+# chart is above or below it, on another sheet.
+ABOVE_GOAL = 0.3
 CHUNK = 256  # walkers between two looks at the clock
 
 
@@ -28,75 +41,103 @@ def reached_charts(
     random. That none arrives is no proof that there is no way: a walk ends before an
     obstacle.
     """
-    out, rng = np.full(len(points), -1), np.random.default_rng(0)
+    rng = np.random.default_rng(0)
+    reached = np.full(len(points), -1)
     for attempt in range(WALKS):
-        left = np.flatnonzero(out < 0)
-        goals = rng.integers(len(charts), size=len(left)) if attempt else None
-        for begin in range(0, len(left), CHUNK):
-            if not deadline.passed:
-                part = slice(begin, begin + CHUNK)
-                out[left[part]] = _walk(
-                    problem,
-                    charts,
-                    points[left[part]],
-                    None if goals is None else goals[part],
-                )
-    return out
+        waiting = np.flatnonzero(reached < 0)
+        goals = None
+        if attempt:
+            goals = rng.integers(len(charts), size=len(waiting))
+        for begin in range(0, len(waiting), CHUNK):
+            if deadline.passed:
+                return reached
+            part = slice(begin, begin + CHUNK)
+            own_goals = None if goals is None else goals[part]
+            numbers = waiting[part]
+            walk = _Walk(problem, charts, points[numbers], own_goals)
+            reached[numbers] = walk.run()
+    return reached
 
 
-def _walk(
-    problem: Problem, charts: ChartAtlas, points: np.ndarray, goals: np.ndarray | None
-) -> np.ndarray:
-    """Where walks towards the charts numbered ``goals`` (k,), or to the nearest,
-    arrive; -1 where they do not."""
-    out = np.full(len(points), -1)
-    at, planes = (
-        points.copy(),
-        np.swapaxes(null_spaces(problem, points)[1][:, -2:], 1, 2),
-    )
-    length = np.full(len(points), LONGEST * charts.radii.max())
-    walking = np.arange(len(points))
-    for _ in range(STEPS):
-        out[walking] = charts.chart_at(at[walking])
-        walking = walking[
-            (out[walking] < 0) & (length[walking] > SHORTEST * charts.radii.max())
-        ]
-        if not len(walking):
-            break
-        here, plane = at[walking], planes[walking]
-        nearest = charts.nearest(here)
-        goal = nearest if goals is None else goals[walking]
-        step = np.einsum(
-            "kij,klj,kl->ki", plane, plane, charts.apart(charts.centers[goal], here)
-        )
-        size = np.linalg.norm(step, axis=1)
-        longest = np.minimum(
-            length[walking], LONGEST * charts.radii[nearest]
-        )  # small where singular points are near
-        step *= np.minimum(1.0, longest / (size + 1e-300))[:, None]
-        found, gaps = correct_normal(problem, here + step, plane)
-        turned = tangent_planes(problem, found, plane)
-        flat = (
-            np.linalg.svd(np.swapaxes(plane, 1, 2) @ turned, compute_uv=False)[:, -1]
-            > 0.8
-        )
-        near = np.linalg.norm(found - here - step, axis=1) < 0.3 * np.linalg.norm(
-            step, axis=1
-        )
-        low, high = problem.bounds.T
-        good = (
-            flat
-            & near
-            & (gaps < 1e-10)
-            & np.all((found >= low) & (found <= high), axis=1)
-        )
-        at[walking[good]], planes[walking[good]] = found[good], turned[good]
-        length[walking] = np.where(
-            good,
-            np.minimum(1.3 * length[walking], LONGEST * charts.radii.max()),
-            0.5 * longest,
-        )
-        length[walking[size < 0.3 * charts.radii[goal]]] = (
-            0.0  # above or below the goal, on another sheet
-        )
-    return out
+class _Walk:
+    """Walkers on the surface, each on its way to a chart.
+
+    ``at`` (k, n) they are, in the tangent ``planes`` (k, n, 2), with the longest step
+    ``length`` (k,) that they try next; ``goals`` (k,) are the numbers of the charts
+    they walk to, None where each walks to the nearest. ``reached`` (k,) is the number
+    of the chart in which a walker arrived, -1 before.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        charts: ChartAtlas,
+        points: np.ndarray,
+        goals: np.ndarray | None,
+    ):
+        self.problem = problem
+        self.charts = charts
+        self.goals = goals
+        _, right = null_spaces(problem, points)
+        self.at = points.copy()
+        self.planes = np.swapaxes(right[:, -2:], 1, 2)
+        self.longest = LONGEST * charts.radii.max()
+        self.shortest = SHORTEST * charts.radii.max()
+        self.length = np.full(len(points), self.longest)
+        self.reached = np.full(len(points), -1)
+
+    def run(self) -> np.ndarray:
+        """Where the walkers (k,) arrive; -1 for those that do not."""
+        walking = np.arange(len(self.at))
+        for _ in range(STEPS):
+            self.reached[walking] = self.charts.chart_at(self.at[walking])
+            has_arrived = self.reached[walking] >= 0
+            has_stopped = self.length[walking] <= self.shortest
+            walking = walking[~has_arrived & ~has_stopped]
+            if not len(walking):
+                break
+            self._step(walking)
+        return self.reached
+
+    def _step(self, walking: np.ndarray) -> None:
+        """One step of the walkers of these numbers, or a shorter length where that
+        fails."""
+        at, planes = self.at[walking], self.planes[walking]
+        nearest = self.charts.nearest_charts(at)
+        goal = nearest if self.goals is None else self.goals[walking]
+        away = self.charts.difference(self.charts.centers[goal], at)
+        direction = np.einsum("kij,klj,kl->ki", planes, planes, away)
+        distance = np.linalg.norm(direction, axis=1)
+        # small where singular points are near
+        local = LONGEST * self.charts.radii[nearest]
+        longest = np.minimum(self.length[walking], local)
+        share = np.minimum(1.0, longest / (distance + 1e-300))
+        step = direction * share[:, None]
+
+        ends, gaps = correct_normal(self.problem, at + step, planes)
+        turned = tangent_planes(self.problem, ends, planes)
+        is_flat = cosines_between_planes(planes, turned)[:, -1] > SMOOTH
+        is_near = _is_near(ends - at - step, step)
+        taken = (gaps < SOLVED) & self._is_inside(ends) & is_flat & is_near
+        self.at[walking[taken]] = ends[taken]
+        self.planes[walking[taken]] = turned[taken]
+        longer = np.minimum(LONGER * self.length[walking], self.longest)
+        self.length[walking] = np.where(taken, longer, SHORTER * longest)
+        is_above_goal = distance < ABOVE_GOAL * self.charts.radii[goal]
+        self.length[walking[is_above_goal]] = 0.0
+
+    def _is_inside(self, points: np.ndarray) -> np.ndarray:
+        """Which points (k, n) lie inside the bounds (k,)."""
+        low, high = self.problem.bounds.T
+        is_between = (points >= low) & (points <= high)
+        inside: np.ndarray = np.all(is_between, axis=1)
+        return inside
+
+
+def _is_near(heights: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """Whether the ends of steps (k, n) were corrected by ``heights`` (k, n) that are
+    small against them."""
+    height = np.linalg.norm(heights, axis=1)
+    length = np.linalg.norm(steps, axis=1)
+    near: np.ndarray = height < HIGH * length
+    return near

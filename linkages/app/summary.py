@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch
-from bifurc.singular.locate import Kind
+from bifurc.singular.point import Kind
 from bifurc.torus import wrap
 from linkages.app.entry_text import describe_geometry
 from linkages.app.linkage_atlas import FormLabels, labels_of, loop_of

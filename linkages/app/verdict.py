@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from bifurc.atlas import Atlas
 from bifurc.seeds import Completeness
-from bifurc.singular.locate import Kind
+from bifurc.singular.point import Kind
 from linkages.app.exit_codes import ExitCode
 from linkages.app.texts import count_of
 

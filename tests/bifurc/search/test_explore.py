@@ -9,7 +9,7 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
-from bifurc.singular.locate import Kind
+from bifurc.singular.point import Kind
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

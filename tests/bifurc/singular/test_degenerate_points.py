@@ -13,7 +13,7 @@ from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, assemble_atlas
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
-from bifurc.singular.locate import Kind, SingularPoint
+from bifurc.singular.point import Kind, SingularPoint
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

@@ -1,0 +1,110 @@
+"""The tangent cone of second order at a singular point.
+
+With V the null space of F' and W the left null space, every branch has a tangent V x
+with W^T F''(V x, V x) = 0. For a null space of dimension 2 these are binary quadratic
+forms a x^2 + b x y + c y^2, as many as W has columns, and often proportional to each
+other.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bifurc.numerics.directions import unit_vectors
+from bifurc.problem import Problem
+
+__all__ = ["second_order_tangents"]
+
+# Size of the forms, over the magnitude, below which there is none.
+NO_FORM = 1e-7
+# Singular value of the coefficients, over the largest, of a form that depends on others.
+DEPENDENT = 1e-6
+# Discriminant of a double root, value of a form at a root of it, resultant of forms
+# with a common root: the coefficients are of unit length.
+ZERO = 1e-6
+
+
+def second_order_tangents(
+    problem: Problem, point: np.ndarray, null_space: np.ndarray
+) -> np.ndarray | None:
+    """Unit tangents (t, n) at a singular point of nullity 2 that second order allows;
+    None where it does not decide.
+
+    The forms are reduced to independent ones. One form with two distinct real roots
+    gives two tangents, without real roots none; two or more have a common root or not.
+    No form at all, or a double root, is for higher order.
+    """
+    if null_space.shape[1] != 2:
+        return None
+    forms = _independent_forms(_reduced_forms(problem, point, null_space))
+    if not len(forms):
+        return None
+    a, b, c = forms[0]
+    discriminant = b * b - 4 * a * c
+    if len(forms) == 1 and abs(discriminant) < ZERO:
+        return None
+    if discriminant < 0:
+        return np.empty((0, len(point)))
+    roots = _real_roots(a, b, c)
+    values = _values(forms, roots)
+    common = np.all(np.abs(values) < ZERO, axis=1)
+    if not np.any(common) and len(forms) == 2 and _have_common_root(forms):
+        return None
+    tangents: np.ndarray = roots[common] @ null_space.T
+    return tangents
+
+
+def _reduced_forms(
+    problem: Problem, point: np.ndarray, null_space: np.ndarray
+) -> np.ndarray:
+    """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x)."""
+    jacobian = problem.jacobians(point[None])[0] / problem.magnitude
+    left, _, _ = np.linalg.svd(jacobian)
+    left_null_space = left[:, problem.n - 2 :]
+    hessian = problem.hessian(point) / problem.magnitude
+    forms = np.einsum(
+        "mw,mij,ia,jb->wab", left_null_space, hessian, null_space, null_space
+    )
+    xx = forms[:, 0, 0]
+    xy = 2 * forms[:, 0, 1]
+    yy = forms[:, 1, 1]
+    return np.stack([xx, xy, yy], axis=1)
+
+
+def _independent_forms(forms: np.ndarray) -> np.ndarray:
+    """Independent forms (i, 3), of unit length, that span the given ones (w, 3)."""
+    _, sigma, right = np.linalg.svd(forms, full_matrices=False)
+    if not len(sigma) or sigma[0] < NO_FORM:
+        return np.empty((0, 3))
+    independent: np.ndarray = right[sigma > DEPENDENT * sigma[0]]
+    return independent
+
+
+def _real_roots(a: float, b: float, c: float) -> np.ndarray:
+    """Unit vectors (2, 2) at which a x^2 + b x y + c y^2 = 0, for a discriminant that
+    is not negative."""
+    # With x = cos t, y = sin t: (a + c)/2 + (a - c)/2 cos 2t + b/2 sin 2t = 0.
+    phase = np.arctan2(b, a - c)
+    size = np.hypot(b, a - c)
+    cosine = np.clip(-(a + c) / size, -1.0, 1.0)
+    offset = np.arccos(cosine)
+    first = (phase + offset) / 2
+    second = (phase - offset) / 2
+    return unit_vectors(np.array([first, second]) % np.pi)
+
+
+def _values(forms: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """Values (k, i) of forms (i, 3) at vectors (k, 2)."""
+    x, y = vectors.T
+    powers = np.stack([x**2, x * y, y**2], axis=1)
+    values: np.ndarray = powers @ forms.T
+    return values
+
+
+def _have_common_root(pair: np.ndarray) -> bool:
+    """Whether the resultant of two forms (2, 3) vanishes."""
+    (a, b, c), (d, e, f) = pair
+    outer = a * f - c * d
+    low = a * e - b * d
+    high = b * f - c * e
+    return bool(abs(outer**2 - low * high) < ZERO)

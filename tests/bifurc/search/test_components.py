@@ -1,0 +1,197 @@
+"""Components of dimension 2 and more in a search: surfaces with their charts, and the
+singular points at which forms meet them."""
+
+import time
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from bifurc.atlas import Atlas
+from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
+from bifurc.graphs import transition_graph
+from bifurc.problem import Problem
+from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
+from bifurc.seeds import Seeds
+from bifurc.singular.point import Kind
+from bifurc.surfaces.chart_atlas import Covering
+from tests.bifurc.known_surfaces import (
+    CONE,
+    SPHERE,
+    equal_double_goldberg,
+    general,
+    planar,
+)
+
+
+def seeds_at(points: np.ndarray) -> Seeds:
+    """These solutions (k, n) alone as seeds."""
+    count, n = points.shape
+    return Seeds(points, np.ones(count, dtype=bool), np.empty(0), np.empty((0, n)))
+
+
+def test_a_double_goldberg_loop_with_equal_links_never_meets_its_torus() -> None:
+    problem = equal_double_goldberg()
+    atlas = explore(problem)
+    assert len(atlas.forms) == 2
+    assert len(atlas.bifurcations) == 2
+    assert len(atlas.points) == 2
+    (surface,) = atlas.surfaces
+    assert surface.dimension == 2
+    assert surface.complete
+    assert surface.charts is not None
+    assert surface.charts.euler_characteristic == 0
+    # theta3 = theta6 = pi, theta4 = -theta2, theta5 = -theta1
+    theta3 = surface.samples[:, 2] - np.pi
+    theta2_and_4 = surface.samples[:, 1] + surface.samples[:, 3]
+    assert np.abs(np.sin(theta3 / 2)).max() < 1e-9
+    assert np.abs(np.sin(theta2_and_4 / 2)).max() < 1e-9
+    jacobians = problem.jacobians(surface.charts.centers)
+    smallest_regular = np.linalg.svd(jacobians, compute_uv=False)[:, 3]
+    # rank 4 all over: no singular point, and so no way out
+    assert smallest_regular.min() > 0.1
+    assert not nx.has_path(transition_graph(atlas), atlas.forms[0].name, surface.name)
+
+
+def test_a_sarrus_loop_with_folded_legs_changes_mobility_where_its_forms_meet_the_torus(
+    folded_sarrus: Atlas,
+) -> None:
+    assert len(folded_sarrus.forms) == 2
+    assert [surface.dimension for surface in folded_sarrus.surfaces] == [2]
+    assert len(folded_sarrus.points) == 4
+    for point in folded_sarrus.points:
+        assert point.kind is Kind.DIMENSION_CHANGE
+        assert len(point.point.half_branches) == 2
+        assert len(point.passes) == 1
+        assert point.surfaces == (0,)
+        assert point.note == ""
+    assert nx.is_connected(transition_graph(folded_sarrus))
+    assert len({form.component for form in folded_sarrus.forms}) == 1
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.4], ids=["line", "parabola"])
+def test_a_curve_through_a_plane_is_found_with_both_of_its_halves(bend: float) -> None:
+    def plane_and_curve(u: np.ndarray) -> np.ndarray:
+        x, y, z = u
+        return np.array([z * x, z * (y - bend * z**2)])
+
+    problem = FunctionProblem(plane_and_curve, [(-1, 1)] * 3)
+    atlas = explore(problem, settings=SearchSettings(starts=100))
+    (point,) = atlas.points
+    assert point.kind is Kind.DIMENSION_CHANGE
+    assert np.abs(point.point.u).max() < 1e-10
+    assert len(point.point.half_branches) == 2
+    assert len(point.passes) == 1
+    assert point.surfaces == (0,)
+    assert len(atlas.forms) == 1
+    assert atlas.surfaces[0].complete
+    edges = list(transition_graph(atlas).edges(keys=True))
+    assert edges == [("Form 1", "surface 1", point.name)]
+
+
+def test_curves_that_meet_a_plane_are_found_from_the_plane_alone() -> None:
+    # the plane z = 0 and the lines x = y = 0 and x = y, z = x - 0.5
+    def plane_and_lines(u: np.ndarray) -> np.ndarray:
+        x, y, z = u
+        return z * np.outer([x, y], [x - y, z - x + 0.5]).ravel()
+
+    problem = FunctionProblem(plane_and_lines, [(-1, 1)] * 3)
+    atlas = explore(problem, seeds=seeds_at(np.array([[0.3, -0.5, 0.0]])))
+    assert len(atlas.forms) == 2
+    assert len(atlas.bifurcations) == 1  # the lines cross at z = -0.5
+    meeting = [p.point.u for p in atlas.points if p.kind is Kind.DIMENSION_CHANGE]
+    expected = [[0.0, 0.0, 0.0], [0.5, 0.5, 0.0]]
+    assert np.abs(np.sort(meeting, axis=0) - expected).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("problem", "dimension"),
+    [
+        (planar(1, 1.2, 0.9, 1.3, 1.1, 0.8), 3),
+        (planar(1, 2, 1, 2, 1, 2, 1, 2), 5),
+        (general(9), 3),
+        (general(12), 6),
+    ],
+    ids=["planar 6R", "planar 8R", "9R", "12R"],
+)
+def test_components_of_higher_dimension_are_reported_with_it_and_nothing_else(
+    problem: Problem, dimension: int
+) -> None:
+    atlas = explore(problem)
+    assert [surface.dimension for surface in atlas.surfaces] == [dimension]
+    assert not atlas.forms
+    assert not atlas.points
+    assert not len(atlas.rigid)
+
+
+# --- what is not finished is said -----------------------------------------------------
+
+
+def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
+    began = time.perf_counter()
+    atlas = explore(general(8), settings=SearchSettings(budget=1.0))
+    assert time.perf_counter() - began < 5.0
+    assert atlas.provenance.out_of_time
+    assert atlas.completeness.level == "out of time"
+    (surface,) = atlas.surfaces
+    assert surface.dimension == 2
+    assert surface.charts is not None
+    assert surface.charts.outcome is Covering.OUT_OF_TIME
+
+
+def test_a_search_that_ends_before_its_budget_says_nothing_of_it() -> None:
+    atlas = explore(planar(1, 2, 1.4, 2.2), settings=SearchSettings(budget=60.0))
+    assert not atlas.provenance.out_of_time
+    with pytest.raises(ProblemError, match="budget"):
+        explore(general(8), settings=SearchSettings(budget=0.0))
+
+
+def test_seeds_outside_unfinished_charts_belong_to_the_surface_they_can_walk_to() -> (
+    None
+):
+    (surface,) = explore(SPHERE, settings=SearchSettings(starts=60, charts=40)).surfaces
+    assert surface.charts is not None
+    assert surface.charts.outcome is Covering.CHART_LIMIT
+    assert len(surface.samples) == 60
+    assert np.count_nonzero(~surface.charts.covers(surface.samples)) > 10
+
+
+def test_the_halves_of_a_cone_are_two_surfaces_and_nothing_is_left_over_at_the_tip() -> (
+    None
+):
+    above = np.array([[0.3, 0.4, 0.5], [0.006, 0.008, 0.01]])
+    below = above * [1, 1, -1]
+    atlas = explore(CONE, seeds=seeds_at(np.concatenate([above, below])))
+    signs = [np.sign(surface.samples[:, 2]).tolist() for surface in atlas.surfaces]
+    assert sorted(signs) == [[-1, -1], [1, 1]]
+    assert [point.surfaces for point in atlas.points] == [(0, 1)]
+    assert [surface.note for surface in atlas.surfaces] == ["", ""]
+
+
+def test_a_surface_says_which_singular_points_are_samples_of_curves() -> None:
+    atlas = explore(crossing_planes(), settings=SearchSettings(starts=40))
+    assert len(atlas.points) > 1
+    for point in atlas.points:
+        assert np.abs(point.point.u[1:]).max() < 1e-9
+        assert point.surfaces == (0, 1)
+        assert point.point.error < 1e-4
+    notes = [surface.note for surface in atlas.surfaces if surface.note]
+    assert sum(int(note.split()[0]) for note in notes) == len(atlas.points)
+    assert all("samples of curves of such points" in note for note in notes)
+
+
+def test_a_surface_says_at_how_many_places_singular_points_were_not_looked_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("bifurc.search.components.MOST_POINTS", 1)
+    atlas = explore(crossing_planes(), settings=SearchSettings(starts=40))
+    assert len(atlas.points) == 1
+    notes = " ".join(surface.note for surface in atlas.surfaces)
+    assert "places singular points were not looked for" in notes
+
+
+def crossing_planes() -> Problem:
+    """Two planes that meet in the x-axis."""
+    return FunctionProblem(lambda u: np.array([u[1] * u[2]]), [(-1, 1)] * 3)

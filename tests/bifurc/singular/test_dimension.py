@@ -1,0 +1,63 @@
+"""The dimension of components of solutions, which is not their corank."""
+
+import numpy as np
+import pytest
+
+from bifurc.function_problem import FunctionProblem
+from bifurc.problem import Problem
+from bifurc.singular.dimension import local_dimensions
+from linkages.closure.loop_closure import LoopClosure
+from linkages.loop import Loop
+from tests.bifurc.known_surfaces import general, planar, seeds, spherical
+
+COINCIDENT_AXES = LoopClosure(Loop((0, 1, 0, 1), (0, 0.7, 0, 0.7), (0, 0, 0, 0)))
+LOOPS = {  # name: loop, its mobility
+    "planar 5R": (planar(1, 1.2, 0.9, 1.3, 1.1), 2),
+    "planar 6R": (planar(1, 1.2, 0.9, 1.3, 1.1, 0.8), 3),
+    "planar 8R": (planar(1, 2, 1, 2, 1, 2, 1, 2), 5),
+    "spherical 5R": (spherical(0.9, 1.1, 1.3, 1.0, 1.2), 2),
+    "7R": (general(7), 1),
+    "8R": (general(8), 2),
+    "9R": (general(9), 3),
+    "12R": (general(12), 6),
+    "two pairs of coincident axes": (COINCIDENT_AXES, 2),
+}
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_every_seed_of_a_loop_lies_on_a_component_of_the_right_dimension(
+    name: str,
+) -> None:
+    problem, dimension = LOOPS[name]
+    local = local_dimensions(problem, seeds(problem, 60)[-200:])
+    assert len(local.dimension) > 20
+    assert np.all(local.dimension == dimension)
+    assert np.all(local.regular)
+
+
+def plane_and_line() -> Problem:
+    return FunctionProblem(
+        lambda u: np.array([u[2] * u[0], u[2] * u[1]]), [(-1, 1)] * 3
+    )
+
+
+def test_a_plane_and_the_line_through_it_have_their_own_dimensions() -> None:
+    points = np.array([[0.3, 0.2, 0.0], [0.0, 0.0, 0.4], [0.0, 0.0, 0.0]])
+    local = local_dimensions(plane_and_line(), points)
+    assert local.dimension.tolist() == [2, 1, 2]
+    assert local.regular.tolist() == [True, True, False]
+
+
+def test_the_dimension_of_a_shaky_plane_is_not_its_corank() -> None:
+    problem = FunctionProblem(lambda u: np.array([u[2] ** 2]), [(-1, 1)] * 3)
+    local = local_dimensions(problem, np.array([[0.3, 0.2, 0.0]]))
+    assert local.dimension[0] == 2
+    assert local.nullity[0] == 3
+    assert not local.regular[0]
+
+
+def test_a_curve_at_a_bifurcation_keeps_dimension_one() -> None:
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2)
+    local = local_dimensions(problem, np.array([[0.0, 0.0], [0.5, 0.0]]))
+    assert local.dimension.tolist() == [1, 1]
+    assert local.nullity.tolist() == [2, 1]

@@ -1,0 +1,64 @@
+"""Sections of known curves and surfaces with small spheres."""
+
+import numpy as np
+import pytest
+
+from bifurc.function_problem import FunctionProblem
+from bifurc.singular.sphere import is_on_surface, section
+
+
+def plane(function) -> FunctionProblem:
+    return FunctionProblem(lambda u: np.array([function(*u)]), [(-1, 1)] * 2)
+
+
+def space(function) -> FunctionProblem:
+    return FunctionProblem(lambda u: np.atleast_1d(function(*u)), [(-1, 1)] * 3)
+
+
+PLANE_AND_LINE = space(lambda x, y, z: np.array([z * x, z * y]))
+THREE_AXES = space(lambda x, y, z: np.array([x * y, y * z, z * x]))
+
+
+def test_a_circle_meets_two_lines_in_four_points():
+    cut = section(plane(lambda x, y: x * (x - y)), np.zeros(2), np.eye(2), 0.1)
+    assert cut.dimension == 1
+    assert not cut.doubtful
+    assert np.linalg.norm(cut.points, axis=1) == pytest.approx(0.1)
+    x, y = cut.points.T
+    assert len(cut.points) == 4
+    assert np.abs(x * (x - y)).max() < 1e-12
+
+
+def test_a_circle_about_an_isolated_point_meets_nothing():
+    cut = section(plane(lambda x, y: x * x + y * y), np.zeros(2), np.eye(2), 0.1)
+    assert (len(cut.points), cut.dimension) == (0, 0)
+
+
+def test_a_double_line_is_a_zero_but_for_rounding():
+    cut = section(plane(lambda x, y: (y - x) ** 2), np.zeros(2), np.eye(2), 0.1)
+    assert len(cut.points) == 2
+    assert cut.doubtful
+
+
+def test_equations_that_vanish_are_a_surface():
+    cut = section(plane(lambda x, y: 0.0 * x), np.zeros(2), np.eye(2), 0.1)
+    assert (len(cut.points), cut.dimension) == (0, 2)
+
+
+def test_a_sphere_meets_three_axes_in_six_points():
+    cut = section(THREE_AXES, np.zeros(3), np.eye(3), 0.1)
+    assert cut.dimension == 1
+    assert len(cut.points) == 6
+    assert np.sort(np.abs(cut.points), axis=1)[:, 2] == pytest.approx(0.1)
+
+
+def test_of_a_plane_and_a_line_the_points_are_those_of_the_line():
+    cut = section(PLANE_AND_LINE, np.zeros(3), np.eye(3), 0.1)
+    assert cut.dimension == 2
+    assert np.sort(cut.points[:, 2]) == pytest.approx([-0.1, 0.1])
+
+
+def test_regular_points_of_a_plane_are_on_a_surface_and_those_of_a_line_are_not():
+    assert is_on_surface(PLANE_AND_LINE, np.array([0.3, 0.2, 0.0]))
+    assert not is_on_surface(PLANE_AND_LINE, np.array([0.0, 0.0, 0.4]))
+    assert not is_on_surface(PLANE_AND_LINE, np.zeros(3))
