@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["difference", "into_box", "tree_box", "wrap"]
+__all__ = ["difference", "into_box", "tree_box", "whole_turns", "wrap"]
 
 SEAM = 1e-12  # share of a period: what lies nearer to an end of it lies at the end
 
@@ -17,9 +17,7 @@ def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
     """a - b (..., n), periodic unknowns taken to within half a period of zero."""
     gap = np.asarray(a, dtype=float) - b
     periodic = np.isfinite(periods)
-    if np.all(
-        periodic
-    ):  # as in every loop: picking columns would take most of the time
+    if np.all(periodic):  # every loop: picking columns would take most of the time
         gap -= periods * np.round(gap / periods)
     elif np.any(periodic):
         period = periods[periodic]
@@ -42,6 +40,15 @@ def wrap(points: np.ndarray, periods: np.ndarray, within: float = SEAM) -> np.nd
     return out
 
 
+def whole_turns(travel: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """Number of periods (n,) in ``travel`` (n,), to the nearest integer; 0 for unknowns
+    without a period."""
+    turns = np.zeros(len(periods), dtype=int)
+    periodic = np.isfinite(periods)
+    turns[periodic] = np.rint(travel[periodic] / periods[periodic])
+    return turns
+
+
 def tree_box(periods: np.ndarray) -> np.ndarray:
     """The periods (n,) as `scipy.spatial.cKDTree` takes them: 0 where there is none."""
     return np.where(np.isfinite(periods), periods, 0.0)
@@ -51,9 +58,7 @@ def into_box(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
     """``points`` (..., n) with periodic unknowns in [0, period)."""
     out = np.array(points, dtype=float)
     periodic = np.isfinite(periods)
-    if np.all(
-        periodic
-    ):  # as in every loop: picking columns would take most of the time
+    if np.all(periodic):  # every loop: picking columns would take most of the time
         out %= periods
         return np.where(out >= periods, 0.0, out)
     period = periods[periodic]

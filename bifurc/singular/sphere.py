@@ -18,8 +18,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from bifurc.numerics.null_spaces import NULL, null_spaces
 from bifurc.numerics.roots import bracketed_roots
-from bifurc.singular.dimension import NULL, local_dimensions, null_spaces
+from bifurc.singular.dimension import local_dimensions
 
 if TYPE_CHECKING:
     from bifurc.problem import Problem

@@ -18,8 +18,8 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from bifurc.numerics.corrector import correct_normal
+from bifurc.numerics.null_spaces import tangent_planes
 from bifurc.problem import Problem
-from bifurc.singular.dimension import tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
 __all__ = ["entrances", "path_length", "resample", "shortest_path"]

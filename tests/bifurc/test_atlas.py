@@ -18,7 +18,7 @@ from bifurc.graphs import arc_graph, transition_graph
 from bifurc.routes.route import find_route
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
-from bifurc.seeds import Completeness
+from bifurc.seeds import Completeness, Level
 from bifurc.singular.locate import Kind, SingularPoint
 from bifurc.torus import wrap
 
@@ -81,7 +81,7 @@ def draw(
         dead,
         np.empty((0, 2)),
         (),
-        Completeness("estimated", "", 0.0),
+        Completeness(Level.ESTIMATED, "", 0.0),
     )
 
 

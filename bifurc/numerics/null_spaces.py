@@ -1,0 +1,147 @@
+"""Null spaces of F': tangents of curves, tangent planes of surfaces, and the singular
+value decompositions that they come from.
+
+Singular values and residuals are over the problem's magnitude throughout.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import issparse
+
+from bifurc.numerics.bordered import Bordered
+from bifurc.problem import Problem
+
+__all__ = [
+    "LARGE",
+    "NULL",
+    "Decomposition",
+    "decompose",
+    "null_spaces",
+    "null_vector",
+    "tangent_planes",
+]
+
+# unknowns beyond which tangents come from bordered systems instead of an SVD
+LARGE = 64
+NULL = 1e-7  # singular value below which a direction belongs to the null space
+TINY = 1e-300  # may stand in a denominator where a singular value is zero
+
+
+# --- tangents -------------------------------------------------------------------------
+
+
+def null_vector(
+    problem: Problem, point: np.ndarray, along: np.ndarray | None = None
+) -> np.ndarray:
+    """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
+
+    It has no sign of its own: it is turned to agree with ``along`` where that is given.
+    Where the null space is larger, ``along`` is projected on it. A large problem is
+    bordered instead of decomposed.
+    """
+    jacobian = problem.jacobian(point)
+    if problem.n > LARGE or issparse(jacobian):
+        at_random = np.random.default_rng(0).normal(size=problem.n)
+        border = at_random if along is None else along
+        first = Bordered(jacobian, border / np.linalg.norm(border)).null_vector()
+        return Bordered(jacobian, first).null_vector()
+    _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
+    values = _padded(sigma, problem.n)
+    null_space: np.ndarray = right[values <= max(values[-1], 1e-9 * values[0])]
+    weakest: np.ndarray = null_space[-1]
+    if along is None:
+        return weakest
+    projected: np.ndarray = null_space.T @ (null_space @ along)
+    length = np.linalg.norm(projected)
+    agrees = length > 1e-3 * np.linalg.norm(along)
+    return projected / length if agrees else weakest
+
+
+def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Singular values (k, n) of F' at points (k, n), padded with zeros, and right
+    singular vectors (k, n, n), one a row."""
+    _, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude)
+    return _padded(sigma, problem.n), right
+
+
+def tangent_planes(
+    problem: Problem, points: np.ndarray, near: np.ndarray
+) -> np.ndarray:
+    """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k,
+    n), turned as little as possible against the bases ``near`` (k, n, 2) or (n, 2).
+
+    Where the null space is larger, at singular points, the part of it that is nearest
+    to ``near`` is taken.
+    """
+    sigma, right = null_spaces(problem, points)
+    nullity = np.maximum(np.count_nonzero(sigma < NULL, axis=1), 2)
+    most = int(nullity.max(initial=2))
+    is_null = np.arange(most, 0, -1) <= nullity[:, None]  # (k, most)
+    null = right[:, -most:] * is_null[:, :, None]
+    left, _, across = np.linalg.svd(null @ near, full_matrices=False)
+    planes: np.ndarray = np.swapaxes(null, 1, 2) @ left @ across
+    return planes
+
+
+def _padded(sigma: np.ndarray, n: int) -> np.ndarray:
+    """Singular values (..., n), zeros after those (..., min(m, n)) of an m x n
+    matrix."""
+    values = np.zeros((*sigma.shape[:-1], n))
+    values[..., : sigma.shape[-1]] = sigma
+    return values
+
+
+# --- decompositions -------------------------------------------------------------------
+
+
+@dataclass
+class Decomposition:
+    """F and F' = U diag(sigma) V^T at k points, both over the problem's magnitude.
+
+    ``residuals`` (k, m), ``left`` (k, m, m) with the columns u_i, ``sigma`` (k, min(m,
+    n)) in decreasing order, ``right`` (k, n, n) with the rows v_i.
+    """
+
+    residuals: np.ndarray
+    left: np.ndarray
+    sigma: np.ndarray
+    right: np.ndarray
+
+    def components(self, i: int) -> np.ndarray:
+        """u_i . F (k,): what is left of one combination of the equations."""
+        components: np.ndarray = np.einsum(
+            "km,km->k", self.left[:, :, i], self.residuals
+        )
+        return components
+
+    def newton_steps(self, rank: int, floor: float = 0.0) -> np.ndarray:
+        """Gauss-Newton steps (k, n) of a given rank: - sum_{i <= rank} v_i (u_i . F) /
+        sigma_i.
+
+        They go across the null space and not along it. A singular value below ``floor``
+        times the largest is taken for that.
+        """
+        lowest = np.maximum(floor * self.sigma[:, :1], TINY)
+        divisors = np.maximum(self.sigma[:, :rank], lowest)
+        strong = self.left[:, :, :rank]
+        across = np.einsum("kmi,km->ki", strong, self.residuals) / divisors
+        steps: np.ndarray = -np.einsum("kin,ki->kn", self.right[:, :rank], across)
+        return steps
+
+    def replace(self, rows: np.ndarray, others: Decomposition) -> None:
+        """Put ``others`` in the place of the points ``rows``."""
+        self.residuals[rows] = others.residuals
+        self.left[rows] = others.left
+        self.sigma[rows] = others.sigma
+        self.right[rows] = others.right
+
+
+def decompose(problem: Problem, points: np.ndarray) -> Decomposition:
+    """F and the singular value decomposition of F' at points (k, n)."""
+    residuals = problem.residuals(points) / problem.magnitude
+    jacobians = problem.jacobians(points) / problem.magnitude
+    left, sigma, right = np.linalg.svd(jacobians)
+    return Decomposition(residuals, left, sigma, right)
