@@ -15,7 +15,7 @@ SEAM = 1e-12  # share of a period: what lies nearer to an end of it lies at the 
 
 def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
     """a - b (..., n), periodic unknowns taken to within half a period of zero."""
-    gap = np.asarray(a, dtype=float) - b
+    gap: np.ndarray = np.asarray(a, dtype=float) - b
     periodic = np.isfinite(periods)
     if np.all(periodic):  # every loop: picking columns would take most of the time
         gap -= periods * np.round(gap / periods)

@@ -222,7 +222,9 @@ def _first_choice(
     count = np.concatenate([[0.0], np.cumsum(np.diff(grid) * densities)])
     count *= bound / (CLOSER * SHARE)
     points = int(min(np.ceil(count[-1]), MOST)) + 2
-    return np.interp(np.linspace(0.0, count[-1], points), count, grid)
+    equal_shares = np.linspace(0.0, count[-1], points)
+    arclengths: np.ndarray = np.interp(equal_shares, count, grid)
+    return arclengths
 
 
 def _parts(s: np.ndarray) -> Iterator[np.ndarray]:

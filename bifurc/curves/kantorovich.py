@@ -55,7 +55,9 @@ class Samples:
     @cached_property
     def distances(self) -> np.ndarray:
         """Distances of neighbours (k - 1,)."""
-        return np.linalg.norm(np.diff(self.points, axis=0), axis=1)
+        steps = np.diff(self.points, axis=0)
+        distances: np.ndarray = np.linalg.norm(steps, axis=1)
+        return distances
 
     @cached_property
     def reach(self) -> np.ndarray:

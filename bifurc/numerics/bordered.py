@@ -22,7 +22,7 @@ PIVOT = 0.1  # a diagonal entry will do as a pivot from this share of the larges
 
 def as_dense(matrix: np.ndarray | sparray) -> np.ndarray:
     """A dense or sparse matrix as an array."""
-    dense = matrix.toarray() if issparse(matrix) else matrix
+    dense = matrix if isinstance(matrix, np.ndarray) else matrix.toarray()
     return np.asarray(dense, dtype=float)
 
 
@@ -62,7 +62,8 @@ class Bordered:
     def null_vector(self) -> np.ndarray:
         """Unit vector (n,) along d with F' d = 0 and t . d > 0."""
         vector = self.solve(np.zeros(self._rows), 1.0)
-        return vector / np.linalg.norm(vector)
+        unit: np.ndarray = vector / np.linalg.norm(vector)
+        return unit
 
 
 def _solver(
@@ -95,7 +96,8 @@ def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solv
     def solve(right: np.ndarray) -> np.ndarray:
         right = right.copy()
         right[-1] *= weight
-        return factors.solve(right)
+        solution: np.ndarray = factors.solve(right)
+        return solution
 
     return solve
 
@@ -112,7 +114,9 @@ def _lu_solver(matrix: np.ndarray) -> Solver | None:
         return None
 
     def solve(right: np.ndarray) -> np.ndarray:
-        return lapack.dgetrs(factors, order, right)[0]
+        solution: np.ndarray
+        solution, _ = lapack.dgetrs(factors, order, right)
+        return solution
 
     return solve
 

@@ -60,9 +60,7 @@ def test_a_start_off_the_curve_is_corrected_and_one_without_a_curve_is_open(elli
     nothing = FunctionProblem(
         lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 1.0]), [(-3, 3)] * 2
     )
-    march = march_by_collocation(
-        nothing, np.ones(2), np.array([0.6, -0.8]), settings
-    )
+    march = march_by_collocation(nothing, np.ones(2), np.array([0.6, -0.8]), settings)
     assert march.status is MarchStatus.OPEN
     assert not len(march.pieces)
     assert march.residuals[-1] * nothing.magnitude >= 1.0
