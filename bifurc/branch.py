@@ -241,10 +241,7 @@ class Branch:
     @cached_property
     def _samples(self) -> _Samples:
         """Samples of every piece, for the search of feet."""
-        on_pieces = (
-            self.breaks[:-1, None]
-            + np.arange(SAMPLES) * (np.diff(self.breaks) / SAMPLES)[:, None]
-        )
+        on_pieces = self.places(np.arange(SAMPLES) / SAMPLES)
         arclengths = np.append(on_pieces.ravel(), self.length)
         return _Samples.of(self(arclengths), arclengths, self.periods)
 
