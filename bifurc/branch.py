@@ -122,18 +122,22 @@ class Branch:
     def places(self, fractions: np.ndarray) -> np.ndarray:
         """Arclengths (p, k) at ``fractions`` (k,) of each of the p pieces, from 0 where
         it begins to 1 where it ends."""
-        lengths = np.diff(self.breaks)
-        places: np.ndarray = self.breaks[:-1, None] + lengths[:, None] * fractions
+        begins = self.breaks[:-1, None]
+        lengths = np.diff(self.breaks)[:, None]
+        places: np.ndarray = begins + lengths * fractions
         return places
 
     def reversed(self) -> Branch:
         """The same curve run the other way."""
         signs = (-1.0) ** np.arange(self.pieces.shape[1])
+        pieces = self.pieces * signs[:, None]
+        centers = self.length - self.centers
+        breaks = self.length - self.breaks
         return Branch(
-            pieces=(self.pieces * signs[:, None])[::-1],
-            centers=(self.length - self.centers)[::-1],
+            pieces=pieces[::-1],
+            centers=centers[::-1],
             radii=self.radii[::-1],
-            breaks=(self.length - self.breaks)[::-1],
+            breaks=breaks[::-1],
             residuals=self.residuals[::-1],
             periods=self.periods,
             outcome=self.outcome,
@@ -167,13 +171,13 @@ class Branch:
             )
             s[is_close] = feet_s.reshape(-1, count)
             distances[is_close] = feet_distances.reshape(-1, count)
-        best = np.argmin(distances, axis=1)
-        rows = np.arange(len(points))
-        distance, s = distances[rows, best], s[rows, best]
-        for i in np.flatnonzero(is_close & (distance > ON_THE_CURVE * spacing)):
-            distance[i], s[i] = self._nearest_on_all_passes(
-                points[i], distance[i], s[i]
-            )
+        best = (np.arange(len(points)), np.argmin(distances, axis=1))
+        distance = distances[best]
+        s = s[best]
+        in_doubt = is_close & (distance > ON_THE_CURVE * spacing)
+        for i in np.flatnonzero(in_doubt):
+            foot = self._nearest_on_all_passes(points[i], distance[i], s[i])
+            distance[i], s[i] = foot
         return distance, s
 
     def _nearest_on_all_passes(
@@ -199,15 +203,19 @@ class Branch:
     def passes(self, point: np.ndarray, within: float) -> np.ndarray:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below
         ``within``, in order."""
+        point = np.asarray(point, dtype=float)
         samples = self._samples
         starts = samples.within(point, 2.5 * samples.spacing + within)
-        repeated = np.tile(np.asarray(point, dtype=float), (len(starts), 1))
+        repeated = np.tile(point, (len(starts), 1))
         feet_s, distances = self._feet(
             repeated, starts, samples.spacing, PATIENT_FOOT_STEPS
         )
         s = np.sort(feet_s[distances < within])
-        before_first = s[-1] - self.length if self.closed and len(s) > 1 else -np.inf
-        return s[np.diff(s, prepend=before_first) > SAME_PASS]
+        before_first = -np.inf
+        if self.closed and len(s) > 1:
+            before_first = s[-1] - self.length
+        steps = np.diff(s, prepend=before_first)
+        return s[steps > SAME_PASS]
 
     def _feet(
         self, points: np.ndarray, s: np.ndarray, reach: float, steps: int
@@ -224,16 +232,16 @@ class Branch:
         """The curve as the kernels of `bifurc.pieces` take it."""
         travel = self._travel if self.closed else np.empty(0)
         arrays = (self.breaks, self.centers, self.radii, self.pieces, travel)
-        return tuple(
-            np.require(array, dtype=float, requirements=["C", "W"]) for array in arrays
-        )
+        return tuple(np.require(array, float, ["C", "W"]) for array in arrays)
 
     @cached_property
     def _travel(self) -> np.ndarray:
         """What each unknown (n,) gains from the begin to the end of the curve."""
         ends = [0, -1]
-        x = (self.breaks[ends] - self.centers[ends]) / self.radii[ends]
-        powers = x[:, None] ** np.arange(self.pieces.shape[1])
+        offsets = self.breaks[ends] - self.centers[ends]
+        x = offsets / self.radii[ends]
+        exponents = np.arange(self.pieces.shape[1])
+        powers = x[:, None] ** exponents
         begin, end = np.einsum("ek,ekn->en", powers, self.pieces[ends])
         travel: np.ndarray = end - begin
         return travel
@@ -264,7 +272,8 @@ class _Samples:
         from scipy.spatial import cKDTree
 
         tree = cKDTree(into_box(points, periods), boxsize=tree_box(periods))
-        return _Samples(tree, arclengths, np.diff(arclengths).max(), periods)
+        spacing = np.diff(arclengths).max()
+        return _Samples(tree, arclengths, spacing, periods)
 
     def nearest(
         self, points: np.ndarray, count: int, reach: float
@@ -272,13 +281,17 @@ class _Samples:
         """Distances and arclengths (k, count) of the samples nearest to points (k, n);
         the distance is infinite where none is in ``reach``."""
         inside = into_box(points, self.periods)
-        query = self.tree.query(inside, k=count, distance_upper_bound=reach)
-        distances, numbers = (np.reshape(part, (len(points), count)) for part in query)
+        distances, numbers = self.tree.query(
+            inside, k=count, distance_upper_bound=reach
+        )
+        shape = (len(points), count)
         last = len(self.arclengths) - 1  # the tree gives a larger one for none in reach
-        return distances, self.arclengths[np.minimum(numbers, last)]
+        arclengths = self.arclengths[np.minimum(numbers, last)]
+        return np.reshape(distances, shape), np.reshape(arclengths, shape)
 
     def within(self, point: np.ndarray, reach: float) -> np.ndarray:
         """Arclengths (j,) of all samples in ``reach`` of a point (n,)."""
         inside = into_box(point, self.periods)
-        near: np.ndarray = self.arclengths[self.tree.query_ball_point(inside, reach)]
+        numbers = self.tree.query_ball_point(inside, reach)
+        near: np.ndarray = self.arclengths[numbers]
         return near

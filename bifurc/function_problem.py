@@ -32,13 +32,15 @@ class NumericalProblem(Problem):
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,), by central differences of F'."""
-        step = HESSIAN_STEP * (1.0 + np.abs(point))
-        shifts = np.diag(step)
+        steps = HESSIAN_STEP * (1.0 + np.abs(point))
+        shifts = np.diag(steps)
         upper = self.jacobians(point + shifts)
         lower = self.jacobians(point - shifts)
-        by_unknown = (upper - lower) / (2 * step[:, None, None])
+        widths = 2 * steps[:, None, None]
+        by_unknown = (upper - lower) / widths
         hessian = np.moveaxis(by_unknown, 0, -1)
-        symmetric: np.ndarray = 0.5 * (hessian + np.swapaxes(hessian, 1, 2))
+        transposed = np.swapaxes(hessian, 1, 2)
+        symmetric: np.ndarray = 0.5 * (hessian + transposed)
         return symmetric
 
     def march(
@@ -88,18 +90,21 @@ class FunctionProblem(NumericalProblem):
     ):
         self.bounds = _checked_bounds(bounds)
         n = len(self.bounds)
-        self.names = tuple(names) if names else tuple(f"u{i + 1}" for i in range(n))
-        self.units = tuple(units) if units else ("",) * n
-        without = np.full(n, np.inf)
-        self.periods = without if periods is None else np.array(periods, dtype=float)
+        self.names = tuple(names or (f"u{i + 1}" for i in range(n)))
+        self.units = tuple(units or ("",) * n)
+        self.periods = np.full(n, np.inf)
+        if periods is not None:
+            self.periods = np.array(periods, dtype=float)
         self._check_lengths(n)
         self._function = function
         self._jacobian = jacobian
 
-        low = np.where(np.isfinite(self.bounds[:, 0]), self.bounds[:, 0], -1.0)
-        high = np.where(np.isfinite(self.bounds[:, 1]), self.bounds[:, 1], 1.0)
+        low, high = self.bounds.T
+        low = np.where(np.isfinite(low), low, -1.0)
+        high = np.where(np.isfinite(high), high, 1.0)
         self.scale = float(np.median(high - low)) / 4.0
-        probes = np.random.default_rng(0).uniform(low, high, (PROBES, n))
+        rng = np.random.default_rng(0)
+        probes = rng.uniform(low, high, (PROBES, n))
         self._check_value(probes[0])
         self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
         sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
@@ -107,8 +112,7 @@ class FunctionProblem(NumericalProblem):
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
-        values = [self._function(point) for point in np.atleast_2d(points)]
-        return np.array(values, dtype=float)
+        return np.array([self._value(point) for point in np.atleast_2d(points)])
 
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it
@@ -155,10 +159,15 @@ class FunctionProblem(NumericalProblem):
         for i in range(self.n):
             step = np.zeros(self.n)
             step[i] = DIFFERENCE_STEP * (1.0 + abs(point[i]))
-            upper = np.asarray(self._function(point + step), dtype=float)
-            lower = np.asarray(self._function(point - step), dtype=float)
-            columns.append((upper - lower) / (2 * step[i]))
+            upper = self._value(point + step)
+            lower = self._value(point - step)
+            width = 2 * step[i]
+            columns.append((upper - lower) / width)
         return np.column_stack(columns)
+
+    def _value(self, point: np.ndarray) -> np.ndarray:
+        """F (m,) at one point (n,)."""
+        return np.asarray(self._function(point), dtype=float)
 
     # --- checks -----------------------------------------------------------------------
 
@@ -181,8 +190,9 @@ class FunctionProblem(NumericalProblem):
 
     def _check_value(self, probe: np.ndarray) -> None:
         """Raise `ProblemError` unless the function gives a finite vector."""
-        value = np.asarray(self._function(probe), dtype=float)
-        if value.ndim != 1 or not np.all(np.isfinite(value)):
+        value = self._value(probe)
+        is_finite = np.all(np.isfinite(value))
+        if value.ndim != 1 or not is_finite:
             allowed = "a vector of finite numbers"
             raise ProblemError("value of the function", value, allowed)
 
@@ -190,9 +200,11 @@ class FunctionProblem(NumericalProblem):
 def _checked_bounds(bounds: Sequence[Sequence[float]]) -> np.ndarray:
     """The bounds as an array (n, 2)."""
     checked = np.array(bounds, dtype=float)
-    has_rows = checked.ndim == 2 and checked.shape[1] == 2
-    if not has_rows or not np.all(checked[:, 0] < checked[:, 1]):
-        allowed = "rows of (low, high) with low < high"
+    allowed = "rows of (low, high) with low < high"
+    if checked.ndim != 2 or checked.shape[1] != 2:
+        raise ProblemError("bounds", checked.tolist(), allowed)
+    low, high = checked.T
+    if not np.all(low < high):
         raise ProblemError("bounds", checked.tolist(), allowed)
     return checked
 

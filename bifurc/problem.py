@@ -94,11 +94,12 @@ class March:
         unknowns."""
         coefficients = np.array([piece.coefficients for piece in pieces])
         radii = np.array([piece.length / 2 for piece in pieces])
-        radii_before = np.concatenate([[0.0], radii])[:-1]
+        steps = radii.copy()
+        steps[1:] += radii[:-1]
         return March(
             status=status,
             pieces=coefficients.reshape(-1, order + 1, n),
-            steps=radii + radii_before,
+            steps=steps,
             radii=radii,
             residuals=np.array([piece.residual for piece in pieces]),
         )
@@ -111,12 +112,13 @@ class March:
         return replace(nothing, residuals=np.array([gap]))
 
     def __repr__(self) -> str:
-        order, n = self.pieces.shape[1] - 1, self.pieces.shape[2]
-        reach = self.steps.sum() + self.radii[-1:].sum()
+        count, powers, n = self.pieces.shape
+        last_radius = self.radii[-1] if count else 0.0
+        arclength = self.steps.sum() + last_radius
+        residual = self.residuals.max(initial=0.0)
         return (
-            f"<March {self.status.name}: {len(self.pieces)} pieces of order {order} in "
-            f"{n} unknowns, arclength {reach:.6g}, "
-            f"largest residual {self.residuals.max(initial=0.0):.2g}>"
+            f"<March {self.status.name}: {count} pieces of order {powers - 1} in "
+            f"{n} unknowns, arclength {arclength:.6g}, largest residual {residual:.2g}>"
         )
 
 
@@ -174,10 +176,18 @@ class Problem(ABC):
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
 
+    def relative_residuals(self, points: np.ndarray) -> np.ndarray:
+        """F over the magnitude (k, m) at points (k, n)."""
+        return self.residuals(points) / self.magnitude
+
+    def relative_jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' over the magnitude (k, m, n) at points (k, n)."""
+        return self.jacobians(points) / self.magnitude
+
     def gaps(self, points: np.ndarray) -> np.ndarray:
-        """Relative residuals |F| / magnitude (k,) at points (k, n)."""
-        gaps: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
-        return gaps / self.magnitude
+        """|F| over the magnitude (k,) at points (k, n)."""
+        sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
+        return sizes / self.magnitude
 
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None

@@ -26,11 +26,13 @@ def random_seeds(problem: Problem, rng: np.random.Generator, count: int) -> Seed
     low, high = _region(problem)
     starts = rng.uniform(low, high, (count, problem.n))
     points, gaps = problem.project(starts)
-    is_inside = (points >= problem.bounds[:, 0]) & (points <= problem.bounds[:, 1])
-    is_solution = (gaps < CLOSED) & np.all(is_inside, axis=1)
+    lowest, highest = problem.bounds.T
+    is_inside = np.all((points >= lowest) & (points <= highest), axis=1)
+    is_solution = (gaps < CLOSED) & is_inside
+    solutions = points[is_solution]
     return Seeds(
-        points=points[is_solution],
-        random=np.ones(int(is_solution.sum()), dtype=bool),
+        points=solutions,
+        random=np.ones(len(solutions), dtype=bool),
         gaps=gaps[~is_solution],
         missed=points[~is_solution],
     )
@@ -43,7 +45,9 @@ def _region(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
     high = np.where(np.isfinite(high), high, problem.scale)
     periodic = np.isfinite(problem.periods)
     half = 0.5 * problem.periods
-    return np.where(periodic, -half, low), np.where(periodic, half, high)
+    low = np.where(periodic, -half, low)
+    high = np.where(periodic, half, high)
+    return low, high
 
 
 def missed_probability(hits: Sequence[int]) -> float:

@@ -61,9 +61,12 @@ class Seeds:
     def with_constructed(self, points: np.ndarray) -> Seeds:
         """These seeds and after them further ``points`` (k, n) that solve the
         system."""
-        all_points = np.concatenate([self.points, points])
-        random = np.append(self.random, np.zeros(len(points), dtype=bool))
-        return replace(self, points=all_points, random=random)
+        constructed = np.zeros(len(points), dtype=bool)
+        return replace(
+            self,
+            points=np.concatenate([self.points, points]),
+            random=np.concatenate([self.random, constructed]),
+        )
 
 
 @dataclass(frozen=True)

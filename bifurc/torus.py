@@ -21,7 +21,8 @@ def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
         gap -= periods * np.round(gap / periods)
     elif np.any(periodic):
         period = periods[periodic]
-        gap[..., periodic] -= period * np.round(gap[..., periodic] / period)
+        turns = np.round(gap[..., periodic] / period)
+        gap[..., periodic] -= period * turns
     return gap
 
 
@@ -34,9 +35,10 @@ def wrap(points: np.ndarray, periods: np.ndarray, within: float = SEAM) -> np.nd
     out = np.array(points, dtype=float)
     periodic = np.isfinite(periods)
     period = periods[periodic]
-    turned = out[..., periodic] - period * np.round(out[..., periodic] / period)
-    at_the_seam = np.abs(turned) >= (0.5 - within) * period
-    out[..., periodic] = np.where(at_the_seam, 0.5 * period, turned)
+    angles = out[..., periodic]
+    angles -= period * np.round(angles / period)
+    at_the_seam = np.abs(angles) >= (0.5 - within) * period
+    out[..., periodic] = np.where(at_the_seam, 0.5 * period, angles)
     return out
 
 
@@ -45,7 +47,8 @@ def whole_turns(travel: np.ndarray, periods: np.ndarray) -> np.ndarray:
     without a period."""
     turns = np.zeros(len(periods), dtype=int)
     periodic = np.isfinite(periods)
-    turns[periodic] = np.rint(travel[periodic] / periods[periodic])
+    periods_gained = travel[periodic] / periods[periodic]
+    turns[periodic] = np.rint(periods_gained)
     return turns
 
 

@@ -109,12 +109,17 @@ class Certificate:
         """The certificate that `as_values` wrote down."""
         return Certificate(
             status=CertificateStatus(values["status"]),
-            gaps=np.array(values["gaps"]).reshape(-1, 2),
-            blurred=np.array(values["blurred"]).reshape(-1, 2),
+            gaps=_intervals(values["gaps"]),
+            blurred=_intervals(values["blurred"]),
             points=values["points"],
             bound=values["bound"],
             reversals=np.array(values["reversals"]),
         )
+
+
+def _intervals(rows: list[list[float]]) -> np.ndarray:
+    """Intervals (k, 2) from their begins and ends, also where there are none."""
+    return np.array(rows).reshape(-1, 2)
 
 
 def certify_branch(
@@ -129,7 +134,8 @@ def certify_branch(
     """
     bound = problem.curvature_bound()
     record = _Record()
-    if bound is None or profile.rank < problem.n - 1 or not branch.length > 0:
+    is_curve = branch.length > 0 and profile.rank >= problem.n - 1
+    if bound is None or not is_curve:
         record.add_gap(0.0, branch.length)
         return record.certificate(np.inf, CertificateStatus.NOT_CERTIFIED)
     handover = HANDOVER * problem.scale
@@ -164,10 +170,12 @@ class _Record:
         """Neighbouring samples were looked at; where they are far apart is a gap, or a
         blur, if F' is singular there to within rounding and it is not too wide."""
         is_dark = samples.blurred[1:] | samples.blurred[:-1]
+        clear = _runs(samples.s, samples.far & ~is_dark)
         dark = _runs(samples.s, samples.far & is_dark)
-        is_narrow = dark[:, 1] - dark[:, 0] <= widest_blur
+        widths = dark[:, 1] - dark[:, 0]
+        is_narrow = widths <= widest_blur
         self.points += len(samples.s)
-        self._gaps.append(_runs(samples.s, samples.far & ~is_dark))
+        self._gaps.append(clear)
         self._gaps.append(dark[~is_narrow])
         self._blurred.append(dark[is_narrow])
         self._reversals.append(samples.reversals)
@@ -197,8 +205,12 @@ def _stretches(
     on_circle = [*stops, stops[0] + branch.length]
     on_line = [-handover, *stops, branch.length + handover]
     edges = on_circle if branch.closed else on_line
-    inner = [(a + handover, b - handover) for a, b in pairwise(edges)]
-    return [(low, high) for low, high in inner if high > low]
+    stretches = []
+    for left, right in pairwise(edges):
+        low, high = left + handover, right - handover
+        if high > low:
+            stretches.append((low, high))
+    return stretches
 
 
 def _first_choice(
@@ -213,16 +225,20 @@ def _first_choice(
     s = profile.arclength.ravel()
     sigma = profile.smallest.ravel()
     if branch.closed:
-        s = np.concatenate([s - branch.length, s, s + branch.length])
+        turn = branch.length
+        s = np.concatenate([s - turn, s, s + turn])
         sigma = np.tile(sigma, 3)
     between = s[(s > low) & (s < high)]
     grid = np.unique(np.concatenate([[low], between, [high]]))
     local = np.maximum(np.interp(grid, s, sigma), RESOLVED)
-    densities = 0.5 * (1.0 / local[1:] + 1.0 / local[:-1])
-    count = np.concatenate([[0.0], np.cumsum(np.diff(grid) * densities)])
+    inverse = 1.0 / local
+    mean = 0.5 * (inverse[1:] + inverse[:-1])
+    integral = np.cumsum(np.diff(grid) * mean)
+    count = np.concatenate([[0.0], integral])  # points from ``low`` on
     count *= bound / (CLOSER * SHARE)
-    points = int(min(np.ceil(count[-1]), MOST)) + 2
-    equal_shares = np.linspace(0.0, count[-1], points)
+    total = count[-1]
+    points = int(min(np.ceil(total), MOST)) + 2
+    equal_shares = np.linspace(0.0, total, points)
     arclengths: np.ndarray = np.interp(equal_shares, count, grid)
     return arclengths
 
@@ -252,16 +268,21 @@ def _between(samples: Samples, wide: np.ndarray) -> np.ndarray:
     their balls ask for."""
     distances = samples.distances[wide] + 1e-300
     reach = np.maximum(samples.reach[wide], distances / MOST_BETWEEN)
-    parts = np.clip(np.ceil(MORE * distances / reach), 2, MOST_BETWEEN).astype(int)
+    wanted = np.ceil(MORE * distances / reach)
+    parts = np.clip(wanted, 2, MOST_BETWEEN).astype(int)
     divisions = []
     for i, count in zip(wide, parts, strict=True):
-        low, high = samples.s[i], samples.s[i + 1]
-        divisions.append(np.linspace(low, high, count + 1)[1:-1])
+        low, high = samples.s[i : i + 2]
+        ends_and_inner = np.linspace(low, high, count + 1)
+        divisions.append(ends_and_inner[1:-1])
     return np.concatenate(divisions)
 
 
 def _runs(s: np.ndarray, where: np.ndarray) -> np.ndarray:
     """Begin and end (r, 2) of every run of consecutive intervals ``where`` (k - 1,)
     between the arclengths s (k,)."""
-    edges = np.diff(np.concatenate([[False], where, [False]]).astype(int))
-    return np.column_stack([s[edges == 1], s[edges == -1]])
+    inside = np.concatenate([[0], where, [0]])
+    change = np.diff(inside)
+    begins = s[change == 1]
+    ends = s[change == -1]
+    return np.column_stack([begins, ends])

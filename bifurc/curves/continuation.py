@@ -119,8 +119,10 @@ def _march(problem: Problem, track: Track, settings: TraceSettings) -> March:
 
 def _is_clear(problem: Problem, march: March, settings: TraceSettings) -> bool:
     """Whether the last step of a march is long enough for the least caution."""
+    if not len(march.radii):
+        return False
     shortest = max(CAUTIOUS[0].shortest, settings.shortest) * problem.scale
-    return bool(len(march.radii) and march.radii[-1] > CLEAR * shortest)
+    return bool(march.radii[-1] > CLEAR * shortest)
 
 
 def _overcome_stall(

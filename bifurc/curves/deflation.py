@@ -42,28 +42,32 @@ class _WithNullVector(NumericalProblem):
         self._normal = np.vstack([a, t])
         self.names = problem.names * 2
         self.units = problem.units + ("",) * n
-        self.periods = np.concatenate([problem.periods, np.full(n, np.inf)])
-        self.bounds = np.full((2 * n, 2), [-np.inf, np.inf])
+        endless = np.full(n, np.inf)
+        self.periods = np.concatenate([problem.periods, endless])
+        self.bounds = np.tile([-np.inf, np.inf], (2 * n, 1))
         self.magnitude = problem.magnitude
         self.scale = problem.scale
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         u, v = np.split(points, 2, axis=1)
-        product = np.einsum("kmn,kn->km", self._problem.jacobians(u), v)
-        border = (v @ self._normal.T - [1.0, 0.0]) * self.magnitude
-        return np.concatenate([self._problem.residuals(u), product, border], axis=1)
+        residuals = self._problem.residuals(u)
+        jacobians = self._problem.jacobians(u)
+        products = np.einsum("kmn,kn->km", jacobians, v)
+        borders = (v @ self._normal.T - [1.0, 0.0]) * self.magnitude
+        return np.concatenate([residuals, products, borders], axis=1)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """Rows [F', 0], [F'' v, F'] and [0, (a, t)]."""
         u, v = np.split(points, 2, axis=1)
-        first = self._problem.jacobians(u)
-        k, m, n = first.shape
+        jacobians = self._problem.jacobians(u)
+        k, m, n = jacobians.shape
         out = np.zeros((k, 2 * m + 2, 2 * n))
-        out[:, :m, :n] = first
-        out[:, m : 2 * m, n:] = first
+        equations, products, borders = np.split(out, [m, 2 * m], axis=1)
+        equations[:, :, :n] = jacobians
+        products[:, :, n:] = jacobians
         for i in range(k):
-            out[i, m : 2 * m, :n] = self._problem.hessian(u[i]) @ v[i]
-        out[:, 2 * m :, n:] = self._normal * self.magnitude
+            products[i, :, :n] = self._problem.hessian(u[i]) @ v[i]
+        borders[:, :, n:] = self._normal * self.magnitude
         return out
 
 
@@ -124,7 +128,8 @@ class Deflated(NumericalProblem):
     ) -> tuple[np.ndarray, np.ndarray]:
         """The unit vector t (n,) of the null space nearest to ``tangent``, and a (n,),
         the one across it."""
-        right = np.linalg.svd(self.jacobians(point[None])[0], full_matrices=True)[2]
+        jacobian = self.jacobians(point[None])[0]
+        _, _, right = np.linalg.svd(jacobian)
         null_space = right[self.n - 2 :]
         t = null_space.T @ (null_space @ tangent)
         t /= np.linalg.norm(t)
@@ -147,7 +152,8 @@ def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | No
     cut = section(problem, point, null_space, SECTION_RADIUS * problem.scale)
     if cut.dimension != 1 or len(cut.points) != 2:
         return None
-    if singular_values(problem, cut.points)[:, problem.n - 2].max() > LOWER:
+    sigma = singular_values(problem, cut.points)
+    if sigma[:, problem.n - 2].max() > LOWER:
         return None
     chord: np.ndarray = cut.points[1] - cut.points[0]
     length = np.linalg.norm(chord)

@@ -80,16 +80,19 @@ def _pieces_near(
 ) -> np.ndarray:
     """Numbers of the pieces, from ``first`` on, that may pass ``point`` (n,)."""
     middles = track.pieces[first:, 0]
-    distances = np.linalg.norm(problem.difference(middles, point), axis=1)
-    near: np.ndarray = first + np.flatnonzero(distances < 1.1 * track.radii[first:])
-    return near
+    radii = track.radii[first:]
+    gaps = problem.difference(middles, point)
+    is_near = np.linalg.norm(gaps, axis=1) < 1.1 * radii
+    numbers: np.ndarray = first + np.flatnonzero(is_near)
+    return numbers
 
 
 def _foot(problem: Problem, piece: np.ndarray, point: np.ndarray) -> _Foot:
     """The foot of ``point`` (n,) on a piece (order + 1, n), by Newton's method."""
     grid = np.linspace(-1.0, 1.0, 17)
     offsets = problem.difference(points_on_piece(piece, grid), point)
-    x = grid[np.argmin(np.linalg.norm(offsets, axis=1))]
+    distances = np.linalg.norm(offsets, axis=1)
+    x = grid[np.argmin(distances)]
     for _ in range(FOOT_STEPS):
         on_piece, slope = point_and_slope(piece, x)
         offset = problem.difference(on_piece, point)
@@ -105,7 +108,8 @@ def _is_same_pass(
 ) -> bool:
     """Whether the curve at the foot of a place is at that place again, and runs in the
     same direction."""
-    if not foot.slope @ place.tangent > SAME_WAY * np.linalg.norm(foot.slope):
+    speed = np.linalg.norm(foot.slope)
+    if not foot.slope @ place.tangent > SAME_WAY * speed:
         return False
     distance = np.linalg.norm(foot.offset)
     if distance > RESOLVED * problem.scale:
@@ -113,9 +117,9 @@ def _is_same_pass(
     if distance < max(1e-9, 30 * tolerance) * problem.scale:
         return True
     # where a singular value is small a point is known no better than rounding over it
-    residual = np.linalg.norm(problem.jacobian(place.point) @ foot.offset)
+    residual = problem.jacobian(place.point) @ foot.offset
     rounding = max(1e-14, 0.1 * tolerance) * problem.scale
-    return bool(residual < rounding * problem.magnitude)
+    return bool(np.linalg.norm(residual) < rounding * problem.magnitude)
 
 
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:
@@ -126,8 +130,9 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
     breaks = track.breaks(track.reached)
     for number in range(first, len(track)):
         center, radius = track.centers[number], track.radii[number]
-        grid = np.linspace(breaks[number], breaks[number + 1], 33)
-        x = _exit(problem, track.pieces[number], (grid - center) / radius)
+        begin, end = breaks[number : number + 2]
+        grid = (np.linspace(begin, end, 33) - center) / radius
+        x = _exit(problem, track.pieces[number], grid)
         if x is not None:
             return float(center + x * radius)
     return None
@@ -136,16 +141,19 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
 def _exit(problem: Problem, piece: np.ndarray, grid: np.ndarray) -> float | None:
     """Coordinate at which a piece (order + 1, n) leaves the bounds, as seen at those of
     ``grid``; None where it does not."""
-    outside = np.flatnonzero(_excess(problem, piece, grid) > 1e-12 * problem.scale)
+    excess = _excess(problem, piece, grid)
+    outside = np.flatnonzero(excess > 1e-12 * problem.scale)
     if not len(outside):
         return None
-    low, high = grid[max(outside[0] - 1, 0)], grid[outside[0]]
+    first = outside[0]
+    low = grid[max(first - 1, 0)]
+    high = grid[first]
     for _ in range(60):
-        middle = 0.5 * (low + high)
-        if _excess(problem, piece, np.array([middle]))[0] > 0:
-            high = middle
+        middle = np.array([0.5 * (low + high)])
+        if _excess(problem, piece, middle)[0] > 0:
+            high = middle[0]
         else:
-            low = middle
+            low = middle[0]
     return float(low)
 
 
@@ -154,5 +162,6 @@ def _excess(problem: Problem, piece: np.ndarray, x: np.ndarray) -> np.ndarray:
     farthest; negative inside."""
     points = points_on_piece(piece, x)
     low, high = problem.bounds.T
-    farthest: np.ndarray = np.maximum(low - points, points - high).max(axis=1)
+    excess = np.maximum(low - points, points - high)
+    farthest: np.ndarray = excess.max(axis=1)
     return farthest

@@ -45,11 +45,13 @@ class Samples:
 
     def joined(self, others: Samples) -> Samples:
         """These and ``others``, sorted by arclength."""
-        order = np.argsort(np.concatenate([self.s, others.s]), kind="stable")
+        s = np.concatenate([self.s, others.s])
+        order = np.argsort(s, kind="stable")
         columns = []
         for column in fields(self):
-            pair = (getattr(self, column.name), getattr(others, column.name))
-            columns.append(np.concatenate(pair)[order])
+            first = getattr(self, column.name)
+            second = getattr(others, column.name)
+            columns.append(np.concatenate([first, second])[order])
         return Samples(*columns)
 
     @cached_property
@@ -63,8 +65,8 @@ class Samples:
     def reach(self) -> np.ndarray:
         """How far neighbours may be apart (k - 1,) to lie on one arc, by the ball
         around one of them."""
-        larger_ball = np.maximum(self.ball[:-1], self.ball[1:])
-        reach: np.ndarray = larger_ball - self.offset[:-1] - self.offset[1:]
+        larger = np.maximum(self.ball[:-1], self.ball[1:])
+        reach: np.ndarray = larger - self.offset[:-1] - self.offset[1:]
         return reach
 
     @property
@@ -77,11 +79,13 @@ class Samples:
     def reversals(self) -> np.ndarray:
         """Arclengths after which the sign of det [G'; t] is another, G followed along
         the curve."""
-        frames = np.concatenate([self.right, self.tangents[:, None, :]], axis=1)
+        tangents = self.tangents[:, None, :]
+        frames = np.concatenate([self.right, tangents], axis=1)
         signs = np.sign(np.linalg.det(frames))
         turns = np.einsum("kmi,kmj->kij", self.left[:-1], self.left[1:])
         turn_signs = np.sign(np.linalg.det(turns))
-        reversals: np.ndarray = self.s[1:][signs[1:] * signs[:-1] * turn_signs < 0]
+        changes = signs[1:] * signs[:-1] * turn_signs
+        reversals: np.ndarray = self.s[1:][changes < 0]
         return reversals
 
 
@@ -95,43 +99,91 @@ def sample_curve(
     traced point must lie in the ball all the same. Where rounding alone leaves as much
     in doubt as half the ball, nothing can be said.
     """
-    rank = problem.n - 1
     traced = branch(s)
-    points = traced.copy()
-    decomposition = decompose(problem, points)
-    # singular value at which rounding leaves half the ball in doubt
-    resolved = np.sqrt(4.0 * (2.0 + SHARE) / SHARE * ROUNDING * bound)
-    is_solved = np.abs(decomposition.components(rank - 1)) < 5 * ROUNDING
-    blurred = (decomposition.sigma[:, rank - 1] < resolved) & is_solved
-    for _ in range(CORRECTIONS):
-        steps = decomposition.newton_steps(rank)
-        doubts = 2.0 * np.linalg.norm(steps, axis=1)
-        allowed = DOUBT * SHARE * decomposition.sigma[:, rank - 1] / bound
-        loose = np.flatnonzero((doubts > allowed) & ~blurred)
-        if not len(loose):
-            break
-        points[loose] += steps[loose]
-        decomposition.replace(loose, decompose(problem, points[loose]))
-    # a point is off the solution by at most twice its correction (Newton and
-    # Kantorovich again)
-    weakest = decomposition.sigma[:, rank - 1]
-    corrections = np.linalg.norm(decomposition.newton_steps(rank), axis=1)
-    rounding = ROUNDING / np.maximum(weakest, TINY)
-    offset = 2.0 * np.maximum(corrections, rounding)
-    # beyond this the bound on the second derivative may fail
-    valid = problem.curvature_residual / np.maximum(decomposition.sigma[:, 0], TINY)
-    ball = SHARE * (np.minimum(weakest / bound, valid) - offset)
-    is_outside = np.linalg.norm(points - traced, axis=1) > ball
-    ball[blurred | is_outside] = 0.0
+    solutions = _Solutions(problem, traced, bound)
+    blurred = solutions.are_blurred()
+    solutions.correct(~blurred)
+    offset = solutions.offsets()
+    ball = solutions.balls(offset)
+    moved = np.linalg.norm(solutions.points - traced, axis=1)
+    ball[blurred | (moved > ball)] = 0.0
     offset[blurred] = 0.0
     tangents = branch(s, 1)
+    speeds = np.linalg.norm(tangents, axis=1)
     return Samples(
         s=s,
-        points=points,
-        tangents=tangents / np.linalg.norm(tangents, axis=1)[:, None],
-        left=decomposition.left[:, :, :rank],
-        right=decomposition.right[:, :rank],
+        points=solutions.points,
+        tangents=tangents / speeds[:, None],
+        left=solutions.left,
+        right=solutions.right,
         ball=np.maximum(ball, 0.0),
         offset=offset,
         blurred=blurred,
     )
+
+
+class _Solutions:
+    """``points`` (k, n) beside a traced curve, and F decomposed there, for a constant
+    ``bound`` of F'."""
+
+    def __init__(self, problem: Problem, points: np.ndarray, bound: float):
+        self.points = points.copy()
+        self._problem = problem
+        self._bound = bound
+        self._rank = problem.n - 1
+        self._decomposition = decompose(problem, points)
+
+    @property
+    def left(self) -> np.ndarray:
+        """Orthonormal bases (k, m, n - 1) of the ranges of F'."""
+        return self._decomposition.left[:, :, : self._rank]
+
+    @property
+    def right(self) -> np.ndarray:
+        """Orthonormal bases (k, n - 1, n) of the ranges of F'^T."""
+        return self._decomposition.right[:, : self._rank]
+
+    @property
+    def _weakest(self) -> np.ndarray:
+        """Singular values n - 1 (k,)."""
+        return self._decomposition.sigma[:, self._rank - 1]
+
+    def are_blurred(self) -> np.ndarray:
+        """Whether rounding leaves half the ball in doubt (k,), and F is zero as far as
+        can be said."""
+        weakest_component = self._decomposition.components(self._rank - 1)
+        is_solved = np.abs(weakest_component) < 5 * ROUNDING
+        resolved = np.sqrt(4.0 * (2.0 + SHARE) / SHARE * ROUNDING * self._bound)
+        blurred: np.ndarray = (self._weakest < resolved) & is_solved
+        return blurred
+
+    def correct(self, where: np.ndarray) -> None:
+        """Move those of the points ``where`` (k,) that are in doubt."""
+        for _ in range(CORRECTIONS):
+            steps = self._decomposition.newton_steps(self._rank)
+            doubts = 2.0 * np.linalg.norm(steps, axis=1)
+            allowed = DOUBT * SHARE * self._weakest / self._bound
+            loose = np.flatnonzero((doubts > allowed) & where)
+            if not len(loose):
+                break
+            self.points[loose] += steps[loose]
+            corrected = decompose(self._problem, self.points[loose])
+            self._decomposition.replace(loose, corrected)
+
+    def offsets(self) -> np.ndarray:
+        """How far the solutions may be from the points (k,): twice the next correction
+        (Newton and Kantorovich again), or what rounding leaves."""
+        steps = self._decomposition.newton_steps(self._rank)
+        corrections = np.linalg.norm(steps, axis=1)
+        rounding = ROUNDING / np.maximum(self._weakest, TINY)
+        offsets: np.ndarray = 2.0 * np.maximum(corrections, rounding)
+        return offsets
+
+    def balls(self, offsets: np.ndarray) -> np.ndarray:
+        """Radii (k,) of the balls about the points that hold one arc each."""
+        largest = np.maximum(self._decomposition.sigma[:, 0], TINY)
+        # beyond this the bound on the second derivative may fail
+        valid = self._problem.curvature_residual / largest
+        radii = np.minimum(self._weakest / self._bound, valid)
+        balls: np.ndarray = SHARE * (radii - offsets)
+        return balls

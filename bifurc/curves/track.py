@@ -94,7 +94,9 @@ class Track:
     @property
     def reached(self) -> float:
         """Arclength up to which the last piece is trusted."""
-        return float(self.centers[-1] + self.radii[-1]) if len(self) else 0.0
+        if not len(self):
+            return 0.0
+        return float(self.centers[-1] + self.radii[-1])
 
     @property
     def front(self) -> Place:
@@ -115,13 +117,15 @@ class Track:
     def piece_at(self, s: float) -> int:
         """Number of the piece whose centre is nearest to arclength ``s``, over its
         radius: pieces reach back as well as on."""
-        return int(np.argmin(np.abs(self.centers - s) / self.radii))
+        distances = np.abs(self.centers - s)
+        return int(np.argmin(distances / self.radii))
 
     def breaks(self, stop: float) -> np.ndarray:
         """Where neighbouring pieces hand over (k + 1,), from 0 to ``stop``: at equal
         fractions of their radii."""
-        share = self.radii[:-1] / (self.radii[:-1] + self.radii[1:])
-        inner = self.centers[:-1] + share * np.diff(self.centers)
+        radii_before, radii_after = self.radii[:-1], self.radii[1:]
+        shares = radii_before / (radii_before + radii_after)
+        inner = self.centers[:-1] + shares * np.diff(self.centers)
         return np.concatenate([[0.0], inner, [stop]])
 
     def append(self, march: March) -> None:
@@ -155,15 +159,16 @@ class Track:
         if not len(self):
             return self.empty_branch(end.outcome, periods)
         breaks = self.breaks(end.stop)
-        first = int(np.searchsorted(breaks[1:], end.begin, side="right"))
-        beyond = int(np.searchsorted(breaks[:-1], end.stop))
+        first = np.searchsorted(breaks[1:], end.begin, side="right")
+        beyond = np.searchsorted(breaks[:-1], end.stop)
         kept = slice(first, beyond)
         inner = breaks[kept][1:] - end.begin
+        length = end.stop - end.begin
         return Branch(
             pieces=self.pieces[kept],
             centers=self.centers[kept] - end.begin,
             radii=self.radii[kept],
-            breaks=np.concatenate([[0.0], inner, [end.stop - end.begin]]),
+            breaks=np.concatenate([[0.0], inner, [length]]),
             residuals=self.residuals[kept],
             periods=periods,
             outcome=end.outcome,

@@ -81,9 +81,11 @@ class Valley:
         """Points of the cubic through points and tangents, `FINE` a step."""
         if len(self.points) < 2:
             return self.points
-        steps = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        s = np.concatenate([[0.0], np.cumsum(steps)])
-        between = s[:-1, None] + np.arange(FINE) * (np.diff(s) / FINE)[:, None]
+        steps = np.diff(self.points, axis=0)
+        lengths = np.linalg.norm(steps, axis=1)
+        s = np.concatenate([[0.0], np.cumsum(lengths)])
+        fine_steps = np.diff(s) / FINE
+        between = s[:-1, None] + np.arange(FINE) * fine_steps[:, None]
         cubic = CubicHermiteSpline(s, self.points, self.tangents)
         points: np.ndarray = cubic(np.append(between, s[-1]))
         return points
@@ -116,10 +118,12 @@ def correct_to_valley(
     """Points (k, n) moved onto the valley, across it, and the relative residual (k,)
     that is left at each."""
     points = np.array(points, dtype=float)
+    rank = problem.n - 1
     for _ in range(rounds):
-        steps = decompose(problem, points).newton_steps(problem.n - 1, FLOOR)
+        steps = decompose(problem, points).newton_steps(rank, FLOOR)
         points += steps
-        if np.abs(steps).max(initial=0.0) < 1e-14 * problem.scale:
+        longest = np.abs(steps).max(initial=0.0)
+        if longest < 1e-14 * problem.scale:
             break
     return points, problem.gaps(points)
 
@@ -179,14 +183,17 @@ def follow_valley(
     singular value n - 1 could fall to zero: no crossing is nearer.
     """
     station = _settle(problem, start, direction, 1e-9 * problem.scale)
-    if station is None or np.linalg.norm(station.point - start) > FAR * problem.scale:
+    if station is None or not _is_near(problem, station.point, start):
         heading = direction / np.linalg.norm(direction)
-        return _valley(problem, [_Station(start, heading, 0.0)], ValleyEnd.LOST)
+        nowhere = _Station(start, heading, 0.0)
+        return _valley(problem, [nowhere], ValleyEnd.LOST)
     stations = [station]
-    length = longest * problem.scale
+    longest *= problem.scale
+    length = longest
     for _ in range(steps):
-        clear = SHARE * station.sigma / _rate(problem, station.point, station.tangent)
-        length = min(2.0 * length, longest * problem.scale, clear)
+        rate = _rate(problem, station.point, station.tangent)
+        clear = SHARE * station.sigma / rate
+        length = min(2.0 * length, longest, clear)
         step = _step(problem, station, length)
         if step is None:
             return _valley(problem, stations, ValleyEnd.LOST)
@@ -195,6 +202,12 @@ def follow_valley(
         if stop(station.point):
             return _valley(problem, stations, ValleyEnd.DONE)
     return _valley(problem, stations, ValleyEnd.STEP_LIMIT)
+
+
+def _is_near(problem: Problem, point: np.ndarray, start: np.ndarray) -> bool:
+    """Whether a point is still on the valley of its start."""
+    distance = np.linalg.norm(point - start)
+    return bool(distance <= FAR * problem.scale)
 
 
 def _step(
@@ -231,7 +244,8 @@ def _rate(problem: Problem, point: np.ndarray, tangent: np.ndarray) -> float:
     """How fast the block of F' that nearly vanishes, over the problem's magnitude,
     changes along ``tangent``."""
     rank = problem.n - 2
-    left, _, right = np.linalg.svd(problem.jacobians(point[None])[0])
+    jacobian = problem.jacobians(point[None])[0]
+    left, _, right = np.linalg.svd(jacobian)
     change = problem.hessian(point) @ tangent / problem.magnitude
     block = left[:, rank:].T @ change @ right[rank:].T
     return float(np.linalg.norm(block)) + 1e-3 / problem.scale
@@ -251,7 +265,6 @@ def unfold_crossing(
     """
     offsets = starts - center
     radii = np.linalg.norm(offsets, axis=1)
-    numbers = np.arange(len(starts))
     free = list(range(len(starts)))
     valleys: list[Valley] = []
     pairs: list[tuple[int, int]] = []
@@ -259,8 +272,10 @@ def unfold_crossing(
         i = free.pop(0)
         stop = _leaves(center, float(radii[i]))
         valley = follow_valley(problem, starts[i], -offsets[i], stop)
-        distances = np.linalg.norm(valley.points[-1] - starts, axis=1) / radii
-        j = int(np.argmin(np.where(numbers == i, np.inf, distances)))
+        gaps = valley.points[-1] - starts
+        distances = np.linalg.norm(gaps, axis=1) / radii
+        distances[i] = np.inf
+        j = int(np.argmin(distances))
         valleys.append(valley)
         pairs.append((i, j))
         if j in free and valley.end is ValleyEnd.DONE:

@@ -126,12 +126,14 @@ def _qr_solver(matrix: np.ndarray) -> Solver:
     q, r, order = qr(matrix, mode="economic", pivoting=True, check_finite=False)
     diagonal = np.abs(np.diag(r))
     rank = int(np.count_nonzero(diagonal > RANK * diagonal[0]))
+    triangle = r[:rank, :rank]
+    range_space = q[:, :rank].T
     independent = order[:rank]
 
     def solve(right: np.ndarray) -> np.ndarray:
         solution = np.zeros(matrix.shape[1])
         solution[independent] = solve_triangular(
-            r[:rank, :rank], q[:, :rank].T @ right, check_finite=False
+            triangle, range_space @ right, check_finite=False
         )
         return solution
 

@@ -72,7 +72,8 @@ def march_by_collocation(
     pieces: list[Piece] = []
     low, high = problem.bounds.T
     while len(pieces) < settings.count:
-        if pieces and not np.all((low <= point) & (point <= high)):
+        is_inside = np.all((low <= point) & (point <= high))
+        if pieces and not is_inside:
             break
         aim = _Aim(point, heading, order, tolerance)
         accepted = _next_piece(problem, aim, width, settings.shortest)
@@ -105,7 +106,8 @@ def bridge_by_collocation(
     nodes next to it need only be as good as ``tolerance``.
     """
     odd = order - 1 + order % 2  # an even number of nodes leaves the middle free
-    attempt = _attempt(problem, _Aim(start, heading, odd, tolerance), width)
+    aim = _Aim(start, heading, odd, tolerance)
+    attempt = _attempt(problem, aim, width)
     if isinstance(attempt, _Rejected):
         return None
     highest = np.zeros((order - odd, problem.n))
@@ -137,27 +139,32 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
     if nodes is None:
         return _Rejected(FAILED)
     coefficients = basis.from_values @ nodes
-    tail = float(np.abs(coefficients[-2:]).max())
+    last_two = np.abs(coefficients[-2:])
+    tail = float(last_two.max())
     enough = aim.tolerance * problem.scale
+    root = 1.0 / aim.order  # the tail goes with this power of the width, upside down
     if tail <= enough:
         powers, length = _by_arclength(coefficients)
         residual = _residual_between_nodes(problem, powers)
         if residual <= LOOSE * aim.tolerance:
-            growth = (enough / max(tail, 1e-18)) ** (1.0 / aim.order)
+            piece = Piece(powers, length, residual)
+            growth = (enough / max(tail, 1e-18)) ** root
             factor = min(1.6, max(0.7, 0.95 * growth))
-            return _Accepted(Piece(powers, length, residual), width * factor)
+            return _Accepted(piece, width * factor)
         tail = max(tail, residual)
-    shrinking = 0.9 * (enough / tail) ** (1.0 / aim.order)
-    return _Rejected(min(0.75, max(0.3, shrinking)))
+    shrinkage = (enough / tail) ** root
+    return _Rejected(min(0.75, max(0.3, 0.9 * shrinkage)))
 
 
 def _residual_between_nodes(problem: Problem, piece: np.ndarray) -> float:
     """Largest relative residual of a piece (order + 1, n) at places between its
     nodes."""
     order = len(piece) - 1
-    places = np.cos(np.pi * (np.arange(order) + 0.5) / order)
-    residuals = problem.residuals(points_on_piece(piece, places)) / problem.magnitude
-    return float(np.linalg.norm(residuals, axis=1).max())
+    angles = np.pi * (np.arange(order) + 0.5) / order
+    points = points_on_piece(piece, np.cos(angles))
+    residuals = problem.relative_residuals(points)
+    sizes = np.linalg.norm(residuals, axis=1)
+    return float(sizes.max())
 
 
 def _points_at_nodes(
@@ -176,12 +183,14 @@ def _points_at_nodes(
     factored: Bordered | None = Bordered(jacobian, heading)
     for k in range(1, len(offsets)):
         guess = basis.predictors[k] @ points[:k] if k > 1 else start
-        guess = guess + (offsets[k] - (guess - start) @ heading) * heading
+        covered = (guess - start) @ heading
+        guess = guess + (offsets[k] - covered) * heading
         corrected = correct_across(problem, guess, heading, aim.tolerance, factored)
         points[k] = corrected.point
         factored = corrected.factored
-        distance = np.linalg.norm(points[k] - points[k - 1])
-        is_far = distance > 4 * (offsets[k] - offsets[k - 1])
+        step = points[k] - points[k - 1]
+        expected = offsets[k] - offsets[k - 1]
+        is_far = np.linalg.norm(step) > 4 * expected
         if is_far or corrected.gap > 100 * aim.tolerance:
             return None
     return points
@@ -207,19 +216,21 @@ class _Basis:
 
 @lru_cache(maxsize=64)
 def _basis(order: int) -> _Basis:
-    nodes = -np.cos(np.pi * np.arange(order + 1) / order)
+    angles = np.pi * np.arange(order + 1) / order
+    nodes = -np.cos(angles)
     unit = np.eye(order + 1)
     to_powers = np.zeros((order + 1, order + 1))
     for k in range(order + 1):
         powers = chebyshev.cheb2poly(unit[k])
         to_powers[: len(powers), k] = powers
+    predictors = [_predictor(nodes, k) for k in range(order + 1)]
     return _Basis(
         nodes=nodes,
         from_values=np.linalg.inv(chebyshev.chebvander(nodes, order)),
         to_powers=to_powers,
         derivative=chebyshev.chebder(unit, axis=0),
         integral=chebyshev.chebint(unit, lbnd=-1, axis=0),
-        predictors=tuple(_predictor(nodes, k) for k in range(order + 1)),
+        predictors=tuple(predictors),
     )
 
 
@@ -230,13 +241,15 @@ def _predictor(nodes: np.ndarray, k: int) -> np.ndarray:
     weights = np.zeros(k)
     for i in range(first, k):
         others = np.delete(nodes[first:k], i - first)
-        weights[i] = np.prod((nodes[k] - others) / (nodes[i] - others))
+        ratios = (nodes[k] - others) / (nodes[i] - others)
+        weights[i] = np.prod(ratios)
     return weights
 
 
 def _polynomials(x: np.ndarray, order: int) -> np.ndarray:
     """Chebyshev polynomials (k, order + 1) at x (k,) within [-1, 1]."""
-    return np.cos(np.outer(np.arccos(x), np.arange(order + 1)))
+    angles = np.outer(np.arccos(x), np.arange(order + 1))
+    return np.cos(angles)
 
 
 # --- arclength as parameter -----------------------------------------------------------
@@ -255,7 +268,8 @@ def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:
     order = len(coefficients) - 1
     basis = _basis(order)
     fine = _basis(3 * order)
-    slopes = _polynomials(fine.nodes, order - 1) @ (basis.derivative @ coefficients)
+    derivative = basis.derivative @ coefficients
+    slopes = _polynomials(fine.nodes, order - 1) @ derivative
     speed = fine.from_values @ np.linalg.norm(slopes, axis=1)
     arclength = fine.integral @ speed
     length = float(arclength.sum())  # every Chebyshev polynomial is 1 at 1
@@ -276,7 +290,8 @@ def _places_at_shares(
     x = nodes.copy()
     for _ in range(NEWTON_STEPS):
         values = _polynomials(x, len(speed))
-        steps = (values @ arclength - targets) / (values[:, :-1] @ speed)
+        errors = values @ arclength - targets
+        steps = errors / (values[:, :-1] @ speed)
         x = np.clip(x - steps, -1.0, 1.0)
         if np.abs(steps).max() < 1e-8:  # the next would be its square
             break

@@ -47,8 +47,9 @@ class _Iterate(NamedTuple):
 
 
 def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
-    residual = problem.residuals(point[None])[0] / problem.magnitude
-    return _Iterate(point, residual, float(np.sqrt(residual @ residual)))
+    residual = problem.relative_residuals(point[None])[0]
+    gap = np.sqrt(residual @ residual)
+    return _Iterate(point, residual, float(gap))
 
 
 # --- onto curves and surfaces ---------------------------------------------------------
@@ -89,7 +90,8 @@ def correct_across(
         step = factored.solve(-iterate.residual)
         point = iterate.point + step
         gap_before = iterate.gap
-        if np.sqrt(step @ step) * max(rate, 0.01) <= enough:
+        length = np.sqrt(step @ step)
+        if length * max(rate, 0.01) <= enough:
             # the next step would be too small to matter: F is not evaluated again
             return Correction(point, iterate.gap, factored)
     return Correction(best.point, best.gap, factored)
@@ -109,15 +111,15 @@ def correct_normal(
     border = bases @ np.swapaxes(bases, 1, 2)
     damping = DAMPING * np.eye(problem.n)
     for _ in range(NORMAL_STEPS):
-        residual = problem.residuals(points) / problem.magnitude
-        jacobian = problem.jacobians(points) / problem.magnitude
-        transposed = np.swapaxes(jacobian, 1, 2)
-        matrix = transposed @ jacobian + border + damping
-        right = transposed @ residual[:, :, None]
-        steps = -np.linalg.solve(matrix, right)[:, :, 0]
+        residuals = problem.relative_residuals(points)[:, :, None]
+        jacobians = problem.relative_jacobians(points)
+        transposed = np.swapaxes(jacobians, 1, 2)
+        matrices = transposed @ jacobians + border + damping
+        solutions = np.linalg.solve(matrices, transposed @ residuals)
+        steps = -solutions[:, :, 0]
         points += limited(steps, 0.5 * problem.scale)
-        longest = np.linalg.norm(steps, axis=1).max(initial=0.0)
-        if longest < 1e-9 * problem.scale:
+        lengths = np.linalg.norm(steps, axis=1)
+        if lengths.max(initial=0.0) < 1e-9 * problem.scale:
             break
     return points, problem.gaps(points)
 
@@ -158,11 +160,12 @@ def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
     for _ in range(LEAST_SQUARES_STEPS):
         if best.gap <= 1e-15 or damping > 1e9:
             break
-        jacobian = problem.jacobians(best.point[None])[0] / problem.magnitude
-        normal = jacobian.T @ jacobian + damping * best.gap * np.eye(problem.n)
+        jacobian = problem.relative_jacobians(best.point[None])[0]
+        weight = damping * best.gap
+        normal = jacobian.T @ jacobian + weight * np.eye(problem.n)
         right = jacobian.T @ best.residual
-        step = -np.linalg.lstsq(normal, right, rcond=None)[0]
-        trial = _iterate(problem, best.point + step)
+        step, *_ = np.linalg.lstsq(normal, right, rcond=None)
+        trial = _iterate(problem, best.point - step)
         if trial.gap < best.gap:
             is_fast = trial.gap < 0.5 * best.gap
             damping = max(damping * (0.2 if is_fast else 1.0), 1e-8)
@@ -199,13 +202,15 @@ def _newton_on_sphere(
     length = np.inf
     for _ in range(SPHERE_STEPS):
         offset = (point - center) / radius
-        jacobian = problem.jacobians(point[None])[0] / problem.magnitude
-        residual = problem.residuals(point[None])[0] / problem.magnitude
+        jacobian = problem.relative_jacobians(point[None])[0]
+        residual = problem.relative_residuals(point[None])[0]
         matrix = bordered_matrix(jacobian, offset)
-        right = np.append(-residual, 0.5 * radius * (1.0 - offset @ offset))
-        step = np.linalg.lstsq(matrix, right, rcond=1e-14)[0]
+        outwards = 0.5 * radius * (1.0 - offset @ offset)
+        right = np.append(-residual, outwards)
+        step, *_ = np.linalg.lstsq(matrix, right, rcond=1e-14)
         length = float(np.linalg.norm(step))
-        point = point + step * min(1.0, radius / (3.0 * length + 1e-300))
+        share = min(1.0, radius / (3.0 * length + 1e-300))
+        point = point + step * share
         if length < 1e-14 * problem.scale:
             break
     return point, length

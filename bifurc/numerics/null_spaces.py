@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import issparse
+from scipy.sparse import issparse, sparray
 
 from bifurc.numerics.bordered import Bordered
 from bifurc.problem import Problem
@@ -44,13 +44,11 @@ def null_vector(
     """
     jacobian = problem.jacobian(point)
     if problem.n > LARGE or issparse(jacobian):
-        at_random = np.random.default_rng(0).normal(size=problem.n)
-        border = at_random if along is None else along
-        first = Bordered(jacobian, border / np.linalg.norm(border)).null_vector()
-        return Bordered(jacobian, first).null_vector()
+        return _null_vector_by_borders(jacobian, along)
     _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
     values = _padded(sigma, problem.n)
-    null_space: np.ndarray = right[values <= max(values[-1], 1e-9 * values[0])]
+    zero = max(values[-1], 1e-9 * values[0])
+    null_space: np.ndarray = right[values <= zero]
     weakest: np.ndarray = null_space[-1]
     if along is None:
         return weakest
@@ -60,10 +58,22 @@ def null_vector(
     return projected / length if agrees else weakest
 
 
+def _null_vector_by_borders(
+    jacobian: np.ndarray | sparray, along: np.ndarray | None
+) -> np.ndarray:
+    """The null vector (n,), first with any border that is not across it, then with
+    itself."""
+    rng = np.random.default_rng(0)
+    border = rng.normal(size=jacobian.shape[1]) if along is None else along
+    unit = border / np.linalg.norm(border)
+    first = Bordered(jacobian, unit).null_vector()
+    return Bordered(jacobian, first).null_vector()
+
+
 def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Singular values (k, n) of F' at points (k, n), padded with zeros, and right
     singular vectors (k, n, n), one a row."""
-    _, sigma, right = np.linalg.svd(problem.jacobians(points) / problem.magnitude)
+    _, sigma, right = np.linalg.svd(problem.relative_jacobians(points))
     return _padded(sigma, problem.n), right
 
 
@@ -77,20 +87,24 @@ def tangent_planes(
     to ``near`` is taken.
     """
     sigma, right = null_spaces(problem, points)
-    nullity = np.maximum(np.count_nonzero(sigma < NULL, axis=1), 2)
+    zeros = np.count_nonzero(sigma < NULL, axis=1)
+    nullity = np.maximum(zeros, 2)
     most = int(nullity.max(initial=2))
-    is_null = np.arange(most, 0, -1) <= nullity[:, None]  # (k, most)
-    null = right[:, -most:] * is_null[:, :, None]
-    left, _, across = np.linalg.svd(null @ near, full_matrices=False)
-    planes: np.ndarray = np.swapaxes(null, 1, 2) @ left @ across
+    numbers = np.arange(most, 0, -1)  # of the singular values, counted from the last
+    is_null = numbers <= nullity[:, None]  # (k, most)
+    rows = right[:, -most:] * is_null[:, :, None]
+    left, _, across = np.linalg.svd(rows @ near, full_matrices=False)
+    columns = np.swapaxes(rows, 1, 2)
+    planes: np.ndarray = columns @ left @ across
     return planes
 
 
 def _padded(sigma: np.ndarray, n: int) -> np.ndarray:
     """Singular values (..., n), zeros after those (..., min(m, n)) of an m x n
     matrix."""
-    values = np.zeros((*sigma.shape[:-1], n))
-    values[..., : sigma.shape[-1]] = sigma
+    *batch, count = sigma.shape
+    values = np.zeros((*batch, n))
+    values[..., :count] = sigma
     return values
 
 
@@ -112,9 +126,8 @@ class Decomposition:
 
     def components(self, i: int) -> np.ndarray:
         """u_i . F (k,): what is left of one combination of the equations."""
-        components: np.ndarray = np.einsum(
-            "km,km->k", self.left[:, :, i], self.residuals
-        )
+        direction = self.left[:, :, i]
+        components: np.ndarray = np.einsum("km,km->k", direction, self.residuals)
         return components
 
     def newton_steps(self, rank: int, floor: float = 0.0) -> np.ndarray:
@@ -124,11 +137,13 @@ class Decomposition:
         They go across the null space and not along it. A singular value below ``floor``
         times the largest is taken for that.
         """
-        lowest = np.maximum(floor * self.sigma[:, :1], TINY)
-        divisors = np.maximum(self.sigma[:, :rank], lowest)
-        strong = self.left[:, :, :rank]
-        across = np.einsum("kmi,km->ki", strong, self.residuals) / divisors
-        steps: np.ndarray = -np.einsum("kin,ki->kn", self.right[:, :rank], across)
+        left = self.left[:, :, :rank]
+        sigma = self.sigma[:, :rank]
+        right = self.right[:, :rank]
+        lowest = np.maximum(floor * sigma[:, :1], TINY)
+        components = np.einsum("kmi,km->ki", left, self.residuals)
+        across = components / np.maximum(sigma, lowest)
+        steps: np.ndarray = -np.einsum("kin,ki->kn", right, across)
         return steps
 
     def replace(self, rows: np.ndarray, others: Decomposition) -> None:
@@ -141,7 +156,6 @@ class Decomposition:
 
 def decompose(problem: Problem, points: np.ndarray) -> Decomposition:
     """F and the singular value decomposition of F' at points (k, n)."""
-    residuals = problem.residuals(points) / problem.magnitude
-    jacobians = problem.jacobians(points) / problem.magnitude
-    left, sigma, right = np.linalg.svd(jacobians)
+    residuals = problem.relative_residuals(points)
+    left, sigma, right = np.linalg.svd(problem.relative_jacobians(points))
     return Decomposition(residuals, left, sigma, right)

@@ -45,19 +45,22 @@ def bracketed_roots(
             fb=np.where(is_beyond, fb, fa),
             fc=np.where(is_beyond, fa, fb),
         )
-        a, b, fa, fb = points.a, points.b, points.fa, points.fb
+        a, b = points.a, points.b
+        fa, fb = points.fa, points.fb
         enough = ROUNDING * np.abs(a) + tolerance
         width = np.abs(b - a)
-        if np.all((width <= 2 * enough) | (fa * fb == 0)):
+        is_root = (width <= 2 * enough) | (fa * fb == 0)
+        if np.all(is_root):
             break
         with np.errstate(divide="ignore", invalid="ignore"):
             share = points.next_share(enough / width)
-    return np.where(np.abs(fa) <= np.abs(fb), a, b)
+    is_better = np.abs(fa) <= np.abs(fb)
+    return np.where(is_better, a, b)
 
 
 class _Triples(NamedTuple):
-    """The newest points ``a``, the other ends ``b`` of the brackets, the points ``c``
-    that were given up, and the values there, each (k,)."""
+    """The newest points ``a``, the other ends ``b`` of the brackets, the ends ``c``
+    before them, and the values there, each (k,)."""
 
     a: np.ndarray
     b: np.ndarray
@@ -72,19 +75,15 @@ class _Triples(NamedTuple):
 
         They keep a share of ``least`` (k,) from either end.
         """
-        xi = (self.a - self.b) / (self.c - self.b)
-        phi = (self.fa - self.fb) / (self.fc - self.fb)
-        is_monotonic = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)
-        inverse = self._inverse_quadratic()
-        least = np.minimum(least, 0.5)
-        inside = np.clip(inverse, least, 1 - least)
-        return np.where(is_monotonic & np.isfinite(inverse), inside, 0.5)
-
-    def _inverse_quadratic(self) -> np.ndarray:
-        """Where the parabola through the three points, x as a function of f, is zero."""
         a, b, c = self.a, self.b, self.c
         fa, fb, fc = self.fa, self.fb, self.fc
-        by_b = fa / (fb - fa) * fc / (fb - fc)
-        by_c = (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-        inverse: np.ndarray = by_b + by_c
-        return inverse
+        xi = (a - b) / (c - b)
+        phi = (fa - fb) / (fc - fb)
+        is_monotonic = (phi * phi < xi) & ((1 - phi) ** 2 < 1 - xi)
+        weight_b = fa / (fb - fa) * fc / (fb - fc)
+        distance_c = (c - a) / (b - a)
+        weighted_c = distance_c * fa / (fc - fa) * fb / (fc - fb)
+        inverse = weight_b + weighted_c
+        is_safe = is_monotonic & np.isfinite(inverse)
+        least = np.minimum(least, 0.5)
+        return np.where(is_safe, np.clip(inverse, least, 1 - least), 0.5)
