@@ -3,6 +3,7 @@ system."""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -48,8 +49,7 @@ class _Iterate(NamedTuple):
 
 def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
     residual = problem.relative_residuals(point[None])[0]
-    gap = np.sqrt(residual @ residual)
-    return _Iterate(point, residual, float(gap))
+    return _Iterate(point, residual, math.sqrt(residual @ residual))
 
 
 # --- onto curves and surfaces ---------------------------------------------------------
@@ -72,16 +72,16 @@ def correct_across(
     """
     enough = 0.01 * tolerance * problem.scale
     best = _Iterate(point, np.empty(0), np.inf)
-    gap_before = np.inf
+    gap_before = math.inf
     is_fresh = False
     for _ in range(ACROSS_STEPS):
         iterate = _iterate(problem, point)
         if iterate.gap < best.gap:
             best = iterate
         has_stopped = is_fresh and iterate.gap >= gap_before
-        if has_stopped or not np.isfinite(iterate.gap):
+        if has_stopped or not math.isfinite(iterate.gap):
             break
-        rate = iterate.gap / gap_before if gap_before < np.inf else 1.0
+        rate = iterate.gap / gap_before if gap_before < math.inf else 1.0
         is_fresh = factored is None or iterate.gap > SLOW * gap_before
         if factored is None or is_fresh:
             jacobian = problem.jacobian(best.point) / problem.magnitude
@@ -90,7 +90,7 @@ def correct_across(
         step = factored.solve(-iterate.residual)
         point = iterate.point + step
         gap_before = iterate.gap
-        length = np.sqrt(step @ step)
+        length = math.sqrt(step @ step)
         if length * max(rate, 0.01) <= enough:
             # the next step would be too small to matter: F is not evaluated again
             return Correction(point, iterate.gap, factored)

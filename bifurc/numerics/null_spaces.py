@@ -63,9 +63,10 @@ def _null_vector_by_borders(
 ) -> np.ndarray:
     """The null vector (n,), first with any border that is not across it, then with
     itself."""
-    rng = np.random.default_rng(0)
-    border = rng.normal(size=jacobian.shape[1]) if along is None else along
-    unit = border / np.linalg.norm(border)
+    if along is None:
+        rng = np.random.default_rng(0)
+        along = np.array(rng.normal(size=jacobian.shape[1]))
+    unit: np.ndarray = along / np.linalg.norm(along)
     first = Bordered(jacobian, unit).null_vector()
     return Bordered(jacobian, first).null_vector()
 
