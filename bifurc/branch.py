@@ -5,28 +5,47 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from bifurc.pieces import evaluate, feet
+from bifurc.torus import into_box, tree_box, whole_turns
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 __all__ = ["Branch", "Outcome"]
+
+SAMPLES = 12  # of a piece, from which the feet of points are looked for
+FOOT_STEPS = 5  # of Newton's method from a sample to a foot
+PATIENT_FOOT_STEPS = 8  # where the foot may be as far away as a sample's neighbour
+ON_THE_CURVE = 1e-7  # of the spacing of samples: so far off a point is still on it
+SAME_PASS = 1e-6  # arclength: feet no farther apart are one
 
 
 class Outcome(Enum):
     """Why tracing ended, with what to do next."""
 
     CLOSED = "closed: the curve came back to its start"
-    LEFT_REGION = "left the region: both ends lie on the bounds; widen the bounds to follow it further"
-    STALLED = "stalled: no trusted step is left; look for a cusp or a singular point of higher order at the end"
+    LEFT_REGION = (
+        "left the region: both ends lie on the bounds; "
+        "widen the bounds to follow it further"
+    )
+    STALLED = (
+        "stalled: no trusted step is left; "
+        "look for a cusp or a singular point of higher order at the end"
+    )
     STEP_LIMIT = (
         "step limit: the curve is longer than the allowed length; raise max_length"
     )
-    OPEN = "closure gap: the start does not solve the equations; correct the start or the geometry"
+    OPEN = (
+        "closure gap: the start does not solve the equations; "
+        "correct the start or the geometry"
+    )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Branch:
     """A smooth solution curve u(s), s the arclength from 0 to ``length``.
 
@@ -45,10 +64,18 @@ class Branch:
     outcome: Outcome
     gap: float = field(default=0.0)
 
+    def __repr__(self) -> str:
+        winding = ", ".join(str(turns) for turns in self.winding)
+        return (
+            f"<Branch in {self.n} unknowns, {self.outcome.value}\n"
+            f" length {self.length:.6g}, winding ({winding})\n"
+            f" {len(self.pieces)} pieces, largest residual {self.max_residual:.2g}>"
+        )
+
     @property
     def n(self) -> int:
         """Number of unknowns."""
-        return self.pieces.shape[2]
+        return int(self.pieces.shape[2])
 
     @property
     def length(self) -> float:
@@ -65,41 +92,23 @@ class Branch:
         """Largest relative residual seen on any piece."""
         return float(self.residuals.max(initial=self.gap))
 
-    def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
-        """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of
-        a closed curve."""
-        s = np.asarray(s, dtype=float)
-        return evaluate(
-            self._curve, np.ascontiguousarray(s.ravel()), derivative
-        ).reshape(*s.shape, self.n)
-
-    @cached_property
-    def _curve(self) -> tuple[np.ndarray, ...]:
-        """The curve as the kernels of `bifurc.pieces` take it."""
-        travel = self._ends[1] - self._ends[0] if self.closed else np.empty(0)
-        arrays = (self.breaks, self.centers, self.radii, self.pieces, travel)
-        return tuple(
-            np.require(array, dtype=float, requirements=["C", "W"]) for array in arrays
-        )
-
-    @cached_property
-    def _ends(self) -> np.ndarray:
-        x = (self.breaks[[0, -1]] - self.centers[[0, -1]]) / self.radii[[0, -1]]
-        powers = x[:, None] ** np.arange(self.pieces.shape[1])
-        return np.einsum("ek,ekn->en", powers, self.pieces[[0, -1]])
-
     @cached_property
     def winding(self) -> np.ndarray:
         """Turns (n,) that each periodic unknown makes along a closed curve; 0 for the
         others and for open curves."""
-        turns = np.zeros(self.n, dtype=int)
-        if self.closed:
-            periodic = np.isfinite(self.periods)
-            travel = self._ends[1] - self._ends[0]
-            turns[periodic] = np.rint(travel[periodic] / self.periods[periodic]).astype(
-                int
-            )
-        return turns
+        if not self.closed:
+            return np.zeros(self.n, dtype=int)
+        return whole_turns(self.travel, self.periods)
+
+    # --- points -----------------------------------------------------------------------
+
+    def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
+        """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of
+        a closed curve."""
+        s = np.asarray(s, dtype=float)
+        flat = np.ascontiguousarray(s.ravel())
+        points: np.ndarray = evaluate(self._curve, flat, derivative)
+        return points.reshape(*s.shape, self.n)
 
     def arclengths(self, count: int) -> np.ndarray:
         """``count`` equally spaced arclengths; a closed curve's last one stops short of
@@ -110,17 +119,32 @@ class Branch:
         """Points (count, n) at equally spaced arclengths."""
         return self(self.arclengths(count))
 
-    @cached_property
-    def _index(self) -> tuple[cKDTree, np.ndarray, np.ndarray]:
-        s = np.concatenate(
-            [
-                np.linspace(a, b, 12, endpoint=False)
-                for a, b in zip(self.breaks[:-1], self.breaks[1:], strict=True)
-            ]
-            + [self.breaks[-1:]]
+    def places(self, fractions: np.ndarray) -> np.ndarray:
+        """Arclengths (p, k) at ``fractions`` (k,) of each of the p pieces, from 0 where
+        it begins to 1 where it ends."""
+        begins = self.breaks[:-1, None]
+        lengths = np.diff(self.breaks)[:, None]
+        places: np.ndarray = begins + lengths * fractions
+        return places
+
+    def reversed(self) -> Branch:
+        """The same curve run the other way."""
+        signs = (-1.0) ** np.arange(self.pieces.shape[1])
+        pieces = self.pieces * signs[:, None]
+        centers = self.length - self.centers
+        breaks = self.length - self.breaks
+        return Branch(
+            pieces=pieces[::-1],
+            centers=centers[::-1],
+            radii=self.radii[::-1],
+            breaks=breaks[::-1],
+            residuals=self.residuals[::-1],
+            periods=self.periods,
+            outcome=self.outcome,
+            gap=self.gap,
         )
-        box = np.where(np.isfinite(self.periods), self.periods, 0.0)
-        return cKDTree(_into_box(self(s), box), boxsize=box), s, box
+
+    # --- feet of points ---------------------------------------------------------------
 
     def nearest(
         self, points: np.ndarray, neighbours: int = 3, within: float = np.inf
@@ -132,85 +156,142 @@ class Branch:
         a twentieth of the time.
         """
         points = np.atleast_2d(np.asarray(points, dtype=float))
-        tree, grid, box = self._index
-        count, spacing = min(neighbours, len(grid)), np.diff(grid).max()
-        reach = (
-            max(within, spacing) + spacing
-        )  # of a sample next to a foot that is near enough
-        found = tree.query(_into_box(points, box), k=count, distance_upper_bound=reach)
-        distance, near = (np.reshape(a, (len(points), count)) for a in found)
-        s = grid[
-            np.minimum(near, len(grid) - 1)
-        ]  # there is no sample of that number where none is in reach
-        close = (
-            distance[:, 0] < 2 * spacing
-        )  # the others are surely off the curve: the nearest sample will do
-        if np.any(close):
-            targets = np.repeat(points[close], count, axis=0)
-            at, apart = feet(
-                self._curve, targets, s[close].ravel(), 2 * spacing, self.periods, 5
+        samples = self._samples
+        spacing = samples.spacing
+        # next to a foot that is near enough there is a sample in reach
+        reach = max(within, spacing) + spacing
+        count = min(neighbours, len(samples.arclengths))
+        distances, s = samples.nearest(points, count, reach)
+        # of the other points, surely off the curve, the nearest sample will do
+        is_close = distances[:, 0] < 2 * spacing
+        if np.any(is_close):
+            repeated = np.repeat(points[is_close], count, axis=0)
+            feet_s, feet_distances = self._feet(
+                repeated, s[is_close].ravel(), 2 * spacing, FOOT_STEPS
             )
-            s[close], distance[close] = at.reshape(-1, count), apart.reshape(-1, count)
-        best, rows = np.argmin(distance, axis=1), np.arange(len(points))
-        distance, s = distance[rows, best], s[rows, best]
-        # beside a crossing the nearest samples may all lie on another pass: try every
-        # one that can lead to the foot
-        for i in np.flatnonzero(close & (distance > 1e-7 * spacing)):
-            around = grid[
-                tree.query_ball_point(_into_box(points[i], box), distance[i] + spacing)
-            ]
-            at, apart = feet(
-                self._curve,
-                np.tile(points[i], (len(around), 1)),
-                around,
-                2 * spacing,
-                self.periods,
-                8,
-            )
-            if apart.min(initial=np.inf) < distance[i]:
-                distance[i], s[i] = apart.min(), at[np.argmin(apart)]
+            s[is_close] = feet_s.reshape(-1, count)
+            distances[is_close] = feet_distances.reshape(-1, count)
+        best = (np.arange(len(points)), np.argmin(distances, axis=1))
+        distance = distances[best]
+        s = s[best]
+        in_doubt = is_close & (distance > ON_THE_CURVE * spacing)
+        for i in np.flatnonzero(in_doubt):
+            foot = self._nearest_on_all_passes(points[i], distance[i], s[i])
+            distance[i], s[i] = foot
         return distance, s
+
+    def _nearest_on_all_passes(
+        self, point: np.ndarray, distance: float, s: float
+    ) -> tuple[float, float]:
+        """Distance of a point (n,) to the curve and the arclength there, where a foot
+        at ``distance`` and ``s`` is known.
+
+        Beside a crossing the nearest samples may all lie on another pass: every sample
+        that can lead to the foot is tried.
+        """
+        samples = self._samples
+        starts = samples.within(point, distance + samples.spacing)
+        repeated = np.tile(point, (len(starts), 1))
+        feet_s, distances = self._feet(
+            repeated, starts, 2 * samples.spacing, PATIENT_FOOT_STEPS
+        )
+        if not distances.min(initial=np.inf) < distance:
+            return distance, s
+        best = np.argmin(distances)
+        return distances[best], feet_s[best]
 
     def passes(self, point: np.ndarray, within: float) -> np.ndarray:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below
         ``within``, in order."""
-        tree, grid, box = self._index
-        spacing = np.diff(grid).max()
-        near = tree.query_ball_point(_into_box(point, box), 2.5 * spacing + within)
-        targets = np.tile(np.asarray(point, dtype=float), (len(near), 1))
-        s, distance = feet(self._curve, targets, grid[near], spacing, self.periods, 8)
-        s = np.sort(s[distance < within])
-        apart = np.diff(
-            s, prepend=s[-1] - self.length if self.closed and len(s) > 1 else -np.inf
+        point = np.asarray(point, dtype=float)
+        samples = self._samples
+        starts = samples.within(point, 2.5 * samples.spacing + within)
+        repeated = np.tile(point, (len(starts), 1))
+        feet_s, distances = self._feet(
+            repeated, starts, samples.spacing, PATIENT_FOOT_STEPS
         )
-        return s[apart > 1e-6]
+        s = np.sort(feet_s[distances < within])
+        before_first = -np.inf
+        if self.closed and len(s) > 1:
+            before_first = s[-1] - self.length
+        steps = np.diff(s, prepend=before_first)
+        return s[steps > SAME_PASS]
 
-    def reversed(self) -> Branch:
-        """The same curve run the other way."""
-        signs = (-1.0) ** np.arange(self.pieces.shape[1])
-        return Branch(
-            (self.pieces * signs[:, None])[::-1],
-            (self.length - self.centers)[::-1],
-            self.radii[::-1],
-            (self.length - self.breaks)[::-1],
-            self.residuals[::-1],
-            self.periods,
-            self.outcome,
-            self.gap,
+    def _feet(
+        self, points: np.ndarray, s: np.ndarray, reach: float, steps: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Arclengths (k,) near ``s`` (k,) where the curve is nearest to points (k, n),
+        and the distances (k,) there; no step is longer than ``reach``."""
+        arclengths, distances = feet(self._curve, points, s, reach, self.periods, steps)
+        return arclengths, distances
+
+    # --- what is derived from the pieces ----------------------------------------------
+
+    @cached_property
+    def _curve(self) -> tuple[np.ndarray, ...]:
+        """The curve as the kernels of `bifurc.pieces` take it."""
+        travel = self.travel if self.closed else np.empty(0)
+        arrays = (self.breaks, self.centers, self.radii, self.pieces, travel)
+        return tuple(np.require(array, float, ["C", "W"]) for array in arrays)
+
+    @cached_property
+    def travel(self) -> np.ndarray:
+        """What each unknown (n,) gains from the begin to the end of the curve."""
+        ends = [0, -1]
+        offsets = self.breaks[ends] - self.centers[ends]
+        x = offsets / self.radii[ends]
+        exponents = np.arange(self.pieces.shape[1])
+        powers = x[:, None] ** exponents
+        begin, end = np.einsum("ek,ekn->en", powers, self.pieces[ends])
+        travel: np.ndarray = end - begin
+        return travel
+
+    @cached_property
+    def _samples(self) -> _Samples:
+        """Samples of every piece, for the search of feet."""
+        on_pieces = self.places(np.arange(SAMPLES) / SAMPLES)
+        arclengths = np.append(on_pieces.ravel(), self.length)
+        return _Samples.of(self(arclengths), arclengths, self.periods)
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Points of a curve in a tree, modulo the periods, with their ``arclengths`` (k,);
+    ``spacing`` is the largest distance of two neighbours along the curve."""
+
+    tree: cKDTree
+    arclengths: np.ndarray
+    spacing: float
+    periods: np.ndarray
+
+    @staticmethod
+    def of(points: np.ndarray, arclengths: np.ndarray, periods: np.ndarray) -> _Samples:
+        """The samples ``points`` (k, n) at ``arclengths`` (k,)."""
+        # takes as long to import as all the rest of this package, and tracing alone
+        # does not need it
+        from scipy.spatial import cKDTree
+
+        tree = cKDTree(into_box(points, periods), boxsize=tree_box(periods))
+        spacing = np.diff(arclengths).max()
+        return _Samples(tree, arclengths, spacing, periods)
+
+    def nearest(
+        self, points: np.ndarray, count: int, reach: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Distances and arclengths (k, count) of the samples nearest to points (k, n);
+        the distance is infinite where none is in ``reach``."""
+        inside = into_box(points, self.periods)
+        distances, numbers = self.tree.query(
+            inside, k=count, distance_upper_bound=reach
         )
+        shape = (len(points), count)
+        last = len(self.arclengths) - 1  # the tree gives a larger one for none in reach
+        arclengths = self.arclengths[np.minimum(numbers, last)]
+        return np.reshape(distances, shape), np.reshape(arclengths, shape)
 
-
-def _into_box(points: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Points with periodic unknowns taken into [0, box)."""
-    out = np.array(points, dtype=float)
-    periodic = box > 0
-    if np.all(
-        periodic
-    ):  # as in every loop: picking columns would take most of the time
-        out %= box
-        return np.where(out >= box, 0.0, out)
-    out[..., periodic] %= box[periodic]
-    out[..., periodic] = np.where(
-        out[..., periodic] >= box[periodic], 0.0, out[..., periodic]
-    )
-    return out
+    def within(self, point: np.ndarray, reach: float) -> np.ndarray:
+        """Arclengths (j,) of all samples in ``reach`` of a point (n,)."""
+        inside = into_box(point, self.periods)
+        numbers = self.tree.query_ball_point(inside, reach)
+        near: np.ndarray = self.arclengths[numbers]
+        return near

@@ -14,11 +14,16 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
-from bifurc.problem import March, Problem
+from bifurc.problem import March, MarchSettings, Problem, SphereProjection
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 
 __all__ = ["FunctionProblem", "NumericalProblem"]
+
+PROBES = 7  # points at which a function is tried out and its derivatives are measured
+COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
+DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
+HESSIAN_STEP = 1e-5  # the same for F'
 
 
 class NumericalProblem(Problem):
@@ -27,28 +32,23 @@ class NumericalProblem(Problem):
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,), by central differences of F'."""
-        step = 1e-5 * (1.0 + np.abs(point))
-        shifts = np.diag(step)
+        steps = HESSIAN_STEP * (1.0 + np.abs(point))
+        shifts = np.diag(steps)
         upper = self.jacobians(point + shifts)
         lower = self.jacobians(point - shifts)
-        out = np.moveaxis((upper - lower) / (2 * step[:, None, None]), 0, -1)
-        return 0.5 * (out + np.swapaxes(out, 1, 2))
+        widths = 2 * steps[:, None, None]
+        by_unknown = (upper - lower) / widths
+        hessian = np.moveaxis(by_unknown, 0, -1)
+        transposed = np.swapaxes(hessian, 1, 2)
+        symmetric: np.ndarray = 0.5 * (hessian + transposed)
+        return symmetric
 
     def march(
-        self,
-        start: np.ndarray,
-        tangent: np.ndarray,
-        order: int,
-        tolerance: float,
-        shortest: float,
-        longest: float,
-        count: int,
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
-        """Up to ``count`` pieces of the curve from ``start`` (n,) along ``tangent``, by
+        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
         collocation."""
-        return march_by_collocation(
-            self, start, tangent, order, tolerance, shortest, longest, count
-        )
+        return march_by_collocation(self, start, tangent, settings)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
@@ -57,9 +57,9 @@ class NumericalProblem(Problem):
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Solutions (k, n) at distance ``radius`` from ``center`` (n,), relative
-        residuals (k,) and last steps (k,), by Newton's method."""
+    ) -> SphereProjection:
+        """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,), by
+        Newton's method."""
         return project_to_sphere_by_newton(self, starts, center, radius)
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
@@ -88,110 +88,133 @@ class FunctionProblem(NumericalProblem):
         units: Sequence[str] | None = None,
         periods: Sequence[float] | None = None,
     ):
-        self.bounds = np.array(bounds, dtype=float)
-        if (
-            self.bounds.ndim != 2
-            or self.bounds.shape[1] != 2
-            or not np.all(self.bounds[:, 0] < self.bounds[:, 1])
-        ):
-            raise ProblemError(
-                "bounds", self.bounds.tolist(), "rows of (low, high) with low < high"
-            )
+        self.bounds = _checked_bounds(bounds)
         n = len(self.bounds)
-        self.names = tuple(names) if names else tuple(f"u{i + 1}" for i in range(n))
-        self.units = tuple(units) if units else ("",) * n
-        self.periods = (
-            np.full(n, np.inf) if periods is None else np.array(periods, dtype=float)
-        )
-        for what, given in (
-            ("names", self.names),
-            ("units", self.units),
-            ("periods", self.periods),
-        ):
-            if len(given) != n:
-                raise ProblemError(
-                    f"number of {what}", len(given), f"{n}, the number of bounds"
-                )
-        if not np.all(self.periods > 0):
-            raise ProblemError(
-                "periods",
-                self.periods.tolist(),
-                "positive, inf where an unknown has none",
-            )
-        self._function, self._jacobian = function, jacobian
-        low = np.where(np.isfinite(self.bounds[:, 0]), self.bounds[:, 0], -1.0)
-        high = np.where(np.isfinite(self.bounds[:, 1]), self.bounds[:, 1], 1.0)
-        probes = np.random.default_rng(0).uniform(low, high, (7, n))
-        value = np.asarray(function(probes[0]), dtype=float)
-        if value.ndim != 1 or not np.all(np.isfinite(value)):
-            raise ProblemError(
-                "value of the function", value, "a vector of finite numbers"
-            )
-        self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
-        self.magnitude = (
-            float(np.median([_spectral_norm(self.jacobian(u)) for u in probes])) or 1.0
-        )
+        self.names = tuple(names or (f"u{i + 1}" for i in range(n)))
+        self.units = tuple(units or ("",) * n)
+        self.periods = np.full(n, np.inf)
+        if periods is not None:
+            self.periods = np.array(periods, dtype=float)
+        self._check_lengths(n)
+        self._function = function
+        self._jacobian = jacobian
+
+        low, high = self.bounds.T
+        low = np.where(np.isfinite(low), low, -1.0)
+        high = np.where(np.isfinite(high), high, 1.0)
         self.scale = float(np.median(high - low)) / 4.0
+        rng = np.random.default_rng(0)
+        probes = rng.uniform(low, high, (PROBES, n))
+        self._check_value(probes[0])
+        self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
+        sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
+        self.magnitude = float(np.median(sizes)) or 1.0
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        return np.array([self._value(point) for point in np.atleast_2d(points)])
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it
+        so."""
+        if self._jacobian is not None:
+            jacobian = self._jacobian(point)
+            return jacobian if issparse(jacobian) else np.asarray(jacobian, dtype=float)
+        if self.derivatives == "complex step":
+            return self._complex_step(point)
+        return self._central_difference(point)
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n), dense."""
+        jacobians = [self.jacobian(point) for point in np.atleast_2d(points)]
+        return np.array([as_dense(jacobian) for jacobian in jacobians])
+
+    # --- derivatives ------------------------------------------------------------------
 
     def _choose_derivatives(self, probe: np.ndarray) -> str:
+        """How F' is made: by complex step, if that agrees with differences at a point.
+
+        A function may also drop imaginary parts without a word.
+        """
         try:
             by_complex = self._complex_step(probe)
         except (TypeError, ValueError, np.exceptions.ComplexWarning):
             return "central differences"
         by_difference = self._central_difference(probe)
+        if by_complex.shape != by_difference.shape:
+            return "central differences"
+        error = np.abs(by_complex - by_difference).max()
         size = 1.0 + np.abs(by_difference).max()
-        agree = (
-            by_complex.shape == by_difference.shape
-            and np.abs(by_complex - by_difference).max() < 1e-5 * size
-        )
-        return "complex step" if agree else "central differences"
+        return "complex step" if error < 1e-5 * size else "central differences"
 
     def _complex_step(self, point: np.ndarray) -> np.ndarray:
-        shifts = point + 1e-100j * np.eye(self.n)
-        return np.column_stack(
-            [np.imag(np.asarray(self._function(row))) / 1e-100 for row in shifts]
-        )
+        columns = []
+        for shifted in point + 1j * COMPLEX_STEP * np.eye(self.n):
+            value = np.asarray(self._function(shifted))
+            columns.append(np.imag(value) / COMPLEX_STEP)
+        return np.column_stack(columns)
 
     def _central_difference(self, point: np.ndarray) -> np.ndarray:
         columns = []
         for i in range(self.n):
             step = np.zeros(self.n)
-            step[i] = 6e-6 * (1.0 + abs(point[i]))
-            upper, lower = (
-                np.asarray(self._function(point + sign * step), dtype=float)
-                for sign in (1, -1)
-            )
-            columns.append((upper - lower) / (2 * step[i]))
+            step[i] = DIFFERENCE_STEP * (1.0 + abs(point[i]))
+            upper = self._value(point + step)
+            lower = self._value(point - step)
+            width = 2 * step[i]
+            columns.append((upper - lower) / width)
         return np.column_stack(columns)
 
-    def residuals(self, points: np.ndarray) -> np.ndarray:
-        """F (k, m) at points (k, n)."""
-        return np.array(
-            [np.asarray(self._function(u), dtype=float) for u in np.atleast_2d(points)]
-        )
+    def _value(self, point: np.ndarray) -> np.ndarray:
+        """F (m,) at one point (n,)."""
+        return np.asarray(self._function(point), dtype=float)
 
-    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it
-        so."""
-        if self._jacobian is None:
-            return (
-                self._complex_step(point)
-                if self.derivatives == "complex step"
-                else self._central_difference(point)
-            )
-        made = self._jacobian(point)
-        return made if issparse(made) else np.asarray(made, dtype=float)
+    # --- checks -----------------------------------------------------------------------
 
-    def jacobians(self, points: np.ndarray) -> np.ndarray:
-        """F' (k, m, n) at points (k, n), dense."""
-        made = [self.jacobian(u) for u in np.atleast_2d(points)]
-        return np.array([as_dense(j) for j in made])
+    def _check_lengths(self, n: int) -> None:
+        """Raise `ProblemError` unless there is a name, a unit and a positive period for
+        each unknown."""
+        sizes = {
+            "names": len(self.names),
+            "units": len(self.units),
+            "periods": len(self.periods),
+        }
+        for what, size in sizes.items():
+            if size != n:
+                raise ProblemError(
+                    f"number of {what}", size, f"{n}, the number of bounds"
+                )
+        if not np.all(self.periods > 0):
+            allowed = "positive, inf where an unknown has none"
+            raise ProblemError("periods", self.periods.tolist(), allowed)
+
+    def _check_value(self, probe: np.ndarray) -> None:
+        """Raise `ProblemError` unless the function gives a finite vector."""
+        value = self._value(probe)
+        is_finite = np.all(np.isfinite(value))
+        if value.ndim != 1 or not is_finite:
+            allowed = "a vector of finite numbers"
+            raise ProblemError("value of the function", value, allowed)
+
+
+def _checked_bounds(bounds: Sequence[Sequence[float]]) -> np.ndarray:
+    """The bounds as an array (n, 2)."""
+    checked = np.array(bounds, dtype=float)
+    allowed = "rows of (low, high) with low < high"
+    if checked.ndim != 2 or checked.shape[1] != 2:
+        raise ProblemError("bounds", checked.tolist(), allowed)
+    low, high = checked.T
+    if not np.all(low < high):
+        raise ProblemError("bounds", checked.tolist(), allowed)
+    return checked
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:
     """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1
     |A|_inf)."""
-    if issparse(matrix):
-        size: np.ndarray | sparray = abs(csc_array(matrix))
-        return float(np.sqrt(size.sum(axis=0).max() * size.sum(axis=1).max()))
-    return float(np.linalg.norm(matrix, ord=2))
+    if not issparse(matrix):
+        return float(np.linalg.norm(matrix, ord=2))
+    sizes: np.ndarray | sparray = abs(csc_array(matrix))
+    largest_column = sizes.sum(axis=0).max()
+    largest_row = sizes.sum(axis=1).max()
+    return float(np.sqrt(largest_column * largest_row))

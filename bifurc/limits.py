@@ -11,11 +11,13 @@ from __future__ import annotations
 import signal
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from types import FrameType, TracebackType
-from typing import Any
 
 __all__ = ["Deadline", "HeldInterrupt"]
+
+SignalHandler = Callable[[int, FrameType | None], object] | int | None
 
 
 @dataclass(frozen=True)
@@ -47,16 +49,16 @@ class HeldInterrupt:
 
     def __init__(self) -> None:
         self.noted = False
-        self._former: Any = None
+        self._former: SignalHandler = None
 
     def __enter__(self) -> HeldInterrupt:
-        if threading.current_thread() is threading.main_thread():
-            former = signal.getsignal(signal.SIGINT)
-            if former is signal.default_int_handler or isinstance(
-                getattr(former, "__self__", None), HeldInterrupt
-            ):
-                self._former = former
-                signal.signal(signal.SIGINT, self._note)
+        if threading.current_thread() is not threading.main_thread():
+            return self
+        former = signal.getsignal(signal.SIGINT)
+        outer_block = isinstance(getattr(former, "__self__", None), HeldInterrupt)
+        if former is signal.default_int_handler or outer_block:
+            self._former = former
+            signal.signal(signal.SIGINT, self._note)
         return self
 
     def __exit__(

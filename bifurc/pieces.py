@@ -1,9 +1,10 @@
-"""Compiled evaluation of a piecewise polynomial curve, and the feet of points on it.
+"""Evaluation of a piecewise polynomial curve, and the feet of points on it.
 
-A ``curve`` is (breaks (k + 1,), centers (k,), radii (k,), pieces (k, order + 1, n),
-travel (n,)) as in `bifurc.branch.Branch`; travel is what a closed curve gains in one
-turn, and empty for an open one. All arrays are contiguous: another memory layout would
-be compiled anew.
+What takes one piece is plain Python, what takes a whole curve is compiled. A ``curve``
+is (breaks (k + 1,), centers (k,), radii (k,), pieces (k, order + 1, n), travel (n,)) as
+in `bifurc.branch.Branch`; travel is what a closed curve gains in one turn, and empty
+for an open one. All arrays are contiguous: another memory layout would be compiled
+anew.
 """
 
 from __future__ import annotations
@@ -12,7 +13,22 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-__all__ = ["evaluate", "feet"]
+__all__ = ["evaluate", "feet", "point_and_slope", "points_on_piece"]
+
+
+def points_on_piece(piece: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Points (k, n) of one piece (order + 1, n) at coordinates x (k,) in [-1, 1]."""
+    points: np.ndarray = np.vander(x, len(piece), increasing=True) @ piece
+    return points
+
+
+def point_and_slope(piece: np.ndarray, x: float) -> tuple[np.ndarray, np.ndarray]:
+    """Point (n,) of one piece (order + 1, n) and its derivative (n,) in the coordinate
+    at ``x``."""
+    order = len(piece) - 1
+    powers = x ** np.arange(order + 1)
+    slope = (np.arange(1, order + 1) * powers[:-1]) @ piece[1:]
+    return powers @ piece, slope
 
 
 @register_jitable

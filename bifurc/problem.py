@@ -4,28 +4,72 @@ curves."""
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import IntEnum
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.sparse import sparray
 
 from bifurc import torus
 from bifurc.errors import ProblemError
 from bifurc.seeds import Seeds
 
-__all__ = ["March", "MarchStatus", "Problem", "ProblemError"]
+if TYPE_CHECKING:  # SciPy takes a second to import, and only sparse problems need it
+    from scipy.sparse import sparray
+
+__all__ = [
+    "March",
+    "MarchSettings",
+    "MarchStatus",
+    "Piece",
+    "Problem",
+    "SphereProjection",
+]
 
 
 class MarchStatus(IntEnum):
     """Why a march of pieces ended. Compiled kernels return the numbers."""
 
-    RAN = 0  # all pieces that were asked for are made
-    STALLED = 1  # no trusted step is left
-    OPEN = 2  # there is no solution at the start
+    # All pieces that were asked for are made.
+    RAN = 0
+    # No trusted step is left.
+    STALLED = 1
+    # There is no solution at the start.
+    OPEN = 2
 
 
 @dataclass(frozen=True)
+class MarchSettings:
+    """How pieces of a curve are made. Lengths are in the unit of the unknowns.
+
+    ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the
+    ``shortest`` and ``longest`` trusted radius, and the largest number, ``count``, of
+    pieces in one march.
+    """
+
+    order: int
+    tolerance: float
+    shortest: float
+    longest: float
+    count: int
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One polynomial piece of a curve.
+
+    ``coefficients`` (order + 1, n) are those of the powers of x, which goes from -1 to
+    1 in proportion to the arclength; ``residual`` is the largest relative residual seen
+    on the piece.
+    """
+
+    coefficients: np.ndarray
+    length: float
+    residual: float
+
+
+@dataclass(frozen=True, repr=False)
 class March:
     """Consecutive polynomial pieces of a curve.
 
@@ -41,6 +85,50 @@ class March:
     steps: np.ndarray
     radii: np.ndarray
     residuals: np.ndarray
+
+    @staticmethod
+    def of_pieces(
+        status: MarchStatus, pieces: Sequence[Piece], order: int, n: int
+    ) -> March:
+        """The march of pieces that lie end to end, each of the given ``order`` in ``n``
+        unknowns."""
+        coefficients = np.array([piece.coefficients for piece in pieces])
+        radii = np.array([piece.length / 2 for piece in pieces])
+        steps = radii.copy()
+        steps[1:] += radii[:-1]
+        return March(
+            status=status,
+            pieces=coefficients.reshape(-1, order + 1, n),
+            steps=steps,
+            radii=radii,
+            residuals=np.array([piece.residual for piece in pieces]),
+        )
+
+    @staticmethod
+    def without_solution(gap: float, order: int, n: int) -> March:
+        """The march of no pieces from a start at which the relative residual ``gap`` is
+        left."""
+        nothing = March.of_pieces(MarchStatus.OPEN, [], order, n)
+        return replace(nothing, residuals=np.array([gap]))
+
+    def __repr__(self) -> str:
+        count, powers, n = self.pieces.shape
+        last_radius = self.radii[-1] if count else 0.0
+        arclength = self.steps.sum() + last_radius
+        residual = self.residuals.max(initial=0.0)
+        return (
+            f"<March {self.status.name}: {count} pieces of order {powers - 1} in "
+            f"{n} unknowns, arclength {arclength:.6g}, largest residual {residual:.2g}>"
+        )
+
+
+class SphereProjection(NamedTuple):
+    """Solutions on a small sphere: ``points`` (k, n), the relative residuals ``gaps``
+    (k,) and the lengths of the ``last_steps`` (k,) taken to them."""
+
+    points: np.ndarray
+    gaps: np.ndarray
+    last_steps: np.ndarray
 
 
 class Problem(ABC):
@@ -88,6 +176,19 @@ class Problem(ABC):
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
 
+    def relative_residuals(self, points: np.ndarray) -> np.ndarray:
+        """F over the magnitude (k, m) at points (k, n)."""
+        return self.residuals(points) / self.magnitude
+
+    def relative_jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' over the magnitude (k, m, n) at points (k, n)."""
+        return self.jacobians(points) / self.magnitude
+
+    def gaps(self, points: np.ndarray) -> np.ndarray:
+        """|F| over the magnitude (k,) at points (k, n)."""
+        sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
+        return sizes / self.magnitude
+
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None
         where none is known.
@@ -98,16 +199,9 @@ class Problem(ABC):
 
     @abstractmethod
     def march(
-        self,
-        start: np.ndarray,
-        tangent: np.ndarray,
-        order: int,
-        tolerance: float,
-        shortest: float,
-        longest: float,
-        count: int,
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
-        """Up to ``count`` pieces of the curve from ``start`` (n,) along ``tangent``."""
+        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,)."""
 
     @abstractmethod
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -117,9 +211,8 @@ class Problem(ABC):
     @abstractmethod
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Solutions (k, n) at distance ``radius`` from ``center`` (n,), relative
-        residuals (k,) and last steps (k,)."""
+    ) -> SphereProjection:
+        """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,)."""
 
     @abstractmethod
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
@@ -132,9 +225,9 @@ class Problem(ABC):
     def check_point(self, point: np.ndarray, name: str) -> np.ndarray:
         """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or
         values not finite."""
-        out = np.array(point, dtype=float)
-        if out.shape != (self.n,):
-            raise ProblemError(f"shape of {name}", out.shape, f"({self.n},)")
-        if not np.all(np.isfinite(out)):
-            raise ProblemError(name, out, "finite")
-        return out
+        checked = np.array(point, dtype=float)
+        if checked.shape != (self.n,):
+            raise ProblemError(f"shape of {name}", checked.shape, f"({self.n},)")
+        if not np.all(np.isfinite(checked)):
+            raise ProblemError(name, checked, "finite")
+        return checked

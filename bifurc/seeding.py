@@ -14,49 +14,54 @@ __all__ = ["CLOSED", "missed_probability", "random_seeds"]
 
 
 CLOSED = 1e-12  # residual below which a start has reached a solution
+CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 
 
-def random_seeds(
-    problem: Problem, rng: np.random.Generator, count: int, closed_below: float = CLOSED
-) -> Seeds:
+def random_seeds(problem: Problem, rng: np.random.Generator, count: int) -> Seeds:
     """Solutions reached from ``count`` random starts.
 
     Periodic unknowns are drawn from their period, the others from the bounds (from
     -scale to scale where these are infinite).
     """
-    low = np.where(
-        np.isfinite(problem.bounds[:, 0]), problem.bounds[:, 0], -problem.scale
-    )
-    high = np.where(
-        np.isfinite(problem.bounds[:, 1]), problem.bounds[:, 1], problem.scale
-    )
-    periodic = np.isfinite(problem.periods)
-    low = np.where(periodic, -0.5 * problem.periods, low)
-    high = np.where(periodic, 0.5 * problem.periods, high)
-    points, gaps = problem.project(rng.uniform(low, high, (count, problem.n)))
-    solved = gaps < closed_below
-    solved &= np.all(
-        (points >= problem.bounds[:, 0]) & (points <= problem.bounds[:, 1]), axis=1
-    )
+    low, high = _region(problem)
+    starts = rng.uniform(low, high, (count, problem.n))
+    points, gaps = problem.project(starts)
+    lowest, highest = problem.bounds.T
+    is_inside = np.all((points >= lowest) & (points <= highest), axis=1)
+    is_solution = (gaps < CLOSED) & is_inside
+    solutions = points[is_solution]
     return Seeds(
-        points[solved],
-        np.ones(int(solved.sum()), dtype=bool),
-        gaps[~solved],
-        points[~solved],
+        points=solutions,
+        random=np.ones(len(solutions), dtype=bool),
+        gaps=gaps[~is_solution],
+        missed=points[~is_solution],
     )
+
+
+def _region(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper ends (n,) of the box from which starts are drawn."""
+    low, high = problem.bounds.T
+    low = np.where(np.isfinite(low), low, -problem.scale)
+    high = np.where(np.isfinite(high), high, problem.scale)
+    periodic = np.isfinite(problem.periods)
+    half = 0.5 * problem.periods
+    low = np.where(periodic, -half, low)
+    high = np.where(periodic, half, high)
+    return low, high
 
 
 def missed_probability(hits: Sequence[int]) -> float:
     """Upper 95 % limit of the chance that one more random start would reach something
     not yet seen.
 
-    ``hits``: how many starts reached each thing found. Good and Turing (Good 1953)
-    estimate the unseen share by n1 / N, with n1 the number of things hit just once
+    ``hits``: how many starts reached each component. Good and Turing (Good 1953)
+    estimate the unseen share by n1 / N, with n1 the number of components hit just once
     among N starts; n1 is close to Poisson, and its upper limit (Garwood 1936) is used
     in its place: 3 / N where nothing was hit just once.
     """
-    total = int(sum(hits))
-    if total == 0:
+    starts = int(sum(hits))
+    if starts == 0:
         return 1.0
-    singles = sum(1 for h in hits if h == 1)
-    return float(min(1.0, gammaincinv(singles + 1, 0.95) / total))
+    singles = sum(1 for count in hits if count == 1)
+    most_singles = gammaincinv(singles + 1, CONFIDENCE)
+    return float(min(1.0, most_singles / starts))

@@ -4,21 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 
 from bifurc.branch import Branch
 
-__all__ = ["Audit", "Completeness", "Seeds"]
+__all__ = ["Audit", "Completeness", "Level", "Seeds"]
+
+
+class Level(StrEnum):
+    """How sure it is that no branch is missing."""
+
+    # None is missing.
+    PROVED = "proved"
+    # None is missing that is larger than the statement says.
+    CERTIFIED = "certified"
+    # One more random start finds something new with at most the stated probability.
+    ESTIMATED = "estimated"
+    # The time was over before all starts were looked at.
+    OUT_OF_TIME = "out of time"
+    # Ctrl-C ended the search.
+    INTERRUPTED = "interrupted"
 
 
 @dataclass(frozen=True)
 class Audit:
-    """What a problem can say of a list of branches: ``level`` is "proved" (none is
-    missing), "certified" (none that is larger than the ``statement`` says) or
-    "estimated". From ``starts`` (k, n) a missing one may be reached."""
+    """What a problem can say of a list of branches.
 
-    level: str
+    ``level`` is proved, certified or estimated, and ``statement`` says why. From
+    ``starts`` (k, n) a missing branch may be reached.
+    """
+
+    level: Level
     statement: str
     starts: np.ndarray
 
@@ -28,10 +46,10 @@ class Seeds:
     """Solutions to start from.
 
     ``points`` (k, n) solve the system; ``random`` (k,) says which of them come from
-    random starts, the rest were constructed; ``missed`` (g, n) is where the random
-    starts ended that found no solution, ``gaps`` (g,) the residuals there. ``audit``,
-    where the problem has one, judges the branches that were found, in about as many
-    seconds as its second argument says.
+    random starts, the rest were constructed. ``missed`` (g, n) is where the random
+    starts ended that reached no solution, ``gaps`` (g,) the residuals there. ``audit``,
+    where the problem has one, judges the branches of a search, in about as many seconds
+    as its second argument says.
     """
 
     points: np.ndarray
@@ -43,19 +61,22 @@ class Seeds:
     def with_constructed(self, points: np.ndarray) -> Seeds:
         """These seeds and after them further ``points`` (k, n) that solve the
         system."""
-        random = np.append(self.random, np.zeros(len(points), dtype=bool))
+        constructed = np.zeros(len(points), dtype=bool)
         return replace(
-            self, points=np.concatenate([self.points, points]), random=random
+            self,
+            points=np.concatenate([self.points, points]),
+            random=np.concatenate([self.random, constructed]),
         )
 
 
 @dataclass(frozen=True)
 class Completeness:
-    """How sure it is that nothing is missing: ``level`` is "proved", "certified" or
-    "estimated" as in `Audit`, or "out of time" or "interrupted"; ``missed_probability``
-    bounds the chance that one more random start would find more.
+    """How sure it is that nothing is missing, and why.
+
+    ``missed_probability`` bounds the chance that one more random start would reach
+    something new.
     """
 
-    level: str
+    level: Level
     statement: str
     missed_probability: float

@@ -8,22 +8,21 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["difference", "into_box", "tree_box", "wrap"]
+__all__ = ["difference", "into_box", "tree_box", "whole_turns", "wrap"]
 
 SEAM = 1e-12  # share of a period: what lies nearer to an end of it lies at the end
 
 
 def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
     """a - b (..., n), periodic unknowns taken to within half a period of zero."""
-    gap = np.asarray(a, dtype=float) - b
+    gap: np.ndarray = np.asarray(a, dtype=float) - b
     periodic = np.isfinite(periods)
-    if np.all(
-        periodic
-    ):  # as in every loop: picking columns would take most of the time
+    if np.all(periodic):  # every loop: picking columns would take most of the time
         gap -= periods * np.round(gap / periods)
     elif np.any(periodic):
         period = periods[periodic]
-        gap[..., periodic] -= period * np.round(gap[..., periodic] / period)
+        turns = np.round(gap[..., periodic] / period)
+        gap[..., periodic] -= period * turns
     return gap
 
 
@@ -36,10 +35,21 @@ def wrap(points: np.ndarray, periods: np.ndarray, within: float = SEAM) -> np.nd
     out = np.array(points, dtype=float)
     periodic = np.isfinite(periods)
     period = periods[periodic]
-    turned = out[..., periodic] - period * np.round(out[..., periodic] / period)
-    at_the_seam = np.abs(turned) >= (0.5 - within) * period
-    out[..., periodic] = np.where(at_the_seam, 0.5 * period, turned)
+    angles = out[..., periodic]
+    angles -= period * np.round(angles / period)
+    at_the_seam = np.abs(angles) >= (0.5 - within) * period
+    out[..., periodic] = np.where(at_the_seam, 0.5 * period, angles)
     return out
+
+
+def whole_turns(travel: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """Number of periods (n,) in ``travel`` (n,), to the nearest integer; 0 for unknowns
+    without a period."""
+    turns = np.zeros(len(periods), dtype=int)
+    periodic = np.isfinite(periods)
+    periods_gained = travel[periodic] / periods[periodic]
+    turns[periodic] = np.rint(periods_gained)
+    return turns
 
 
 def tree_box(periods: np.ndarray) -> np.ndarray:
@@ -51,9 +61,7 @@ def into_box(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
     """``points`` (..., n) with periodic unknowns in [0, period)."""
     out = np.array(points, dtype=float)
     periodic = np.isfinite(periods)
-    if np.all(
-        periodic
-    ):  # as in every loop: picking columns would take most of the time
+    if np.all(periodic):  # every loop: picking columns would take most of the time
         out %= periods
         return np.where(out >= periods, 0.0, out)
     period = periods[periodic]

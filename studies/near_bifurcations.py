@@ -22,7 +22,7 @@ import click
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.certificate import certify_branch
+from bifurc.curves.certificate import CertificateStatus, certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.singular.locate import locate_singular_point
@@ -39,12 +39,6 @@ __all__ = [
 ]
 
 STEPS = (0.1, 0.5)
-STATUSES = (
-    "certified",
-    "certified up to the singular points",
-    "certified up to places singular to rounding",
-    "not certified",
-)
 
 
 @dataclass(frozen=True)
@@ -88,7 +82,7 @@ def follow(case: NearMiss, step: float, certify: bool = False) -> Trace:
     status, points = certify_trace(case, branch)
     certifying = time.process_time() - start
     trace = replace(trace, certificate=status, points=points, certifying=certifying)
-    if not right and status == STATUSES[0]:
+    if not right and status == CertificateStatus.CERTIFIED:
         return replace(trace, verdict="jump")
     return trace
 
@@ -104,12 +98,12 @@ def certify_trace(case: NearMiss, branch: Branch) -> tuple[str, int]:
     problem = case.problem
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
     status = certificate.status
-    if status == STATUSES[2]:
+    if status == CertificateStatus.UP_TO_ROUNDING:
         middles = branch(certificate.blurred.mean(axis=1))
         reach = 1e-3 * problem.scale
         located = [locate_singular_point(problem, u, 2, reach) for u in middles]
         if all(point is not None for point in located):
-            status = STATUSES[1]
+            status = CertificateStatus.UP_TO_SINGULAR_POINTS
     return status, certificate.points
 
 
@@ -173,7 +167,7 @@ def describe_certificates(traces: Sequence[Trace]) -> str:
             (
                 family,
                 f"{step:g}",
-                *(str(certificates.count(status)) for status in STATUSES),
+                *(str(certificates.count(status)) for status in CertificateStatus),
                 f"{np.median(points):.0f}",
                 str(max(points)),
                 f"{1e3 * np.median(seconds):.0f}",

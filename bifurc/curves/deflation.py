@@ -13,11 +13,15 @@ where the double component is of first order.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from bifurc.curves.monitor import singular_values
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
-from bifurc.problem import March, MarchStatus, Problem
+from bifurc.numerics.null_spaces import null_spaces
+from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 from bifurc.singular.sphere import section
 
 __all__ = ["Deflated", "lower_rank_direction"]
@@ -26,6 +30,7 @@ __all__ = ["Deflated", "lower_rank_direction"]
 # 1e-8
 LOWER = 1e-5
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
+SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales
 
 
 class _WithNullVector(NumericalProblem):
@@ -33,29 +38,36 @@ class _WithNullVector(NumericalProblem):
 
     def __init__(self, problem: Problem, a: np.ndarray, t: np.ndarray):
         n = problem.n
-        self._problem, self._normal = problem, np.vstack([a, t])
-        self.names, self.units = problem.names * 2, problem.units + ("",) * n
-        self.periods = np.concatenate([problem.periods, np.full(n, np.inf)])
-        self.bounds = np.full((2 * n, 2), [-np.inf, np.inf])
-        self.magnitude, self.scale = problem.magnitude, problem.scale
+        self._problem = problem
+        self._normal = np.vstack([a, t])
+        self.names = problem.names * 2
+        self.units = problem.units + ("",) * n
+        endless = np.full(n, np.inf)
+        self.periods = np.concatenate([problem.periods, endless])
+        self.bounds = np.tile([-np.inf, np.inf], (2 * n, 1))
+        self.magnitude = problem.magnitude
+        self.scale = problem.scale
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
-        n = self._problem.n
-        u, v = points[:, :n], points[:, n:]
-        product = np.einsum("kmn,kn->km", self._problem.jacobians(u), v)
-        border = (v @ self._normal.T - [1.0, 0.0]) * self.magnitude
-        return np.concatenate([self._problem.residuals(u), product, border], axis=1)
+        u, v = np.split(points, 2, axis=1)
+        residuals = self._problem.residuals(u)
+        jacobians = self._problem.jacobians(u)
+        products = np.einsum("kmn,kn->km", jacobians, v)
+        borders = (v @ self._normal.T - [1.0, 0.0]) * self.magnitude
+        return np.concatenate([residuals, products, borders], axis=1)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
-        n = self._problem.n
-        u, v = points[:, :n], points[:, n:]
-        first = self._problem.jacobians(u)
-        k, m = first.shape[:2]
+        """Rows [F', 0], [F'' v, F'] and [0, (a, t)]."""
+        u, v = np.split(points, 2, axis=1)
+        jacobians = self._problem.jacobians(u)
+        k, m, n = jacobians.shape
         out = np.zeros((k, 2 * m + 2, 2 * n))
-        out[:, :m, :n] = out[:, m : 2 * m, n:] = first
+        equations, products, borders = np.split(out, [m, 2 * m], axis=1)
+        equations[:, :, :n] = jacobians
+        products[:, :, n:] = jacobians
         for i in range(k):
-            out[i, m : 2 * m, :n] = self._problem.hessian(u[i]) @ v[i]
-        out[:, 2 * m :, n:] = self._normal * self.magnitude
+            products[i, :, :n] = self._problem.hessian(u[i]) @ v[i]
+        borders[:, :, n:] = self._normal * self.magnitude
         return out
 
 
@@ -67,16 +79,13 @@ class Deflated(NumericalProblem):
 
     def __init__(self, problem: Problem):
         self._problem = problem
-        for name in (
-            "names",
-            "units",
-            "periods",
-            "bounds",
-            "magnitude",
-            "scale",
-            "derivatives",
-        ):
-            setattr(self, name, getattr(problem, name))
+        self.names = problem.names
+        self.units = problem.units
+        self.periods = problem.periods
+        self.bounds = problem.bounds
+        self.magnitude = problem.magnitude
+        self.scale = problem.scale
+        self.derivatives = problem.derivatives
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
@@ -91,38 +100,42 @@ class Deflated(NumericalProblem):
         return self._problem.hessian(point)
 
     def march(
-        self,
-        start: np.ndarray,
-        tangent: np.ndarray,
-        order: int,
-        tolerance: float,
-        shortest: float,
-        longest: float,
-        count: int,
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """A few pieces of the curve from ``start`` along ``tangent``, by collocation on
         the deflated system."""
-        right = np.linalg.svd(self.jacobians(start[None])[0], full_matrices=True)[2]
+        t, a = self._tangent_and_normal(start, tangent)
+        march = march_by_collocation(
+            _WithNullVector(self._problem, a, t),
+            np.concatenate([start, a]),
+            np.concatenate([t, np.zeros(self.n)]),
+            replace(settings, count=min(settings.count, RUN)),
+        )
+        status = march.status
+        if status is MarchStatus.OPEN:
+            gap = float(march.residuals[-1])
+            return March.without_solution(gap, settings.order, self.n)
+        if status is MarchStatus.STALLED and len(march.pieces):
+            status = MarchStatus.RAN  # perhaps only the choice of a and t wore out
+        pieces = []
+        for piece, residual in zip(march.pieces, march.residuals, strict=True):
+            coefficients, length = reparametrised(piece[:, : self.n])
+            pieces.append(Piece(coefficients, length, float(residual)))
+        return March.of_pieces(status, pieces, settings.order, self.n)
+
+    def _tangent_and_normal(
+        self, point: np.ndarray, tangent: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The unit vector t (n,) of the null space nearest to ``tangent``, and a (n,),
+        the one across it."""
+        jacobian = self.jacobians(point[None])[0]
+        _, _, right = np.linalg.svd(jacobian)
         null_space = right[self.n - 2 :]
         t = null_space.T @ (null_space @ tangent)
         t /= np.linalg.norm(t)
-        a = null_space.T @ np.array([[0.0, -1.0], [1.0, 0.0]]) @ (null_space @ t)
-        pair = _WithNullVector(self._problem, a, t)
-        begin, heading = (
-            np.concatenate([start, a]),
-            np.concatenate([t, np.zeros(self.n)]),
-        )
-        march = march_by_collocation(
-            pair, begin, heading, order, tolerance, shortest, longest, min(count, RUN)
-        )
-        status = march.status
-        if status is MarchStatus.STALLED and len(march.pieces):
-            status = MarchStatus.RAN  # perhaps only the choice of a and t wore out
-        made = [reparametrised(piece[:, : self.n]) for piece in march.pieces]
-        radii = np.array([length / 2 for _, length in made])
-        steps = radii + np.concatenate([[0.0], radii[:-1]]) if len(made) else radii
-        kept = np.array([piece for piece, _ in made]).reshape(-1, order + 1, self.n)
-        return March(status, kept, steps, radii, march.residuals)
+        quarter_turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+        a = null_space.T @ quarter_turn @ (null_space @ t)
+        return t, a
 
 
 def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | None:
@@ -132,23 +145,17 @@ def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | No
     There the section with a small sphere shows two opposite half-branches, and F' has
     no higher rank on either.
     """
-    _, sigma, right = np.linalg.svd(
-        problem.jacobians(point[None])[0] / problem.magnitude, full_matrices=True
-    )
-    padded = np.concatenate([sigma, np.zeros(len(right) - len(sigma))])
-    if np.count_nonzero(padded < LOWER) != 2:
+    sigma, right = null_spaces(problem, point[None])
+    if np.count_nonzero(sigma[0] < LOWER) != 2:
         return None
-    cut = section(problem, point, right[problem.n - 2 :].T, 1e-2 * problem.scale)
+    null_space = right[0, problem.n - 2 :].T
+    cut = section(problem, point, null_space, SECTION_RADIUS * problem.scale)
     if cut.dimension != 1 or len(cut.points) != 2:
         return None
-    values = np.linalg.svd(
-        problem.jacobians(cut.points) / problem.magnitude, compute_uv=False
-    )
-    if values.shape[1] >= problem.n - 1 and values[:, problem.n - 2].max() > LOWER:
+    sigma = singular_values(problem, cut.points)
+    if sigma[:, problem.n - 2].max() > LOWER:
         return None
-    along = cut.points[1] - cut.points[0]
-    return (
-        along / np.linalg.norm(along)
-        if np.linalg.norm(along) > 1e-2 * problem.scale
-        else None
-    )
+    chord: np.ndarray = cut.points[1] - cut.points[0]
+    length = np.linalg.norm(chord)
+    are_opposite = length > SECTION_RADIUS * problem.scale
+    return chord / length if are_opposite else None

@@ -20,12 +20,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from itertools import combinations, pairwise
+from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial import cKDTree
 
+from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
 
 __all__ = [
@@ -40,9 +42,10 @@ __all__ = [
 # corrections of one point; convergence is linear with a rate of about the gap over
 # sigma
 ROUNDS = 40
-SHARE = (
-    0.25  # of the way on which a singular value could fall to zero: the longest step
-)
+# singular values below this share of the largest are taken for that in a correction
+FLOOR = 1e-12
+# of the way on which a singular value could fall to zero: the longest step
+SHARE = 0.25
 TURN = 0.25  # rad between the tangents of neighbouring points
 # distance from a start, in scales, beyond which another valley is reached and not its
 # own
@@ -56,7 +59,10 @@ class ValleyEnd(Enum):
 
     DONE = "done: the condition to stop was met"
     STEP_LIMIT = "step limit: raise the number of steps"
-    LOST = "lost: the corrector does not converge; the errors are too large for a valley here"
+    LOST = (
+        "lost: the corrector does not converge; "
+        "the errors are too large for a valley here"
+    )
 
 
 @dataclass(frozen=True)
@@ -73,15 +79,16 @@ class Valley:
 
     def dense(self) -> np.ndarray:
         """Points of the cubic through points and tangents, `FINE` a step."""
-        s = np.concatenate(
-            [[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))]
-        )
-        if len(s) < 2:
+        if len(self.points) < 2:
             return self.points
-        at = np.concatenate(
-            [np.linspace(a, b, FINE, endpoint=False) for a, b in pairwise(s)]
-        )
-        return CubicHermiteSpline(s, self.points, self.tangents)(np.append(at, s[-1]))
+        steps = np.diff(self.points, axis=0)
+        lengths = np.linalg.norm(steps, axis=1)
+        s = np.concatenate([[0.0], np.cumsum(lengths)])
+        fine_steps = np.diff(s) / FINE
+        between = s[:-1, None] + np.arange(FINE) * fine_steps[:, None]
+        cubic = CubicHermiteSpline(s, self.points, self.tangents)
+        points: np.ndarray = cubic(np.append(between, s[-1]))
+        return points
 
 
 @dataclass(frozen=True)
@@ -102,39 +109,62 @@ class Unfolding:
     valleys: tuple[Valley, ...]
 
 
+# --- onto a valley --------------------------------------------------------------------
+
+
 def correct_to_valley(
     problem: Problem, points: np.ndarray, rounds: int = ROUNDS
 ) -> tuple[np.ndarray, np.ndarray]:
     """Points (k, n) moved onto the valley, across it, and the relative residual (k,)
     that is left at each."""
-    u = np.array(points, dtype=float)
-    for _ in range(rounds):
-        step = _across(problem, u)[0]
-        u += step
-        if np.abs(step).max(initial=0.0) < 1e-14 * problem.scale:
-            break
-    return u, np.linalg.norm(problem.residuals(u), axis=1) / problem.magnitude
-
-
-def _across(
-    problem: Problem, points: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The corrector's steps (k, n), the weak right singular vectors (k, n) and singular
-    values n - 1 (k,)."""
+    points = np.array(points, dtype=float)
     rank = problem.n - 1
-    residual = problem.residuals(points) / problem.magnitude
-    left, sigma, right = np.linalg.svd(
-        problem.jacobians(points) / problem.magnitude, full_matrices=True
-    )
-    strong = sigma[:, :rank]
-    along = np.einsum("kmi,km->ki", left[:, :, :rank], residual) / np.maximum(
-        strong, 1e-12 * sigma[:, :1]
-    )
-    return (
-        -np.einsum("kin,ki->kn", right[:, :rank], along),
-        right[:, rank],
-        strong[:, -1],
-    )
+    for _ in range(rounds):
+        steps = decompose(problem, points).newton_steps(rank, FLOOR)
+        points += steps
+        longest = np.abs(steps).max(initial=0.0)
+        if longest < 1e-14 * problem.scale:
+            break
+    return points, problem.gaps(points)
+
+
+class _Station(NamedTuple):
+    """A ``point`` (n,) on a valley, the unit ``tangent`` (n,) and singular value n - 1
+    there."""
+
+    point: np.ndarray
+    tangent: np.ndarray
+    sigma: float
+
+
+def _settle(
+    problem: Problem, point: np.ndarray, heading: np.ndarray, enough: float
+) -> _Station | None:
+    """The station of the valley across the weak direction from ``point``.
+
+    Corrections end below ``enough``, or where they shrink no more: at rounding over the
+    singular value. None where they do not become small: where the residual times F'' is
+    no longer small beside sigma^2, the valley has no floor.
+    """
+    rank = problem.n - 1
+    before = np.inf
+    for _ in range(ROUNDS):
+        decomposition = decompose(problem, point[None])
+        step = decomposition.newton_steps(rank, FLOOR)[0]
+        size = float(np.linalg.norm(step))
+        shrinks_no_more = size < 1e3 * enough and size > 0.3 * before
+        if size < enough or shrinks_no_more:
+            weak = decomposition.right[0, rank]
+            tangent = weak if weak @ heading >= 0 else -weak
+            sigma = float(decomposition.sigma[0, rank - 1])
+            return _Station(point + step, tangent, sigma)
+        # corrections that overshoot in turn are halved
+        point = point + (step if size < 0.9 * before else 0.5 * step)
+        before = size
+    return None
+
+
+# --- along a valley -------------------------------------------------------------------
 
 
 def follow_valley(
@@ -152,79 +182,76 @@ def follow_valley(
     tangent by more than `TURN`, or covers more than a quarter of the way on which
     singular value n - 1 could fall to zero: no crossing is nearer.
     """
-    first = _settle(problem, start, direction, 1e-9 * problem.scale)
-    if first is None or np.linalg.norm(first[0] - start) > FAR * problem.scale:
-        return _valley(
-            problem,
-            [(start, direction / np.linalg.norm(direction), 0.0)],
-            ValleyEnd.LOST,
-        )
-    rows = [first]
-    h = longest * problem.scale
+    station = _settle(problem, start, direction, 1e-9 * problem.scale)
+    if station is None or not _is_near(problem, station.point, start):
+        heading = direction / np.linalg.norm(direction)
+        nowhere = _Station(start, heading, 0.0)
+        return _valley(problem, [nowhere], ValleyEnd.LOST)
+    stations = [station]
+    longest *= problem.scale
+    length = longest
     for _ in range(steps):
-        u, t, sigma = rows[-1]
-        h = min(2.0 * h, longest * problem.scale, SHARE * sigma / _rate(problem, u, t))
-        made = _settle(problem, u + h * t, t, 1e-6 * h)
-        while (
-            made is None
-            or np.linalg.norm(made[0] - u - h * t) > 0.5 * h
-            or made[1] @ t < np.cos(TURN)
-        ):
-            h *= 0.5
-            if h < SHORTEST * problem.scale:
-                return _valley(problem, rows, ValleyEnd.LOST)
-            made = _settle(problem, u + h * t, t, 1e-6 * h)
-        rows.append(made)
-        if stop(made[0]):
-            return _valley(problem, rows, ValleyEnd.DONE)
-    return _valley(problem, rows, ValleyEnd.STEP_LIMIT)
+        rate = _rate(problem, station.point, station.tangent)
+        clear = SHARE * station.sigma / rate
+        length = min(2.0 * length, longest, clear)
+        step = _step(problem, station, length)
+        if step is None:
+            return _valley(problem, stations, ValleyEnd.LOST)
+        length, station = step
+        stations.append(station)
+        if stop(station.point):
+            return _valley(problem, stations, ValleyEnd.DONE)
+    return _valley(problem, stations, ValleyEnd.STEP_LIMIT)
 
 
-def _valley(
-    problem: Problem, rows: list[tuple[np.ndarray, np.ndarray, float]], end: ValleyEnd
-) -> Valley:
-    points, tangents, weakest = (np.array(column) for column in zip(*rows, strict=True))
-    gaps = np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude
-    return Valley(points, tangents, gaps, weakest, end)
+def _is_near(problem: Problem, point: np.ndarray, start: np.ndarray) -> bool:
+    """Whether a point is still on the valley of its start."""
+    distance = np.linalg.norm(point - start)
+    return bool(distance <= FAR * problem.scale)
 
 
-def _settle(
-    problem: Problem, point: np.ndarray, heading: np.ndarray, enough: float
-) -> tuple[np.ndarray, np.ndarray, float] | None:
-    """The point of the valley across the weak direction from ``point``, its tangent,
-    and singular value n - 1.
+def _step(
+    problem: Problem, station: _Station, length: float
+) -> tuple[float, _Station] | None:
+    """The length of a step, at most ``length``, and where it leads; None where even the
+    shortest fails."""
+    u, t = station.point, station.tangent
+    while True:
+        ahead = u + length * t
+        following = _settle(problem, ahead, t, 1e-6 * length)
+        if following is not None:
+            correction = np.linalg.norm(following.point - u - length * t)
+            is_straight = following.tangent @ t >= np.cos(TURN)
+            if correction <= 0.5 * length and is_straight:
+                return length, following
+        length *= 0.5
+        if length < SHORTEST * problem.scale:
+            return None
 
-    Corrections end below ``enough``, or where they shrink no more: at rounding over the
-    singular value. None where they do not become small: where the residual times F'' is
-    no longer small beside sigma^2, the valley has no floor.
-    """
-    u, last = point[None].copy(), np.inf
-    for _ in range(ROUNDS):
-        step, weak, sigma = _across(problem, u)
-        size = float(np.linalg.norm(step))
-        if size < enough or (size < 1e3 * enough and size > 0.3 * last):
-            return (
-                u[0] + step[0],
-                weak[0] if weak[0] @ heading >= 0 else -weak[0],
-                float(sigma[0]),
-            )
-        u += (
-            step if size < 0.9 * last else 0.5 * step
-        )  # corrections that overshoot in turn are halved
-        last = size
-    return None
+
+def _valley(problem: Problem, stations: list[_Station], end: ValleyEnd) -> Valley:
+    points = np.array([station.point for station in stations])
+    return Valley(
+        points=points,
+        tangents=np.array([station.tangent for station in stations]),
+        gaps=problem.gaps(points),
+        weakest=np.array([station.sigma for station in stations]),
+        end=end,
+    )
 
 
 def _rate(problem: Problem, point: np.ndarray, tangent: np.ndarray) -> float:
     """How fast the block of F' that nearly vanishes, over the problem's magnitude,
     changes along ``tangent``."""
     rank = problem.n - 2
-    left, _, right = np.linalg.svd(problem.jacobians(point[None])[0])
+    jacobian = problem.jacobians(point[None])[0]
+    left, _, right = np.linalg.svd(jacobian)
     change = problem.hessian(point) @ tangent / problem.magnitude
-    return (
-        float(np.linalg.norm(left[:, rank:].T @ change @ right[rank:].T))
-        + 1e-3 / problem.scale
-    )
+    block = left[:, rank:].T @ change @ right[rank:].T
+    return float(np.linalg.norm(block)) + 1e-3 / problem.scale
+
+
+# --- crossings ------------------------------------------------------------------------
 
 
 def unfold_crossing(
@@ -236,44 +263,47 @@ def unfold_crossing(
     From every start the valley is followed inwards, until it leaves the ball about the
     centre that the start lies on.
     """
-    free, valleys, pairs = list(range(len(starts))), [], []
     offsets = starts - center
-    radius = np.linalg.norm(offsets, axis=1)
+    radii = np.linalg.norm(offsets, axis=1)
+    free = list(range(len(starts)))
+    valleys: list[Valley] = []
+    pairs: list[tuple[int, int]] = []
     while free:
         i = free.pop(0)
-        valley = follow_valley(
-            problem, starts[i], -offsets[i], _leaves(center, float(radius[i]))
-        )
+        stop = _leaves(center, float(radii[i]))
+        valley = follow_valley(problem, starts[i], -offsets[i], stop)
+        gaps = valley.points[-1] - starts
+        distances = np.linalg.norm(gaps, axis=1) / radii
+        distances[i] = np.inf
+        j = int(np.argmin(distances))
         valleys.append(valley)
-        apart = np.linalg.norm(valley.points[-1] - starts, axis=1) / radius
-        j = int(np.argmin(np.where(np.arange(len(starts)) == i, np.inf, apart)))
         pairs.append((i, j))
         if j in free and valley.end is ValleyEnd.DONE:
             free.remove(j)
-    distance = min(
-        (_distance(a, b) for a, b in combinations(valleys, 2)), default=np.inf
-    )
+    distances_between = [_distance(a, b) for a, b in combinations(valleys, 2)]
     return Unfolding(
-        tuple(pairs),
-        distance,
-        min(float(v.weakest.min()) for v in valleys),
-        max(float(v.gaps.max()) for v in valleys),
-        tuple(valleys),
+        pairs=tuple(pairs),
+        distance=min(distances_between, default=np.inf),
+        weakest=min(float(valley.weakest.min()) for valley in valleys),
+        gap=max(float(valley.gaps.max()) for valley in valleys),
+        valleys=tuple(valleys),
     )
 
 
 def _leaves(center: np.ndarray, radius: float) -> Callable[[np.ndarray], bool]:
     """Whether a path that went inwards has come out of the ball again."""
-    inside = False
+    was_inside = False
 
-    def stop(u: np.ndarray) -> bool:
-        nonlocal inside
-        distance = float(np.linalg.norm(u - center))
-        inside = inside or distance < 0.9 * radius
-        return distance > (radius if inside else 2 * radius)
+    def stop(point: np.ndarray) -> bool:
+        nonlocal was_inside
+        distance = float(np.linalg.norm(point - center))
+        was_inside = was_inside or distance < 0.9 * radius
+        return distance > (radius if was_inside else 2 * radius)
 
     return stop
 
 
 def _distance(a: Valley, b: Valley) -> float:
-    return float(np.min(cKDTree(a.dense()).query(b.dense())[0]))
+    """The least distance between two valleys."""
+    distances, _ = cKDTree(a.dense()).query(b.dense())
+    return float(np.min(distances))

@@ -41,7 +41,7 @@ from bifurc.files.point_layout import (
 from bifurc.files.surface_layout import SURFACES, read_surface
 from bifurc.files.table import JOINT, Frame, make_variable
 from bifurc.search.settings import SearchSettings
-from bifurc.seeds import Completeness
+from bifurc.seeds import Completeness, Level
 
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
@@ -172,7 +172,7 @@ def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
         "version": release,
         "unknown_dimension": frame.joint,
         "closure_gap": float(atlas.closure_gap),
-        "completeness_level": atlas.completeness.level,
+        "completeness_level": atlas.completeness.level.value,
         "completeness_statement": atlas.completeness.statement,
         "missed_probability": float(atlas.completeness.missed_probability),
         "provenance": to_text(asdict(provenance)),
@@ -276,7 +276,7 @@ def _make_atlas(dataset: xr.Dataset, frame: Frame) -> Atlas:
             read_surface(row, periods) for row in SURFACES.rows(dataset, frame)
         ),
         completeness=Completeness(
-            str(attributes["completeness_level"]),
+            Level(str(attributes["completeness_level"])),
             str(attributes["completeness_statement"]),
             float(attributes["missed_probability"]),
         ),

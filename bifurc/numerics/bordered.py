@@ -3,50 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from scipy.linalg import lapack, qr, solve_triangular
-from scipy.sparse import csc_array, issparse, vstack
+from scipy.sparse import csc_array, issparse, sparray, vstack
 from scipy.sparse.linalg import splu
 
-__all__ = ["Bordered", "as_dense", "sparse_bordered"]
+__all__ = ["Bordered", "as_dense", "bordered_matrix", "sparse_bordered"]
+
+Solver = Callable[[np.ndarray], np.ndarray]
+"""Maps a right-hand side to the solution of one linear system."""
 
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
 # largest entry of the border of a sparse matrix, over the median one of the matrix
 BORDER = 1e-3
+PIVOT = 0.1  # a diagonal entry will do as a pivot from this share of the largest on
 
 
-def as_dense(matrix: Any) -> np.ndarray:
+def as_dense(matrix: np.ndarray | sparray) -> np.ndarray:
     """A dense or sparse matrix as an array."""
-    return np.asarray(matrix.toarray() if issparse(matrix) else matrix, dtype=float)
+    dense = matrix if isinstance(matrix, np.ndarray) else matrix.toarray()
+    return np.asarray(dense, dtype=float)
 
 
-def sparse_bordered(
-    jacobian: Any, tangent: np.ndarray
-) -> Callable[[np.ndarray], np.ndarray]:
-    """The function that solves [F'; t] x = right, (n,) or (n, k), for a sparse F' (n -
-    1, n), by sparse LU.
-
-    The border must not become a pivot early, as it would fill the factors: t is scaled
-    to a size far below that of F', columns are ordered by minimum degree of A^T + A,
-    and a diagonal entry will do as a pivot from a tenth of the largest.
-    """
-    matrix = csc_array(jacobian)
-    weight = (
-        BORDER * (float(np.median(np.abs(matrix.data))) or 1.0) / np.abs(tangent).max()
-    )
-    stacked: Any = vstack([matrix, csc_array(weight * tangent[None])])
-    factors = splu(
-        csc_array(stacked), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1
-    )
-
-    def solve(right: np.ndarray) -> np.ndarray:
-        right = right.copy()
-        right[-1] *= weight
-        return factors.solve(right)
-
-    return solve
+def bordered_matrix(jacobian: np.ndarray | sparray, border: np.ndarray) -> np.ndarray:
+    """The dense matrix (m + 1, n) of F' (m, n) and the row ``border`` (n,) under it."""
+    m, n = jacobian.shape
+    matrix = np.empty((m + 1, n))
+    matrix[:-1] = as_dense(jacobian)
+    matrix[-1] = border
+    return matrix
 
 
 class Bordered:
@@ -60,44 +46,95 @@ class Bordered:
     redundant equations and leaves out what has no rank.
     """
 
-    def __init__(self, jacobian: Any, tangent: np.ndarray):
+    def __init__(self, jacobian: np.ndarray | sparray, tangent: np.ndarray):
         m, n = jacobian.shape
         self._rows = m
-        self._solve: Callable[[np.ndarray], np.ndarray]
-        if issparse(jacobian) and m == n - 1:
-            self._solve = sparse_bordered(jacobian, tangent)
-            return
-        matrix = np.empty((m + 1, n))
-        matrix[:-1], matrix[-1] = as_dense(jacobian), tangent
-        if m == n - 1:
-            factors, order, _ = lapack.dgetrf(
-                matrix
-            )  # the wrappers of SciPy cost more than a small system
-            pivots = np.abs(np.diag(factors))
-            if pivots.min() > RANK * pivots.max():
-                self._solve = lambda right: lapack.dgetrs(factors, order, right)[0]
-                return
-        q, r, order = qr(matrix, mode="economic", pivoting=True, check_finite=False)
-        diagonal = np.abs(np.diag(r))
-        rank = int(np.count_nonzero(diagonal > RANK * diagonal[0]))
-
-        def solve(right: np.ndarray) -> np.ndarray:
-            out = np.zeros(n)
-            out[order[:rank]] = solve_triangular(
-                r[:rank, :rank], q[:, :rank].T @ right, check_finite=False
-            )
-            return out
-
-        self._solve = solve
+        self._solve = _solver(jacobian, tangent, is_square=m == n - 1)
 
     def solve(self, residual: np.ndarray, along: float = 0.0) -> np.ndarray:
         """d (n,) with F' d = ``residual`` (m,) and t . d = ``along``, in the
         least-squares sense."""
         right = np.empty(self._rows + 1)
-        right[:-1], right[-1] = residual, along
+        right[:-1] = residual
+        right[-1] = along
         return self._solve(right)
 
     def null_vector(self) -> np.ndarray:
         """Unit vector (n,) along d with F' d = 0 and t . d > 0."""
         vector = self.solve(np.zeros(self._rows), 1.0)
-        return vector / np.linalg.norm(vector)
+        unit: np.ndarray = vector / np.linalg.norm(vector)
+        return unit
+
+
+def _solver(
+    jacobian: np.ndarray | sparray, tangent: np.ndarray, is_square: bool
+) -> Solver:
+    """How systems with the bordered matrix are solved: by the cheapest factorisation
+    that holds."""
+    if issparse(jacobian) and is_square:
+        return sparse_bordered(jacobian, tangent)
+    matrix = bordered_matrix(jacobian, tangent)
+    by_lu = _lu_solver(matrix) if is_square else None
+    return by_lu or _qr_solver(matrix)
+
+
+def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solver:
+    """The function that solves [F'; t] x = right, (n,) or (n, k), for a sparse F' (n -
+    1, n), by sparse LU.
+
+    The border must not become a pivot early, as it would fill the factors: t is scaled
+    to a size far below that of F', columns are ordered by minimum degree of A^T + A,
+    and a diagonal entry will do as a pivot from a tenth of the largest.
+    """
+    matrix = csc_array(jacobian)
+    typical = float(np.median(np.abs(matrix.data))) or 1.0
+    weight = BORDER * typical / np.abs(tangent).max()
+    border = csc_array(weight * tangent[None])
+    stacked = csc_array(vstack([matrix, border]))
+    factors = splu(stacked, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT)
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        right = right.copy()
+        right[-1] *= weight
+        solution: np.ndarray = factors.solve(right)
+        return solution
+
+    return solve
+
+
+def _lu_solver(matrix: np.ndarray) -> Solver | None:
+    """The solver of a square system by LU; None where the matrix is singular.
+
+    LAPACK is called directly: SciPy's wrappers cost more than a small system.
+    """
+    factors, order, _ = lapack.dgetrf(matrix)
+    pivots = np.abs(np.diag(factors))
+    is_regular = pivots.min() > RANK * pivots.max()
+    if not is_regular:
+        return None
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        solution: np.ndarray
+        solution, _ = lapack.dgetrs(factors, order, right)
+        return solution
+
+    return solve
+
+
+def _qr_solver(matrix: np.ndarray) -> Solver:
+    """The solver of a system in the least-squares sense, by QR with column pivoting."""
+    q, r, order = qr(matrix, mode="economic", pivoting=True, check_finite=False)
+    diagonal = np.abs(np.diag(r))
+    rank = int(np.count_nonzero(diagonal > RANK * diagonal[0]))
+    triangle = r[:rank, :rank]
+    range_space = q[:, :rank].T
+    independent = order[:rank]
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        solution = np.zeros(matrix.shape[1])
+        solution[independent] = solve_triangular(
+            triangle, range_space @ right, check_finite=False
+        )
+        return solution
+
+    return solve

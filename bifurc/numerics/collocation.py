@@ -9,7 +9,7 @@ the nodes from nothing but F and F'.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -17,67 +17,79 @@ from numpy.polynomial import chebyshev
 
 from bifurc.numerics.bordered import Bordered
 from bifurc.numerics.corrector import correct_across
-from bifurc.problem import March, MarchStatus, Problem
+from bifurc.pieces import points_on_piece
+from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 
 __all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
 
 PREDICT_FROM = 10  # nodes through which the next one is predicted
+LOOSE = 30  # times the tolerance: the residual that a piece may have between its nodes
+FAILED = 0.4  # factor of the width where no correction converges
+NEWTON_STEPS = 8  # from a share of the arclength to the parameter
+
+
+@dataclass(frozen=True)
+class _Aim:
+    """Where a piece begins, (n,), the unit vector along which it lies, (n,), and how
+    good it has to be."""
+
+    start: np.ndarray
+    heading: np.ndarray
+    order: int
+    tolerance: float
+
+
+@dataclass(frozen=True)
+class _Accepted:
+    """A piece, and the width to try for the next one."""
+
+    piece: Piece
+    next_width: float
+
+
+@dataclass(frozen=True)
+class _Rejected:
+    """The factor by which the width has to shrink."""
+
+    factor: float
+
+
+# --- marches and bridges --------------------------------------------------------------
 
 
 def march_by_collocation(
-    problem: Problem,
-    start: np.ndarray,
-    tangent: np.ndarray,
-    order: int,
-    tolerance: float,
-    shortest: float,
-    longest: float,
-    count: int,
+    problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
 ) -> March:
-    """Up to ``count`` pieces of the curve from ``start`` (n,) along ``tangent``."""
-    point, gap, _ = correct_across(problem, start, tangent, tolerance)
-    pieces: list[np.ndarray] = []
-    radii: list[float] = []
-    residuals: list[float] = []
-    status = MarchStatus.RAN
-    if gap > 100 * tolerance + 1e-12:
-        return March(
-            MarchStatus.OPEN,
-            np.empty((0, order + 1, problem.n)),
-            np.empty(0),
-            np.empty(0),
-            np.array([gap]),
-        )
-    heading, width = (
-        Bordered(problem.jacobian(point) / problem.magnitude, tangent).null_vector(),
-        longest / 4,
-    )
+    """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,)."""
+    order, tolerance = settings.order, settings.tolerance
+    corrected = correct_across(problem, start, tangent, tolerance)
+    if corrected.gap > 100 * tolerance + 1e-12:
+        return March.without_solution(corrected.gap, order, problem.n)
+    point = corrected.point
+    jacobian = problem.jacobian(point) / problem.magnitude
+    heading = Bordered(jacobian, tangent).null_vector()
+    width = settings.longest / 4
+    pieces: list[Piece] = []
     low, high = problem.bounds.T
-    while len(pieces) < count and (
-        not pieces or np.all((low <= point) & (point <= high))
-    ):
-        piece, length, residual, width = _piece(
-            problem, point, heading, order, tolerance, shortest, width
-        )
-        if piece is None:
-            status = MarchStatus.STALLED
+    while len(pieces) < settings.count:
+        is_inside = np.all((low <= point) & (point <= high))
+        if pieces and not is_inside:
             break
-        pieces.append(piece)
-        radii.append(length / 2)
-        residuals.append(residual)
-        point = piece.sum(axis=0)  # the value at x = 1
-        slope = np.arange(order + 1) @ piece
-        heading = slope / np.linalg.norm(slope)
-        width = min(width, 2 * longest)
-    half = np.array(radii)
-    steps = half + np.concatenate([[0.0], half[:-1]]) if len(half) else half
-    return March(
-        status,
-        np.array(pieces).reshape(-1, order + 1, problem.n),
-        steps,
-        half,
-        np.array(residuals),
-    )
+        aim = _Aim(point, heading, order, tolerance)
+        accepted = _next_piece(problem, aim, width, settings.shortest)
+        if accepted is None:
+            return March.of_pieces(MarchStatus.STALLED, pieces, order, problem.n)
+        pieces.append(accepted.piece)
+        point, heading = _end(accepted.piece)
+        width = min(accepted.next_width, 2 * settings.longest)
+    return March.of_pieces(MarchStatus.RAN, pieces, order, problem.n)
+
+
+def _end(piece: Piece) -> tuple[np.ndarray, np.ndarray]:
+    """Point (n,) and unit tangent (n,) at x = 1, where every power of x is 1."""
+    point = piece.coefficients.sum(axis=0)
+    slope = np.arange(len(piece.coefficients)) @ piece.coefficients
+    return point, slope / np.linalg.norm(slope)
 
 
 def bridge_by_collocation(
@@ -87,68 +99,104 @@ def bridge_by_collocation(
     order: int,
     tolerance: float,
     width: float,
-) -> tuple[np.ndarray, float, float] | None:
-    """One piece of about ``width`` from ``start``: (coefficients (order + 1, n),
-    arclength, residual), or None.
+) -> Piece | None:
+    """One piece of about ``width`` from ``start`` (n,) along ``heading`` (n,), or None.
 
     Over a point in the middle where no series can be made: no node lies there, and the
     nodes next to it need only be as good as ``tolerance``.
     """
     odd = order - 1 + order % 2  # an even number of nodes leaves the middle free
-    made = _attempt(problem, start, heading, odd, tolerance, width)
-    if isinstance(made, float):
+    aim = _Aim(start, heading, odd, tolerance)
+    attempt = _attempt(problem, aim, width)
+    if isinstance(attempt, _Rejected):
         return None
-    piece, length, residual, _ = made
-    return np.vstack([piece, np.zeros((order - odd, problem.n))]), length, residual
+    highest = np.zeros((order - odd, problem.n))
+    coefficients = np.vstack([attempt.piece.coefficients, highest])
+    return replace(attempt.piece, coefficients=coefficients)
 
 
-def _piece(
-    problem: Problem,
-    start: np.ndarray,
-    heading: np.ndarray,
-    order: int,
-    tolerance: float,
-    shortest: float,
-    width: float,
-) -> tuple[np.ndarray | None, float, float, float]:
-    """One accepted piece (or None), its arclength, its residual and the width to try
-    next."""
+# --- one piece ------------------------------------------------------------------------
+
+
+def _next_piece(
+    problem: Problem, aim: _Aim, width: float, shortest: float
+) -> _Accepted | None:
+    """A piece of ``width`` or less; None where even one of the ``shortest`` width
+    fails."""
     while width >= shortest:
-        made = _attempt(problem, start, heading, order, tolerance, width)
-        if not isinstance(made, float):
-            return made
-        width *= made
-    return None, 0.0, 0.0, width
+        attempt = _attempt(problem, aim, width)
+        if isinstance(attempt, _Accepted):
+            return attempt
+        width *= attempt.factor
+    return None
 
 
-def _attempt(
-    problem: Problem,
-    start: np.ndarray,
-    heading: np.ndarray,
-    order: int,
-    tolerance: float,
-    width: float,
-) -> tuple[np.ndarray, float, float, float] | float:
-    """A piece of the given width with the next width to try, or the factor by which the
-    width is to shrink."""
-    basis = _basis(order)
-    nodes = _follow(problem, start, heading, basis, width, tolerance)
+def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected:
+    """A piece of the given width, if its last coefficients and its residual are small
+    enough."""
+    basis = _basis(aim.order)
+    nodes = _points_at_nodes(problem, aim, basis, width)
     if nodes is None:
-        return 0.4
+        return _Rejected(FAILED)
     coefficients = basis.from_values @ nodes
-    tail, enough = float(np.abs(coefficients[-2:]).max()), tolerance * problem.scale
+    last_two = np.abs(coefficients[-2:])
+    tail = float(last_two.max())
+    enough = aim.tolerance * problem.scale
+    root = 1.0 / aim.order  # the tail goes with this power of the width, upside down
     if tail <= enough:
-        piece, length = _by_arclength(coefficients)
-        inside = np.vander(
-            np.cos(np.pi * (np.arange(order) + 0.5) / order), order + 1, increasing=True
-        )
-        misfit = problem.residuals(inside @ piece) / problem.magnitude
-        residual = float(np.linalg.norm(misfit, axis=1).max())
-        if residual <= 30 * tolerance:
-            growth = (enough / max(tail, 1e-18)) ** (1.0 / order)
-            return piece, length, residual, width * min(1.6, max(0.7, 0.95 * growth))
+        powers, length = _by_arclength(coefficients)
+        residual = _residual_between_nodes(problem, powers)
+        if residual <= LOOSE * aim.tolerance:
+            piece = Piece(powers, length, residual)
+            growth = (enough / max(tail, 1e-18)) ** root
+            factor = min(1.6, max(0.7, 0.95 * growth))
+            return _Accepted(piece, width * factor)
         tail = max(tail, residual)
-    return min(0.75, max(0.3, 0.9 * (enough / tail) ** (1.0 / order)))
+    shrinkage = (enough / tail) ** root
+    return _Rejected(min(0.75, max(0.3, 0.9 * shrinkage)))
+
+
+def _residual_between_nodes(problem: Problem, piece: np.ndarray) -> float:
+    """Largest relative residual of a piece (order + 1, n) at places between its
+    nodes."""
+    order = len(piece) - 1
+    angles = np.pi * (np.arange(order) + 0.5) / order
+    points = points_on_piece(piece, np.cos(angles))
+    residuals = problem.relative_residuals(points)
+    sizes = np.linalg.norm(residuals, axis=1)
+    return float(sizes.max())
+
+
+def _points_at_nodes(
+    problem: Problem, aim: _Aim, basis: _Basis, width: float
+) -> np.ndarray | None:
+    """Curve points (k, n) at the nodes of a piece; None where correction fails.
+
+    Each is predicted by the polynomial through the last few points before it, and
+    corrected with the factorisation that served the one before it.
+    """
+    start, heading = aim.start, aim.heading
+    offsets = 0.5 * width * (basis.nodes + 1.0)
+    points = np.empty((len(offsets), len(start)))
+    points[0] = start
+    jacobian = problem.jacobian(start) / problem.magnitude
+    factored: Bordered | None = Bordered(jacobian, heading)
+    for k in range(1, len(offsets)):
+        guess = basis.predictors[k] @ points[:k] if k > 1 else start
+        covered = (guess - start) @ heading
+        guess = guess + (offsets[k] - covered) * heading
+        corrected = correct_across(problem, guess, heading, aim.tolerance, factored)
+        points[k] = corrected.point
+        factored = corrected.factored
+        step = points[k] - points[k - 1]
+        expected = offsets[k] - offsets[k - 1]
+        is_far = np.linalg.norm(step) > 4 * expected
+        if is_far or corrected.gap > 100 * aim.tolerance:
+            return None
+    return points
+
+
+# --- Chebyshev polynomials ------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -168,95 +216,83 @@ class _Basis:
 
 @lru_cache(maxsize=64)
 def _basis(order: int) -> _Basis:
-    nodes = -np.cos(np.pi * np.arange(order + 1) / order)
+    angles = np.pi * np.arange(order + 1) / order
+    nodes = -np.cos(angles)
     unit = np.eye(order + 1)
     to_powers = np.zeros((order + 1, order + 1))
     for k in range(order + 1):
         powers = chebyshev.cheb2poly(unit[k])
         to_powers[: len(powers), k] = powers
-    from_values = np.linalg.inv(chebyshev.chebvander(nodes, order))
+    predictors = [_predictor(nodes, k) for k in range(order + 1)]
     return _Basis(
-        nodes,
-        from_values,
-        to_powers,
-        chebyshev.chebder(unit, axis=0),
-        chebyshev.chebint(unit, lbnd=-1, axis=0),
-        tuple(_predictor(nodes, k) for k in range(order + 1)),
+        nodes=nodes,
+        from_values=np.linalg.inv(chebyshev.chebvander(nodes, order)),
+        to_powers=to_powers,
+        derivative=chebyshev.chebder(unit, axis=0),
+        integral=chebyshev.chebint(unit, lbnd=-1, axis=0),
+        predictors=tuple(predictors),
     )
-
-
-def _follow(
-    problem: Problem,
-    start: np.ndarray,
-    heading: np.ndarray,
-    basis: _Basis,
-    width: float,
-    tolerance: float,
-) -> np.ndarray | None:
-    """Curve points (k, n) at the nodes of a piece, which lies along ``heading`` from
-    ``start``; None where correction fails.
-
-    Each is predicted by the polynomial through the last few points before it, and
-    corrected with the factorisation that served the one before it.
-    """
-    offsets = 0.5 * width * (basis.nodes + 1.0)
-    points = np.empty((len(offsets), len(start)))
-    points[0] = start
-    factored: Bordered | None = Bordered(
-        problem.jacobian(start) / problem.magnitude, heading
-    )
-    for k in range(1, len(offsets)):
-        reach = offsets[k] - offsets[k - 1]
-        guess = basis.predictors[k] @ points[:k] if k > 1 else start
-        guess = guess + (offsets[k] - (guess - start) @ heading) * heading
-        points[k], gap, factored = correct_across(
-            problem, guess, heading, tolerance, factored
-        )
-        if (
-            gap > 100 * tolerance
-            or np.linalg.norm(points[k] - points[k - 1]) > 4 * reach
-        ):
-            return None
-    return points
 
 
 def _predictor(nodes: np.ndarray, k: int) -> np.ndarray:
     """Weights (k,) by which the values at the first ``k`` nodes give that of the
     polynomial through the last `PREDICT_FROM` of them at node ``k`` (Lagrange)."""
-    weights, first = np.zeros(k), max(0, k - PREDICT_FROM)
+    first = max(0, k - PREDICT_FROM)
+    weights = np.zeros(k)
     for i in range(first, k):
         others = np.delete(nodes[first:k], i - first)
-        weights[i] = np.prod((nodes[k] - others) / (nodes[i] - others))
+        ratios = (nodes[k] - others) / (nodes[i] - others)
+        weights[i] = np.prod(ratios)
     return weights
+
+
+def _polynomials(x: np.ndarray, order: int) -> np.ndarray:
+    """Chebyshev polynomials (k, order + 1) at x (k,) within [-1, 1]."""
+    angles = np.outer(np.arccos(x), np.arange(order + 1))
+    return np.cos(angles)
+
+
+# --- arclength as parameter -----------------------------------------------------------
 
 
 def reparametrised(piece: np.ndarray) -> tuple[np.ndarray, float]:
     """A piece (order + 1, n) of monomials on [-1, 1], in any parameter, with arclength
     as parameter; and its length."""
-    return _by_arclength(np.linalg.solve(_basis(len(piece) - 1).to_powers, piece))
+    to_powers = _basis(len(piece) - 1).to_powers
+    return _by_arclength(np.linalg.solve(to_powers, piece))
 
 
 def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:
     """A Chebyshev piece (order + 1, n) on any coordinate as monomials in arclength on
     [-1, 1], and its length."""
     order = len(coefficients) - 1
-    basis, fine = _basis(order), _basis(3 * order)
-    slope = _polynomials(fine.nodes, order - 1) @ (basis.derivative @ coefficients)
-    speed = fine.from_values @ np.linalg.norm(slope, axis=1)
+    basis = _basis(order)
+    fine = _basis(3 * order)
+    derivative = basis.derivative @ coefficients
+    slopes = _polynomials(fine.nodes, order - 1) @ derivative
+    speed = fine.from_values @ np.linalg.norm(slopes, axis=1)
     arclength = fine.integral @ speed
     length = float(arclength.sum())  # every Chebyshev polynomial is 1 at 1
-    target, x = 0.5 * length * (basis.nodes + 1.0), basis.nodes.copy()
-    for _ in range(8):
+    x = _places_at_shares(speed, arclength, basis.nodes)
+    values = basis.from_values @ (_polynomials(x, order) @ coefficients)
+    return basis.to_powers @ values, length
+
+
+def _places_at_shares(
+    speed: np.ndarray, arclength: np.ndarray, nodes: np.ndarray
+) -> np.ndarray:
+    """Coordinates (k,) at which the share of the arclength covered is that of ``nodes``
+    (k,) in [-1, 1], by Newton's method.
+
+    ``speed`` and ``arclength`` are Chebyshev coefficients.
+    """
+    targets = 0.5 * float(arclength.sum()) * (nodes + 1.0)
+    x = nodes.copy()
+    for _ in range(NEWTON_STEPS):
         values = _polynomials(x, len(speed))
-        step = (values @ arclength - target) / (values[:, :-1] @ speed)
-        x = np.clip(x - step, -1.0, 1.0)
-        if np.abs(step).max() < 1e-8:  # the next would be its square
+        errors = values @ arclength - targets
+        steps = errors / (values[:, :-1] @ speed)
+        x = np.clip(x - steps, -1.0, 1.0)
+        if np.abs(steps).max() < 1e-8:  # the next would be its square
             break
-    return basis.to_powers @ (
-        basis.from_values @ (_polynomials(x, order) @ coefficients)
-    ), length
-
-
-def _polynomials(x: np.ndarray, order: int) -> np.ndarray:
-    """Chebyshev polynomials (k, order + 1) at x (k,) within [-1, 1]."""
-    return np.cos(np.outer(np.arccos(x), np.arange(order + 1)))
+    return x

@@ -3,53 +3,56 @@ system."""
 
 from __future__ import annotations
 
-import numpy as np
-from scipy.sparse import issparse
+import math
+from typing import NamedTuple
 
-from bifurc.numerics.bordered import Bordered
-from bifurc.problem import Problem
+import numpy as np
+
+from bifurc.numerics.bordered import Bordered, bordered_matrix
+from bifurc.problem import Problem, SphereProjection
 
 __all__ = [
+    "Correction",
     "correct_across",
     "correct_normal",
-    "null_vector",
+    "limited",
     "project_by_least_squares",
     "project_to_sphere_by_newton",
 ]
 
+ACROSS_STEPS = 30  # of one point onto a curve
+NORMAL_STEPS = 10  # of points onto a surface
+LEAST_SQUARES_STEPS = 80  # of one random start
+SPHERE_STEPS = 25  # of one start on a small sphere
 DAMPING = 1e-14  # of normal equations, over the largest squared singular value
-LARGE = (
-    64  # unknowns beyond which tangents come from bordered systems instead of an SVD
-)
 # residual left by one step, as a share, above which a factorisation made elsewhere is
 # given up
 SLOW = 0.05
 
 
-def null_vector(
-    problem: Problem, point: np.ndarray, along: np.ndarray | None = None
-) -> np.ndarray:
-    """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
+class Correction(NamedTuple):
+    """A ``point`` (n,) corrected onto a curve, the relative residual ``gap`` that is
+    left, and the factorisation used last."""
 
-    It has no sign of its own: it is turned to agree with ``along`` where that is given.
-    Where the null space is larger, ``along`` is projected on it. A large problem is
-    bordered instead of decomposed.
-    """
-    jacobian = problem.jacobian(point)
-    if problem.n > LARGE or issparse(jacobian):
-        border = (
-            np.random.default_rng(0).normal(size=problem.n) if along is None else along
-        )
-        first = Bordered(jacobian, border / np.linalg.norm(border)).null_vector()
-        return Bordered(jacobian, first).null_vector()
-    _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
-    padded = np.concatenate([sigma, np.zeros(len(right) - len(sigma))])
-    null = right[padded <= max(padded[-1], 1e-9 * padded[0])]
-    if along is None:
-        return null[-1]
-    tangent = null.T @ (null @ along)
-    size = np.linalg.norm(tangent)
-    return tangent / size if size > 1e-3 * np.linalg.norm(along) else null[-1]
+    point: np.ndarray
+    gap: float
+    factored: Bordered | None
+
+
+class _Iterate(NamedTuple):
+    """A point (n,), F over the magnitude there (m,), and the norm of that."""
+
+    point: np.ndarray
+    residual: np.ndarray
+    gap: float
+
+
+def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
+    residual = problem.relative_residuals(point[None])[0]
+    return _Iterate(point, residual, math.sqrt(residual @ residual))
+
+
+# --- onto curves and surfaces ---------------------------------------------------------
 
 
 def correct_across(
@@ -58,9 +61,8 @@ def correct_across(
     tangent: np.ndarray,
     tolerance: float,
     factored: Bordered | None = None,
-) -> tuple[np.ndarray, float, Bordered | None]:
-    """``point`` corrected onto the curve in the hyperplane across ``tangent``, the
-    relative residual left, and the factorisation used last.
+) -> Correction:
+    """``point`` corrected onto the curve in the hyperplane across ``tangent``.
 
     Gauss-Newton on ``[F'; t] d = [-F; 0]`` in the least-squares sense, with a
     factorisation made nearby (``factored``, of the same tangent) as long as the
@@ -68,35 +70,31 @@ def correct_across(
     as long as the system is consistent, whatever the number of redundant equations, and
     to the smallest residual where it is not.
     """
-    limit = 0.01 * tolerance * problem.scale
-    u, best, best_gap, previous, fresh = point.copy(), point, np.inf, np.inf, False
-    for _ in range(30):
-        residual = problem.residuals(u[None])[0] / problem.magnitude
-        gap = float(np.sqrt(residual @ residual))
-        if gap < best_gap:
-            best, best_gap, at_best = u, gap, residual
-        slow = gap > SLOW * previous
-        if not np.isfinite(gap) or (fresh and gap >= previous):
+    enough = 0.01 * tolerance * problem.scale
+    best = _Iterate(point, np.empty(0), np.inf)
+    gap_before = math.inf
+    is_fresh = False
+    for _ in range(ACROSS_STEPS):
+        iterate = _iterate(problem, point)
+        if iterate.gap < best.gap:
+            best = iterate
+        has_stopped = is_fresh and iterate.gap >= gap_before
+        if has_stopped or not math.isfinite(iterate.gap):
             break
-        rate = gap / previous if previous < np.inf else 1.0
-        if factored is None or slow:
-            factored, fresh = (
-                Bordered(problem.jacobian(best) / problem.magnitude, tangent),
-                True,
-            )
-            u, residual, gap = best, at_best, best_gap
-        else:
-            fresh = False
-        previous = gap
-        step = factored.solve(-residual)
-        u = u + step
-        if np.sqrt(step @ step) * max(rate, 0.01) <= limit:
-            return (
-                u,
-                gap,
-                factored,
-            )  # the residual before a last step after which the next is too small to matter
-    return best, best_gap, factored
+        rate = iterate.gap / gap_before if gap_before < math.inf else 1.0
+        is_fresh = factored is None or iterate.gap > SLOW * gap_before
+        if factored is None or is_fresh:
+            jacobian = problem.jacobian(best.point) / problem.magnitude
+            factored = Bordered(jacobian, tangent)
+            iterate = best
+        step = factored.solve(-iterate.residual)
+        point = iterate.point + step
+        gap_before = iterate.gap
+        length = math.sqrt(step @ step)
+        if length * max(rate, 0.01) <= enough:
+            # the next step would be too small to matter: F is not evaluated again
+            return Correction(point, iterate.gap, factored)
+    return Correction(best.point, best.gap, factored)
 
 
 def correct_normal(
@@ -110,94 +108,109 @@ def correct_normal(
     mends. `DAMPING` keeps them regular at singular points.
     """
     points = points.copy()
-    across = np.swapaxes(bases, 1, 2)
-    for _ in range(10):
-        residual = problem.residuals(points) / problem.magnitude
-        jacobian = problem.jacobians(points) / problem.magnitude
-        matrix = (
-            np.swapaxes(jacobian, 1, 2) @ jacobian
-            + bases @ across
-            + DAMPING * np.eye(problem.n)
-        )
-        right = np.swapaxes(jacobian, 1, 2) @ residual[:, :, None]
-        step = -np.linalg.solve(matrix, right)[:, :, 0]
-        size = np.linalg.norm(step, axis=1)
-        points += step * np.minimum(1.0, 0.5 * problem.scale / (size + 1e-300))[:, None]
-        if size.max(initial=0.0) < 1e-9 * problem.scale:
+    border = bases @ np.swapaxes(bases, 1, 2)
+    damping = DAMPING * np.eye(problem.n)
+    for _ in range(NORMAL_STEPS):
+        residuals = problem.relative_residuals(points)[:, :, None]
+        jacobians = problem.relative_jacobians(points)
+        transposed = np.swapaxes(jacobians, 1, 2)
+        matrices = transposed @ jacobians + border + damping
+        solutions = np.linalg.solve(matrices, transposed @ residuals)
+        steps = -solutions[:, :, 0]
+        points += limited(steps, 0.5 * problem.scale)
+        lengths = np.linalg.norm(steps, axis=1)
+        if lengths.max(initial=0.0) < 1e-9 * problem.scale:
             break
-    return points, np.linalg.norm(problem.residuals(points), axis=1) / problem.magnitude
+    return points, problem.gaps(points)
+
+
+def limited(steps: np.ndarray, longest: float) -> np.ndarray:
+    """``steps`` (k, n), those longer than ``longest`` shortened to it."""
+    lengths = np.linalg.norm(steps, axis=1)
+    shares = np.minimum(1.0, longest / (lengths + 1e-300))
+    shortened: np.ndarray = steps * shares[:, None]
+    return shortened
+
+
+# --- from anywhere --------------------------------------------------------------------
 
 
 def project_by_least_squares(
-    problem: Problem, starts: np.ndarray, iterations: int = 80
+    problem: Problem, starts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) reached from every start (k, n), and the relative residual (k,)
-    left at each.
-
-    Levenberg-Marquardt with the residual norm as damping, which converges quadratically
-    to solution sets that are not isolated points as well (Fan & Yuan 2005).
-    """
-    points, gaps = np.array(starts, dtype=float), np.empty(len(starts))
-
-    def evaluate(u: np.ndarray) -> tuple[np.ndarray, float]:
-        residual = problem.residuals(u[None])[0] / problem.magnitude
-        return residual, float(np.linalg.norm(residual))
-
-    for k, u in enumerate(points):
-        residual, gap = evaluate(u)
-        factor = 1e-2
-        for _ in range(iterations):
-            if gap <= 1e-15 or factor > 1e9:
-                break
-            jacobian = problem.jacobians(u[None])[0] / problem.magnitude
-            normal = jacobian.T @ jacobian + factor * gap * np.eye(len(u))
-            trial = u - np.linalg.lstsq(normal, jacobian.T @ residual, rcond=None)[0]
-            new_residual, new_gap = evaluate(trial)
-            if new_gap < gap:
-                factor = max(factor * (0.2 if new_gap < 0.5 * gap else 1.0), 1e-8)
-                u, residual, gap = trial, new_residual, new_gap
-            else:
-                factor *= 8.0
-        points[k], gaps[k] = u, gap
+    left at each."""
+    points = np.array(starts, dtype=float)
+    gaps = np.empty(len(points))
+    for k, start in enumerate(points):
+        end = _least_squares(problem, start)
+        points[k] = end.point
+        gaps[k] = end.gap
     return points, gaps
 
 
-def project_to_sphere_by_newton(
-    problem: Problem,
-    starts: np.ndarray,
-    center: np.ndarray,
-    radius: float,
-    iterations: int = 25,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Solutions (k, n) at distance ``radius`` from ``center``, relative residuals (k,)
-    and last steps (k,).
+def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
+    """Where Levenberg and Marquardt's method ends.
 
-    Gauss-Newton without damping: next to a singular point the equations differ in size
-    by the radius, which a merit function would see and Newton's method does not. Steps
-    are cut to a third of the radius.
+    With the residual norm as damping it converges quadratically to solution sets that
+    are not isolated points as well (Fan & Yuan 2005).
     """
-    points, gaps, last = (
-        np.array(starts, dtype=float),
-        np.empty(len(starts)),
-        np.empty(len(starts)),
-    )
-    for k, u in enumerate(points):
-        for _ in range(iterations):
-            offset = (u - center) / radius
-            matrix = np.vstack(
-                [problem.jacobians(u[None])[0] / problem.magnitude, offset]
-            )
-            right = np.append(
-                -problem.residuals(u[None])[0] / problem.magnitude,
-                0.5 * radius * (1.0 - offset @ offset),
-            )
-            step = np.linalg.lstsq(matrix, right, rcond=1e-14)[0]
-            last[k] = np.linalg.norm(step)
-            u = u + step * min(1.0, radius / (3.0 * last[k] + 1e-300))
-            if last[k] < 1e-14 * problem.scale:
-                break
-        points[k], gaps[k] = (
-            u,
-            np.linalg.norm(problem.residuals(u[None])[0]) / problem.magnitude,
-        )
-    return points, gaps, last
+    best = _iterate(problem, start)
+    damping = 1e-2  # over the residual
+    for _ in range(LEAST_SQUARES_STEPS):
+        if best.gap <= 1e-15 or damping > 1e9:
+            break
+        jacobian = problem.relative_jacobians(best.point[None])[0]
+        weight = damping * best.gap
+        normal = jacobian.T @ jacobian + weight * np.eye(problem.n)
+        right = jacobian.T @ best.residual
+        step, *_ = np.linalg.lstsq(normal, right, rcond=None)
+        trial = _iterate(problem, best.point - step)
+        if trial.gap < best.gap:
+            is_fast = trial.gap < 0.5 * best.gap
+            damping = max(damping * (0.2 if is_fast else 1.0), 1e-8)
+            best = trial
+        else:
+            damping *= 8.0
+    return best
+
+
+def project_to_sphere_by_newton(
+    problem: Problem, starts: np.ndarray, center: np.ndarray, radius: float
+) -> SphereProjection:
+    """Solutions reached from starts (k, n), at distance ``radius`` from ``center``."""
+    points = np.array(starts, dtype=float)
+    last_steps = np.empty(len(points))
+    gaps = np.empty(len(points))
+    for k, start in enumerate(points):
+        points[k], last_steps[k] = _newton_on_sphere(problem, start, center, radius)
+        gaps[k] = _iterate(problem, points[k]).gap
+    return SphereProjection(points, gaps, last_steps)
+
+
+def _newton_on_sphere(
+    problem: Problem, start: np.ndarray, center: np.ndarray, radius: float
+) -> tuple[np.ndarray, float]:
+    """Where Gauss-Newton on F = 0 and |u - center| = radius ends, and the length of its
+    last step.
+
+    It is not damped: next to a singular point the equations differ in size by the
+    radius, which a merit function would see and Newton's method does not. Steps are cut
+    to a third of the radius.
+    """
+    point = start
+    length = np.inf
+    for _ in range(SPHERE_STEPS):
+        offset = (point - center) / radius
+        jacobian = problem.relative_jacobians(point[None])[0]
+        residual = problem.relative_residuals(point[None])[0]
+        matrix = bordered_matrix(jacobian, offset)
+        outwards = 0.5 * radius * (1.0 - offset @ offset)
+        right = np.append(-residual, outwards)
+        step, *_ = np.linalg.lstsq(matrix, right, rcond=1e-14)
+        length = float(np.linalg.norm(step))
+        share = min(1.0, radius / (3.0 * length + 1e-300))
+        point = point + step * share
+        if length < 1e-14 * problem.scale:
+            break
+    return point, length

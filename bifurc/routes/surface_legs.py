@@ -10,8 +10,8 @@ import networkx as nx
 import numpy as np
 
 from bifurc.numerics.corrector import correct_normal
+from bifurc.numerics.null_spaces import tangent_planes
 from bifurc.problem import Problem
-from bifurc.singular.dimension import tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.geodesic import (
     chart_graph,

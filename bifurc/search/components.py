@@ -9,8 +9,9 @@ import numpy as np
 
 from bifurc.atlas import Surface
 from bifurc.limits import Deadline
+from bifurc.numerics.null_spaces import NULL, null_spaces
 from bifurc.problem import Problem
-from bifurc.singular.dimension import NULL, local_dimensions, null_spaces
+from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.covering import cover_surface

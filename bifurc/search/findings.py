@@ -16,7 +16,7 @@ from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.search.components import Components, lies_on
 from bifurc.seeding import missed_probability
-from bifurc.seeds import Audit, Completeness, Seeds
+from bifurc.seeds import Audit, Completeness, Level, Seeds
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap
 
@@ -304,14 +304,14 @@ def _completeness(found: Findings, seeds: Seeds, interrupted: bool) -> Completen
         left = len(seeds.points) - len(found.owner)
         reason = f"the budget of {found.deadline.seconds:.4g} s was used up with {left} starts not looked at; "
         return Completeness(
-            "out of time", reason + estimate, missed if not left else 1.0
+            Level.OUT_OF_TIME, reason + estimate, missed if not left else 1.0
         )
     if interrupted:
         return Completeness(
-            "interrupted", "the search was interrupted; " + estimate, missed
+            Level.INTERRUPTED, "the search was interrupted; " + estimate, missed
         )
     if found.audit is None:
-        return Completeness("estimated", estimate, missed)
+        return Completeness(Level.ESTIMATED, estimate, missed)
     return Completeness(
         found.audit.level, f"{found.audit.statement}; {estimate}", missed
     )

@@ -15,13 +15,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.limits import Deadline
+from bifurc.numerics.null_spaces import NULL, null_spaces
 from bifurc.problem import Problem
 
-__all__ = ["LocalDimensions", "local_dimensions", "null_spaces", "tangent_planes"]
+__all__ = ["LocalDimensions", "local_dimensions"]
 
-# Singular value, over the problem's magnitude, below which a direction belongs to the
-# null space.
-NULL = 1e-7
 # The same at the ends of probes, which are less exact.
 NULL_AT_ENDS = 10 * NULL
 # Length of the probes, over the scale: at much less, degenerate singular points would
@@ -53,37 +51,6 @@ class LocalDimensions:
     dimension: np.ndarray
     nullity: np.ndarray
     regular: np.ndarray
-
-
-def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Singular values (k, n) of F' over its magnitude, padded with zeros, and right
-    singular vectors (k, n, n)."""
-    jacobians = problem.jacobians(points) / problem.magnitude
-    _, sigma, right = np.linalg.svd(jacobians)
-    count = sigma.shape[1]
-    padded = np.zeros((len(points), problem.n))
-    padded[:, :count] = sigma
-    return padded, right
-
-
-def tangent_planes(
-    problem: Problem, points: np.ndarray, near: np.ndarray
-) -> np.ndarray:
-    """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k,
-    n), turned as little as possible against the bases ``near`` (k, n, 2) or (n, 2).
-
-    Where the null space is larger, at singular points, the part of it that is nearest
-    to ``near`` is taken.
-    """
-    sigma, right = null_spaces(problem, points)
-    nullity = np.maximum(np.count_nonzero(sigma < NULL, axis=1), 2)
-    largest = int(nullity.max(initial=2))
-    belongs = np.arange(largest, 0, -1) <= nullity[:, None]  # (k, largest)
-    null = right[:, -largest:] * belongs[:, :, None]
-    # of all bases of a plane the one nearest to ``near``: the orthogonal polar factor
-    left, _, across = np.linalg.svd(null @ near, full_matrices=False)
-    planes: np.ndarray = np.swapaxes(null, 1, 2) @ left @ across
-    return planes
 
 
 def local_dimensions(

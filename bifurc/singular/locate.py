@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.numerics.null_spaces import NULL
 from bifurc.problem import Problem
-from bifurc.singular.dimension import NULL
 
 __all__ = ["LocatedPoint", "locate_singular_point"]
 

@@ -18,9 +18,10 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.null_spaces import NULL, null_spaces
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
-from bifurc.singular.dimension import NULL, local_dimensions, null_spaces
+from bifurc.singular.dimension import local_dimensions
 
 __all__ = ["Section", "is_on_surface", "section"]
 

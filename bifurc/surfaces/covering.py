@@ -25,8 +25,8 @@ from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.directions import cosines_between_planes, unit_vectors
+from bifurc.numerics.null_spaces import null_spaces, tangent_planes
 from bifurc.problem import Problem
-from bifurc.singular.dimension import null_spaces, tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import FlatCharts, assemble_charts
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing

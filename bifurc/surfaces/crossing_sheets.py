@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.numerics.directions import cosines_between_planes
+from bifurc.numerics.null_spaces import NULL
 from bifurc.problem import Problem
-from bifurc.singular.dimension import NULL
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
 

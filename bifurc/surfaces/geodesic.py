@@ -19,8 +19,8 @@ from scipy.linalg import solveh_banded
 
 from bifurc.errors import BifurcError
 from bifurc.numerics.corrector import correct_normal
+from bifurc.numerics.null_spaces import tangent_planes
 from bifurc.problem import Problem
-from bifurc.singular.dimension import tangent_planes
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
 __all__ = [

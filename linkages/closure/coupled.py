@@ -15,7 +15,7 @@ from fractions import Fraction
 import numpy as np
 
 from bifurc.function_problem import NumericalProblem
-from bifurc.problem import March, MarchStatus
+from bifurc.problem import March, MarchSettings, MarchStatus
 from linkages.closure import kernels
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import GeometryError, Loop
@@ -81,26 +81,18 @@ class CoupledClosure(NumericalProblem):
         return self._closure.curvature_bound() * stretch**2
 
     def march(
-        self,
-        start: np.ndarray,
-        tangent: np.ndarray,
-        order: int,
-        tolerance: float,
-        shortest: float,
-        longest: float,
-        count: int,
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
-        """Up to ``count`` Taylor pieces of the motion from ``start`` along
-        ``tangent``."""
+        """Taylor pieces of the motion from ``start`` (k,) along ``tangent`` (k,)."""
         status, pieces, steps, radii, residuals, _ = kernels.march(
             np.ascontiguousarray(start),
             np.ascontiguousarray(tangent),
             self.loop.link_geometry,
-            order,
-            tolerance,
-            shortest,
-            longest,
-            count,
+            settings.order,
+            settings.tolerance,
+            settings.shortest,
+            settings.longest,
+            settings.count,
             self._coupling,
         )
         return March(MarchStatus(status), pieces, steps, radii, residuals)

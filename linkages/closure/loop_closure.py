@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.function_problem import NumericalProblem
-from bifurc.problem import March, MarchStatus
+from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
 from bifurc.seeding import CLOSED, random_seeds
 from bifurc.seeds import Seeds
 from linkages.closure import kernels
@@ -91,26 +91,18 @@ class LoopClosure(NumericalProblem):
         return float(np.linalg.eigvalsh(bounds)[-1])
 
     def march(
-        self,
-        start: np.ndarray,
-        tangent: np.ndarray,
-        order: int,
-        tolerance: float,
-        shortest: float,
-        longest: float,
-        count: int,
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
-        """Up to ``count`` Taylor pieces of the motion from ``start`` along
-        ``tangent``."""
+        """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
         status, pieces, steps, radii, residuals, _ = kernels.march(
             np.ascontiguousarray(start),
             np.ascontiguousarray(tangent),
             self._geometry,
-            order,
-            tolerance,
-            shortest,
-            longest,
-            count,
+            settings.order,
+            settings.tolerance,
+            settings.shortest,
+            settings.longest,
+            settings.count,
         )
         return March(MarchStatus(status), pieces, steps, radii, residuals)
 
@@ -160,9 +152,9 @@ class LoopClosure(NumericalProblem):
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Closed configurations (k, n) at distance ``radius`` from ``center`` (n,),
-        residuals (k,) and last steps (k,)."""
+    ) -> SphereProjection:
+        """Closed configurations near ``starts`` (k, n) at distance ``radius`` from
+        ``center`` (n,)."""
         points, gaps, last_steps = kernels.project_to_sphere(
             _contiguous(starts),
             _contiguous(center),
@@ -170,7 +162,7 @@ class LoopClosure(NumericalProblem):
             self._geometry,
             SPHERE_STEPS,
         )
-        return points, gaps, last_steps
+        return SphereProjection(points, gaps, last_steps)
 
 
 def _contiguous(values: np.ndarray) -> np.ndarray:

@@ -34,7 +34,7 @@ from bifurc import torus
 from bifurc.branch import Branch
 from bifurc.curves.monitor import dead_points
 from bifurc.limits import Deadline
-from bifurc.seeds import Audit
+from bifurc.seeds import Audit, Level
 from linkages.loop import Loop
 from linkages.slices.elimination import Slice, slice_configurations
 from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets
@@ -63,7 +63,7 @@ class SliceAudit:
         deadline = Deadline(seconds)
         nowhere = np.empty((0, self.loop.n))
         if not all(cut.is_complete for cut in self.slices):
-            return Audit("estimated", self._incompleteness(), nowhere)
+            return Audit(Level.ESTIMATED, self._incompleteness(), nowhere)
         passes = self._passes(branches)
         differing = self._differing_joints(passes)
         if differing:
@@ -71,19 +71,21 @@ class SliceAudit:
                 f"at some angles of {_joint_names(differing)} the slices and the "
                 "motions hold different configurations"
             )
-            return Audit("estimated", text, nowhere)
+            return Audit(Level.ESTIMATED, text, nowhere)
         if not branches and not any(_number(cut) for cut in self.slices):
             text = (
                 "there is no motion: no angle of any joint but a few has a "
                 "configuration"
             )
-            return Audit("proved", text, nowhere)
+            return Audit(Level.PROVED, text, nowhere)
         room = self._room(passes)
         following = self._follow_nonreal(passes, room, deadline)
         starts = np.concatenate([nowhere, *following.halts])
         if len(following.room) >= FEWEST:
-            return Audit("certified", self._what_is_certified(following.room), starts)
-        return Audit("proved", self._what_is_proved(following), starts)
+            return Audit(
+                Level.CERTIFIED, self._what_is_certified(following.room), starts
+            )
+        return Audit(Level.PROVED, self._what_is_proved(following), starts)
 
     def _passes(self, branches: Sequence[Branch]) -> list[Passes]:
         """How the motions pass the angles of every joint."""

@@ -16,7 +16,7 @@ from bifurc.branch import Branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import dead_points
 from bifurc.function_problem import FunctionProblem
-from bifurc.numerics.corrector import null_vector
+from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Problem
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
@@ -73,7 +73,7 @@ class Case:
         """The unknown without dead points that travels farthest, and how far it goes;
         None where there is none."""
         branch = self.reference
-        travel = branch._ends[1] - branch._ends[0]
+        travel = branch.travel
         still = [
             i
             for i, roots in enumerate(dead_points(branch))

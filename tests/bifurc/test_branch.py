@@ -235,3 +235,22 @@ def test_the_residual_bound_holds_at_samples(traced):
     dense = np.linalg.norm(problem.residuals(branch.sample(5000)), axis=1).max()
     assert dense < branch.max_residual + 1e-14
     assert branch.max_residual < 1e-12
+
+
+def test_places_lie_at_the_same_fractions_of_every_piece(traced):
+    _, branch = traced
+    places = branch.places(np.array([0.0, 0.25, 1.0]))
+    assert places.shape == (len(branch.pieces), 3)
+    assert np.array_equal(places[:, 0], branch.breaks[:-1])
+    assert places[:, 2] == pytest.approx(branch.breaks[1:], abs=1e-14)
+    quarter = 0.75 * branch.breaks[:-1] + 0.25 * branch.breaks[1:]
+    assert places[:, 1] == pytest.approx(quarter, abs=1e-14)
+
+
+def test_a_branch_is_shown_in_a_few_lines(traced, parabola):
+    _, branch = traced
+    first, *others = repr(branch).splitlines()
+    assert first == "<Branch in 6 unknowns, closed: the curve came back to its start"
+    assert len(others) == 2
+    assert f"{len(branch.pieces)} pieces" in others[1]
+    assert "left the region" in repr(parabola)

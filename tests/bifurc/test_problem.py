@@ -1,10 +1,11 @@
-"""Problems from plain functions: derivatives, checks, magnitudes."""
+"""What every problem offers, and the records that it answers with."""
 
 import numpy as np
 import pytest
 
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
+from bifurc.problem import March, MarchSettings, MarchStatus, Piece
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 
@@ -13,114 +14,10 @@ def circle(u):
     return np.array([u[0] ** 2 + u[1] ** 2 - 1.0])
 
 
-def only_real(u):
-    """The circle by a function that refuses complex numbers."""
-    return np.array([np.hypot(float(u[0]), float(u[1])) - 1.0])
-
-
-def silently_wrong(u):
-    """The circle by a function that drops imaginary parts without a word."""
-    return np.array([np.abs(u[0]) ** 2 + np.abs(u[1]) ** 2 - 1.0])
-
-
-def test_derivatives_are_exact_by_complex_step_where_complex_numbers_pass():
-    problem = FunctionProblem(circle, BOX)
-    assert problem.derivatives == "complex step"
-    assert problem.jacobians(np.array([[0.3, 0.7]]))[0] == pytest.approx(
-        np.array([[0.6, 1.4]]), abs=1e-15
-    )
-
-
-@pytest.mark.parametrize("function", [only_real, silently_wrong])
-def test_derivatives_are_central_differences_where_complex_numbers_do_not_pass(
-    function,
-):
-    problem = FunctionProblem(function, BOX)
-    assert problem.derivatives == "central differences"
-    u = np.array([0.6, 0.8])
-    expected = u if function is only_real else 2 * u
-    # central differences with a step of 1e-5: 1e-10 from the third derivative, 1e-11
-    # from rounding
-    assert problem.jacobians(u[None])[0, 0] == pytest.approx(expected, abs=1e-9)
-
-
-def test_a_given_jacobian_is_used():
-    problem = FunctionProblem(only_real, BOX, jacobian=lambda u: u[None] / np.hypot(*u))
-    assert problem.derivatives == "given"
-    assert problem.jacobians(np.array([[0.6, 0.8]]))[0, 0] == pytest.approx(
-        [0.6, 0.8], abs=1e-15
-    )
-
-
-def test_the_hessian_by_differences_of_the_jacobian_is_symmetric_and_right():
-    problem = FunctionProblem(
-        lambda u: np.array([u[0] ** 3 * u[1], np.sin(u[0] * u[1])]), BOX
-    )
-    x, y = u = np.array([0.7, -0.4])
-    s, c = np.sin(x * y), np.cos(x * y)
-    expected = np.array(
-        [
-            [[6 * x * y, 3 * x**2], [3 * x**2, 0.0]],
-            [[-y * y * s, c - x * y * s], [c - x * y * s, -x * x * s]],
-        ]
-    )
-    # central differences of an exact Jacobian with steps of 1e-5: 1e-10
-    assert problem.hessian(u) == pytest.approx(expected, abs=1e-9)
-
-
-def test_residuals_relative_to_the_magnitude_do_not_depend_on_the_scale_of_the_equations():
-    one, thousand = (
-        FunctionProblem(circle, BOX),
-        FunctionProblem(lambda u: 1e3 * circle(u), BOX),
-    )
-    assert thousand.magnitude == pytest.approx(1e3 * one.magnitude)
-    u = np.array([[0.2, 0.5]])
-    assert thousand.residuals(u) / thousand.magnitude == pytest.approx(
-        one.residuals(u) / one.magnitude
-    )
-
-
 def test_differences_are_taken_modulo_the_periods_and_only_of_periodic_unknowns():
     problem = FunctionProblem(circle, BOX, periods=[2 * np.pi, np.inf])
     gap = problem.difference(np.array([3.0, 3.0]), np.array([-3.0, -3.0]))
     assert gap == pytest.approx([6.0 - 2 * np.pi, 6.0])
-
-
-@pytest.mark.parametrize(
-    ("arguments", "name"),
-    [
-        ({"bounds": [(1.0, -1.0), (0.0, 1.0)]}, "bounds"),
-        ({"bounds": [(0.0, 0.0), (0.0, 1.0)]}, "bounds"),
-        ({"bounds": [0.0, 1.0]}, "bounds"),
-        ({"bounds": [(0.0, 1.0, 2.0), (0.0, 1.0, 2.0)]}, "bounds"),
-        ({"bounds": [(np.nan, 1.0), (0.0, 1.0)]}, "bounds"),
-        ({"bounds": BOX, "names": ["x"]}, "number of names"),
-        ({"bounds": BOX, "units": ["m", "m", "m"]}, "number of units"),
-        ({"bounds": BOX, "periods": [1.0]}, "number of periods"),
-        ({"bounds": BOX, "periods": [0.0, 1.0]}, "periods"),
-        ({"bounds": BOX, "periods": [-1.0, 1.0]}, "periods"),
-    ],
-)
-def test_a_bad_argument_is_named_with_its_value_and_what_is_allowed(arguments, name):
-    with pytest.raises(ProblemError) as caught:
-        FunctionProblem(circle, **arguments)
-    assert caught.value.name == name
-    assert str(caught.value.value) in str(caught.value)
-    assert caught.value.allowed in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "function",
-    [
-        lambda u: np.array([np.nan]),
-        lambda u: 1.0,
-        lambda u: np.ones((2, 2)),
-        lambda u: np.array([np.inf]),
-    ],
-)
-def test_a_function_without_a_finite_vector_is_refused(function):
-    with pytest.raises(ProblemError, match="value of the function"):
-        FunctionProblem(function, BOX)
 
 
 @pytest.mark.parametrize("point", [np.zeros(3), np.zeros((1, 2)), 0.0])
@@ -132,3 +29,34 @@ def test_a_point_of_the_wrong_shape_is_refused(point):
 def test_a_point_that_is_not_finite_is_refused():
     with pytest.raises(ProblemError, match=r"start.*finite"):
         FunctionProblem(circle, BOX).check_point([0.0, np.nan], "start")
+
+
+def test_gaps_are_residuals_over_the_magnitude():
+    problem = FunctionProblem(lambda u: 1e3 * circle(u), BOX)
+    gaps = problem.gaps(np.array([[2.0, 0.0], [0.6, 0.8]]))
+    assert gaps == pytest.approx([3e3 / problem.magnitude, 0.0], abs=1e-15)
+
+
+def test_pieces_that_lie_end_to_end_make_a_march():
+    pieces = [Piece(np.zeros((4, 2)), length, 1e-14) for length in (0.5, 1.0, 0.25)]
+    march = March.of_pieces(MarchStatus.RAN, pieces, order=3, n=2)
+    assert march.pieces.shape == (3, 4, 2)
+    # from the start to the first centre, then from centre to centre
+    assert march.steps.tolist() == [0.25, 0.75, 0.625]
+    assert march.radii.tolist() == [0.25, 0.5, 0.125]
+
+
+def test_a_march_without_a_solution_keeps_the_gap_at_its_start():
+    march = March.without_solution(0.3, order=3, n=2)
+    assert march.status is MarchStatus.OPEN
+    assert march.pieces.shape == (0, 4, 2)
+    assert march.steps.shape == march.radii.shape == (0,)
+    assert march.residuals.tolist() == [0.3]
+
+
+def test_a_march_is_shown_in_one_line():
+    settings = MarchSettings(12, tolerance=1e-12, shortest=1e-9, longest=1.0, count=2)
+    problem = FunctionProblem(circle, BOX)
+    march = problem.march(np.array([1.0, 0.0]), np.array([0.0, 1.0]), settings)
+    assert repr(march).startswith("<March RAN: 2 pieces of order 12 in 2 unknowns")
+    assert "\n" not in repr(march)

@@ -1,12 +1,17 @@
 """Certificates: what is certified is one arc, and what jumps is not certified."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.certificate import certify_branch
+from bifurc.curves.certificate import (
+    Certificate,
+    CertificateStatus,
+    certify_branch,
+)
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
@@ -73,14 +78,14 @@ def test_a_form_without_singular_points_is_certified_all_along():
     problem = LoopClosure(entry("bennett").build())
     (form,) = certify_atlas(problem, explore(problem)).forms
     certificate = form.certificate
-    assert certificate.status == "certified"
+    assert certificate.status is CertificateStatus.CERTIFIED
     assert not len(certificate.gaps) and not len(certificate.reversals)
 
 
 def test_forms_that_cross_are_certified_up_to_the_crossings():
     problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
     for form in certify_atlas(problem, explore(problem)).forms:
-        assert form.certificate.status == "certified up to the singular points"
+        assert form.certificate.status is CertificateStatus.UP_TO_SINGULAR_POINTS
 
 
 def test_a_crossing_that_is_not_handed_over_is_named_as_singular_and_raises_the_alarm():
@@ -88,7 +93,7 @@ def test_a_crossing_that_is_not_handed_over_is_named_as_singular_and_raises_the_
     atlas = explore(problem)
     branch = atlas.forms[0].branch
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
-    assert certificate.status == "certified up to places singular to rounding"
+    assert certificate.status is CertificateStatus.UP_TO_ROUNDING
     crossings = sorted(
         s for point in atlas.bifurcations for i, s in point.passes if i == 0
     )
@@ -104,7 +109,7 @@ def test_a_near_miss_is_followed_and_certified_with_points_that_grow_like_the_lo
     problem = Hyperbola(gap)
     branch = trace_branch(problem, np.array([0.9, gap / 0.9]))
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
-    assert certificate.status == "certified"
+    assert certificate.status is CertificateStatus.CERTIFIED
     # across a hyperbola the integral of ds / sigma is about 2 ln(1 / gap), in steps of
     # SHARE
     assert certificate.points < 40 + 12 * np.log(1 / gap)
@@ -115,7 +120,7 @@ def test_a_curve_that_runs_straight_across_a_near_miss_is_not_certified(gap):
     problem = Hyperbola(gap)
     branch = straight_branch(problem)
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
-    assert certificate.status == "not certified"
+    assert certificate.status is CertificateStatus.NOT_CERTIFIED
     middle = certificate.gaps.mean(axis=1)
     assert np.all(np.abs(middle - 0.9) < 4 * np.sqrt(gap))
 
@@ -139,17 +144,29 @@ def test_a_curve_glued_from_two_arcs_where_they_are_closest_is_not_certified(gap
         residuals=np.insert(arc.residuals, half, 0.0),
     )
     certificate = certify_branch(problem, glued, profile_branch(problem, glued))
-    assert certificate.status == "not certified"
+    assert certificate.status is CertificateStatus.NOT_CERTIFIED
     # nothing but the jump is refused
     assert np.abs(certificate.gaps - vertex).max() < 1e-3 * np.sqrt(gap)
-    assert (
-        certify_branch(problem, arc, profile_branch(problem, arc)).status == "certified"
-    )
+    whole = certify_branch(problem, arc, profile_branch(problem, arc))
+    assert whole.status is CertificateStatus.CERTIFIED
 
 
 def test_a_problem_without_a_bound_on_its_second_derivative_is_not_certified():
     problem = FunctionProblem(lambda u: np.array([u @ u - 1]), [[-2, 2], [-2, 2]])
     branch = trace_branch(problem, np.array([1.0, 0.0]))
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
-    assert certificate.status == "not certified"
+    assert certificate.status is CertificateStatus.NOT_CERTIFIED
     assert certificate.gaps.tolist() == [[0.0, branch.length]]
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-12])
+def test_a_certificate_goes_through_json_without_loss_and_its_status_as_a_text(gap):
+    problem = Hyperbola(gap)
+    branch = straight_branch(problem)
+    certificate = certify_branch(problem, branch, profile_branch(problem, branch))
+    values = json.loads(json.dumps(certificate.as_values()))
+    assert values["status"] == "not certified"
+    again = Certificate.from_values(values)
+    assert again.status is certificate.status
+    assert np.array_equal(again.gaps, certificate.gaps)
+    assert again.blurred.shape == (0, 2)

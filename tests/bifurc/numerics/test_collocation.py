@@ -6,7 +6,8 @@ import pytest
 from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem, NumericalProblem
 from bifurc.numerics.collocation import bridge_by_collocation, march_by_collocation
-from bifurc.problem import MarchStatus
+from bifurc.pieces import points_on_piece
+from bifurc.problem import MarchSettings, MarchStatus
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 
@@ -25,8 +26,9 @@ def ellipse():
 
 
 def test_pieces_are_solutions_by_arclength_and_follow_each_other(ellipse):
+    settings = MarchSettings(16, tolerance=1e-13, shortest=1e-9, longest=2.0, count=8)
     march = march_by_collocation(
-        ellipse, np.array([2.0, 0.0]), np.array([0.0, 1.0]), 16, 1e-13, 1e-9, 2.0, 8
+        ellipse, np.array([2.0, 0.0]), np.array([0.0, 1.0]), settings
     )
     pieces, steps, radii = march.pieces, march.steps, march.radii
     assert march.status is MarchStatus.RAN
@@ -49,17 +51,16 @@ def test_pieces_are_solutions_by_arclength_and_follow_each_other(ellipse):
 
 
 def test_a_start_off_the_curve_is_corrected_and_one_without_a_curve_is_open(ellipse):
+    settings = MarchSettings(12, tolerance=1e-12, shortest=1e-9, longest=1.0, count=1)
     march = march_by_collocation(
-        ellipse, np.array([2.01, 0.0]), np.array([0.0, 1.0]), 12, 1e-12, 1e-9, 1.0, 1
+        ellipse, np.array([2.01, 0.0]), np.array([0.0, 1.0]), settings
     )
     start = (-1.0) ** np.arange(13) @ march.pieces[0]
     assert start == pytest.approx([2.0, 0.0], abs=1e-11)
     nothing = FunctionProblem(
         lambda u: np.array([u[0] ** 2 + u[1] ** 2 + 1.0]), [(-3, 3)] * 2
     )
-    march = march_by_collocation(
-        nothing, np.ones(2), np.array([0.6, -0.8]), 12, 1e-12, 1e-9, 1.0, 1
-    )
+    march = march_by_collocation(nothing, np.ones(2), np.array([0.6, -0.8]), settings)
     assert march.status is MarchStatus.OPEN
     assert not len(march.pieces)
     assert march.residuals[-1] * nothing.magnitude >= 1.0
@@ -70,14 +71,13 @@ def test_a_bridge_passes_a_crossing_on_its_own_branch():
     problem = FunctionProblem(
         lambda u: np.array([u[1] * (u[1] - u[0] ** 2 - u[0])]), [(-1, 1)] * 2
     )
-    bridged = bridge_by_collocation(
+    bridge = bridge_by_collocation(
         problem, np.array([-0.2, 0.0]), np.array([1.0, 0.0]), 16, 1e-12, 0.4
     )
-    assert bridged is not None
-    piece, length, residual = bridged
-    assert length == pytest.approx(0.4, abs=1e-10)
-    assert residual < 3e-11
-    points = np.vander(np.linspace(-1, 1, 101), len(piece), increasing=True) @ piece
+    assert bridge is not None
+    assert bridge.length == pytest.approx(0.4, abs=1e-10)
+    assert bridge.residual < 3e-11
+    points = points_on_piece(bridge.coefficients, np.linspace(-1, 1, 101))
     assert points == pytest.approx(
         np.stack([np.linspace(-0.2, 0.2, 101), np.zeros(101)], axis=1), abs=1e-9
     )

@@ -6,7 +6,7 @@ import pytest
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.corrector import (
     correct_across,
-    null_vector,
+    limited,
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
@@ -27,21 +27,6 @@ def cylinder_and_plane(u):
 @pytest.fixture
 def cubic():
     return FunctionProblem(twisted_cubic, BOX)
-
-
-def test_the_null_vector_is_the_tangent_and_is_turned_to_the_given_side(cubic):
-    expected = np.array([1.0, 1.0, 0.75]) / np.linalg.norm(
-        [1.0, 1.0, 0.75]
-    )  # (1, 2t, 3t^2) at t = 1/2
-    point = np.array([0.5, 0.25, 0.125])
-    assert null_vector(cubic, point, expected) == pytest.approx(expected, abs=1e-14)
-    assert null_vector(cubic, point, -expected) == pytest.approx(-expected, abs=1e-14)
-
-
-def test_at_a_crossing_the_null_vector_is_the_projection_of_the_given_direction():
-    lines = FunctionProblem(lambda u: np.array([u[0] * u[1]]), BOX[:2])
-    along = np.array([0.6, 0.8])
-    assert null_vector(lines, np.zeros(2), along) == pytest.approx(along, abs=1e-15)
 
 
 @pytest.mark.parametrize("weights", [(1.0, 1.0, 1.0), (1.0, 1e3, 1e-3)])
@@ -132,3 +117,9 @@ def test_cylinder_and_plane_meet_in_a_curve_of_rank_two_of_three_equations():
     assert [np.hypot(point[0], point[1]), point[2]] == pytest.approx(
         [1.0, point[0]], abs=1e-14
     )
+
+
+def test_long_steps_are_shortened_and_the_others_kept():
+    steps = np.array([[3.0, 4.0], [0.3, 0.4], [0.0, 0.0]])
+    expected = np.array([[0.6, 0.8], [0.3, 0.4], [0.0, 0.0]])
+    assert limited(steps, 1.0) == pytest.approx(expected, abs=1e-15)

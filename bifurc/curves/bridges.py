@@ -1,0 +1,93 @@
+"""Bridges: pieces across a singular point where no series reaches."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bifurc.curves.monitor import singular_values
+from bifurc.curves.track import Bridge, BridgeRule, Place, Track
+from bifurc.numerics.collocation import bridge_by_collocation
+from bifurc.numerics.null_spaces import LARGE, decompose
+from bifurc.pieces import points_on_piece
+from bifurc.problem import Piece, Problem
+from bifurc.singular.locate import locate_singular_point
+
+__all__ = ["bridge_from"]
+
+REACHES = (0.1, 0.2, 0.05, 0.4, 0.02)  # half widths of bridges, in scales
+SLACKS = (10.0, 100.0)  # times the tolerance: how good the nodes of a bridge must be
+RESIDUAL = 10.0  # times the tolerance: the residual that a bridge may have
+
+
+def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | None:
+    """A bridge across the point before which the track stalled, or None.
+
+    Near a singular point where the rank drops faster than on a simple crossing no
+    series reaches over. The curve is smooth there all the same: a piece by collocation,
+    from as far before the point as beyond it, needs no series.
+    """
+    if not len(track):
+        return None
+    only_singular = track.caution.bridges is BridgeRule.AT_SINGULAR_POINTS
+    if only_singular and not _is_near_singular(problem, track.front.point):
+        return None
+    for reach in REACHES:
+        begin = track.reached - reach * problem.scale
+        if begin < track.centers[0]:
+            continue
+        last = track.piece_at(begin)
+        place = track.at(last, begin)
+        width = 2 * reach * problem.scale
+        piece = _piece_across(problem, place, width, track.order, tolerance)
+        if piece is not None:
+            return Bridge(last, begin, piece)
+    return None
+
+
+def _piece_across(
+    problem: Problem, place: Place, width: float, order: int, tolerance: float
+) -> Piece | None:
+    """A piece of about ``width`` from ``place`` across a crossing, or None."""
+    for slack in SLACKS:
+        loose = slack * tolerance
+        piece = bridge_by_collocation(
+            problem, place.point, place.tangent, order, loose, width
+        )
+        if piece is None or piece.residual > RESIDUAL * tolerance:
+            continue
+        if _spans_a_crossing(problem, piece.coefficients, loose):
+            return piece
+    return None
+
+
+def _is_near_singular(problem: Problem, point: np.ndarray) -> bool:
+    """Whether a singular point can be located near ``point``, so that a bridge is worth
+    trying."""
+    if problem.n > LARGE:
+        return False
+    values = singular_values(problem, point)
+    small = problem.n - int(np.count_nonzero(values > 1e-2))
+    nullities = sorted({2, min(small, 4)} - {0, 1})
+    reach = 0.05 * problem.scale
+    return any(
+        locate_singular_point(problem, point, nullity, reach) is not None
+        for nullity in nullities
+    )
+
+
+def _spans_a_crossing(problem: Problem, piece: np.ndarray, tolerance: float) -> bool:
+    """Whether a bridge meets the weakest equation to rounding, as it does where
+    branches really cross.
+
+    Straight across a near miss of width w that equation is off by w^2, while its
+    singular value goes to zero: a residual that no correction of the size of
+    ``tolerance`` explains.
+    """
+    points = points_on_piece(piece, np.linspace(-1.0, 1.0, 61))
+    decomposition = decompose(problem, points)
+    weakest = problem.n - 2
+    if decomposition.sigma.shape[1] <= weakest:
+        return True
+    off = np.abs(decomposition.components(weakest))
+    sigma = decomposition.sigma[:, weakest]
+    return bool(np.all(off <= 10.0 * tolerance * sigma + 1e-14))

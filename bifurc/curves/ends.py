@@ -1,0 +1,167 @@
+"""Where a curve ends that is followed: it closes, or it leaves the bounds."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.branch import Outcome
+from bifurc.curves.track import End, Place, Track
+from bifurc.pieces import point_and_slope, points_on_piece
+from bifurc.problem import Problem
+
+__all__ = ["end_of_curve"]
+
+RESOLVED = 1e-6  # two points farther apart, in scales, are never taken for one
+SAME_WAY = 0.9  # cosine of the angle between two passes through one point that are one
+ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
+FOOT_STEPS = 6  # of Newton's method from a sample of a piece to the foot of a point
+
+
+def end_of_curve(
+    problem: Problem, track: Track, first: int, tolerance: float
+) -> End | None:
+    """Where the curve, from piece ``first`` on, closes or first leaves the bounds.
+
+    It closes when it passes its start again, or the clearest of its first points: a
+    start beside a singular point may lie off the curve by more than it shows.
+    """
+    if not len(track):
+        return None
+    begin = 0.0
+    closing = _closing(problem, track, first, _Anchor(0, begin), tolerance)
+    if closing is None:
+        clearest = int(np.argmax(track.radii[:ANCHORS]))
+        begin = float(track.centers[clearest])
+        anchor = _Anchor(clearest, begin)
+        closing = _closing(problem, track, clearest, anchor, tolerance)
+    leaving = _leaving(problem, track, first)
+    if closing is not None and (leaving is None or closing < leaving):
+        return End(Outcome.CLOSED, closing, begin)
+    return None if leaving is None else End(Outcome.LEFT_REGION, leaving)
+
+
+class _Anchor(NamedTuple):
+    """Where a curve may close: at arclength ``s`` on piece ``number``."""
+
+    number: int
+    s: float
+
+
+class _Foot(NamedTuple):
+    """Where a piece is nearest to a point: the coordinate ``x`` on the piece, and close
+    to it the ``offset`` (n,) from the point and the derivative ``slope`` (n,) in x."""
+
+    x: float
+    offset: np.ndarray
+    slope: np.ndarray
+
+
+def _closing(
+    problem: Problem, track: Track, first: int, anchor: _Anchor, tolerance: float
+) -> float | None:
+    """Arclength at which the curve, from piece ``first`` on, passes the anchor again in
+    the same direction."""
+    place = track.at(anchor.number, anchor.s)
+    beyond = anchor.s + 0.5 * track.radii[anchor.number]
+    for number in _pieces_near(problem, track, first, place.point):
+        foot = _foot(problem, track.pieces[number], place.point)
+        s = track.centers[number] + foot.x * track.radii[number]
+        if abs(foot.x) > 1.02 or not s > beyond:
+            continue
+        if _is_same_pass(problem, place, foot, tolerance):
+            return float(s)
+    return None
+
+
+def _pieces_near(
+    problem: Problem, track: Track, first: int, point: np.ndarray
+) -> np.ndarray:
+    """Numbers of the pieces, from ``first`` on, that may pass ``point`` (n,)."""
+    middles = track.pieces[first:, 0]
+    radii = track.radii[first:]
+    gaps = problem.difference(middles, point)
+    is_near = np.linalg.norm(gaps, axis=1) < 1.1 * radii
+    numbers: np.ndarray = first + np.flatnonzero(is_near)
+    return numbers
+
+
+def _foot(problem: Problem, piece: np.ndarray, point: np.ndarray) -> _Foot:
+    """The foot of ``point`` (n,) on a piece (order + 1, n), by Newton's method."""
+    grid = np.linspace(-1.0, 1.0, 17)
+    offsets = problem.difference(points_on_piece(piece, grid), point)
+    distances = np.linalg.norm(offsets, axis=1)
+    x = grid[np.argmin(distances)]
+    for _ in range(FOOT_STEPS):
+        on_piece, slope = point_and_slope(piece, x)
+        offset = problem.difference(on_piece, point)
+        step = offset @ slope / (slope @ slope)
+        x = x - step
+        if abs(step) < 1e-15:
+            break
+    return _Foot(x, offset, slope)
+
+
+def _is_same_pass(
+    problem: Problem, place: Place, foot: _Foot, tolerance: float
+) -> bool:
+    """Whether the curve at the foot of a place is at that place again, and runs in the
+    same direction."""
+    speed = np.linalg.norm(foot.slope)
+    if not foot.slope @ place.tangent > SAME_WAY * speed:
+        return False
+    distance = np.linalg.norm(foot.offset)
+    if distance > RESOLVED * problem.scale:
+        return False
+    if distance < max(1e-9, 30 * tolerance) * problem.scale:
+        return True
+    # where a singular value is small a point is known no better than rounding over it
+    residual = problem.jacobian(place.point) @ foot.offset
+    rounding = max(1e-14, 0.1 * tolerance) * problem.scale
+    return bool(np.linalg.norm(residual) < rounding * problem.magnitude)
+
+
+def _leaving(problem: Problem, track: Track, first: int) -> float | None:
+    """Arclength at which the curve, from piece ``first`` on, first leaves the
+    bounds."""
+    if not np.any(np.isfinite(problem.bounds)):
+        return None
+    breaks = track.breaks(track.reached)
+    for number in range(first, len(track)):
+        center, radius = track.centers[number], track.radii[number]
+        begin, end = breaks[number : number + 2]
+        grid = (np.linspace(begin, end, 33) - center) / radius
+        x = _exit(problem, track.pieces[number], grid)
+        if x is not None:
+            return float(center + x * radius)
+    return None
+
+
+def _exit(problem: Problem, piece: np.ndarray, grid: np.ndarray) -> float | None:
+    """Coordinate at which a piece (order + 1, n) leaves the bounds, as seen at those of
+    ``grid``; None where it does not."""
+    excess = _excess(problem, piece, grid)
+    outside = np.flatnonzero(excess > 1e-12 * problem.scale)
+    if not len(outside):
+        return None
+    first = outside[0]
+    low = grid[max(first - 1, 0)]
+    high = grid[first]
+    for _ in range(60):
+        middle = np.array([0.5 * (low + high)])
+        if _excess(problem, piece, middle)[0] > 0:
+            high = middle[0]
+        else:
+            low = middle[0]
+    return float(low)
+
+
+def _excess(problem: Problem, piece: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """How far a piece lies outside the bounds (k,) at x (k,), in the unknown that is
+    farthest; negative inside."""
+    points = points_on_piece(piece, x)
+    low, high = problem.bounds.T
+    excess = np.maximum(low - points, points - high)
+    farthest: np.ndarray = excess.max(axis=1)
+    return farthest

@@ -1,0 +1,162 @@
+"""Null spaces of F': tangents of curves, tangent planes of surfaces, and the singular
+value decompositions that they come from.
+
+Singular values and residuals are over the problem's magnitude throughout.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import issparse, sparray
+
+from bifurc.numerics.bordered import Bordered
+from bifurc.problem import Problem
+
+__all__ = [
+    "LARGE",
+    "NULL",
+    "Decomposition",
+    "decompose",
+    "null_spaces",
+    "null_vector",
+    "tangent_planes",
+]
+
+# unknowns beyond which tangents come from bordered systems instead of an SVD
+LARGE = 64
+NULL = 1e-7  # singular value below which a direction belongs to the null space
+TINY = 1e-300  # may stand in a denominator where a singular value is zero
+
+
+# --- tangents -------------------------------------------------------------------------
+
+
+def null_vector(
+    problem: Problem, point: np.ndarray, along: np.ndarray | None = None
+) -> np.ndarray:
+    """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
+
+    It has no sign of its own: it is turned to agree with ``along`` where that is given.
+    Where the null space is larger, ``along`` is projected on it. A large problem is
+    bordered instead of decomposed.
+    """
+    jacobian = problem.jacobian(point)
+    if problem.n > LARGE or issparse(jacobian):
+        return _null_vector_by_borders(jacobian, along)
+    _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
+    values = _padded(sigma, problem.n)
+    zero = max(values[-1], 1e-9 * values[0])
+    null_space: np.ndarray = right[values <= zero]
+    weakest: np.ndarray = null_space[-1]
+    if along is None:
+        return weakest
+    projected: np.ndarray = null_space.T @ (null_space @ along)
+    length = np.linalg.norm(projected)
+    agrees = length > 1e-3 * np.linalg.norm(along)
+    return projected / length if agrees else weakest
+
+
+def _null_vector_by_borders(
+    jacobian: np.ndarray | sparray, along: np.ndarray | None
+) -> np.ndarray:
+    """The null vector (n,), first with any border that is not across it, then with
+    itself."""
+    if along is None:
+        rng = np.random.default_rng(0)
+        along = np.array(rng.normal(size=jacobian.shape[1]))
+    unit: np.ndarray = along / np.linalg.norm(along)
+    first = Bordered(jacobian, unit).null_vector()
+    return Bordered(jacobian, first).null_vector()
+
+
+def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Singular values (k, n) of F' at points (k, n), padded with zeros, and right
+    singular vectors (k, n, n), one a row."""
+    _, sigma, right = np.linalg.svd(problem.relative_jacobians(points))
+    return _padded(sigma, problem.n), right
+
+
+def tangent_planes(
+    problem: Problem, points: np.ndarray, near: np.ndarray
+) -> np.ndarray:
+    """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k,
+    n), turned as little as possible against the bases ``near`` (k, n, 2) or (n, 2).
+
+    Where the null space is larger, at singular points, the part of it that is nearest
+    to ``near`` is taken.
+    """
+    sigma, right = null_spaces(problem, points)
+    zeros = np.count_nonzero(sigma < NULL, axis=1)
+    nullity = np.maximum(zeros, 2)
+    most = int(nullity.max(initial=2))
+    numbers = np.arange(most, 0, -1)  # of the singular values, counted from the last
+    is_null = numbers <= nullity[:, None]  # (k, most)
+    rows = right[:, -most:] * is_null[:, :, None]
+    left, _, across = np.linalg.svd(rows @ near, full_matrices=False)
+    columns = np.swapaxes(rows, 1, 2)
+    planes: np.ndarray = columns @ left @ across
+    return planes
+
+
+def _padded(sigma: np.ndarray, n: int) -> np.ndarray:
+    """Singular values (..., n), zeros after those (..., min(m, n)) of an m x n
+    matrix."""
+    *batch, count = sigma.shape
+    values = np.zeros((*batch, n))
+    values[..., :count] = sigma
+    return values
+
+
+# --- decompositions -------------------------------------------------------------------
+
+
+@dataclass
+class Decomposition:
+    """F and F' = U diag(sigma) V^T at k points, both over the problem's magnitude.
+
+    ``residuals`` (k, m), ``left`` (k, m, m) with the columns u_i, ``sigma`` (k, min(m,
+    n)) in decreasing order, ``right`` (k, n, n) with the rows v_i.
+    """
+
+    residuals: np.ndarray
+    left: np.ndarray
+    sigma: np.ndarray
+    right: np.ndarray
+
+    def components(self, i: int) -> np.ndarray:
+        """u_i . F (k,): what is left of one combination of the equations."""
+        direction = self.left[:, :, i]
+        components: np.ndarray = np.einsum("km,km->k", direction, self.residuals)
+        return components
+
+    def newton_steps(self, rank: int, floor: float = 0.0) -> np.ndarray:
+        """Gauss-Newton steps (k, n) of a given rank: - sum_{i <= rank} v_i (u_i . F) /
+        sigma_i.
+
+        They go across the null space and not along it. A singular value below ``floor``
+        times the largest is taken for that.
+        """
+        left = self.left[:, :, :rank]
+        sigma = self.sigma[:, :rank]
+        right = self.right[:, :rank]
+        lowest = np.maximum(floor * sigma[:, :1], TINY)
+        components = np.einsum("kmi,km->ki", left, self.residuals)
+        across = components / np.maximum(sigma, lowest)
+        steps: np.ndarray = -np.einsum("kin,ki->kn", right, across)
+        return steps
+
+    def replace(self, rows: np.ndarray, others: Decomposition) -> None:
+        """Put ``others`` in the place of the points ``rows``."""
+        self.residuals[rows] = others.residuals
+        self.left[rows] = others.left
+        self.sigma[rows] = others.sigma
+        self.right[rows] = others.right
+
+
+def decompose(problem: Problem, points: np.ndarray) -> Decomposition:
+    """F and the singular value decomposition of F' at points (k, n)."""
+    residuals = problem.relative_residuals(points)
+    left, sigma, right = np.linalg.svd(problem.relative_jacobians(points))
+    return Decomposition(residuals, left, sigma, right)

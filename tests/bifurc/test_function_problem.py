@@ -1,0 +1,117 @@
+"""Problems from plain functions: derivatives, checks, magnitudes."""
+
+import numpy as np
+import pytest
+
+from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
+
+BOX = [(-2.0, 2.0), (-2.0, 2.0)]
+
+
+def circle(u):
+    return np.array([u[0] ** 2 + u[1] ** 2 - 1.0])
+
+
+def only_real(u):
+    """The circle by a function that refuses complex numbers."""
+    return np.array([np.hypot(float(u[0]), float(u[1])) - 1.0])
+
+
+def silently_wrong(u):
+    """The circle by a function that drops imaginary parts without a word."""
+    return np.array([np.abs(u[0]) ** 2 + np.abs(u[1]) ** 2 - 1.0])
+
+
+def test_derivatives_are_exact_by_complex_step_where_complex_numbers_pass():
+    problem = FunctionProblem(circle, BOX)
+    assert problem.derivatives == "complex step"
+    assert problem.jacobians(np.array([[0.3, 0.7]]))[0] == pytest.approx(
+        np.array([[0.6, 1.4]]), abs=1e-15
+    )
+
+
+@pytest.mark.parametrize("function", [only_real, silently_wrong])
+def test_derivatives_are_central_differences_where_complex_numbers_do_not_pass(
+    function,
+):
+    problem = FunctionProblem(function, BOX)
+    assert problem.derivatives == "central differences"
+    u = np.array([0.6, 0.8])
+    expected = u if function is only_real else 2 * u
+    # central differences with a step of 1e-5: 1e-10 from the third derivative, 1e-11
+    # from rounding
+    assert problem.jacobians(u[None])[0, 0] == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_given_jacobian_is_used():
+    problem = FunctionProblem(only_real, BOX, jacobian=lambda u: u[None] / np.hypot(*u))
+    assert problem.derivatives == "given"
+    assert problem.jacobians(np.array([[0.6, 0.8]]))[0, 0] == pytest.approx(
+        [0.6, 0.8], abs=1e-15
+    )
+
+
+def test_the_hessian_by_differences_of_the_jacobian_is_symmetric_and_right():
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 3 * u[1], np.sin(u[0] * u[1])]), BOX
+    )
+    x, y = u = np.array([0.7, -0.4])
+    s, c = np.sin(x * y), np.cos(x * y)
+    expected = np.array(
+        [
+            [[6 * x * y, 3 * x**2], [3 * x**2, 0.0]],
+            [[-y * y * s, c - x * y * s], [c - x * y * s, -x * x * s]],
+        ]
+    )
+    # central differences of an exact Jacobian with steps of 1e-5: 1e-10
+    assert problem.hessian(u) == pytest.approx(expected, abs=1e-9)
+
+
+def test_residuals_relative_to_the_magnitude_do_not_depend_on_the_scale_of_the_equations():
+    one, thousand = (
+        FunctionProblem(circle, BOX),
+        FunctionProblem(lambda u: 1e3 * circle(u), BOX),
+    )
+    assert thousand.magnitude == pytest.approx(1e3 * one.magnitude)
+    u = np.array([[0.2, 0.5]])
+    assert thousand.residuals(u) / thousand.magnitude == pytest.approx(
+        one.residuals(u) / one.magnitude
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        ({"bounds": [(1.0, -1.0), (0.0, 1.0)]}, "bounds"),
+        ({"bounds": [(0.0, 0.0), (0.0, 1.0)]}, "bounds"),
+        ({"bounds": [0.0, 1.0]}, "bounds"),
+        ({"bounds": [(0.0, 1.0, 2.0), (0.0, 1.0, 2.0)]}, "bounds"),
+        ({"bounds": [(np.nan, 1.0), (0.0, 1.0)]}, "bounds"),
+        ({"bounds": BOX, "names": ["x"]}, "number of names"),
+        ({"bounds": BOX, "units": ["m", "m", "m"]}, "number of units"),
+        ({"bounds": BOX, "periods": [1.0]}, "number of periods"),
+        ({"bounds": BOX, "periods": [0.0, 1.0]}, "periods"),
+        ({"bounds": BOX, "periods": [-1.0, 1.0]}, "periods"),
+    ],
+)
+def test_a_bad_argument_is_named_with_its_value_and_what_is_allowed(arguments, name):
+    with pytest.raises(ProblemError) as caught:
+        FunctionProblem(circle, **arguments)
+    assert caught.value.name == name
+    assert str(caught.value.value) in str(caught.value)
+    assert caught.value.allowed in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda u: np.array([np.nan]),
+        lambda u: 1.0,
+        lambda u: np.ones((2, 2)),
+        lambda u: np.array([np.inf]),
+    ],
+)
+def test_a_function_without_a_finite_vector_is_refused(function):
+    with pytest.raises(ProblemError, match="value of the function"):
+        FunctionProblem(function, BOX)
