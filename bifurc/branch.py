@@ -98,7 +98,19 @@ class Branch:
         others and for open curves."""
         if not self.closed:
             return np.zeros(self.n, dtype=int)
-        return whole_turns(self._travel, self.periods)
+        return whole_turns(self.travel, self.periods)
+
+    @cached_property
+    def travel(self) -> np.ndarray:
+        """What each unknown (n,) gains from the start to the end of the curve."""
+        ends = [0, -1]
+        offsets = self.breaks[ends] - self.centers[ends]
+        x = offsets / self.radii[ends]
+        exponents = np.arange(self.pieces.shape[1])
+        powers = x[:, None] ** exponents
+        begin, end = np.einsum("ek,ekn->en", powers, self.pieces[ends])
+        travel: np.ndarray = end - begin
+        return travel
 
     # --- points -----------------------------------------------------------------------
 
@@ -230,21 +242,9 @@ class Branch:
     @cached_property
     def _curve(self) -> tuple[np.ndarray, ...]:
         """The curve as the kernels of `bifurc.pieces` take it."""
-        travel = self._travel if self.closed else np.empty(0)
+        travel = self.travel if self.closed else np.empty(0)
         arrays = (self.breaks, self.centers, self.radii, self.pieces, travel)
         return tuple(np.require(array, float, ["C", "W"]) for array in arrays)
-
-    @cached_property
-    def _travel(self) -> np.ndarray:
-        """What each unknown (n,) gains from the begin to the end of the curve."""
-        ends = [0, -1]
-        offsets = self.breaks[ends] - self.centers[ends]
-        x = offsets / self.radii[ends]
-        exponents = np.arange(self.pieces.shape[1])
-        powers = x[:, None] ** exponents
-        begin, end = np.einsum("ek,ekn->en", powers, self.pieces[ends])
-        travel: np.ndarray = end - begin
-        return travel
 
     @cached_property
     def _samples(self) -> _Samples:

@@ -27,6 +27,7 @@ from matplotlib.figure import Figure
 from bifurc.branch import Branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
 from bifurc.curves.monitor import profile_branch
+from bifurc.problem import MarchSettings
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure
 from linkages.closure.loop_closure import LoopClosure
@@ -76,16 +77,14 @@ def _measure(
     branch: Branch,
 ) -> Cost:
     """Cost of one branch through ``point``."""
-    march = partial(
-        problem.march,
-        branch(0.0),
-        branch(0.0, 1),
-        DEFAULT_SETTINGS.order,
-        DEFAULT_SETTINGS.tolerance,
-        DEFAULT_SETTINGS.shortest,
-        DEFAULT_SETTINGS.longest,
-        len(branch.pieces),
+    settings = MarchSettings(
+        order=DEFAULT_SETTINGS.order,
+        tolerance=DEFAULT_SETTINGS.tolerance,
+        shortest=DEFAULT_SETTINGS.shortest,
+        longest=DEFAULT_SETTINGS.longest,
+        count=len(branch.pieces),
     )
+    march = partial(problem.march, branch(0.0), branch(0.0, 1), settings)
     return Cost(
         series=series,
         joints=problem.loop.n,

@@ -22,7 +22,7 @@ import click
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.certificate import certify_branch
+from bifurc.curves.certificate import CertificateStatus, certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.singular.locate import locate_singular_point
@@ -39,12 +39,7 @@ __all__ = [
 ]
 
 STEPS = (0.1, 0.5)
-STATUSES = (
-    "certified",
-    "certified up to the singular points",
-    "certified up to places singular to rounding",
-    "not certified",
-)
+STATUSES = tuple(CertificateStatus)
 
 
 @dataclass(frozen=True)
@@ -104,12 +99,12 @@ def certify_trace(case: NearMiss, branch: Branch) -> tuple[str, int]:
     problem = case.problem
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
     status = certificate.status
-    if status == STATUSES[2]:
+    if status is CertificateStatus.UP_TO_ROUNDING:
         middles = branch(certificate.blurred.mean(axis=1))
         reach = 1e-3 * problem.scale
         located = [locate_singular_point(problem, u, 2, reach) for u in middles]
         if all(point is not None for point in located):
-            status = STATUSES[1]
+            status = CertificateStatus.UP_TO_SINGULAR_POINTS
     return status, certificate.points
 
 

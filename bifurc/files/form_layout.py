@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from bifurc.atlas import Form
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.certificate import Certificate
+from bifurc.curves.certificate import Certificate, CertificateValues
 from bifurc.curves.monitor import Profile
 from bifurc.files.json_values import mapping_from_text, to_text
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
@@ -196,4 +198,7 @@ def read_form(row: Row, periods: np.ndarray) -> Form:
 
 
 def _read_certificate(text: str) -> Certificate | None:
-    return Certificate.from_values(mapping_from_text(text)) if text else None
+    if not text:
+        return None
+    values = cast(CertificateValues, mapping_from_text(text))
+    return Certificate.from_values(values)

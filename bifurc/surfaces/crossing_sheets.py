@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.numerics.null_spaces import NULL
 from bifurc.problem import Problem
-from bifurc.singular.dimension import NULL
 from bifurc.singular.locate import locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
 

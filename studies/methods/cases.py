@@ -73,7 +73,7 @@ class Case:
         """The unknown without dead points that travels farthest, and how far it goes;
         None where there is none."""
         branch = self.reference
-        travel = branch._ends[1] - branch._ends[0]
+        travel = branch.travel
         still = [
             i
             for i, roots in enumerate(dead_points(branch))
