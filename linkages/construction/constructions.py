@@ -149,10 +149,12 @@ def superposed_angles(
     second = np.asarray(second, dtype=float)
     last = first.shape[-1] - shared
     other = second.shape[-1] - shared
-    start = first[..., :1] - second[..., :1] + np.pi
-    end = first[..., last : last + 1] - second[..., other : other + 1] + np.pi
+    start = first[..., 0] - second[..., 0] + np.pi
+    end = first[..., last] - second[..., other] + np.pi
+    forth = first[..., 1:last]
     back = -second[..., other - 1 : 0 : -1]
-    return np.concatenate([start, first[..., 1:last], end, back], axis=-1)
+    parts = [start[..., None], forth, end[..., None], back]
+    return np.concatenate(parts, axis=-1)
 
 
 def summate(first: Loop, second: Loop) -> Loop:

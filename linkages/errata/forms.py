@@ -39,7 +39,8 @@ def _defects(form: ClosedForm, parameters: Mapping[str, float]) -> np.ndarray:
     paths = [form.configurations(inputs, parameters, root) for root in form.roots]
     theta = np.concatenate(paths)
     theta = theta[np.isfinite(theta).all(axis=1)]
-    gap = np.abs(loop.frames(theta)[:, -1] - np.eye(4))
+    product = loop.frames(theta)[:, -1]
+    gap = np.abs(product - np.eye(4))
     gap[:, :3, 3] /= loop.characteristic_length
     return np.asarray(gap.max(axis=(1, 2)))
 

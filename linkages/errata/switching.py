@@ -146,11 +146,13 @@ def _constant_angle() -> Amounts:
 def _left_by(m: Ratios, printed: float) -> list[float]:
     """What the equations leave with ``printed`` in the place of m6."""
     t = 0.7
-    q = (m.m3 + m.m4 * t * t) / ((m.m4 - m.m3) * t)
+    fourth = m.m4 * t
+    q = (m.m3 + fourth * t) / ((m.m4 - m.m3) * t)
     difference = printed - m.m1
-    root = np.emath.sqrt(difference**2 * q * q - 4 * m.m1 * printed)
-    one = abs(m.m4 * t - (difference * q + root) / 2)
-    other = abs(m.m4 * t - (difference * q - root) / 2)
+    slope = difference * q
+    root = np.emath.sqrt(slope**2 - 4 * m.m1 * printed)
+    one = abs(fourth - (slope + root) / 2)
+    other = abs(fourth - (slope - root) / 2)
     products = m.m3 * m.m4 * difference - m.m1 * printed * (m.m4 - m.m3)
     return [
         float(min(one, other)),

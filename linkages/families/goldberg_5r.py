@@ -236,13 +236,17 @@ def _kink_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
 
 def _ratio_gap(t: TableNumbers) -> float:
     """sin(alpha12)/a12 = sin(alpha23)/a23."""
-    return sin(t.alpha(12)) / t.a(12) - sin(t.alpha(23)) / t.a(23)
+    first = sin(t.alpha(12)) / t.a(12)
+    second = sin(t.alpha(23)) / t.a(23)
+    return first - second
 
 
 def _middle_gap(t: TableNumbers) -> float:
     """cos(alpha34/2) = sin(alpha12) / sqrt(1 + (R3 sin(alpha23)/a23)^2)."""
     shear = t.R(3) * sin(t.alpha(23)) / t.a(23)
-    return cos(t.alpha(34) / 2) - sin(t.alpha(12)) / sqrt(1 + shear**2)
+    left = cos(t.alpha(34) / 2)
+    right = sin(t.alpha(12)) / sqrt(1 + shear**2)
+    return left - right
 
 
 def _joined_length_gap(t: TableNumbers) -> float:
