@@ -6,7 +6,6 @@ import itertools
 import numpy as np
 import pytest
 
-from bifurc.singular.point import Kind
 from linkages.construction.constructions import (
     ending_with,
     isomerize,
@@ -34,6 +33,7 @@ from linkages.families.goldberg_5r import generalized_goldberg, syncopated_goldb
 from linkages.families.goldberg_6r import l_shape_goldberg, serial_goldberg
 from linkages.families.mavroidis_roth import OffsetPattern, mavroidis_roth
 from linkages.families.mixed_double_goldberg import (
+    Kind,
     Order,
     double_goldberg_chain,
     double_goldberg_type,
