@@ -164,7 +164,7 @@ class WayGraph:
         charts = self._search.charts[k]
         problem = self._search.surface_problem(k)
         try:
-            measured = measure(problem, charts, crossing)
+            path_crossing = measure(problem, charts, crossing)
         except (SurfacePathError, np.linalg.LinAlgError) as error:
             # equations without value next to the surface end in numbers that have no
             # singular values
@@ -173,8 +173,8 @@ class WayGraph:
             self._graph.remove_edge(edge.first, edge.last, edge.key)
             return
         attributes = self._graph[edge.first][edge.last][edge.key]
-        attributes["way"] = measured
-        attributes["length"] = measured.length
+        attributes["way"] = path_crossing
+        attributes["length"] = path_crossing.length
 
     # --- what can be reached ----------------------------------------------------------
 

@@ -68,16 +68,16 @@ class _Sections(NamedTuple):
 def _choose_sections(problem: Problem, located: LocatedPoint) -> _Sections:
     """The first sections that agree and are clear; else the first that agree; else
     those of the first radius."""
-    chosen = _cut(problem, located, FIRST_RADIUS)
+    best = _cut(problem, located, FIRST_RADIUS)
     for radius in OTHER_RADII:
-        if chosen.agree and chosen.are_clear:
+        if best.agree and best.are_clear:
             break
         if radius * problem.scale / 2 < located.error:
             continue  # the exact point may lie outside of the smaller sphere
         cut = _cut(problem, located, radius)
-        if cut.agree and (cut.are_clear or not chosen.agree):
-            chosen = cut
-    return chosen
+        if cut.agree and (cut.are_clear or not best.agree):
+            best = cut
+    return best
 
 
 def _cut(problem: Problem, located: LocatedPoint, radius: float) -> _Sections:

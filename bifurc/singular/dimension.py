@@ -129,8 +129,8 @@ def _probe(
     flat_ends, flat_gaps = problem.project(starts.reshape(-1, n))
     ends = flat_ends.reshape(starts.shape)
     gaps = flat_gaps.reshape(count, len(directions))
-    away = problem.difference(ends, points[:, None])
-    coordinates = np.einsum("bpn,bkn->bpk", away, basis) / length
+    offsets = problem.difference(ends, points[:, None])
+    coordinates = np.einsum("bpn,bkn->bpk", offsets, basis) / length
     loss = np.linalg.norm(coordinates - directions, axis=2)
     loss[gaps > SOLVED] = np.inf
     return _Probes(ends, coordinates, loss)
@@ -150,10 +150,10 @@ def _dimension_from_ends(
 ) -> int:
     """Dimension about a point that lost probes, from the ``ends`` (p, n) of the others
     and their ``coordinates`` (p, k); -1 where the ends do not tell."""
-    away = np.linalg.norm(coordinates, axis=1) > AWAY
-    if not np.any(away):
+    is_away = np.linalg.norm(coordinates, axis=1) > AWAY
+    if not np.any(is_away):
         return 0
-    ends, coordinates = ends[away], coordinates[away]
+    ends, coordinates = ends[is_away], coordinates[is_away]
     sigma, right = null_spaces(problem, ends)
     nullity = np.count_nonzero(sigma < NULL_AT_ENDS, axis=1)
     of_higher_rank = np.flatnonzero(nullity < coordinates.shape[1])

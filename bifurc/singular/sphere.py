@@ -163,16 +163,16 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     _, _, right = np.linalg.svd(values, full_matrices=False)
     leading = _FourierSeries(values @ right[0])
     zeros = _find_zeros(leading, noise + TOUCHES * size)
-    angles = np.concatenate([zeros.crossing, zeros.touching])
+    angles = np.concatenate([zeros.crossings, zeros.contacts])
     if not len(angles):
         return Section(no_points, 0)
     # a root is exact to rounding, so that all equations hold there or not
-    crosses = np.arange(len(angles)) < len(zeros.crossing)
-    limit = np.where(crosses, ROOT, TOUCH) * size + noise
+    is_crossing = np.arange(len(angles)) < len(zeros.crossings)
+    limit = np.where(is_crossing, ROOT, TOUCH) * size + noise
     left_over = np.linalg.norm(equations(unit_vectors(angles)), axis=1)
-    solved = left_over < limit
-    points = equations.points(unit_vectors(angles[solved]))
-    is_doubtful = bool(np.any(solved & ~crosses))
+    is_solution = left_over < limit
+    points = equations.points(unit_vectors(angles[is_solution]))
+    is_doubtful = bool(np.any(is_solution & ~is_crossing))
     return Section(points, 1 if len(points) else 0, is_doubtful)
 
 
@@ -191,8 +191,8 @@ class _FourierSeries:
 
     def __call__(self, angles: np.ndarray) -> np.ndarray:
         """Values at angles (...)."""
-        turned = np.asarray(angles) - FIRST
-        phases = turned[..., None] * self._rates
+        offsets = np.asarray(angles) - FIRST
+        phases = offsets[..., None] * self._rates
         waves = np.exp(1j * phases)
         values: np.ndarray = (waves @ self._coefficients).real
         return values
@@ -203,11 +203,11 @@ class _FourierSeries:
 
 
 class _Zeros(NamedTuple):
-    """Angles at which a function crosses zero (k,), and at which it only touches it
-    (t,), but for rounding."""
+    """Angles (k,) at which a function crosses zero, and angles (t,) at which it only
+    touches it, but for rounding."""
 
-    crossing: np.ndarray
-    touching: np.ndarray
+    crossings: np.ndarray
+    contacts: np.ndarray
 
 
 def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
@@ -217,22 +217,22 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
     signs = np.sign(function.samples)
     changes = ANGLES[signs * np.roll(signs, -1) < 0]
     low, high = changes, changes + step
-    touching = np.empty(0)
+    contacts = np.empty(0)
     dips = _dips(function.samples)
     if len(dips):
         at = ANGLES[dips]
         bracket = (at - step, at, at + step)
         bottom = find_minimum(function.times_sign, bracket, args=(signs[dips],))
         # a dip that goes through zero has a sign change on either side
-        through = bottom.f_x < -zero
-        middle = bottom.x[through]
-        low = np.concatenate([low, at[through] - step, middle])
-        high = np.concatenate([high, middle, at[through] + step])
-        touching = bottom.x[np.abs(bottom.f_x) <= zero]
-    crossing = np.empty(0)
+        is_crossed = bottom.f_x < -zero
+        middle = bottom.x[is_crossed]
+        low = np.concatenate([low, at[is_crossed] - step, middle])
+        high = np.concatenate([high, middle, at[is_crossed] + step])
+        contacts = bottom.x[np.abs(bottom.f_x) <= zero]
+    crossings = np.empty(0)
     if len(low):
-        crossing = bracketed_roots(function, low, high, ROOT_TOLERANCE)
-    return _Zeros(crossing, touching)
+        crossings = bracketed_roots(function, low, high, ROOT_TOLERANCE)
+    return _Zeros(crossings, contacts)
 
 
 def _dips(samples: np.ndarray) -> np.ndarray:
@@ -260,10 +260,10 @@ def _sphere_section(
     # next to the point F is of order radius^2 whatever the direction: the residual must
     # be far below that
     limit = SOLVED * (radius / problem.scale) ** 2 + SOLVED_ROUNDING
-    solved = (gaps < limit) & (last_steps < SETTLED * radius)
-    if not np.any(solved):
+    is_solution = (gaps < limit) & (last_steps < SETTLED * radius)
+    if not np.any(is_solution):
         return Section(np.empty((0, problem.n)), 0)
-    points = _without_duplicates(ends[solved], SAME * radius)
+    points = _without_duplicates(ends[is_solution], SAME * radius)
     return _separate_surfaces(problem, points)
 
 
@@ -299,8 +299,8 @@ def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
     is_of_higher_nullity = sigma[:, -2] < NULL
     candidates = np.flatnonzero(is_of_higher_nullity)
     stride = max(1, len(candidates) // MOST_TESTED)
-    tested = candidates[::stride]
-    dimension = local_dimensions(problem, points[tested]).dimension
+    sample = candidates[::stride]
+    dimension = local_dimensions(problem, points[sample]).dimension
     if np.all(dimension < 2):
         return Section(points, 1)
     return Section(points[~is_of_higher_nullity], int(dimension.max()))

@@ -166,14 +166,14 @@ class ChartAtlas:
         """The atlas of the charts of these numbers (k,) alone."""
         number = np.full(len(self), -1)
         number[charts] = np.arange(len(charts))
-        inside = np.all(number[self.neighbours] >= 0, axis=1)
+        is_inside = np.all(number[self.neighbours] >= 0, axis=1)
         corners = self.polygons[np.repeat(number >= 0, self.polygon_sizes)]
         vertices, renumbered = np.unique(corners, return_inverse=True)
         return ChartAtlas(
             centers=self.centers[charts],
             bases=self.bases[charts],
             radii=self.radii[charts],
-            neighbours=number[self.neighbours[inside]],
+            neighbours=number[self.neighbours[is_inside]],
             vertices=self.vertices[vertices],
             polygons=renumbered,
             polygon_sizes=self.polygon_sizes[charts],
@@ -252,10 +252,10 @@ class ChartAtlas:
         """The edges of all polygons."""
         chart = np.repeat(np.arange(len(self)), self.polygon_sizes)
         ends = np.cumsum(self.polygon_sizes)
-        following = np.arange(1, len(self.polygons) + 1)
+        successor = np.arange(1, len(self.polygons) + 1)
         full = self.polygon_sizes > 0
-        following[ends[full] - 1] = (ends - self.polygon_sizes)[full]
-        return _Edges(chart, self.polygons, self.polygons[following])
+        successor[ends[full] - 1] = (ends - self.polygon_sizes)[full]
+        return _Edges(chart, self.polygons, self.polygons[successor])
 
     @cached_property
     def _polygons_at_edge(self) -> np.ndarray:

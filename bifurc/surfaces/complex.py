@@ -77,19 +77,19 @@ def assemble_charts(
 
 def _without_empty_polygons(charts: FlatCharts) -> FlatCharts:
     """The charts with a polygon, numbered anew."""
-    remain = _sizes(charts.polygons) > 0
-    if np.all(remain):
+    has_polygon = _sizes(charts.polygons) > 0
+    if np.all(has_polygon):
         return charts
-    number = np.where(remain, np.cumsum(remain) - 1, -1)
+    number = np.where(has_polygon, np.cumsum(has_polygon) - 1, -1)
     polygons = []
     for vertices, labels in charts.polygons:
         if len(vertices):
             renumbered = np.where(labels >= 0, number[labels], labels)
             polygons.append(Polygon(vertices, renumbered))
     return FlatCharts(
-        centers=charts.centers[remain],
-        bases=charts.bases[remain],
-        radii=charts.radii[remain],
+        centers=charts.centers[has_polygon],
+        bases=charts.bases[has_polygon],
+        radii=charts.radii[has_polygon],
         polygons=polygons,
     )
 
@@ -116,11 +116,11 @@ def _lift_corners(problem: Problem, charts: FlatCharts) -> _Corners:
     y *= np.minimum(1.0, radii / distance)[:, None]
     bases = charts.bases[owner]
     flat = charts.centers[owner] + np.einsum("kij,kj->ki", bases, y)
-    lifted, gaps = correct_normal(problem, flat, bases)
-    height = np.linalg.norm(lifted - flat, axis=1)
-    failed = (gaps > SOLVED) | (height > TOO_HIGH * radii)
-    lifted[failed] = flat[failed]
-    return _Corners(lifted, owner)
+    points, gaps = correct_normal(problem, flat, bases)
+    height = np.linalg.norm(points - flat, axis=1)
+    is_out_of_reach = (gaps > SOLVED) | (height > TOO_HIGH * radii)
+    points[is_out_of_reach] = flat[is_out_of_reach]
+    return _Corners(points, owner)
 
 
 def _merge_corners(

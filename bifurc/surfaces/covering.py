@@ -155,13 +155,13 @@ class _Cover:
 
     def covers(self, point: np.ndarray) -> bool:
         """Whether a solution (n,) lies in a chart."""
-        away = self._problem.difference(point, self._centers)
-        distance = np.linalg.norm(away, axis=1)
+        offset = self._problem.difference(point, self._centers)
+        distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(distance < RIM * self._radii)
         bases = self._bases[near]
-        y = np.einsum("ki,kij->kj", away[near], bases)
+        y = np.einsum("ki,kij->kj", offset[near], bases)
         in_plane = np.einsum("kij,kj->ki", bases, y)
-        height = np.linalg.norm(away[near] - in_plane, axis=1)
+        height = np.linalg.norm(offset[near] - in_plane, axis=1)
         limit = STEEPEST * np.linalg.norm(y, axis=1) + ROUNDING
         return bool(np.any(height < limit))
 
@@ -231,19 +231,19 @@ class _Cover:
         """Make the chart, of at most ``radius``, about the solution above ``start`` in
         the plane ``basis``."""
         centers, gaps = correct_normal(self._problem, start[None], basis[None])
-        turned = tangent_planes(self._problem, centers, basis)[0]
+        plane = tangent_planes(self._problem, centers, basis)[0]
         center = centers[0]
         distance = np.linalg.norm(center - start)
         if gaps[0] > SOLVED or distance > TOO_FAR * self._largest:
             return Placement.UNFIT
-        if cosines_between_planes(basis, turned)[-1] < SMOOTH:
+        if cosines_between_planes(basis, plane)[-1] < SMOOTH:
             return Placement.UNFIT
-        if self._is_close_to_a_center(center, turned):
+        if self._is_close_to_a_center(center, plane):
             return Placement.COVERED
-        fitting = self._fitting_radius(center, turned, min(radius, self._largest))
-        if fitting is None:
+        fitting_radius = self._fitting_radius(center, plane, min(radius, self._largest))
+        if fitting_radius is None:
             return Placement.UNFIT
-        self.add(center, turned, fitting)
+        self.add(center, plane, fitting_radius)
         return Placement.MADE
 
     def _is_close_to_a_center(self, center: np.ndarray, basis: np.ndarray) -> bool:
@@ -265,8 +265,8 @@ class _Cover:
             points, gaps = correct_normal(self._problem, rim, planes)
             height = np.linalg.norm(points - rim, axis=1).max() / radius
             if gaps.max() < SOLVED_ON_DISK and height < BEND:
-                turned = tangent_planes(self._problem, points, basis)
-                cosines = cosines_between_planes(basis, turned)
+                planes_there = tangent_planes(self._problem, points, basis)
+                cosines = cosines_between_planes(basis, planes_there)
                 if cosines[:, -1].min() > AGREE:
                     return radius
             shrink = 0.5
@@ -316,9 +316,9 @@ class _Cover:
     ) -> None:
         """Cut polygon i where its disk intersects the one about ``center`` (n,)."""
         basis = self._bases[i]
-        away = self._problem.difference(center, self._centers[i])
-        x = basis.T @ away
-        height = float(np.linalg.norm(away - basis @ x))
+        offset = self._problem.difference(center, self._centers[i])
+        x = basis.T @ offset
+        height = float(np.linalg.norm(offset - basis @ x))
         polygon = self._polygons[i]
         self._polygons[i] = _cut(polygon, self._radii[i], x, height, radius, label)
         self._open.append(i)
@@ -327,12 +327,12 @@ class _Cover:
         self, center: np.ndarray, basis: np.ndarray, radius: float
     ) -> _Overlaps:
         """The charts on the same sheet that overlap a disk about ``center`` (n,)."""
-        away = self._problem.difference(self._centers, center)
-        distance = np.linalg.norm(away, axis=1)
+        offset = self._problem.difference(self._centers, center)
+        distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(distance < radius + self._radii)
-        x = away[near] @ basis
+        x = offset[near] @ basis
         in_plane = x @ basis.T
-        height = np.linalg.norm(away[near] - in_plane, axis=1)
+        height = np.linalg.norm(offset[near] - in_plane, axis=1)
         # in two disks of radius R that touch, bent by BEND, one centre lies up to 4
         # BEND R above the other's plane
         is_low = height < 3 * BEND * np.maximum(radius, distance[near])

@@ -60,15 +60,15 @@ def is_on_singular_curve(problem: Problem, located: LocatedPoint) -> bool:
     They are looked for from starts to all sides in its null space.
     """
     u, null_space, error = located
-    away = NEXT * problem.scale + NEXT_TO_ERROR * error
+    distance = NEXT * problem.scale + NEXT_TO_ERROR * error
     nullity = null_space.shape[1]
     for direction in np.concatenate([null_space.T, -null_space.T]):
-        start = u + away * direction
-        other = locate_singular_point(problem, start, nullity, 2.0 * away)
+        start = u + distance * direction
+        other = locate_singular_point(problem, start, nullity, 2.0 * distance)
         if other is None:
             continue
         gap = np.linalg.norm(problem.difference(other.u, u))
-        if gap > OTHER * away + OTHER_TO_ERROR * other.error:
+        if gap > OTHER * distance + OTHER_TO_ERROR * other.error:
             return True
     return False
 

@@ -127,22 +127,22 @@ def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.nda
     joined to it by solutions: these stay near the straight line, the nearer the closer
     to it.
     """
-    about = charts.charts_about(point)
-    if len(about):
-        return about
+    entries = charts.charts_about(point)
+    if len(entries):
+        return entries
     near = charts.charts_next_to(point)
     if not len(near):
         return near
-    away = charts.difference(charts.centers[near], point)
-    steps = SHARES[:, None] * away[:, None]  # (k, 12, n)
+    offsets = charts.difference(charts.centers[near], point)
+    steps = SHARES[:, None] * offsets[:, None]  # (k, 12, n)
     lines = (point + steps).reshape(-1, len(point))
     bases = np.repeat(charts.bases[near], len(SHARES), axis=0)
     ends, gaps = correct_normal(problem, lines, bases)
     off_line = np.linalg.norm(ends - lines, axis=1)
     length = np.linalg.norm(steps, axis=2).ravel()
-    joined = (gaps < SOLVED) & (off_line / length < OFF_LINE)
-    joined = joined.reshape(steps.shape[:2])  # (k, 12)
-    return near[np.all(joined, axis=1)]
+    is_joined = (gaps < SOLVED) & (off_line / length < OFF_LINE)
+    is_joined = is_joined.reshape(steps.shape[:2])  # (k, 12)
+    return near[np.all(is_joined, axis=1)]
 
 
 def _chart_chains(
@@ -183,12 +183,12 @@ def _add_end(
     point: np.ndarray,
 ) -> None:
     """Join a node for an end (n,) of the path to the charts in which it lies."""
-    about = entrances(problem, charts, point)
-    if not len(about):
+    entries = entrances(problem, charts, point)
+    if not len(entries):
         raise SurfacePathError(f"the {name} lies in no chart of the surface")
-    gaps = charts.difference(charts.centers[about], point)
+    gaps = charts.difference(charts.centers[entries], point)
     distances = np.linalg.norm(gaps, axis=1)
-    for k, distance in zip(about.tolist(), distances.tolist(), strict=True):
+    for k, distance in zip(entries.tolist(), distances.tolist(), strict=True):
         graph.add_edge(name, k, weight=distance)
 
 
@@ -220,11 +220,11 @@ def _spread(
     _lift(problem, charts, path)
     if len(path) < 3 or _chord_lengths(path).mean() == 0:
         return path
-    pulled = _PulledPath(problem, charts, path)
+    tight_path = _PulledPath(problem, charts, path)
     for _ in range(rounds):
-        if not pulled.pull():
+        if not tight_path.pull():
             break
-    return pulled.path
+    return tight_path.path
 
 
 def _lift(problem: Problem, charts: ChartAtlas, path: np.ndarray) -> None:
@@ -234,12 +234,12 @@ def _lift(problem: Problem, charts: ChartAtlas, path: np.ndarray) -> None:
     if not len(inner):
         return
     planes = charts.bases[charts.nearest_charts(inner)]
-    lifted, solved = _correct(problem, charts, inner, planes)
-    if not np.all(solved):
+    feet, are_solutions = _correct(problem, charts, inner, planes)
+    if not np.all(are_solutions):
         raise SurfacePathError(
             "the path between the charts cannot be corrected onto the surface"
         )
-    path[1:-1] = lifted
+    path[1:-1] = feet
 
 
 class _PulledPath:
@@ -267,23 +267,25 @@ class _PulledPath:
         size = np.linalg.norm(step, axis=1).max()
         longest = TOO_FAR * self._charts.radii.max()
         share = min(self._share, longest / size)
-        moved = self._moved(inner + share * step)
-        energy = _energy(moved)
+        path = self._path_through(inner + share * step)
+        energy = _energy(path)
         self._share = _next_share(energy - self._energy, slope, share)
         if energy <= self._energy:
-            self.path = moved
+            self.path = path
             self._energy = energy
         return True
 
-    def _moved(self, points: np.ndarray) -> np.ndarray:
+    def _path_through(self, points: np.ndarray) -> np.ndarray:
         """The path with the inner points above ``points`` (k - 2, n), where these are
         solutions inside the bounds."""
         low, high = self._problem.bounds.T
-        lifted, solved = _correct(self._problem, self._charts, points, self._planes)
-        inside = np.all((lifted >= low) & (lifted <= high), axis=1)
-        movable = solved & inside
+        feet, are_solutions = _correct(
+            self._problem, self._charts, points, self._planes
+        )
+        is_inside = np.all((feet >= low) & (feet <= high), axis=1)
+        is_movable = are_solutions & is_inside
         path = self.path.copy()
-        path[1:-1][movable] = lifted[movable]
+        path[1:-1][is_movable] = feet[is_movable]
         return path
 
 
@@ -337,10 +339,10 @@ def _correct(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) straight above ``points`` of ``planes`` (k, n, 2), and which
     (k,) are solutions nearby."""
-    lifted, gaps = correct_normal(problem, points, planes)
-    height = np.linalg.norm(lifted - points, axis=1)
+    feet, gaps = correct_normal(problem, points, planes)
+    height = np.linalg.norm(feet - points, axis=1)
     is_near = height < TOO_FAR * charts.radii.max()
-    return lifted, (gaps < SOLVED) & is_near
+    return feet, (gaps < SOLVED) & is_near
 
 
 # --- chords ---------------------------------------------------------------------------

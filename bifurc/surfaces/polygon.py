@@ -40,14 +40,14 @@ class Polygon(NamedTuple):
         if min(height) > 0.0:
             return Polygon(self.vertices[:0], self.labels[:0])
         count = len(height)
-        following = height[1:] + height[:1]
+        next_height = height[1:] + height[:1]
         edges = range(count)
-        leaves = next(i for i in edges if height[i] <= 0.0 < following[i])
-        enters = next(i for i in edges if following[i] <= 0.0 < height[i])
-        remaining = (leaves - enters) % count
-        inside = [(enters + 1 + i) % count for i in range(remaining)]
-        begin = self._crossing(leaves, height[leaves], following[leaves])
-        end = self._crossing(enters, height[enters], following[enters])
+        leaves = next(i for i in edges if height[i] <= 0.0 < next_height[i])
+        enters = next(i for i in edges if next_height[i] <= 0.0 < height[i])
+        count_inside = (leaves - enters) % count
+        inside = [(enters + 1 + i) % count for i in range(count_inside)]
+        begin = self._crossing(leaves, height[leaves], next_height[leaves])
+        end = self._crossing(enters, height[enters], next_height[enters])
         new_labels = [label, self.labels[enters]]
         return Polygon(
             np.concatenate([self.vertices[inside], [begin, end]]),

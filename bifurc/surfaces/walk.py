@@ -42,21 +42,21 @@ def reached_charts(
     obstacle.
     """
     rng = np.random.default_rng(0)
-    reached = np.full(len(points), -1)
+    arrival = np.full(len(points), -1)
     for attempt in range(WALKS):
-        waiting = np.flatnonzero(reached < 0)
+        walkers = np.flatnonzero(arrival < 0)
         goals = None
         if attempt:
-            goals = rng.integers(len(charts), size=len(waiting))
-        for begin in range(0, len(waiting), CHUNK):
+            goals = rng.integers(len(charts), size=len(walkers))
+        for begin in range(0, len(walkers), CHUNK):
             if deadline.passed:
-                return reached
+                return arrival
             part = slice(begin, begin + CHUNK)
             own_goals = None if goals is None else goals[part]
-            numbers = waiting[part]
+            numbers = walkers[part]
             walk = _Walk(problem, charts, points[numbers], own_goals)
-            reached[numbers] = walk.run()
-    return reached
+            arrival[numbers] = walk.run()
+    return arrival
 
 
 class _Walk:
@@ -64,7 +64,7 @@ class _Walk:
 
     ``at`` (k, n) they are, in the tangent ``planes`` (k, n, 2), with the longest step
     ``length`` (k,) that they try next; ``goals`` (k,) are the numbers of the charts
-    they walk to, None where each walks to the nearest. ``reached`` (k,) is the number
+    they walk to, None where each walks to the nearest. ``arrival`` (k,) is the number
     of the chart in which a walker arrived, -1 before.
     """
 
@@ -84,54 +84,54 @@ class _Walk:
         self.longest = LONGEST * charts.radii.max()
         self.shortest = SHORTEST * charts.radii.max()
         self.length = np.full(len(points), self.longest)
-        self.reached = np.full(len(points), -1)
+        self.arrival = np.full(len(points), -1)
 
     def run(self) -> np.ndarray:
         """Where the walkers (k,) arrive; -1 for those that do not."""
-        walking = np.arange(len(self.at))
+        walkers = np.arange(len(self.at))
         for _ in range(STEPS):
-            self.reached[walking] = self.charts.chart_at(self.at[walking])
-            has_arrived = self.reached[walking] >= 0
-            has_stopped = self.length[walking] <= self.shortest
-            walking = walking[~has_arrived & ~has_stopped]
-            if not len(walking):
+            self.arrival[walkers] = self.charts.chart_at(self.at[walkers])
+            has_arrived = self.arrival[walkers] >= 0
+            has_stopped = self.length[walkers] <= self.shortest
+            walkers = walkers[~has_arrived & ~has_stopped]
+            if not len(walkers):
                 break
-            self._step(walking)
-        return self.reached
+            self._step(walkers)
+        return self.arrival
 
-    def _step(self, walking: np.ndarray) -> None:
+    def _step(self, walkers: np.ndarray) -> None:
         """One step of the walkers of these numbers, or a shorter length where that
         fails."""
-        at, planes = self.at[walking], self.planes[walking]
+        at, planes = self.at[walkers], self.planes[walkers]
         nearest = self.charts.nearest_charts(at)
-        goal = nearest if self.goals is None else self.goals[walking]
-        away = self.charts.difference(self.charts.centers[goal], at)
-        direction = np.einsum("kij,klj,kl->ki", planes, planes, away)
+        goal = nearest if self.goals is None else self.goals[walkers]
+        offset = self.charts.difference(self.charts.centers[goal], at)
+        direction = np.einsum("kij,klj,kl->ki", planes, planes, offset)
         distance = np.linalg.norm(direction, axis=1)
         # small where singular points are near
         local = LONGEST * self.charts.radii[nearest]
-        longest = np.minimum(self.length[walking], local)
+        longest = np.minimum(self.length[walkers], local)
         share = np.minimum(1.0, longest / (distance + 1e-300))
         step = direction * share[:, None]
 
         ends, gaps = correct_normal(self.problem, at + step, planes)
-        turned = tangent_planes(self.problem, ends, planes)
-        is_flat = cosines_between_planes(planes, turned)[:, -1] > SMOOTH
+        new_planes = tangent_planes(self.problem, ends, planes)
+        is_flat = cosines_between_planes(planes, new_planes)[:, -1] > SMOOTH
         is_near = _is_near(ends - at - step, step)
-        taken = (gaps < SOLVED) & self._is_inside(ends) & is_flat & is_near
-        self.at[walking[taken]] = ends[taken]
-        self.planes[walking[taken]] = turned[taken]
-        longer = np.minimum(LONGER * self.length[walking], self.longest)
-        self.length[walking] = np.where(taken, longer, SHORTER * longest)
+        is_taken = (gaps < SOLVED) & self._is_inside(ends) & is_flat & is_near
+        self.at[walkers[is_taken]] = ends[is_taken]
+        self.planes[walkers[is_taken]] = new_planes[is_taken]
+        longer = np.minimum(LONGER * self.length[walkers], self.longest)
+        self.length[walkers] = np.where(is_taken, longer, SHORTER * longest)
         is_above_goal = distance < ABOVE_GOAL * self.charts.radii[goal]
-        self.length[walking[is_above_goal]] = 0.0
+        self.length[walkers[is_above_goal]] = 0.0
 
     def _is_inside(self, points: np.ndarray) -> np.ndarray:
         """Which points (k, n) lie inside the bounds (k,)."""
         low, high = self.problem.bounds.T
         is_between = (points >= low) & (points <= high)
-        inside: np.ndarray = np.all(is_between, axis=1)
-        return inside
+        is_inside: np.ndarray = np.all(is_between, axis=1)
+        return is_inside
 
 
 def _is_near(heights: np.ndarray, steps: np.ndarray) -> np.ndarray:

@@ -135,7 +135,7 @@ def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
     assert time.perf_counter() - began < 5.0
     assert atlas.provenance.out_of_time
     assert atlas.completeness.level == "out of time"
-    (surface,) = atlas.surfaces
+    surface = atlas.surfaces[0]  # seeds that no walk joins to it are another one
     assert surface.dimension == 2
     assert surface.charts is not None
     assert surface.charts.outcome is Covering.OUT_OF_TIME
