@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from bifurc.function_problem import NumericalProblem
-from bifurc.problem import March, Problem
+from bifurc.problem import March, MarchSettings, Problem
 from studies.methods.curve import MethodFailure
 
 __all__ = ["Counted"]
@@ -65,11 +63,13 @@ class Counted(NumericalProblem):
         """As of the problem."""
         return self._problem.curvature_bound()
 
-    def march(self, *arguments: Any) -> March:
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    ) -> March:
         """Pieces of the curve; compiled ones are taken to cost `A_PIECE` evaluations
         each."""
         if not self._compiled:
-            return super().march(*arguments)
-        march = self._problem.march(*arguments)
+            return super().march(start, tangent, settings)
+        march = self._problem.march(start, tangent, settings)
         self.evaluations += A_PIECE * max(1, len(march.pieces))
         return march
