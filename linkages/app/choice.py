@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
 from linkages.entry import Entry
@@ -21,6 +23,8 @@ __all__ = [
     "split_parameter",
 ]
 
+SMALLEST, LARGEST = 1e-100, 1e100  # characteristic lengths of a linkage
+
 
 def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
     """The linkage called ``text``, or read from the file ``text`` if that is one (or
@@ -35,10 +39,24 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
             parameters[0],
             "left out with a file, which holds the whole geometry",
         )
-    if not parameters:
-        return load(text)
-    values = read_parameters(entry(text), parameters)
-    return load(text, **values)
+    values = read_parameters(entry(text), parameters) if parameters else {}
+    try:
+        linkage = load(text, **values)
+    except OverflowError:
+        raise CommandError(f"{text}: it holds a number that is too large") from None
+    _require_size(text, linkage.loop)
+    return linkage
+
+
+def _require_size(text: str, loop: Loop) -> None:
+    """Raise `CommandError` for lengths whose squares leave the range of doubles."""
+    with np.errstate(over="ignore"):
+        size = loop.characteristic_length
+    if not SMALLEST < size < LARGEST:
+        raise CommandError(
+            f"{text}: the lengths are about {size:.1g}; choose a unit in which they "
+            f"are between {SMALLEST:g} and {LARGEST:g}"
+        )
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:

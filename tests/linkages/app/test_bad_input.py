@@ -49,6 +49,8 @@ TEXTS = {
     "unequal.toml": TABLE.replace("[1.0, 2.0, 1.0, 2.0]", "[1.0, 2.0, 1.0, 2.0, 1.0]"),
     "number.toml": TABLE.replace("[1.0, 2.0, 1.0, 2.0]", "4"),
     "no_toml.toml": "lengths = [1.0, 2.0",
+    "tiny.toml": TABLE.replace("[1.0, 2.0, 1.0, 2.0]", "[1e-320, 0, 1e-320, 0]"),
+    "huge.toml": TABLE.replace("2.0", "1" + 400 * "0"),
     "half.toml": 'angles = "deg"\nlengths = [1, 2, 1, 2]\n',
     "both.toml": TABLE + "points = [[0, 0, 0]]\n",
     "flat_axes.toml": "points = [[0, 0]]\ndirections = [[0, 0, 1]]\n",
@@ -188,6 +190,12 @@ BAD = {
         ("map", "bennett", "--param", "alpha=200"),
         "alpha",
     ),
+    "lengths beyond the range of doubles": (
+        ("map", "bennett", "--param", "a=1e308"),
+        "choose a unit",
+    ),
+    "lengths that vanish": (("map", "tiny.toml"), "choose a unit"),
+    "a number beyond all doubles": (("map", "huge.toml"), "huge.toml"),
     "parameters for a file": (("map", "mine.toml", "--param", "a=1"), "--param"),
     "parameters for an atlas": (
         ("route", "kite.nc", "kite", "folded", "--param", "a=1"),
