@@ -13,12 +13,8 @@ from bifurc.atlas import Atlas, Provenance
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
-from bifurc.curves.monitor import (
-    Profile,
-    profile_branch,
-    singular_value_minima,
-    singular_values,
-)
+from bifurc.curves.minima import singular_value_minima
+from bifurc.curves.monitor import Profile, profile_branch, singular_values
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.problem import Problem
 from bifurc.search.components import singular_points_of, sort_out

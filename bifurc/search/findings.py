@@ -11,7 +11,8 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance, Surface
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.monitor import Profile, dead_points, singular_values, stand_out
+from bifurc.curves.minima import stand_out
+from bifurc.curves.monitor import Profile, dead_points, singular_values
 from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.search.components import Components, lies_on

@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
+from bifurc.curves.minima import singular_value_minima, stand_out
 from bifurc.curves.monitor import (
     dead_points,
     profile_branch,
     roots_along,
-    singular_value_minima,
     singular_values,
-    stand_out,
 )
 from bifurc.function_problem import FunctionProblem
 

@@ -1,0 +1,294 @@
+"""Local minima of the smallest regular singular value along a traced curve.
+
+They are converged: the slope of the exact singular value changes from falling to rising
+there. Where two singular values cross, the smaller one has its kink upwards, so that a
+minimum with a kink is a zero, and the square is smooth there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.curves.monitor import NODES, Profile, singular_values
+from bifurc.numerics.roots import bracketed_roots
+from bifurc.problem import Problem
+
+__all__ = ["Minima", "singular_value_minima", "stand_out"]
+
+FINE = 96  # intervals of a piece on which the interpolants are compared
+DIFFERENCE = 1e-5  # step, over the scale, of the central difference of F'
+# Slope of a singular value, over magnitude and scale, below which it is rounding.
+LEVEL = 1e-8
+# Rise of a singular value, relative and not, that is none.
+ROUNDING, ZERO = 1e-8, 1e-10
+LOCATED = 1e-12  # error of the place of a minimum, over the scale
+# Share by which a near miss must be below half of the largest value.
+TIE = 1e-6
+# Where the largest value is converged: the nodes near the top, the rounds, and by how
+# much each narrows the row of points.
+NEAR_THE_TOP, ROUNDS, NARROWER = 0.9, 14, 3.0
+
+
+class Minima(NamedTuple):
+    """Local minima along a curve: arclengths (k,), in order, and values (k,)."""
+
+    arclengths: np.ndarray
+    values: np.ndarray
+
+
+def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) -> Minima:
+    """The local minima of the smallest regular singular value.
+
+    Where a value rises to no side by more than rounding there is no minimum, and the
+    ends of an open curve are none. Where the curve crosses a singular point the value
+    is small but not zero; `bifurc.singular.locate` decides.
+    """
+    rank = profile.rank
+    places = _places_to_look(branch, profile)
+    here = _values_and_slopes(problem, branch, rank, places)
+    low, high = _valleys(branch, places, here.slopes * problem.scale)
+    if not len(low):
+        return Minima(np.empty(0), np.empty(0))
+
+    def slope_of_square(s: np.ndarray) -> np.ndarray:
+        there = _values_and_slopes(problem, branch, rank, s)
+        product: np.ndarray = there.values * there.slopes
+        return product
+
+    bottoms = bracketed_roots(slope_of_square, low, high, LOCATED * problem.scale)
+    samples = np.concatenate([profile.arclength.ravel(), places])
+    heights = np.concatenate([profile.smallest.ravel(), here.values])
+    cut = 0.0
+    if branch.closed:  # cut open at the top: every valley then has a wall to both sides
+        cut = samples[np.argmax(heights)]
+        bottoms = (bottoms - cut) % branch.length
+        samples = np.append((samples - cut) % branch.length, branch.length)
+        heights = np.append(heights, heights.max())
+    bottoms = np.sort(bottoms)
+    values = singular_values(problem, branch(cut + bottoms))[..., rank - 1]
+    lowest = _with_walls(values, _highest_between(samples, heights, bottoms))
+    arclengths, values = cut + bottoms[lowest], values[lowest]
+    if branch.closed:
+        arclengths %= branch.length
+    order = np.argsort(arclengths)
+    return Minima(arclengths[order], values[order])
+
+
+def stand_out(
+    problem: Problem, branch: Branch, profile: Profile, values: np.ndarray
+) -> np.ndarray:
+    """Which of the minima ``values`` (k,) are below half the largest value on the
+    curve.
+
+    The largest at the nodes is a little too small. Where that might decide, the largest
+    is converged, and a value at half of it, but for rounding, does not stand out.
+    """
+    half = 0.5 * profile.smallest.max()
+    doubtful = (values > (1.0 - 2 * TIE) * half) & (values < 1.1 * half)
+    if np.any(doubtful):
+        half = 0.5 * _largest_value(problem, branch, profile)
+    below: np.ndarray = values < (1.0 - TIE) * half
+    return below
+
+
+def _largest_value(problem: Problem, branch: Branch, profile: Profile) -> float:
+    """The largest of the smallest regular singular values on the curve, to about 1e-8.
+
+    From every node near the top a row of points closes in on the highest one.
+    """
+    nodes = profile.arclength.ravel()
+    heights = profile.smallest.ravel()
+    tops = _minima_in_row(-heights, branch.closed)
+    tops = tops[heights[tops] > NEAR_THE_TOP * heights.max()]
+    middles = nodes[tops]
+    reach = np.gradient(nodes)[tops]
+    rows = np.arange(len(tops))
+    largest = float(heights.max())
+    for _ in range(ROUNDS):
+        trial = middles[:, None] + reach[:, None] * np.linspace(-1.0, 1.0, 9)
+        if not branch.closed:
+            trial = np.clip(trial, 0.0, branch.length)
+        values = singular_values(problem, branch(trial))[..., profile.rank - 1]
+        highest = np.argmax(values, axis=1)
+        middles = trial[rows, highest]
+        reach = reach / NARROWER
+        largest = max(largest, float(values.max(initial=0.0)))
+    return largest
+
+
+# --- where the slope is looked at -----------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _FineGrid:
+    """A fine grid on a piece: ``fractions`` (FINE + 1,) from 0 to 1, and the matrix
+    (FINE + 1, k) that interpolates values at the nodes."""
+
+    fractions: np.ndarray
+    from_nodes: np.ndarray
+
+
+@cache
+def _fine_grid() -> _FineGrid:
+    fractions = np.linspace(0.0, 1.0, FINE + 1)
+    degree = len(NODES) - 1
+    at_nodes = np.polynomial.chebyshev.chebvander(2 * NODES - 1, degree)
+    at_fine = np.polynomial.chebyshev.chebvander(2 * fractions - 1, degree)
+    return _FineGrid(fractions, at_fine @ np.linalg.inv(at_nodes))
+
+
+def _places_to_look(branch: Branch, profile: Profile) -> np.ndarray:
+    """Arclengths (k,), sorted, between which the slope is to be compared.
+
+    Every minimum of the values at the nodes is between two of them, and on both sides
+    of every minimum of two interpolants there is one: of the square of the value, and
+    of the product of the squares of all regular ones, which is smooth even where they
+    meet.
+    """
+    squares = profile.values[..., : profile.rank] ** 2
+    places = np.concatenate(
+        [
+            _around_lowest_nodes(branch, profile),
+            _around_interpolated_minima(branch, profile, squares[..., -1]),
+            _around_interpolated_minima(branch, profile, squares.prod(axis=-1)),
+        ]
+    )
+    if branch.closed:
+        return np.unique(places % branch.length)
+    return np.unique(np.clip(places, 0.0, branch.length))
+
+
+def _around_lowest_nodes(branch: Branch, profile: Profile) -> np.ndarray:
+    """Arclengths (3 k,) of the nodes with the lowest values and of their neighbours."""
+    nodes = profile.arclength.ravel()
+    lowest = _minima_in_row(profile.smallest.ravel(), branch.closed)
+    after = (lowest + 1) % len(nodes)
+    return np.concatenate([nodes[lowest], nodes[lowest - 1], nodes[after]])
+
+
+def _around_interpolated_minima(
+    branch: Branch, profile: Profile, quantity: np.ndarray
+) -> np.ndarray:
+    """Arclengths (4 k,) on both sides of the minima of the interpolant of a quantity
+    (p, nodes), near and a little farther away."""
+    fine = _fine_grid()
+    grid = branch.places(fine.fractions)  # (p, FINE + 1)
+    interpolated = quantity @ fine.from_nodes.T
+    arclengths = grid[:, :-1].ravel()
+    sizes = interpolated[:, :-1].ravel()
+    steps = np.repeat(grid[:, 1] - grid[:, 0], FINE)
+    if not branch.closed:
+        arclengths = np.append(arclengths, grid[-1, -1])
+        sizes = np.append(sizes, interpolated[-1, -1])
+        steps = np.append(steps, steps[-1])
+    lowest = _minima_in_row(sizes, branch.closed)
+    middles, near = arclengths[lowest], 2 * steps[lowest]
+    nodes = profile.arclength.ravel()
+    node = np.minimum(np.searchsorted(nodes, middles), len(nodes) - 1)
+    far = np.gradient(nodes)[node]
+    return np.concatenate(
+        [middles - far, middles - near, middles + near, middles + far]
+    )
+
+
+def _minima_in_row(values: np.ndarray, closed: bool) -> np.ndarray:
+    """Numbers (k,) of the local minima in a row of values, whose ends meet if
+    closed."""
+    before, after = (values[-1], values[0]) if closed else (np.inf, np.inf)
+    left = np.concatenate([[before], values[:-1]])
+    right = np.concatenate([values[1:], [after]])
+    return np.flatnonzero((values <= left) & (values < right))
+
+
+# --- values and slopes ----------------------------------------------------------------
+
+
+class _ValuesAndSlopes(NamedTuple):
+    """A singular value along a curve, and its derivative by the arclength (k,)."""
+
+    values: np.ndarray
+    slopes: np.ndarray
+
+
+def _values_and_slopes(
+    problem: Problem, branch: Branch, rank: int, s: np.ndarray
+) -> _ValuesAndSlopes:
+    """Singular value number ``rank`` at arclengths (k,), and its derivative there.
+
+    With l and r the singular vectors d sigma/ds = l^T F''(r, du/ds): F'' along the
+    tangent is a central difference of F'.
+    """
+    points = branch(s)
+    step = DIFFERENCE * problem.scale
+    along = step * branch(s, 1)
+    rows = np.concatenate([points, points + along, points - along])
+    jacobians = problem.jacobians(rows) / problem.magnitude
+    here, after, before = np.split(jacobians, 3)
+    left, values, right = np.linalg.svd(here, full_matrices=False)
+    change = (after - before) / (2 * step)
+    from_left = left[:, None, :, rank - 1]  # (k, 1, m)
+    from_right = right[:, rank - 1, :, None]  # (k, n, 1)
+    slopes = from_left @ change @ from_right
+    return _ValuesAndSlopes(values[:, rank - 1], slopes[:, 0, 0])
+
+
+# --- valleys and the walls beside them ------------------------------------------------
+
+
+def _valleys(
+    branch: Branch, s: np.ndarray, slopes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Brackets (low, high) between which the ``slopes`` (k,) at ``s`` (k,) turn to
+    rising."""
+    steep = np.abs(slopes) > LEVEL
+    s, slopes = s[steep], slopes[steep]
+    if branch.closed and len(s):
+        s = np.append(s, s[0] + branch.length)
+        slopes = np.append(slopes, slopes[0])
+    turns = np.flatnonzero((slopes[:-1] < 0) & (slopes[1:] > 0))
+    return s[turns], s[turns + 1]
+
+
+def _highest_between(
+    samples: np.ndarray, heights: np.ndarray, stops: np.ndarray
+) -> np.ndarray:
+    """Largest of the ``heights`` of ``samples`` before, between and after ``stops``
+    (k,).
+
+    That makes k + 1 numbers, -inf where there is no sample.
+    """
+    stretch = np.searchsorted(stops, samples)
+    walls = np.full(len(stops) + 1, -np.inf)
+    np.maximum.at(walls, stretch, heights)
+    return walls
+
+
+def _with_walls(values: np.ndarray, walls: np.ndarray) -> np.ndarray:
+    """Numbers of the minima ``values`` (k,) that ``walls`` (k + 1,) on both sides stand
+    above.
+
+    Of two minima without a wall between them, as rounding makes them, the lower one.
+    """
+
+    def is_wall(wall: float, value: float) -> bool:
+        return bool(wall > (1.0 + ROUNDING) * value + ZERO)
+
+    numbers: list[int] = []
+    wall = walls[0]
+    for i, value in enumerate(values):
+        higher = max(value, values[numbers[-1]]) if numbers else value
+        if is_wall(wall, higher):
+            numbers.append(i)
+            wall = walls[i + 1]
+            continue
+        if numbers and value < values[numbers[-1]]:
+            numbers[-1] = i
+        wall = max(wall, walls[i + 1])
+    if numbers and not is_wall(wall, values[numbers[-1]]):
+        numbers.pop()
+    return np.array(numbers, dtype=int)
