@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,12 +12,28 @@ from bifurc.branch import Branch
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
 from bifurc.errors import ProblemError, RouteError
+from bifurc.html_tables import html_paragraph, html_table
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = ["Atlas", "Event", "Form", "MeetingPoint", "Provenance", "Surface"]
+__all__ = [
+    "Atlas",
+    "Event",
+    "Form",
+    "JsonObject",
+    "MeetingPoint",
+    "Provenance",
+    "Surface",
+]
+
+# Values that JSON can hold, nested to any depth, by their names.
+JsonObject: TypeAlias = Mapping[str, Any]
+
+SHOWN = 12  # things of one kind that are shown at a prompt; the others are counted
+SHOWN_IN_NOTEBOOK = 50
+ROUNDING = 1e-12  # of the largest unknown: less is shown as 0
 
 
 @dataclass(frozen=True)
@@ -36,12 +52,15 @@ class Form:
     min_singular_value: float
     component: int = 0
     certificate: Certificate | None = None
-    labels: Mapping[str, Any] = field(default_factory=dict)
+    labels: JsonObject = field(default_factory=dict)
 
     @property
     def rank(self) -> int:
         """The rank that F' has along the form, but for single points."""
         return self.profile.rank
+
+    def __repr__(self) -> str:
+        return f"<Form {self.name!r}: {_course(self.branch)}>"
 
 
 @dataclass(frozen=True)
@@ -59,6 +78,15 @@ class MeetingPoint:
     note: str = ""
     surfaces: tuple[int, ...] = ()
 
+    def __repr__(self) -> str:
+        forms = ", ".join(str(form) for form, _ in self.passes)
+        words = [self.kind.value, f"rank {self.point.rank}", f"forms {forms or 'none'}"]
+        if self.surfaces:
+            words.append(f"surfaces {', '.join(map(str, self.surfaces))}")
+        if self.note:
+            words.append(self.note)
+        return f"<MeetingPoint {self.name!r}: {', '.join(words)}>"
+
 
 @dataclass(frozen=True)
 class Event:
@@ -70,6 +98,12 @@ class Event:
     u: np.ndarray
     value: float = 0.0
     index: int = -1
+
+    def __repr__(self) -> str:
+        kind = f"near miss {self.value:.4g}"
+        if self.index >= 0:
+            kind = f"dead point of unknown {self.index}"
+        return f"<Event: {kind} on form {self.form} at s = {self.s:.6g}>"
 
 
 @dataclass(frozen=True)
@@ -94,6 +128,10 @@ class Surface:
     def complete(self) -> bool:
         """Whether charts cover all of it."""
         return self.charts is not None and self.charts.complete
+
+    def __repr__(self) -> str:
+        words = [f"dimension {self.dimension}", _covering(self), self.note]
+        return f"<Surface {self.name!r}: {', '.join(filter(None, words))}>"
 
 
 @dataclass(frozen=True)
@@ -140,9 +178,9 @@ class Atlas:
     completeness: Completeness
     closure_gap: float = 0.0
     provenance: Provenance = field(default_factory=Provenance)
-    subject: Mapping[str, Any] = field(default_factory=dict)
+    subject: JsonObject = field(default_factory=dict)
 
-    # --- queries --------------------------------------------------------------------------------------
+    # --- queries ----------------------------------------------------------------------
 
     @property
     def bifurcations(self) -> tuple[MeetingPoint, ...]:
@@ -167,44 +205,215 @@ class Atlas:
     def full_name(self, name: str) -> str:
         """The full name of the form, or else the surface, called ``name``, found as by
         `form`; raises `RouteError`."""
-        names = [form.name for form in self.forms]
+        forms = [form.name for form in self.forms]
         try:
-            return names[_find(name, names)]
+            return forms[_find(name, forms)]
         except RouteError:
-            names += [surface.name for surface in self.surfaces]
-            return names[_find(name, names)]
+            everything = forms + [surface.name for surface in self.surfaces]
+            return everything[_find(name, everything)]
 
     def renamed(
-        self, names: Sequence[str], labels: Sequence[Mapping[str, Any]] | None = None
+        self, names: Sequence[str], labels: Sequence[JsonObject] | None = None
     ) -> Atlas:
-        """The same atlas with other names for its forms, and labels."""
+        """The same atlas with other names for its forms, and labels where there are
+        any; raises `ProblemError` unless there is one name of its own for each form."""
         if len(set(names)) != len(names) or len(names) != len(self.forms):
-            raise ProblemError(
-                "names of the forms", list(names), f"{len(self.forms)} different names"
-            )
-        extra = labels if labels is not None else [f.labels for f in self.forms]
-        forms = tuple(
-            replace(f, name=name, labels=dict(label))
-            for f, name, label in zip(self.forms, names, extra, strict=True)
-        )
-        return replace(self, forms=forms)
+            expected = f"{len(self.forms)} different names"
+            raise ProblemError("names of the forms", list(names), expected)
+        if labels is None:
+            labels = [form.labels for form in self.forms]
+        forms = [
+            replace(form, name=name, labels=dict(label))
+            for form, name, label in zip(self.forms, names, labels, strict=True)
+        ]
+        return replace(self, forms=tuple(forms))
 
-    # --- graphs ---------------------------------------------------------------------------------------
+    # --- display ----------------------------------------------------------------------
+
+    def __repr__(self) -> str:
+        lines = [f"<Atlas of {_abbreviated(self.names)}: {_counts(self)}"]
+        lines += _first([_form_line(form) for form in self.forms], "forms")
+        lines += _first([_point_line(self, p) for p in self.points], "singular points")
+        lines += _first([_miss_line(self, e) for e in self.near_misses], "near misses")
+        lines += _first([f"  {surface!r}" for surface in self.surfaces], "surfaces")
+        lines.append(f"  completeness: {self.completeness.level}>")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        """Tables for a notebook; `bifurc.figures.notebook` adds the picture."""
+        unit = _common_unit(self)
+        tables = [
+            _table(f"Forms{unit}", FORM_HEADS, _form_rows(self)),
+            _table(f"Singular points{unit}", POINT_HEADS, _point_rows(self)),
+            _table("Surfaces", SURFACE_HEADS, _surface_rows(self)),
+            _table(f"Near misses{unit}", MISS_HEADS, _miss_rows(self)),
+            _table(f"Rigid assemblies{unit}", RIGID_HEADS, _rigid_rows(self)),
+        ]
+        level, statement = self.completeness.level, self.completeness.statement
+        completeness = html_paragraph(f"Completeness: {level}.", f"{statement}.")
+        return "".join(tables) + completeness
 
 
 def _find(name: str, names: Sequence[str]) -> int:
     """Index of the one of the ``names`` that is ``name``, or begins with it, or
     contains it; raises `RouteError`."""
     lowered = name.lower()
-    exact = [i for i, known in enumerate(names) if known == name]
-    begins = [
-        i
-        for i, known in enumerate(names)
-        if known.lower().startswith(lowered)
-        and not known[len(name) : len(name) + 1].isalnum()
-    ]
-    contains = [i for i, known in enumerate(names) if lowered in known.lower()]
-    for found in (exact, begins, contains):
-        if len(found) == 1:
-            return found[0]
+    equal: list[int] = []
+    beginning: list[int] = []
+    containing: list[int] = []
+    for i, candidate in enumerate(names):
+        if candidate == name:
+            equal.append(i)
+        next_letter = candidate[len(name) : len(name) + 1]
+        if candidate.lower().startswith(lowered) and not next_letter.isalnum():
+            beginning.append(i)
+        if lowered in candidate.lower():
+            containing.append(i)
+    for matches in (equal, beginning, containing):
+        if len(matches) == 1:
+            return matches[0]
     raise RouteError(f"form {name!r}: it must be one of {', '.join(map(repr, names))}")
+
+
+# --- what a prompt shows --------------------------------------------------------------
+
+
+def _abbreviated(names: Sequence[str]) -> str:
+    """The names, of many the first and the last."""
+    return ", ".join(names) if len(names) < 4 else f"{names[0]}, ..., {names[-1]}"
+
+
+def _counts(atlas: Atlas) -> str:
+    """How many there are of every kind of thing that there is."""
+    numbers = [
+        (len(atlas.forms), "form"),
+        (atlas.components, "component"),
+        (len(atlas.bifurcations), "bifurcation"),
+        (len(atlas.near_misses), "near miss"),
+        (len(atlas.surfaces), "surface"),
+        (len(atlas.rigid), "rigid assembly"),
+    ]
+    counts = [_counted(number, noun) for number, noun in numbers if number]
+    return ", ".join(counts) or "nothing"
+
+
+def _counted(number: int, noun: str) -> str:
+    if number == 1:
+        return f"1 {noun}"
+    if noun.endswith("y"):
+        return f"{number} {noun[:-1]}ies"
+    return f"{number} {noun}{'es' if noun.endswith('s') else 's'}"
+
+
+def _first(lines: Sequence[str], noun: str) -> list[str]:
+    """The first lines, and how many of the ``noun`` there are besides."""
+    left = len(lines) - SHOWN
+    return [*lines[:SHOWN], f"  and {left} more {noun}"] if left > 0 else list(lines)
+
+
+def _form_line(form: Form) -> str:
+    return f"  {form.name}: {_course(form.branch)}"
+
+
+def _point_line(atlas: Atlas, point: MeetingPoint) -> str:
+    members = ", ".join(_members(atlas, point))
+    return f"  {point.name}: {point.kind.value} of {members or 'no form'}"
+
+
+def _miss_line(atlas: Atlas, event: Event) -> str:
+    return f"  near miss: {event.value:.4g} on {atlas.forms[event.form].name}"
+
+
+def _course(branch: Branch) -> str:
+    """Length, end and winding numbers of a branch."""
+    words = [f"length {branch.length:.6g}", _end(branch)]
+    if branch.closed:
+        words.append(f"winding {_winding(branch)}")
+    return ", ".join(words)
+
+
+def _end(branch: Branch) -> str:
+    return branch.outcome.name.lower().replace("_", " ")
+
+
+def _winding(branch: Branch) -> str:
+    return " ".join(f"{turns:+d}" if turns else "0" for turns in branch.winding)
+
+
+def _members(atlas: Atlas, point: MeetingPoint) -> list[str]:
+    """Names of the forms, once for every pass, and of the surfaces that meet at a
+    point."""
+    forms = [atlas.forms[form].name for form, _ in point.passes]
+    return forms + [atlas.surfaces[k].name for k in point.surfaces]
+
+
+def _covering(surface: Surface) -> str:
+    """How much of a surface is known."""
+    if surface.charts is None:
+        return f"{len(surface.samples)} samples"
+    extent = "complete" if surface.complete else "incomplete"
+    return f"{len(surface.charts)} charts, area {surface.charts.area:.6g}, {extent}"
+
+
+# --- what a notebook shows ------------------------------------------------------------
+
+FORM_HEADS = ("name", "length", "end", "winding", "smallest s.v.", "component")
+POINT_HEADS = ("name", "kind", "meeting", "rank", "error", "configuration", "note")
+SURFACE_HEADS = ("name", "dimension", "covering", "note")
+MISS_HEADS = ("form", "arclength", "singular value", "configuration")
+RIGID_HEADS = ("configuration",)
+
+
+def _table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    return html_table(title, heads, rows, SHOWN_IN_NOTEBOOK)
+
+
+def _form_rows(atlas: Atlas) -> list[list[str]]:
+    rows = []
+    for form in atlas.forms:
+        branch = form.branch
+        length, smallest = f"{branch.length:.6g}", f"{form.min_singular_value:.3g}"
+        course = [length, _end(branch), _winding(branch)]
+        rows.append([form.name, *course, smallest, str(form.component)])
+    return rows
+
+
+def _point_rows(atlas: Atlas) -> list[list[str]]:
+    rows = []
+    for point in atlas.points:
+        members = ", ".join(_members(atlas, point))
+        rank, error = str(point.point.rank), f"{point.point.error:.0e}"
+        place = _configuration(point.point.u)
+        row = [point.name, point.kind.value, members, rank, error, place, point.note]
+        rows.append(row)
+    return rows
+
+
+def _surface_rows(atlas: Atlas) -> list[list[str]]:
+    return [[s.name, str(s.dimension), _covering(s), s.note] for s in atlas.surfaces]
+
+
+def _miss_rows(atlas: Atlas) -> list[list[str]]:
+    rows = []
+    for event in atlas.near_misses:
+        name = atlas.forms[event.form].name
+        place = _configuration(event.u)
+        rows.append([name, f"{event.s:.6g}", f"{event.value:.4g}", place])
+    return rows
+
+
+def _rigid_rows(atlas: Atlas) -> list[list[str]]:
+    return [[_configuration(point)] for point in atlas.rigid]
+
+
+def _configuration(point: np.ndarray) -> str:
+    """The unknowns to six digits, those as small as rounding as 0."""
+    rounding = ROUNDING * np.abs(point).max(initial=0.0)
+    shown = np.where(np.abs(point) < rounding, 0.0, point)
+    return " ".join(f"{value:.6g}" for value in shown)
+
+
+def _common_unit(atlas: Atlas) -> str:
+    """The unit of all unknowns in brackets, or nothing where they differ."""
+    units = set(atlas.units)
+    return f" ({units.pop()})" if len(units) == 1 and units != {""} else ""

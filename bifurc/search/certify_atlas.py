@@ -12,11 +12,19 @@ __all__ = ["certify_atlas"]
 
 
 def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
-    """The atlas with a certificate on every form; its located singular points are
-    handed over to."""
+    """The atlas with a certificate on every form, from singular point to singular
+    point."""
     forms = []
-    for i, form in enumerate(atlas.forms):
-        singular = [s for p in atlas.points for j, s in p.passes if j == i]
-        certificate = certify_branch(problem, form.branch, form.profile, singular)
+    for index, form in enumerate(atlas.forms):
+        stops = _singular_arclengths(atlas, index)
+        certificate = certify_branch(problem, form.branch, form.profile, stops)
         forms.append(replace(form, certificate=certificate))
     return replace(atlas, forms=tuple(forms))
+
+
+def _singular_arclengths(atlas: Atlas, form: int) -> list[float]:
+    """Arclengths at which a form, given by its index, passes a singular point."""
+    arclengths = []
+    for point in atlas.points:
+        arclengths += [s for index, s in point.passes if index == form]
+    return arclengths

@@ -12,22 +12,38 @@ from bifurc.limits import Deadline
 from bifurc.numerics.null_spaces import NULL, null_spaces
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
-from bifurc.singular.locate import locate_singular_point
+from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.walk import reached_charts
 
-__all__ = ["Components", "lies_on", "singular_points_of", "sort_out"]
+__all__ = [
+    "Components",
+    "components_of_seeds",
+    "singular_points_of",
+    "surfaces_through",
+]
 
 RADIUS = 0.7  # of the largest charts, over the problem's scale
-# singular value, over the median on the surface, below which a singular point is looked
-# for
+# Singular value, over the median on the surface, below which a singular point is looked
+# for.
 SMALL = 0.2
 MOST_POINTS = 200  # singular points of surfaces that are located
-# those among them that are samples of curves of singular points, which have no end
+# Those among them that are samples of curves of singular points, which have no end.
 MOST_SAMPLES = 24
+NULLITY = 3  # of F' at a singular point of a surface
+# Distance from a chart's centre at which its singular point is looked for: over the
+# chart's radius, which counts as no smaller than a share of the problem's scale.
+REACH = 4.0
+SMALLEST_RADIUS = 0.05
+# Of the reach: a point that is located no better lies on a curve of such points.
+BLURRED = 0.1
+# Along such a curve there is nothing to locate, and that is all that the error says:
+# the error across it, over the scale, is at most this.
+ACROSS = 1e-6
+APART = 1e-5  # distance, over the scale, below which two points are one
 
 
 @dataclass
@@ -38,38 +54,35 @@ class Components:
     Parts of the charts that do not hang together are surfaces of their own: each but
     the last was finished, as far as its singular points, before the next was begun.
     ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
-    is known.
+    is known. ``notes`` say what is known of a part, by its number.
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
     charts: ChartAtlas | None = None
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
-    notes: dict[int, str] = field(default_factory=dict)  # by the number of the part
+    notes: dict[int, str] = field(default_factory=dict)
 
     def cover(
         self, problem: Problem, points: np.ndarray, charts: int, deadline: Deadline
     ) -> list[int]:
-        """Make up to ``charts`` charts over the surfaces on which those of the seeds
-        ``points`` (k, n) lie.
+        """Numbers of the seeds that turn out to lie on no surface: no chart fits about
+        any of them.
 
-        Where the covering is unfinished, the seeds beside the charts walk over the
-        surface to find out which they belong to. Where no chart fits about any seed
-        there is no surface: the numbers of these seeds come back.
+        Up to ``charts`` charts are made over the surfaces on which those of the seeds
+        ``points`` (k, n) lie. Where the covering is unfinished, the seeds beside the
+        charts walk over the surface to find out which they belong to.
         """
-        on = points[self.seeds.get(2, [])]
-        if not len(on) or charts <= 0 or deadline.passed:
+        samples = points[self.seeds.get(2, [])]
+        if not len(samples) or charts <= 0 or deadline.passed:
             return []
-        made = cover_surface(
-            problem, on, radius=RADIUS, charts=charts, seconds=deadline.left
+        covering = cover_surface(
+            problem, samples, radius=RADIUS, charts=charts, seconds=deadline.left
         )
-        if not len(made):
-            return [] if deadline.passed else self.seeds.pop(2)
-        self.charts = made
-        at = self.charts.chart_at(on)
-        if not self.charts.complete:
-            at[at < 0] = reached_charts(problem, self.charts, on[at < 0], deadline)
-        self.part_of = np.where(at >= 0, self.charts.part[at], -1)
-        return []
+        if len(covering):
+            self.charts = covering
+            self.part_of = _parts_of(problem, covering, samples, deadline)
+            return []
+        return [] if deadline.passed else self.seeds.pop(2)
 
     def take_note(self, left_out: np.ndarray, on_curves: np.ndarray) -> None:
         """Remember charts at which singular points were not looked for, and charts next
@@ -77,121 +90,157 @@ class Components:
         assert self.charts is not None
         part = self.charts.part
         for k in range(int(part.max()) + 1):
-            more, curves = (
-                int(np.count_nonzero(part[numbers] == k))
-                for numbers in (left_out, on_curves)
-            )
-            notes = (
-                [
-                    f"{curves} of its singular points are samples of curves of such points"
-                ]
-                if curves
-                else []
-            )
-            notes += (
-                [f"at {more} places singular points were not looked for"]
-                if more
-                else []
-            )
-            self.notes[k] = "; ".join(notes)
+            samples = int(np.count_nonzero(part[on_curves] == k))
+            places = int(np.count_nonzero(part[left_out] == k))
+            self.notes[k] = _note(samples, places)
 
     def surfaces(self, points: np.ndarray) -> tuple[Surface, ...]:
         """Connected surfaces as far as there are charts, then what none of them is
         known to hold, by dimension."""
-        out: list[Surface] = []
+        surfaces: list[Surface] = []
         for dimension, numbers in sorted(self.seeds.items()):
-            rest = points[numbers]
+            samples = points[numbers]
             if dimension == 2 and self.charts is not None:
-                for k, part in enumerate(self.charts.parts()):
-                    on = rest[self.part_of == k]
-                    samples = on if len(on) else part.centers[:1]
-                    out.append(
-                        Surface(2, samples, charts=part, note=self.notes.get(k, ""))
-                    )
-                rest = rest[self.part_of < 0]
-            if len(rest):
-                out.append(Surface(dimension, rest))
-        return tuple(out)
+                surfaces += self._charted_surfaces(self.charts, samples)
+                samples = samples[self.part_of < 0]
+            if len(samples):
+                surfaces.append(Surface(dimension, samples))
+        return tuple(surfaces)
+
+    def _charted_surfaces(
+        self, charts: ChartAtlas, samples: np.ndarray
+    ) -> list[Surface]:
+        """The surfaces that charts cover, with those of the samples (k, n) on them."""
+        surfaces = []
+        for k, part in enumerate(charts.parts()):
+            on_part = samples[self.part_of == k]
+            if not len(on_part):
+                on_part = part.centers[:1]
+            note = self.notes.get(k, "")
+            surfaces.append(Surface(2, on_part, charts=part, note=note))
+        return surfaces
 
 
-def sort_out(
+def _parts_of(
+    problem: Problem, charts: ChartAtlas, samples: np.ndarray, deadline: Deadline
+) -> np.ndarray:
+    """Numbers (k,) of the parts of the charts that samples (k, n) belong to, -1 where
+    none is known."""
+    chart = charts.chart_at(samples)
+    if not charts.complete:
+        beside = chart < 0
+        chart[beside] = reached_charts(problem, charts, samples[beside], deadline)
+    return np.where(chart >= 0, charts.part[chart], -1)
+
+
+def _note(samples: int, places: int) -> str:
+    """What is known of the singular points of a surface besides those in the atlas."""
+    parts = []
+    if samples:
+        parts.append(
+            f"{samples} of its singular points are samples of curves of such points"
+        )
+    if places:
+        parts.append(f"at {places} places singular points were not looked for")
+    return "; ".join(parts)
+
+
+def components_of_seeds(
     problem: Problem, points: np.ndarray, values: np.ndarray, deadline: Deadline
 ) -> Components:
-    """The seeds ``points`` (k, n) that lie on components of dimension 2 and more;
-    ``values`` (k, n) are their singular values. Singular points of surfaces are left
-    out: they are looked at one by one."""
-    found = Components()
-    doubtful = (
-        np.flatnonzero(values[:, max(problem.n - 2, 0)] < NULL)
-        if problem.n > 1
-        else np.empty(0, dtype=int)
-    )
+    """The components that those of the seeds ``points`` (k, n) lie on about which the
+    solutions are of dimension 2 and more.
+
+    ``values`` (k, n) are the singular values at the seeds. Singular points of surfaces
+    are left out: they are looked at one by one.
+    """
+    components = Components()
+    if problem.n < 2:
+        return components
+    doubtful = np.flatnonzero(values[:, problem.n - 2] < NULL)
     local = local_dimensions(problem, points[doubtful], deadline)
     for dimension in np.unique(local.dimension[local.dimension >= 2]):
-        on = (local.dimension == dimension) & (
-            (local.nullity == dimension) | (dimension > 2)
-        )
-        if np.any(on):
-            found.seeds[int(dimension)] = doubtful[on].tolist()
-    return found
+        is_regular = (local.nullity == dimension) | (dimension > 2)
+        numbers = doubtful[(local.dimension == dimension) & is_regular]
+        if len(numbers):
+            components.seeds[int(dimension)] = numbers.tolist()
+    return components
 
 
 def singular_points_of(
     problem: Problem, components: Components, deadline: Deadline
-) -> list[tuple[np.ndarray, np.ndarray, float]]:
-    """Points of surfaces where the rank of F' is lower than n - 2: each with its null
-    space and error, nothing twice.
+) -> list[LocatedPoint]:
+    """Points of surfaces where the rank of F' is lower than n - 2, nothing twice.
 
     They are looked for at the charts where the smallest regular singular value is
-    smaller than at all neighbours, and where no chart fits, the clearest first; at most
-    `MOST_POINTS`, and `MOST_SAMPLES` of those that form curves. What that leaves out,
-    and how many are samples of curves, becomes a note on the surface.
+    smaller than at all neighbours, the clearest first; at most `MOST_POINTS`, and
+    `MOST_SAMPLES` of those that form curves. What that leaves out, and how many are
+    samples of curves, becomes a note on the surface.
     """
     charts = components.charts
-    if charts is None or problem.n < 3:
+    if charts is None or problem.n < NULLITY:
         return []
-    sigma = null_spaces(problem, charts.centers)[0][:, -3]
-    lowest = np.full(len(charts), np.inf)
-    i, j = charts.neighbours.T
-    np.minimum.at(lowest, i, sigma[j])
-    np.minimum.at(lowest, j, sigma[i])
-    candidates = np.flatnonzero((sigma <= lowest) & (sigma < SMALL * np.median(sigma)))
-    candidates = candidates[np.argsort(sigma[candidates], kind="stable")]
-    found: list[tuple[np.ndarray, np.ndarray, float]] = []
-    on_curves: list[int] = []
+    candidates = _lowest_charts(problem, charts)
+    points: list[LocatedPoint] = []
+    curve_charts: list[int] = []
     looked_at = 0
-    for c in candidates:
-        if deadline.passed or len(found) >= MOST_POINTS:
+    for chart in candidates:
+        if deadline.passed or len(points) >= MOST_POINTS:
             break
         looked_at += 1
-        reach = 4.0 * max(charts.radii[c], 0.05 * problem.scale)
-        located = locate_singular_point(problem, charts.centers[c], 3, reach)
-        if located is None:
+        reach = REACH * max(charts.radii[chart], SMALLEST_RADIUS * problem.scale)
+        point = locate_singular_point(problem, charts.centers[chart], NULLITY, reach)
+        if point is None:
             continue
-        on_curve = located[2] > 0.1 * reach or is_on_singular_curve(problem, located)
-        point, null_space, error = located
-        if (
-            on_curve
-        ):  # along it there is nothing to locate, and that is all that the error says
-            error = min(error, 1e-6 * problem.scale)
-        gaps = [
-            np.linalg.norm(problem.difference(other, point)) for other, _, _ in found
-        ]
-        enough = on_curve and len(on_curves) >= MOST_SAMPLES
-        if not enough and min(gaps, default=np.inf) > 1e-5 * problem.scale + 10 * error:
-            found.append((point, null_space, error))
-            on_curves += [int(c)] if on_curve else []
-    components.take_note(candidates[looked_at:], np.array(on_curves, dtype=int))
-    return found
+        is_on_curve = _is_on_curve(problem, point, reach)
+        if is_on_curve:
+            point = point._replace(error=min(point.error, ACROSS * problem.scale))
+        is_one_more = is_on_curve and len(curve_charts) >= MOST_SAMPLES
+        if is_one_more or _is_listed(problem, points, point):
+            continue
+        points.append(point)
+        if is_on_curve:
+            curve_charts.append(chart)
+    components.take_note(candidates[looked_at:], np.array(curve_charts, dtype=int))
+    return points
 
 
-def lies_on(
+def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
+    """Numbers (k,) of the charts at which the smallest regular singular value is small
+    and smaller than at all neighbours, the smallest first."""
+    sigma = null_spaces(problem, charts.centers)[0][:, -NULLITY]
+    lowest_beside = np.full(len(charts), np.inf)
+    one, other = charts.neighbours.T
+    np.minimum.at(lowest_beside, one, sigma[other])
+    np.minimum.at(lowest_beside, other, sigma[one])
+    is_small = sigma < SMALL * np.median(sigma)
+    numbers = np.flatnonzero((sigma <= lowest_beside) & is_small)
+    return numbers[np.argsort(sigma[numbers], kind="stable")]
+
+
+def _is_on_curve(problem: Problem, point: LocatedPoint, reach: float) -> bool:
+    """Whether a singular point, located from within ``reach``, is one of a curve."""
+    is_blurred = point.error > BLURRED * reach
+    return is_blurred or is_on_singular_curve(problem, point)
+
+
+def _is_listed(
+    problem: Problem, points: list[LocatedPoint], point: LocatedPoint
+) -> bool:
+    """Whether a point is one of those in a list."""
+    within = APART * problem.scale + 10 * point.error
+    gaps = [problem.difference(other.u, point.u) for other in points]
+    return any(np.linalg.norm(gap) <= within for gap in gaps)
+
+
+def surfaces_through(
     problem: Problem, surfaces: tuple[Surface, ...], point: np.ndarray
 ) -> tuple[int, ...]:
     """Indices of the surfaces with charts on which a singular point (n,) of dimension 2
     or more lies."""
-    return tuple(
-        k
-        for k, s in enumerate(surfaces)
-        if s.charts is not None and len(entrances(problem, s.charts, point))
-    )
+    indices = []
+    for index, surface in enumerate(surfaces):
+        charts = surface.charts
+        if charts is not None and len(entrances(problem, charts, point)):
+            indices.append(index)
+    return tuple(indices)

@@ -66,8 +66,8 @@ def test_redundant_equations_change_nothing(name, copy):
         FunctionProblem(lambda u: COPIES[copy](function(*u)), [(-bound, bound)] * 2),
         settings=SearchSettings(starts=40),
     )
-    found = sorted((form.branch.length for form in atlas.forms), reverse=True)
-    assert found == pytest.approx(sorted(lengths, reverse=True), abs=1e-6)
+    traced = [form.branch.length for form in atlas.forms]
+    assert traced == pytest.approx(sorted(lengths, reverse=True), abs=1e-6)
     assert not any(point.note for point in atlas.points)
     assert len(atlas.points) == len(atlas.bifurcations) == len(bifurcations)
     for point, (place, passes) in zip(atlas.bifurcations, bifurcations, strict=True):
@@ -121,12 +121,8 @@ def test_both_sides_of_a_pitchfork_are_found_from_a_start_on_the_side_branch():
 
 def _only(*points):
     points = np.array(points, dtype=float)
-    return Seeds(
-        points,
-        np.zeros(len(points), dtype=bool),
-        np.empty(0),
-        np.empty((0, points.shape[1])),
-    )
+    is_random = np.zeros(len(points), dtype=bool)
+    return Seeds(points, is_random, np.empty(0), np.empty((0, points.shape[1])))
 
 
 def test_a_square_problem_with_a_parameter_is_a_curve_like_any_other():
@@ -171,9 +167,8 @@ def test_isolated_solutions_are_rigid_and_found_once():
 
 
 def test_an_isolated_real_point_of_a_curve_is_no_form():
-    atlas = explore(
-        LoopClosure(Loop((1.0, 1.0, 1.0, 3.0), (0.0,) * 4, (0.0,) * 4))
-    )  # stretched, it cannot move
+    stretched = Loop((1.0, 1.0, 1.0, 3.0), (0.0,) * 4, (0.0,) * 4)
+    atlas = explore(LoopClosure(stretched))
     assert not atlas.forms
     assert [p.kind for p in atlas.points] == [Kind.ISOLATED]
     assert np.abs(np.sin(atlas.points[0].point.u)).max() < 1e-9
@@ -185,9 +180,8 @@ def test_an_isolated_real_point_of_a_curve_is_no_form():
 @pytest.mark.parametrize(
     "loop",
     [
-        Loop(
-            (1.0, 1.0, 1.0, 5.0), (0.0,) * 4, (0.0,) * 4
-        ),  # one bar longer than the others together
+        # one bar longer than the others together
+        Loop((1.0, 1.0, 1.0, 5.0), (0.0,) * 4, (0.0,) * 4),
         Loop(
             (10.0, 1.0, 1.0, 1.0, 1.0, 1.0),
             (0.5, 1.0, -0.7, 1.2, 0.3, -1.1),
@@ -228,16 +222,17 @@ def test_geometry_that_misses_its_condition_has_no_form_and_a_gap_of_that_size(
 def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
     rng = np.random.default_rng(3)
     for _ in range(3):
-        loop = Loop(
-            rng.uniform(0.5, 1, 7), rng.uniform(-3, 3, 7), rng.uniform(-0.5, 0.5, 7)
-        )
-        one, other = (explore(LoopClosure(loop), seed=seed) for seed in (0, 1))
+        lengths = rng.uniform(0.5, 1, 7)
+        twists = rng.uniform(-3, 3, 7)
+        offsets = rng.uniform(-0.5, 0.5, 7)
+        problem = LoopClosure(Loop(lengths, twists, offsets))
+        one, other = (explore(problem, seed=seed) for seed in (0, 1))
         assert one.forms
-        assert all(f.branch.outcome is Outcome.CLOSED for f in one.forms)
+        assert all(form.branch.outcome is Outcome.CLOSED for form in one.forms)
         assert not one.points
-        assert [f.branch.length for f in one.forms] == pytest.approx(
-            [f.branch.length for f in other.forms], abs=1e-8
-        )
+        own = [form.branch.length for form in one.forms]
+        others = [form.branch.length for form in other.forms]
+        assert own == pytest.approx(others, abs=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -252,28 +247,24 @@ def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
     ],
 )
 def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
-    atlas = explore(LoopClosure(loop), settings=SearchSettings(starts=30))
+    problem = LoopClosure(loop)
+    atlas = explore(problem, settings=SearchSettings(starts=30))
     assert not atlas.forms
     assert not len(atlas.rigid)
     assert atlas.surfaces
     for surface in atlas.surfaces:
+        residuals = np.linalg.norm(problem.residuals(surface.samples), axis=1)
         assert surface.dimension == 2
-        assert (
-            np.linalg.norm(LoopClosure(loop).residuals(surface.samples), axis=1).max()
-            < 1e-11
-        )
+        assert residuals.max() < 1e-11
 
 
 def test_joints_that_spin_on_coincident_axes_make_a_surface():
     bennett = entry("bennett").build()
     for spare in (1, 2):
-        lengths, twists = (
-            v + (0.0,) * spare for v in (bennett.lengths, bennett.twists)
-        )
-        atlas = explore(
-            LoopClosure(Loop(lengths, twists, (0.0,) * (4 + spare))),
-            settings=SearchSettings(starts=20),
-        )
+        nothing = (0.0,) * spare
+        lengths, twists = bennett.lengths + nothing, bennett.twists + nothing
+        loop = Loop(lengths, twists, (0.0,) * (4 + spare))
+        atlas = explore(LoopClosure(loop), settings=SearchSettings(starts=20))
         assert atlas.surfaces
         assert not atlas.forms
         assert not any(p.kind is Kind.ISOLATED for p in atlas.points)
@@ -341,10 +332,7 @@ def test_a_seed_that_only_looks_as_on_a_surface_is_taken_for_what_it_is():
         "gamma": 1.5921695469201371,
         "delta": 0.5790264703154796,
     }
-    linkage = entry("double-subtractive-goldberg-type-iii")
-    loop = linkage.build(
-        **{key: value for key, value in parameters.items() if key in linkage.defaults}
-    )
+    loop = entry("double-subtractive-goldberg-type-iii").build(**parameters)
     atlas = explore(LoopClosure(loop))
     assert not atlas.surfaces
     assert len(atlas.forms) == 1

@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 
-from bifurc.atlas import Provenance
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.findings import Findings, assemble_atlas
+from bifurc.search.meeting_points import meeting_points
 from bifurc.search.settings import SearchSettings
-from bifurc.seeds import Seeds
 from bifurc.singular.point import Kind, SingularPoint
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
@@ -69,16 +67,8 @@ def stalled(start, end):
 
 def meeting_point(problem, singular_point, branches):
     """The only point of the atlas of a singular point and two branches."""
-    nothing = np.empty(0)
-    found = Findings(
-        branches=branches,
-        profiles=[profile_branch(problem, branch) for branch in branches],
-        minima=[(nothing, nothing)] * 2,
-        located=[[], []],
-        points=[singular_point],
-    )
-    seeds = Seeds(np.empty((0, 2)), np.empty(0, dtype=bool), nothing, np.empty((0, 2)))
-    (point,) = assemble_atlas(problem, found, seeds, Provenance()).points
+    no_periods = np.full(problem.n, np.inf)
+    (point,) = meeting_points(problem, [singular_point], branches, (), no_periods)
     return point
 
 

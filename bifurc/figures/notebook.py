@@ -1,0 +1,57 @@
+"""The picture of an atlas in a notebook, above its tables.
+
+After `%load_ext bifurc.figures.notebook` every atlas is shown so; without it a notebook
+shows the tables alone. (An atlas does not know of figures, so that it needs no
+matplotlib.)
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from matplotlib import rc_context
+
+from bifurc.atlas import Atlas
+from bifurc.figures.plotting import plot_transition_map
+from bifurc.figures.style import RC
+
+__all__ = ["atlas_page", "load_ipython_extension"]
+
+
+class _Formatter(Protocol):
+    """What turns objects into one kind of text."""
+
+    def for_type(self, kind: type, function: Callable[[Atlas], str]) -> object: ...
+
+
+class _DisplayFormatter(Protocol):
+    """The formatters by the kind of text they make."""
+
+    @property
+    def formatters(self) -> Mapping[str, _Formatter]: ...
+
+
+class _Shell(Protocol):
+    """What IPython hands to an extension."""
+
+    @property
+    def display_formatter(self) -> _DisplayFormatter: ...
+
+
+def load_ipython_extension(shell: _Shell) -> None:
+    """Show every atlas with its picture from now on."""
+    formatter = shell.display_formatter.formatters["text/html"]
+    formatter.for_type(Atlas, atlas_page)
+
+
+def atlas_page(atlas: Atlas) -> str:
+    """The transition map of an atlas as inline SVG, and its tables, in HTML."""
+    picture = io.StringIO()
+    with rc_context(RC):
+        figure = plot_transition_map(atlas)
+        figure.savefig(picture, format="svg", metadata={"Date": None, "Creator": None})
+    text = picture.getvalue()
+    svg = text[text.index("<svg") :]
+    return svg + atlas._repr_html_()

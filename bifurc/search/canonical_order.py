@@ -1,0 +1,122 @@
+"""An order of branches and points that comes from themselves: seeds and last bits do
+not change it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.problem import Problem
+from bifurc.torus import wrap
+
+__all__ = ["order_branches", "order_points"]
+
+# Features count as equal that differ by less, or by steps that do. They are lengths over the problem's
+# scale, or means of cosines and sines.
+ALIKE = 1e-6
+COARSEST = 0.1  # what a large error adds to it at most
+# The rule of Gauss and Legendre on every piece, for means along a branch.
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+def order_branches(problem: Problem, branches: Sequence[Branch]) -> np.ndarray:
+    """Numbers (k,) of branches, the longest first.
+
+    Those of equal length, as mirror images are, stand in the order of the means of
+    their cosines and then of their sines along the curve, the largest first; then of
+    the means of the products of two of these, and of the winding numbers. Where a
+    branch begins and which way it runs makes no difference.
+    """
+    if len(branches) < 2:
+        return np.arange(len(branches))
+    features = [_branch_features(branch, problem.scale) for branch in branches]
+    return _order(-np.array(features), ALIKE)
+
+
+def order_points(
+    points: np.ndarray,
+    periods: np.ndarray,
+    scale: float,
+    error: float = 0.0,
+    groups: np.ndarray | None = None,
+) -> np.ndarray:
+    """Numbers (p,) of points (p, n) by their first unknown, then by the second, and so
+    on.
+
+    ``error`` is the largest distance of one of them to the exact point. Where there are
+    ``groups`` (p,), their numbers come before the unknowns.
+    """
+    if len(points) < 2:
+        return np.arange(len(points))
+    tolerance = ALIKE + min(2 * error / scale, COARSEST)
+    places = wrap(points, periods, within=tolerance) / scale
+    return _order(places, tolerance, groups)
+
+
+def _order(
+    features: np.ndarray, tolerance: float, groups: np.ndarray | None = None
+) -> np.ndarray:
+    """Numbers (k,) of rows (k, q) in lexicographic order, smallest first, one group
+    after another. Rows alike in all columns keep their order."""
+    count = len(features)
+    if groups is None:
+        groups = np.zeros(count, dtype=int)
+    _, ranks = np.unique(groups, return_inverse=True)
+    for values in features.T:
+        if ranks.max(initial=0) >= count - 1:
+            break  # no two rows are alike any more
+        finer = ranks * count + _ranks(values, tolerance)
+        _, ranks = np.unique(finer, return_inverse=True)
+    return np.argsort(ranks, kind="stable")
+
+
+def _ranks(values: np.ndarray, tolerance: float) -> np.ndarray:
+    """Ranks (k,) of values (k,): sorted, they are cut at the steps larger than
+    ``tolerance``, and what stands between two cuts is alike."""
+    ascending = np.argsort(values, kind="stable")
+    steps = np.diff(values[ascending])
+    ranks = np.zeros(len(values), dtype=int)
+    ranks[ascending[1:]] = np.cumsum(steps > tolerance)
+    return ranks
+
+
+def _branch_features(branch: Branch, scale: float) -> np.ndarray:
+    """Numbers (q,) that tell branches apart: length, means, means of products, winding
+    numbers up to their common sign."""
+    arclengths, weights = _quadrature(branch)
+    points = _embedded(branch(arclengths), branch.periods, scale)
+    means = weights @ points
+    products = points.T @ (weights[:, None] * points)
+    length = [branch.length / scale]
+    upper = products[np.triu_indices(len(means))]
+    winding = _unsigned(branch.winding)
+    return np.concatenate([length, means, upper, winding])
+
+
+def _quadrature(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
+    """Arclengths (k,) and weights (k,) for a mean along a branch."""
+    half = 0.5 * np.diff(branch.breaks)
+    middle = branch.breaks[:-1] + half
+    arclengths = middle[:, None] + half[:, None] * NODES
+    shares = half[:, None] * WEIGHTS / branch.length
+    return arclengths.ravel(), shares.ravel()
+
+
+def _embedded(points: np.ndarray, periods: np.ndarray, scale: float) -> np.ndarray:
+    """Points (k, n) as (k, 2 n): cosines and then sines of the unknowns with a period,
+    the others over the scale and then 0."""
+    is_periodic = np.isfinite(periods)
+    angles = points[:, is_periodic] * (2 * np.pi / periods[is_periodic])
+    first = points / scale
+    first[:, is_periodic] = np.cos(angles)
+    second = np.zeros_like(points)
+    second[:, is_periodic] = np.sin(angles)
+    return np.concatenate([first, second], axis=1)
+
+
+def _unsigned(winding: np.ndarray) -> np.ndarray:
+    """Winding numbers (n,), the first that is not 0 taken as positive."""
+    turning = winding[winding != 0]
+    return -winding if len(turning) and turning[0] < 0 else winding

@@ -1,0 +1,63 @@
+"""How nearly a system is solved that has no curve of solutions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bifurc.problem import Problem
+from bifurc.seeds import Seeds
+
+__all__ = ["closure_gap"]
+
+STEPS = 12
+LONGEST = 0.5  # step, over the problem's scale
+# Singular value, over the largest, below which no step is taken along its direction.
+FLAT = 1e-6
+TINY = 1e-300  # keeps a step of length zero from being divided by its length
+
+
+def closure_gap(problem: Problem, seeds: Seeds, gaps: Sequence[float]) -> float:
+    """Median residual, over the magnitude, along the valley in which the system is
+    nearly solved; 0 where every start solves it.
+
+    It is taken over the random starts that missed and over the ``gaps`` of starts that
+    could not be corrected.
+    """
+    residuals = np.maximum(_valley_residuals(problem, seeds.missed), seeds.gaps)
+    everywhere = np.concatenate([residuals, gaps])
+    return float(np.median(everywhere)) if len(everywhere) else 0.0
+
+
+def _valley_residuals(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Residuals (k,) in the valley below points (k, n) that do not solve the system.
+
+    Gauss-Newton steps of rank n - 1 run down to the valley in which the system is
+    nearly solved but not along it, so that an isolated solution at its end does not
+    hide the gap. Where there is no valley, the residuals themselves.
+    """
+    if not len(points):
+        return np.empty(0)
+    lowest = points.copy()
+    longest = LONGEST * problem.scale
+    for _ in range(STEPS):
+        steps = _steps_across(problem, lowest)
+        lengths = np.linalg.norm(steps, axis=1) + TINY
+        shares = np.minimum(1.0, longest / lengths)
+        lowest -= steps * shares[:, None]
+    return problem.gaps(lowest)
+
+
+def _steps_across(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Gauss-Newton steps (k, n) of rank n - 1, to be subtracted."""
+    across = problem.n - 1
+    residuals = problem.relative_residuals(points)
+    jacobians = problem.relative_jacobians(points)
+    left, sigma, right = np.linalg.svd(jacobians, full_matrices=False)
+    is_steep = sigma > FLAT * sigma[:, :1]
+    is_steep[:, across:] = False
+    inverse = np.zeros_like(sigma)
+    inverse[is_steep] = 1.0 / sigma[is_steep]
+    steps: np.ndarray = np.einsum("kji,kj,kmj,km->ki", right, inverse, left, residuals)
+    return steps

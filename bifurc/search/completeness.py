@@ -1,0 +1,63 @@
+"""What a search can say of what it did not find."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from bifurc.atlas import Provenance
+from bifurc.search.findings import Findings
+from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.seeding import missed_probability
+from bifurc.seeds import Completeness, Level
+
+__all__ = ["judge_completeness"]
+
+NO_SOLUTION = SeedFate(Fate.NO_SOLUTION)
+
+
+def judge_completeness(findings: Findings, provenance: Provenance) -> Completeness:
+    """What the audit proves, and the estimate for the rest."""
+    hits = _count_hits(findings)
+    missed = missed_probability(list(hits.values()))
+    estimate = _estimate(hits, missed)
+    audit = findings.audit
+    if audit is None and provenance.out_of_time:
+        left = len(findings.open_seeds)
+        statement = (
+            f"the budget of {provenance.settings.budget:.4g} s was used up with "
+            f"{left} starts not looked at; {estimate}"
+        )
+        bound = 1.0 if left else missed
+        return Completeness(Level.OUT_OF_TIME, statement, bound)
+    if provenance.interrupted:
+        statement = f"the search was interrupted; {estimate}"
+        return Completeness(Level.INTERRUPTED, statement, missed)
+    if audit is None:
+        return Completeness(Level.ESTIMATED, estimate, missed)
+    return Completeness(audit.level, f"{audit.statement}; {estimate}", missed)
+
+
+def _count_hits(findings: Findings) -> Counter[SeedFate]:
+    """How many random starts came to each fate."""
+    seeds = findings.seeds
+    hits = Counter(
+        fate for number, fate in findings.fates.items() if seeds.random[number]
+    )
+    hits[NO_SOLUTION] += len(seeds.gaps)
+    return hits
+
+
+def _estimate(hits: Counter[SeedFate], missed: float) -> str:
+    """What random starts reached, and what one more of them would, as a sentence."""
+    total = hits.total()
+    reached = total - hits[NO_SOLUTION]
+    if reached:
+        outcome = (
+            f"{reached} of {total} random starts reached a solution, each listed here"
+        )
+    else:
+        outcome = f"none of {total} random starts reached a solution"
+    return (
+        f"{outcome}: one more start would reach something new with a probability of "
+        f"at most {missed:.2g} (95 % confidence)"
+    )

@@ -1,0 +1,35 @@
+"""What the seeds of a search turned out to lie on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+__all__ = ["Fate", "SeedFate"]
+
+
+class Fate(Enum):
+    """Where a seed lies."""
+
+    # It lies on a traced branch.
+    ON_FORM = "on a form"
+    # It is a singular point, or as near to one as its digits tell.
+    AT_SINGULAR_POINT = "at a singular point"
+    # It is a solution without motion.
+    RIGID = "rigid assembly"
+    # The solutions about it are of dimension 2 or more.
+    ON_COMPONENT = "on a component of higher dimension"
+    # It only nearly solves the equations.
+    NO_SOLUTION = "no solution"
+
+
+@dataclass(frozen=True)
+class SeedFate:
+    """What one seed lies on, and which one of these.
+
+    ``number`` counts the branches, the singular points or the rigid assemblies in the
+    order in which they were found. Of a component it is the dimension.
+    """
+
+    fate: Fate
+    number: int = 0

@@ -1,0 +1,137 @@
+"""The order of forms and points comes from themselves, whatever the seeds."""
+
+import numpy as np
+import pytest
+
+from bifurc.branch import Branch
+from bifurc.function_problem import FunctionProblem
+from bifurc.search.canonical_order import order_branches, order_points
+from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
+from linkages.closure.loop_closure import LoopClosure
+from linkages.loop import Loop
+
+NO_PERIODS = np.full(2, np.inf)
+
+
+def circles(*centers):
+    """Circles of radius 1/2 about centers in the plane, as one equation."""
+
+    def product(u):
+        factors = [(u[0] - x) ** 2 + (u[1] - y) ** 2 - 0.25 for x, y in centers]
+        return np.array([np.prod(factors)])
+
+    return FunctionProblem(product, [(-3, 3)] * 2)
+
+
+def beginning_elsewhere(branch):
+    """The same closed curve, begun at its third piece and run the other way."""
+    shifted = Branch(
+        pieces=np.roll(branch.pieces, -2, axis=0),
+        centers=np.concatenate(
+            [branch.centers[2:], branch.centers[:2] + branch.length]
+        ),
+        radii=np.roll(branch.radii, -2),
+        breaks=np.concatenate([branch.breaks[2:], branch.breaks[1:3] + branch.length]),
+        residuals=np.roll(branch.residuals, -2),
+        periods=branch.periods,
+        outcome=branch.outcome,
+    )
+    first = shifted.breaks[0]
+    moved = Branch(
+        shifted.pieces,
+        shifted.centers - first,
+        shifted.radii,
+        shifted.breaks - first,
+        shifted.residuals,
+        shifted.periods,
+        shifted.outcome,
+    )
+    return moved.reversed()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_forms_of_equal_length_stand_in_one_order_whatever_the_seed(seed):
+    problem = circles((-1.5, 0.0), (1.5, 1.0), (1.5, -1.0), (0.0, 2.0))
+    atlas = explore(problem, settings=SearchSettings(starts=60), seed=seed)
+    centers = [form.branch.sample(8).mean(axis=0) for form in atlas.forms]
+    expected = [(1.5, 1.0), (1.5, -1.0), (0.0, 2.0), (-1.5, 0.0)]
+    assert np.array(centers) == pytest.approx(np.array(expected), abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(1, 4))
+def test_mirror_images_and_events_of_a_loop_keep_their_places(seed):
+    # spherical, with right angles: four forms of equal length, many dead points
+    loop = Loop((0.0,) * 4, (np.pi / 2,) * 4, (0.0,) * 4)
+    one, other = (explore(LoopClosure(loop), seed=k) for k in (0, seed))
+    for left, right in zip(one.forms, other.forms, strict=True):
+        assert right.branch.nearest(left.branch.sample(9))[0].max() < 1e-9
+    for left, right in zip(one.points, other.points, strict=True):
+        gap = LoopClosure(loop).difference(left.point.u, right.point.u)
+        assert (left.name, left.kind) == (right.name, right.kind)
+        assert np.abs(gap).max() < 1e-9
+        assert [form for form, _ in left.passes] == [form for form, _ in right.passes]
+
+
+@pytest.mark.parametrize("seed", range(1, 4))
+def test_dead_points_and_rigid_assemblies_keep_their_places(seed):
+    pair = circles((1.0, 0.0), (-1.0, 0.0))
+    isolated = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 - 1, u[1] ** 2 - 4 * u[0] ** 2]), [(-3, 3)] * 2
+    )
+    settings = SearchSettings(starts=60)
+    for problem in (pair, isolated):
+        one, other = (explore(problem, settings=settings, seed=k) for k in (0, seed))
+        assert one.rigid == pytest.approx(other.rigid, abs=1e-9)
+        for left, right in zip(one.dead_points, other.dead_points, strict=True):
+            assert (left.form, left.index) == (right.form, right.index)
+            assert left.u == pytest.approx(right.u, abs=1e-9)
+
+
+def test_start_and_direction_of_a_branch_make_no_difference():
+    problem = circles((-1.5, 0.0), (1.5, 1.0), (1.5, -1.0))
+    forms = explore(problem, settings=SearchSettings(starts=60)).forms
+    branches = [form.branch for form in forms]
+    again = [beginning_elsewhere(branch) for branch in branches]
+    for left, right in zip(branches, again, strict=True):
+        assert left.nearest(right.sample(20))[0].max() < 1e-9
+    for mixed in ([*branches], [*again], [again[0], branches[1], again[2]]):
+        assert order_branches(problem, mixed).tolist() == [0, 1, 2]
+        assert order_branches(problem, mixed[::-1]).tolist() == [2, 1, 0]
+
+
+def test_last_bits_decide_nothing_however_the_values_lie():
+    rng = np.random.default_rng(0)
+    for value in (
+        0.0,
+        0.5e-6,
+        1.5e-6,
+        0.1234565,
+    ):  # six digits round some of them apart
+        points = np.array([[value, 3.0], [value, 1.0], [value, 2.0], [-1.0, 5.0]])
+        noisy = points + rng.uniform(-1e-9, 1e-9, points.shape)
+        assert order_points(noisy, NO_PERIODS, 1.0).tolist() == [3, 1, 2, 0]
+
+
+def test_points_known_to_few_digits_are_compared_with_their_error():
+    points = np.array([[1e-5, 1.0], [-1e-5, 2.0]])
+    assert order_points(points, NO_PERIODS, 1.0).tolist() == [1, 0]
+    assert order_points(points, NO_PERIODS, 1.0, error=1e-4).tolist() == [0, 1]
+
+
+def test_points_on_both_sides_of_a_half_turn_lie_at_one_place():
+    periods = np.full(2, 2 * np.pi)
+    points = np.array([[np.pi, 2.0], [1e-9 - np.pi, 1.0], [np.pi - 1e-9, 3.0]])
+    assert order_points(points, periods, 1.0).tolist() == [1, 0, 2]
+
+
+def test_groups_come_before_places():
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0]])
+    groups = np.array([7, 2, 7])
+    assert order_points(points, NO_PERIODS, 1.0, groups=groups).tolist() == [1, 2, 0]
+
+
+def test_nothing_to_order_is_no_error():
+    problem = circles((0.0, 0.0))
+    assert order_branches(problem, []).tolist() == []
+    assert order_points(np.empty((0, 2)), NO_PERIODS, 1.0).tolist() == []
