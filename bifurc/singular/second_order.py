@@ -58,7 +58,7 @@ def _reduced_forms(
     problem: Problem, point: np.ndarray, null_space: np.ndarray
 ) -> np.ndarray:
     """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x)."""
-    jacobian = problem.jacobians(point[None])[0] / problem.magnitude
+    jacobian = problem.relative_jacobians(point[None])[0]
     left, _, _ = np.linalg.svd(jacobian)
     left_null_space = left[:, problem.n - 2 :]
     hessian = problem.hessian(point) / problem.magnitude
