@@ -10,7 +10,7 @@ import numpy as np
 from bifurc.numerics.null_spaces import NULL
 from bifurc.problem import Problem
 
-__all__ = ["LocatedPoint", "locate_singular_point"]
+__all__ = ["LocatedPoint", "block_slice", "locate_singular_point"]
 
 # Relative residual of a singular point: above it is a near miss, which doubles still
 # resolve.
@@ -171,9 +171,9 @@ def _augmented_system(
     matrix[:m, :n] = jacobian
     right_side[:m] = -residual
     for j in range(k):
-        null = _block(m, j, m)  # rows of F'' v_j
-        across = _block(m + k * m, j, k)  # rows of V^T
-        column = _block(n, j, n)  # columns of dv_j
+        null = block_slice(m, j, m)  # rows of F'' v_j
+        across = block_slice(m + k * m, j, k)  # rows of V^T
+        column = block_slice(n, j, n)  # columns of dv_j
         matrix[null, :n] = hessian @ basis[:, j]
         matrix[null, column] = jacobian
         right_side[null] = -jacobian @ basis[:, j]
@@ -181,8 +181,9 @@ def _augmented_system(
     return matrix, right_side
 
 
-def _block(begin: int, number: int, size: int) -> slice:
-    """Block of a ``number``, all of one ``size``, the first of which is at ``begin``."""
+def block_slice(begin: int, number: int, size: int) -> slice:
+    """Block of a ``number`` among blocks of one ``size``, the first of which is at
+    ``begin``."""
     start = begin + number * size
     return slice(start, start + size)
 

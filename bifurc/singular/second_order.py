@@ -17,7 +17,8 @@ __all__ = ["second_order_tangents"]
 
 # Size of the forms, over the magnitude, below which there is none.
 NO_FORM = 1e-7
-# Singular value of the coefficients, over the largest, of a form that depends on others.
+# Singular value of the coefficients, over the largest, of a form that depends on
+# others.
 DEPENDENT = 1e-6
 # Discriminant of a double root, value of a form at a root of it, resultant of forms
 # with a common root: the coefficients are of unit length.

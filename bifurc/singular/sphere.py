@@ -264,7 +264,8 @@ def _sphere_section(
 
 
 def _spread_directions(k: int) -> np.ndarray:
-    """Unit vectors (200 (k - 1), k) at random, half of them the opposites of the others."""
+    """Unit vectors (200 (k - 1), k) at random, half of them the opposites of the
+    others."""
     rng = np.random.default_rng(k)
     half = rng.normal(size=(100 * (k - 1), k))
     half /= np.linalg.norm(half, axis=1)[:, None]
