@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 
 from bifurc.errors import ProblemError
+from bifurc.singular.locate import block_slice
 
 __all__ = ["Confirmation", "Convergence", "Residual", "confirm_singular_point"]
 
@@ -165,7 +166,8 @@ class _Refinement:
 
     @property
     def last_ratio(self) -> mpmath.mpf:
-        """Length of the last move over that of the one before; 0 where there is none."""
+        """Length of the last move over that of the one before; 0 where there is
+        none."""
         if len(self.moves) < 2 or not self.moves[-2]:
             return mpmath.mpf(0)
         return self.moves[-1] / self.moves[-2]
@@ -214,20 +216,14 @@ def _augmented_system(
     right_side[:m, 0] = -value
     for j in range(k):
         v = basis[:, j]
-        null = _block(m, j, m)  # rows of F'' v_j
-        across = _block(m + k * m, j, k)  # rows of V^T
-        column = _block(n, j, n)  # columns of dv_j
+        null = block_slice(m, j, m)  # rows of F'' v_j
+        across = block_slice(m + k * m, j, k)  # rows of V^T
+        column = block_slice(n, j, n)  # columns of dv_j
         matrix[null, :n] = derivatives.bend(u, v)
         matrix[null, column] = jacobian
         right_side[null, 0] = -jacobian * v
         matrix[across, column] = basis.T
     return matrix, right_side
-
-
-def _block(begin: int, number: int, size: int) -> slice:
-    """Block of a ``number``, all of one ``size``, the first of which is at ``begin``."""
-    start = begin + number * size
-    return slice(start, start + size)
 
 
 # --- least squares --------------------------------------------------------------------

@@ -137,7 +137,8 @@ def _probe(
 
 
 def _probe_directions(k: int) -> np.ndarray:
-    """Unit vectors (2 k + 2, k): both ways along axes turned at random, and two more."""
+    """Unit vectors (2 k + 2, k): both ways along axes turned at random, and two
+    more."""
     rng = np.random.default_rng(k)
     axes, _ = np.linalg.qr(rng.normal(size=(k, k)))
     extra = rng.normal(size=(2, k))

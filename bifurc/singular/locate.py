@@ -10,7 +10,7 @@ import numpy as np
 from bifurc.numerics.null_spaces import NULL
 from bifurc.problem import Problem
 
-__all__ = ["LocatedPoint", "locate_singular_point"]
+__all__ = ["LocatedPoint", "block_slice", "locate_singular_point"]
 
 # Relative residual of a singular point: above it is a near miss, which doubles still
 # resolve.
@@ -161,8 +161,8 @@ def _augmented_system(
     #     [                 ...           ]              [ :      ]
     #     [                       V^T     ]              [ 0      ]
     n, k = basis.shape
-    residual = problem.residuals(u[None])[0] / problem.magnitude
-    jacobian = problem.jacobians(u[None])[0] / problem.magnitude
+    residual = problem.relative_residuals(u[None])[0]
+    jacobian = problem.relative_jacobians(u[None])[0]
     hessian = problem.hessian(u) / problem.magnitude
     m = len(jacobian)
     rows = m + k * m + k * k
@@ -171,9 +171,9 @@ def _augmented_system(
     matrix[:m, :n] = jacobian
     right_side[:m] = -residual
     for j in range(k):
-        null = _block(m, j, m)  # rows of F'' v_j
-        across = _block(m + k * m, j, k)  # rows of V^T
-        column = _block(n, j, n)  # columns of dv_j
+        null = block_slice(m, j, m)  # rows of F'' v_j
+        across = block_slice(m + k * m, j, k)  # rows of V^T
+        column = block_slice(n, j, n)  # columns of dv_j
         matrix[null, :n] = hessian @ basis[:, j]
         matrix[null, column] = jacobian
         right_side[null] = -jacobian @ basis[:, j]
@@ -181,8 +181,9 @@ def _augmented_system(
     return matrix, right_side
 
 
-def _block(begin: int, number: int, size: int) -> slice:
-    """Block of a ``number``, all of one ``size``, the first of which is at ``begin``."""
+def block_slice(begin: int, number: int, size: int) -> slice:
+    """Block of a ``number`` among blocks of one ``size``, the first of which is at
+    ``begin``."""
     start = begin + number * size
     return slice(start, start + size)
 
@@ -200,9 +201,9 @@ def _solve_regular_equations(
     """
     rank = problem.n - nullity
     for _ in range(2):
-        jacobian = problem.jacobians(u[None])[0] / problem.magnitude
+        jacobian = problem.relative_jacobians(u[None])[0]
         left, sigma, right = np.linalg.svd(jacobian, full_matrices=False)
-        residual = problem.residuals(u[None])[0] / problem.magnitude
+        residual = problem.relative_residuals(u[None])[0]
         shares = left[:, :rank].T @ residual / sigma[:rank]
         u = u - right[:rank].T @ shares
     return u
@@ -210,8 +211,7 @@ def _solve_regular_equations(
 
 def _is_singular_solution(problem: Problem, u: np.ndarray, nullity: int) -> bool:
     """Whether F = 0 at ``u`` (n,) and F' has a null space of dimension ``nullity``."""
-    residual = problem.residuals(u[None])[0]
-    gap = np.linalg.norm(residual) / problem.magnitude
+    gap = problem.gaps(u[None])[0]
     largest_null = _largest_null_values(problem, u[None], nullity)[0]
     return bool(gap <= SOLVED and largest_null <= NULL)
 
@@ -221,7 +221,7 @@ def _largest_null_values(
 ) -> np.ndarray:
     """The largest (k,) of the ``nullity`` smallest singular values of F' at points
     (k, n), over the magnitude."""
-    jacobians = problem.jacobians(points) / problem.magnitude
+    jacobians = problem.relative_jacobians(points)
     sigma = np.linalg.svd(jacobians, compute_uv=False)
     rank = problem.n - nullity
     if sigma.shape[1] <= rank:
@@ -270,7 +270,7 @@ def _hidden_length(
     singular point: up to ``reach``."""
     distances = reach * np.geomspace(1e-7, 1.0, 120)
     line = u + distances[:, None] * direction
-    gaps = np.linalg.norm(problem.residuals(line), axis=1) / problem.magnitude
+    gaps = problem.gaps(line)
     misfits = _largest_null_values(problem, line, nullity) + gaps
     visible = np.flatnonzero(misfits > HIDDEN)
     if not len(visible):

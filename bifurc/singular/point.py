@@ -1,4 +1,4 @@
-"""A singular point as data: where it is, what leaves it, and what kind that makes it."""
+"""A singular point as data: where it is, what leaves it, and its kind."""
 
 from __future__ import annotations
 

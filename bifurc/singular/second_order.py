@@ -17,7 +17,8 @@ __all__ = ["second_order_tangents"]
 
 # Size of the forms, over the magnitude, below which there is none.
 NO_FORM = 1e-7
-# Singular value of the coefficients, over the largest, of a form that depends on others.
+# Singular value of the coefficients, over the largest, of a form that depends on
+# others.
 DEPENDENT = 1e-6
 # Discriminant of a double root, value of a form at a root of it, resultant of forms
 # with a common root: the coefficients are of unit length.
@@ -58,7 +59,7 @@ def _reduced_forms(
     problem: Problem, point: np.ndarray, null_space: np.ndarray
 ) -> np.ndarray:
     """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x)."""
-    jacobian = problem.jacobians(point[None])[0] / problem.magnitude
+    jacobian = problem.relative_jacobians(point[None])[0]
     left, _, _ = np.linalg.svd(jacobian)
     left_null_space = left[:, problem.n - 2 :]
     hessian = problem.hessian(point) / problem.magnitude

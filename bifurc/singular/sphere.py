@@ -108,7 +108,7 @@ class _ReducedEquations:
     def __init__(
         self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
     ):
-        jacobian = problem.jacobians(point[None])[0] / problem.magnitude
+        jacobian = problem.relative_jacobians(point[None])[0]
         left, sigma, right = np.linalg.svd(jacobian)
         rank = problem.n - null_space.shape[1]
         self._problem = problem
@@ -129,7 +129,7 @@ class _ReducedEquations:
         smallest = LAST_STEP * self._problem.scale
         w = np.zeros_like(base)
         for _ in range(ROUNDS):
-            step = self._residuals(base + w) @ self._inverse.T
+            step = self._problem.relative_residuals(base + w) @ self._inverse.T
             w -= step
             if np.abs(step).max(initial=0.0) < smallest:
                 break
@@ -138,13 +138,9 @@ class _ReducedEquations:
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
         """The reduced equations (k, codimension) at unit vectors x (k, nullity)."""
-        residuals = self._residuals(self.points(x))
+        residuals = self._problem.relative_residuals(self.points(x))
         reduced: np.ndarray = residuals @ self._left_null_space / self._radius**2
         return reduced
-
-    def _residuals(self, points: np.ndarray) -> np.ndarray:
-        """F (k, m), over the magnitude, at points (k, n)."""
-        return self._problem.residuals(points) / self._problem.magnitude
 
 
 # --- nullity 2: every zero on a circle ------------------------------------------------
@@ -268,7 +264,8 @@ def _sphere_section(
 
 
 def _spread_directions(k: int) -> np.ndarray:
-    """Unit vectors (200 (k - 1), k) at random, half of them the opposites of the others."""
+    """Unit vectors (200 (k - 1), k) at random, half of them the opposites of the
+    others."""
     rng = np.random.default_rng(k)
     half = rng.normal(size=(100 * (k - 1), k))
     half /= np.linalg.norm(half, axis=1)[:, None]
