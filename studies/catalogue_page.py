@@ -21,7 +21,7 @@ from bifurc.atlas import Atlas
 from linkages.app.scene_figure import draw_configuration
 from linkages.app.texts import count_of
 from linkages.catalogue import catalogue, families
-from linkages.entry import Entry, Parameter
+from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.relations import RelationKind, relations_of
@@ -96,7 +96,7 @@ def _section(entry: Entry, count: str) -> str:
 
 def _parameter(parameter: Parameter) -> str:
     default = f"{parameter.default:.6g}"
-    if parameter.kind == "angle":
+    if parameter.kind is ParameterKind.ANGLE:
         default = f"{math.degrees(parameter.default):.6g} deg"
     return f"`{parameter.name}` = {default} ({parameter.meaning})"
 

@@ -28,6 +28,7 @@ from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import run_sweep
 from linkages.app.sweep.store import open_sweep
 from linkages.catalogue import entry
+from linkages.entry import ParameterKind
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -119,7 +120,7 @@ def draw_plane(axes: Axes, plane: Plane, data: xr.Dataset) -> None:
         if parameter.name in (plane.x, plane.y, "a"):
             continue
         value = parameter.default
-        if parameter.kind == "angle":
+        if parameter.kind is ParameterKind.ANGLE:
             value = np.degrees(value)
         fixed.append(f"{parameter.name} = {value:.4g}")
     title = plane.family.replace("-", " ")

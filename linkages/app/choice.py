@@ -10,7 +10,7 @@ import numpy as np
 
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
-from linkages.entry import Entry
+from linkages.entry import Entry, ParameterKind
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
@@ -89,7 +89,8 @@ def read_parameters(family: Entry, texts: Sequence[str]) -> dict[str, float]:
         if name in values:
             raise CommandError(f"--param {name}: it is given twice")
         number = read_number(name, value)
-        values[name] = math.radians(number) if kinds.get(name) == "angle" else number
+        is_angle = kinds.get(name) is ParameterKind.ANGLE
+        values[name] = math.radians(number) if is_angle else number
     return values
 
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, Event, MeetingPoint
 from bifurc.torus import wrap
-from linkages.app.linkage_atlas import labels_of, loop_of
 from linkages.app.verdict import is_without_gaps
+from linkages.labels import FormLabels, loop_of
 
 __all__ = ["MapDocument", "make_document"]
 
@@ -135,7 +135,7 @@ def _linkage(atlas: Atlas) -> LinkageDocument:
 
 def _form(atlas: Atlas, index: int) -> FormDocument:
     form = atlas.forms[index]
-    labels = labels_of(form)
+    labels = FormLabels.of(form)
     sample = form.branch(_clear_arclength(atlas, index))
     return {
         "name": form.name,
@@ -144,7 +144,7 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "length": form.branch.length,
         "winding": form.branch.winding.tolist(),
         "inactive_joints": list(labels.inactive_joints),
-        "symmetry": labels.symmetry,
+        "symmetry": labels.symmetry.value,
         "sample": _angles(atlas, sample),
         "max_residual": labels.max_residual,
         "min_singular_value": form.min_singular_value,

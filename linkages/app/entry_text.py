@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from linkages.app.texts import in_degrees, link_name, table
-from linkages.entry import Entry, Parameter
+from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.loop import Loop
 
 __all__ = ["describe_entry", "describe_geometry"]
@@ -49,7 +49,7 @@ def describe_geometry(loop: Loop) -> str:
 
 
 def _default(parameter: Parameter) -> str:
-    if parameter.kind == "angle":
+    if parameter.kind is ParameterKind.ANGLE:
         return f"{math.degrees(parameter.default):.6g} deg"
     return f"{parameter.default:.6g}"
 

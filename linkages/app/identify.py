@@ -9,6 +9,7 @@ from typing import TypedDict
 import numpy as np
 
 from linkages.app.texts import count_of, link_name
+from linkages.entry import ParameterKind
 from linkages.identification.identify import (
     NEAR,
     Identification,
@@ -104,7 +105,7 @@ def _parameters(match: Match) -> str:
     kinds = {parameter.name: parameter.kind for parameter in match.entry.parameters}
     parts = []
     for name, value in match.parameters.items():
-        if kinds[name] == "angle":
+        if kinds[name] is ParameterKind.ANGLE:
             parts.append(f"{name} = {math.degrees(value):.8g} deg")
         else:
             parts.append(f"{name} = {value:.8g}")

@@ -56,13 +56,10 @@ def require_folder(out: Path) -> None:
 
 @contextmanager
 def writing_to(out: Path) -> Iterator[None]:
-    """A block that writes to ``out``; raises `CommandError` where that fails.
-
-    The NetCDF library reports a full disk as a `RuntimeError`.
-    """
+    """A block that writes to ``out``; raises `CommandError` where that fails."""
     try:
         yield
-    except (OSError, RuntimeError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
+    except OSError as error:
+        reason = error.strerror or str(error)
         message = f"--out {out}: nothing can be written there ({reason})"
         raise CommandError(message) from None

@@ -12,9 +12,9 @@ from bifurc.branch import Branch
 from bifurc.singular.point import Kind
 from bifurc.torus import wrap
 from linkages.app.entry_text import describe_geometry
-from linkages.app.linkage_atlas import FormLabels, labels_of, loop_of
 from linkages.app.texts import in_degrees, section
 from linkages.app.verdict import judge
+from linkages.labels import FormLabels, loop_of
 
 __all__ = ["make_summary", "show_configuration"]
 
@@ -62,7 +62,7 @@ def show_configuration(atlas: Atlas, theta: NDArray[np.float64]) -> str:
 def _forms(atlas: Atlas) -> str:
     rows = []
     for form in sorted(atlas.forms, key=lambda form: form.name):
-        labels = labels_of(form)
+        labels = FormLabels.of(form)
         rows.append(
             (
                 form.name,
@@ -70,7 +70,7 @@ def _forms(atlas: Atlas) -> str:
                 f"{np.degrees(form.branch.length):.6g}",
                 _winding(form.branch),
                 _inactive_joints(labels),
-                labels.symmetry or "-",
+                labels.symmetry.value or "-",
                 f"{form.min_singular_value:.3g}",
                 f"{labels.max_residual:.1e}",
             )

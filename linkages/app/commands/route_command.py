@@ -88,8 +88,8 @@ def _route_between(atlas: Atlas, start: str, goal: str) -> Route:
     there is none."""
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.app.linkage_atlas import loop_of
     from linkages.closure.loop_closure import LoopClosure
+    from linkages.labels import loop_of
 
     problem = LoopClosure(loop_of(atlas))
     try:

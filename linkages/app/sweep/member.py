@@ -17,9 +17,9 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.settings import SearchSettings
-from linkages.app.linkage_atlas import labels_of
 from linkages.app.verdict import is_without_gaps
 from linkages.catalogue import entry
+from linkages.labels import FormLabels
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
@@ -164,7 +164,7 @@ def summarise(atlas: Atlas) -> Record:
     """The values of `FIELDS` but for status and seconds; not-a-number is left out."""
     lengths = [form.branch.length for form in atlas.forms]
     gaps = [event.value for event in atlas.near_misses]
-    residuals = [labels_of(form).max_residual for form in atlas.forms]
+    residuals = [FormLabels.of(form).max_residual for form in atlas.forms]
     routes = _route_lengths(atlas)
     record: Record = {
         "forms": len(atlas.forms),
@@ -197,7 +197,7 @@ def _forms_without(atlas: Atlas) -> list[int]:
     """For every joint the number of forms in which it does not turn."""
     counts = [0] * len(atlas.names)
     for form in atlas.forms:
-        for joint in labels_of(form).inactive_joints:
+        for joint in FormLabels.of(form).inactive_joints:
             counts[joint - 1] += 1
     return counts
 

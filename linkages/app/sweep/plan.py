@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from linkages.app.choice import read_number, split_parameter
 from linkages.catalogue import entry
-from linkages.entry import Entry
+from linkages.entry import Entry, ParameterKind
 from linkages.loop import GeometryError
 
 __all__ = ["Block", "Plan", "PlanDocument", "read_plan"]
@@ -238,6 +238,6 @@ def _read(linkage: Entry, text: str) -> tuple[str, tuple[float, ...]]:
         allowed = f"name=... with a name out of {', '.join(kinds)}"
         raise GeometryError("--param", repr(text), allowed)
     numbers = [read_number(name, part) for part in values.split(":")]
-    if kinds[name] == "angle":
+    if kinds[name] is ParameterKind.ANGLE:
         numbers[:2] = [math.radians(degrees) for degrees in numbers[:2]]
     return name, tuple(numbers)

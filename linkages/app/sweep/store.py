@@ -14,6 +14,7 @@ from bifurc.errors import BifurcError
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Block, Plan
 from linkages.catalogue import entry
+from linkages.entry import ParameterKind
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -120,7 +121,10 @@ class SweepStore:
             }
         )
         parameters = entry(plan.family).parameters
-        units = {p.name: "rad" if p.kind == "angle" else "" for p in parameters}
+        units = {}
+        for parameter in parameters:
+            is_angle = parameter.kind is ParameterKind.ANGLE
+            units[parameter.name] = "rad" if is_angle else ""
         for name, values in plan.axes.items():
             self._create_axis(name, np.array(values), units[name])
         self._create_axis("joint", np.arange(1, self.joints + 1), "")
