@@ -6,13 +6,29 @@ LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
   zero_offset_line_symmetric_bricard first_reconfigurable_bricard
 
-.PHONY: map test lint studies bench clean
+.PHONY: map test test-fragile test-processors lint studies bench clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
 
 test: .venv/ready  ## all tests, the examples of README and docs among them
 	$(BIN)/python -m pytest -n auto
+
+# OpenBLAS picks its kernels by the processor; other kernels give other last bits.
+PROCESSORS := Prescott Nehalem Haswell Zen SkylakeX
+FRAGILE := tests/test_literature.py tests/test_maps.py tests/bifurc/singular tests/bifurc/surfaces \
+  tests/bifurc/curves/test_monitor.py
+
+test-processors: .venv/ready  ## all tests with the last bits of five processors, with one thread and with two
+	for kernel in $(PROCESSORS); do for threads in 1 2; do \
+	  echo "$$kernel, $$threads threads"; \
+	  OPENBLAS_CORETYPE=$$kernel OPENBLAS_NUM_THREADS=$$threads $(BIN)/python -m pytest -n auto || exit 1; \
+	done; done
+
+test-fragile: .venv/ready  ## the tests that once hung on the last bits, under three processors
+	for kernel in Nehalem Haswell SkylakeX; do \
+	  echo "$$kernel"; OPENBLAS_CORETYPE=$$kernel $(BIN)/python -m pytest -n auto $(FRAGILE) || exit 1; \
+	done
 
 lint: .venv/ready  ## ruff and mypy
 	$(BIN)/python -m ruff check .
