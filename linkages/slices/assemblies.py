@@ -24,7 +24,6 @@ import numpy as np
 from numba import njit
 
 from linkages.loop import GeometryError, Loop
-from linkages.slices.elimination import _closure, _copy, _largest
 
 __all__ = [
     "Assemblies",
@@ -289,7 +288,7 @@ def _smallest_singular_values(angles: np.ndarray, table: np.ndarray) -> np.ndarr
     _fill_links(np.ascontiguousarray(table, dtype=complex), links)
     jacobians = np.empty((len(angles), 6, JOINTS), dtype=complex)
     for configuration, jacobian in zip(angles, jacobians, strict=True):
-        _closure(links, configuration, jacobian)
+        _closure(links, configuration, jacobian, np.empty(6, dtype=complex))
     return np.linalg.svd(jacobians, compute_uv=False)[:, -1]
 
 
@@ -358,9 +357,9 @@ def _follow(theta, first, last):
             if at_the_end or step < SHORTEST_SHARE * rest:
                 return rest, PathEnd.STOPPED.value
             continue
-        _copy(before, theta)
-        _copy(velocity_before, velocity)
-        _copy(theta, trial)
+        for i in range(n):
+            before[i], velocity_before[i] = theta[i], velocity[i]
+            theta[i] = trial[i]
         rest, last_step = rest - step, step
         if rest <= 0.0:
             return 0.0, PathEnd.ARRIVED.value
@@ -378,13 +377,15 @@ def _correct(theta, links, jacobian, trusted):
     """The first correction of Newton's method on ``theta`` (6,), in place; infinite
     where it is larger than ``trusted`` or the next ones do not converge."""
     n = len(theta)
-    step = np.empty(n, np.complex128)
+    step, error = np.empty(n, np.complex128), np.empty(6, np.complex128)
     first, size = 0.0, np.inf
     for i in range(4):
-        error = _closure(links, theta, jacobian)
+        _closure(links, theta, jacobian, error)
         if not _solve(jacobian, error, step):
             return np.inf
-        size = _largest(step)
+        size = 0.0
+        for j in range(n):
+            size = max(size, abs(step[j]))
         if i == 0:
             first = size
         if not size <= trusted:
@@ -401,9 +402,10 @@ def _velocity(theta, first, last, rest, links, jacobian, velocity):
     """Fill ``velocity`` (6,), d theta / dt along the path; False where F' is
     singular."""
     _links_at(first, last, rest - DIFFERENCE, links)
-    change = _closure(links, theta, jacobian)
+    change, error = np.empty(6, np.complex128), np.empty(6, np.complex128)
+    _closure(links, theta, jacobian, change)
     _links_at(first, last, rest, links)
-    error = _closure(links, theta, jacobian)
+    _closure(links, theta, jacobian, error)
     for i in range(6):
         change[i] = -(change[i] - error[i]) / DIFFERENCE
     return _solve(jacobian, change, velocity)
@@ -413,6 +415,77 @@ def _velocity(theta, first, last, rest, links, jacobian, velocity):
 def _links_at(first, last, rest, links):
     """Fill the links (6, 8) of the geometry between two tables (3, 6)."""
     _fill_links(last + rest * (first - last), links)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _closure(links, theta, jacobian, error):
+    """Fill the closure error (6,), the vector parts of the unit dual quaternion of the
+    whole loop, and its derivative ``jacobian`` (6, n).
+
+    The vector part of a quaternion vanishes for the identity only.
+    """
+    n = len(theta)
+    after = np.empty((n + 1, 8), np.complex128)
+    turned, derivative = np.empty(8, np.complex128), np.empty(8, np.complex128)
+    before, longer = np.empty(8, np.complex128), np.empty(8, np.complex128)
+    for r in range(8):
+        after[n, r] = 1.0 if r == 0 else 0.0
+    for i in range(n - 1, -1, -1):
+        _multiply(links[i], after[i + 1], turned)
+        _turn(theta[i], turned, after[i])
+    for r in range(8):
+        before[r] = 0.0
+    before[0] = 1.0 if after[0, 0].real >= 0 else -1.0
+    for r in range(3):
+        error[r] = before[0] * after[0, r + 1]
+        error[r + 3] = before[0] * after[0, r + 5]
+    for i in range(n):
+        _turn_by_right_angle(after[i], turned)
+        _multiply(before, turned, derivative)
+        for r in range(3):
+            jacobian[r, i] = derivative[r + 1] / 2
+            jacobian[r + 3, i] = derivative[r + 5] / 2
+        _turn(theta[i], links[i], turned)
+        _multiply(before, turned, longer)
+        before, longer = longer, before
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _multiply(p, q, out):
+    """Fill the product (8,) of two dual quaternions (w, x, y, z, and the same of the
+    dual part)."""
+    for r in range(8):
+        out[r] = 0.0
+    for i in range(0, 8, 4):
+        for j in range(0, 8 - i, 4):
+            a, b, c, d = p[i], p[i + 1], p[i + 2], p[i + 3]
+            w, x, y, z = q[j], q[j + 1], q[j + 2], q[j + 3]
+            k = i + j
+            out[k] += a * w - b * x - c * y - d * z
+            out[k + 1] += a * x + b * w + c * z - d * y
+            out[k + 2] += a * y - b * z + c * w + d * x
+            out[k + 3] += a * z + b * y - c * x + d * w
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _turn(angle, q, out):
+    """Fill (cos(angle/2) + k sin(angle/2)) q (8,)."""
+    c, s = np.cos(angle / 2), np.sin(angle / 2)
+    _turn_by_right_angle(q, out)
+    for r in range(8):
+        out[r] = c * q[r] + s * out[r]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _turn_by_right_angle(q, out):
+    """Fill k q (8,)."""
+    for i in (0, 4):
+        out[i], out[i + 1], out[i + 2], out[i + 3] = (
+            -q[i + 3],
+            -q[i + 2],
+            q[i + 1],
+            q[i],
+        )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
