@@ -1,0 +1,117 @@
+"""All isolated assemblies of a loop."""
+
+import numpy as np
+import pytest
+
+from linkages.catalogue import entry
+from linkages.loop import GeometryError, Loop, loop_from_axes
+from linkages.slices import assemblies
+from linkages.slices.assemblies import (
+    GenericLoop,
+    PathEnd,
+    follow_paths,
+    isolated_assemblies,
+)
+
+# The 6R of the CUIK suite (Porta, Ros and Thomas; `Serial6R.world`) with 16 real
+# assemblies.
+RIGHT = np.pi / 2
+SIXTEEN = Loop(
+    (0.3, 1, 0, 1.5, 0, 1.1353),
+    (RIGHT, 0.0175, RIGHT, 0.0175, RIGHT, 1.4716),
+    (0.1049, 0.0106, 0, 0.2, 0, 0),
+)
+
+
+def gap(one, other):
+    turned = one - other
+    return np.abs(turned - 2 * np.pi * np.round(turned.real / (2 * np.pi))).max()
+
+
+def closure(loop, configurations):
+    return np.abs(loop.frames(configurations)[:, -1] - np.eye(4)).max(initial=0.0)
+
+
+def test_the_6r_with_sixteen_real_assemblies_has_sixteen():
+    found = isolated_assemblies(SIXTEEN)
+    assert found.complete
+    assert len(found.configurations) == 16
+    assert closure(SIXTEEN, found.configurations) < 1e-12
+
+
+@pytest.mark.parametrize("n", (4, 5, 6))
+def test_a_loop_from_axes_has_the_assembly_in_which_the_axes_were_given(n):
+    rng = np.random.default_rng(n)
+    for _ in range(5):
+        axes = rng.normal(size=(2, n, 3))
+        loop, theta = loop_from_axes(*axes)
+        found = isolated_assemblies(loop)
+        assert found.complete
+        assert closure(loop, found.configurations) < 1e-9
+        assert min(gap(theta, other) for other in found.configurations) < 1e-8
+
+
+@pytest.mark.parametrize(
+    ("name", "count"),
+    [
+        ("yu-baker-two-ratios", 6),  # beside a motion
+        ("bricard-octahedral-plane-symmetric", 4),
+        ("special-double-subtractive-goldberg", 0),
+        ("bennett", 0),
+    ],
+)
+def test_motions_do_not_hide_isolated_assemblies(name, count):
+    found = isolated_assemblies(entry(name).build())
+    assert found.complete
+    assert len(found.configurations) == count
+
+
+def test_two_assemblies_that_nearly_coincide_are_told_apart():
+    rng = np.random.default_rng(0)
+    for _ in range(32):  # of the last the smallest singular value is 3.6e-4
+        loop, theta = loop_from_axes(rng.normal(size=(4, 3)), rng.normal(size=(4, 3)))
+    found = isolated_assemblies(loop)
+    assert found.complete
+    assert min(gap(theta, other) for other in found.configurations) < 1e-8
+
+
+def test_the_generic_loop_closes_in_sixteen_configurations():
+    loop = assemblies._stored_loop()
+    assert loop.configurations.shape == (16, 6)
+    one_another = [
+        gap(a, b)
+        for i, a in enumerate(loop.configurations)
+        for b in loop.configurations[:i]
+    ]
+    assert min(one_another) > 1e-3
+    again = follow_paths(loop, loop.table)
+    assert np.all(again.ends == PathEnd.ARRIVED)
+    assert max(map(gap, again.angles, loop.configurations)) < 1e-10
+
+
+def test_one_configuration_leads_to_all_sixteen_by_going_round_in_the_geometries():
+    loop = assemblies._stored_loop()
+    rng = np.random.default_rng(0)
+    found = loop.configurations[:1]
+    for _ in range(14):
+        stops = [loop.table + _random_table(rng) for _ in range(2)]
+        moved = GenericLoop(loop.table, found)
+        for table in (*stops, loop.table):
+            paths = follow_paths(moved, table)
+            moved = GenericLoop(table, paths.angles[paths.ends == PathEnd.ARRIVED])
+        for configuration in moved.configurations:
+            if min(gap(configuration, other) for other in found) > 1e-6:
+                found = np.vstack([found, configuration])
+    assert len(found) == 16
+    for configuration in found:
+        assert min(gap(configuration, other) for other in loop.configurations) < 1e-6
+
+
+def _random_table(rng):
+    table = rng.normal(size=(3, 6)) + 1j * rng.normal(size=(3, 6))
+    return table * np.array([[1.0], [0.5], [1.0]])
+
+
+def test_a_loop_of_seven_joints_is_refused():
+    with pytest.raises(GeometryError, match="number of joints: 7"):
+        isolated_assemblies(Loop((1,) * 7, (1,) * 7, (0,) * 7))
