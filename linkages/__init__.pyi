@@ -1,6 +1,7 @@
 from .axes import loop_from_axes as loop_from_axes
 from .catalogue import UnknownLinkageError as UnknownLinkageError
 from .closure.loop_closure import LoopClosure as LoopClosure
+from .entry import UnknownParameterError as UnknownParameterError
 from .file import LinkageFileError as LinkageFileError
 from .labels import FormLabels as FormLabels
 from .labels import NoLinkageError as NoLinkageError
@@ -11,3 +12,5 @@ from .linkage import load as load
 from .loop import GeometryError as GeometryError
 from .loop import Loop as Loop
 from .mapping import map_linkage as map_linkage
+from .slices.assemblies import Assemblies as Assemblies
+from .slices.assemblies import isolated_assemblies as isolated_assemblies

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
-from linkages.loop import GeometryError, Loop, loop_from_axes
+from linkages.loop import GeometryError, Loop
 from linkages.slices import assemblies
 from linkages.slices.assemblies import (
     GenericLoop,
