@@ -23,6 +23,7 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
+from bifurc.seeds import Level
 from linkages.app.texts import table
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
@@ -32,7 +33,7 @@ __all__ = ["linkages", "same_motions"]
 
 FIRST = SearchSettings(starts=1, prove=True)
 SECOND = SearchSettings(starts=1500)
-LEVELS = ("proved", "certified", "estimated")
+LEVELS = (Level.PROVED, Level.CERTIFIED, Level.ESTIMATED)
 AT_BIRTH = "beside a birth"
 # at this twist, with these parameters, a second motion is born in a point; it grows as
 # the root of the distance
@@ -101,7 +102,7 @@ def main(count: int, seed: int) -> None:
         seconds.append(time.process_time() - start)
         level = atlas.completeness.level
         levels.setdefault(kind, Counter())[level] += 1
-        if level != "proved":
+        if level is not Level.PROVED:
             continue
         if not same_motions(atlas, explore(problem, settings=SECOND, seed=2)):
             refuted += 1

@@ -210,7 +210,7 @@ def _completeness(atlas: Atlas) -> CompletenessDocument:
     slices = is_without_gaps(completeness)
     return {
         "level": "complete slices" if slices else "estimated",
-        "certainty": completeness.level,
+        "certainty": completeness.level.value,
         "statement": completeness.statement,
         "missed_probability": completeness.missed_probability,
     }

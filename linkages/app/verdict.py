@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bifurc.atlas import Atlas
-from bifurc.seeds import Completeness
+from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
 from linkages.app.exit_codes import ExitCode
 from linkages.app.texts import count_of
@@ -36,14 +36,14 @@ def judge(atlas: Atlas) -> Verdict:
         return Verdict(_interrupted(atlas), ExitCode.INTERRUPTED)
     if atlas.forms or atlas.surfaces:
         return Verdict(_mobile(atlas), ExitCode.DONE)
-    if atlas.completeness.level == "out of time":
+    if atlas.completeness.level is Level.OUT_OF_TIME:
         return Verdict(_nothing_known(atlas), ExitCode.NOTHING_KNOWN)
     return Verdict(_immobile(atlas), ExitCode.DOES_NOT_MOVE)
 
 
 def is_without_gaps(completeness: Completeness) -> bool:
     """Whether every slice was complete, and nothing rests on random starts alone."""
-    return completeness.level in ("proved", "certified")
+    return completeness.level in (Level.PROVED, Level.CERTIFIED)
 
 
 def _interrupted(atlas: Atlas) -> str:
