@@ -74,7 +74,10 @@ def is_linkage_file(source: str | Path) -> bool:
     file."""
     if isinstance(source, Path):
         return True
-    return source.endswith(".toml") or Path(source).is_file()
+    try:
+        return source.endswith(".toml") or Path(source).is_file()
+    except OSError:  # a text that no file can be called, such as one far too long
+        return False
 
 
 def _load_entry(name: str, parameters: dict[str, float]) -> Linkage:

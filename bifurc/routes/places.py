@@ -73,7 +73,13 @@ def place_of(search: RouteSearch, where: str | np.ndarray) -> Place:
     if isinstance(where, str):
         return _place_of_name(search, where)
     n = len(search.atlas.names)
-    point = np.asarray(where, dtype=float)
+    try:
+        point = np.asarray(where, dtype=float)
+    except (TypeError, ValueError):
+        allowed = f"the name of a form or a surface, or {n} finite numbers"
+        raise RouteError(
+            f"a place of type {type(where).__name__}: it must be {allowed}"
+        ) from None
     if point.shape != (n,) or not np.all(np.isfinite(point)):
         raise RouteError(f"configuration {point}: it must be {n} finite numbers")
     return _place_of_configuration(search, point)

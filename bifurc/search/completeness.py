@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from bifurc.atlas import Provenance
+from bifurc.branch import Outcome
 from bifurc.search.findings import Findings
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeding import missed_probability
@@ -34,6 +35,12 @@ def judge_completeness(findings: Findings, provenance: Provenance) -> Completene
         return Completeness(Level.INTERRUPTED, statement, missed)
     if audit is None:
         return Completeness(Level.ESTIMATED, estimate, missed)
+    cut_off = sum(branch.outcome is Outcome.STEP_LIMIT for branch in findings.branches)
+    if cut_off:
+        statement = (
+            f"{cut_off} of the forms are longer than they were traced; {estimate}"
+        )
+        return Completeness(Level.ESTIMATED, statement, missed)
     return Completeness(audit.level, f"{audit.statement}; {estimate}", missed)
 
 

@@ -6,7 +6,10 @@ import logging
 import time
 from collections.abc import Callable
 
+import numpy as np
+
 from bifurc.atlas import Atlas, Provenance
+from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
 from bifurc.search.search import Search
@@ -18,6 +21,8 @@ __all__ = ["explore"]
 DEFAULT_SEARCH = SearchSettings()
 
 log = logging.getLogger(__name__)
+
+LARGEST_SEED = 2**63 - 1  # what a dataset can hold
 
 
 def explore(
@@ -36,8 +41,14 @@ def explore(
     become further starts. ``progress`` is called with what was found and how many.
     Ctrl-C ends the search early: the atlas holds what was found, and its provenance
     says so. When the budget of time is used up, the completeness and the provenance say
-    so.
+    so. Raises `ProblemError` for settings or a seed that cannot be used.
     """
+    if not isinstance(settings, SearchSettings):
+        raise ProblemError("settings", repr(settings), "SearchSettings")
+    if not isinstance(seed, int | np.integer) or not 0 <= seed <= LARGEST_SEED:
+        raise ProblemError(
+            "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
+        )
     began = time.perf_counter()
     search = Search(problem, settings, progress)
     interrupted = False
@@ -52,7 +63,7 @@ def explore(
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
     provenance = Provenance(
-        seed=seed,
+        seed=int(seed),
         settings=settings,
         interrupted=interrupted,
         out_of_time=search.is_over,

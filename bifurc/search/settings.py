@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from bifurc.curves.continuation import TraceSettings
 from bifurc.errors import ProblemError
 
@@ -29,6 +31,10 @@ class SearchSettings:
     tracing: TraceSettings = field(default_factory=TraceSettings)
 
     def __post_init__(self) -> None:
+        for name in ("starts", "charts"):
+            value = getattr(self, name)
+            if not isinstance(value, int | np.integer):
+                raise ProblemError(name, repr(value), "a whole number")
         if self.starts < 1:
             raise ProblemError("starts", self.starts, "at least 1")
         if not self.budget > 0:

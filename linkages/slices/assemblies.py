@@ -112,6 +112,8 @@ def isolated_assemblies(loop: Loop) -> Assemblies:
 
     Raises `GeometryError` for a loop of more than six joints.
     """
+    if not isinstance(loop, Loop):
+        raise GeometryError("loop", type(loop).__name__, "a Loop, such as linkage.loop")
     if loop.n > JOINTS:
         raise GeometryError("number of joints", loop.n, f"at most {JOINTS}")
     longer = _with_six_joints(loop)

@@ -207,3 +207,10 @@ def test_a_notebook_shows_a_route_as_a_table_of_legs_with_names_escaped() -> Non
     assert "<tr><th>form</th><th>from</th><th>to</th><th>at</th>" in table
     assert "<td>a&lt;b</td><td>0</td><td>1</td><td>goal</td><td>1</td>" in table
     assert "<td>total</td>" in table
+
+
+def test_a_place_that_is_neither_name_nor_configuration_is_refused() -> None:
+    atlas = draw({"ring": ring(0.0)}, {})
+    for place in (atlas.forms[0], None, ["a", "b"]):
+        with pytest.raises(RouteError, match=r"name of a form|finite numbers"):
+            find_route(atlas, place, "ring")

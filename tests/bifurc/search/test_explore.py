@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
+from bifurc.curves.continuation import TraceSettings
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
@@ -337,3 +338,28 @@ def test_a_seed_that_only_looks_as_on_a_surface_is_taken_for_what_it_is():
     assert not atlas.surfaces
     assert len(atlas.forms) == 1
     assert atlas.completeness.level == "proved"
+
+
+@pytest.mark.parametrize("seed", [-1, 1.5, None, "a", 2**70])
+def test_a_seed_that_is_no_whole_number_is_refused(seed):
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2)
+    with pytest.raises(ProblemError, match="seed"):
+        explore(problem, seed=seed)
+
+
+@pytest.mark.parametrize("settings", [None, {}, 200])
+def test_settings_of_another_type_are_refused(settings):
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1]]), [(-1, 1)] * 2)
+    with pytest.raises(ProblemError, match="settings"):
+        explore(problem, settings=settings)
+    with pytest.raises(ProblemError, match=r"starts: 1\.5"):
+        SearchSettings(starts=1.5)
+
+
+def test_nothing_is_proved_of_an_atlas_with_a_form_that_was_cut_off():
+    tracing = TraceSettings(longest=0.5, max_length=0.6)
+    loop = entry("bennett").build()
+    atlas = explore(LoopClosure(loop), settings=SearchSettings(tracing=tracing))
+    assert atlas.forms[0].branch.outcome is Outcome.STEP_LIMIT
+    assert atlas.completeness.level == "estimated"
+    assert "longer than they were traced" in atlas.completeness.statement
