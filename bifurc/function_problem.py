@@ -112,7 +112,9 @@ class FunctionProblem(NumericalProblem):
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
-        return np.array([self._value(point) for point in np.atleast_2d(points)])
+        function = self._function  # called thousands of times a curve
+        values = [function(point) for point in np.atleast_2d(points)]
+        return np.array(values, dtype=float)
 
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it

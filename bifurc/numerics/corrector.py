@@ -48,7 +48,7 @@ class _Iterate(NamedTuple):
 
 
 def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
-    residual = problem.relative_residuals(point[None])[0]
+    residual = problem.residuals(point[None])[0] / problem.magnitude
     return _Iterate(point, residual, math.sqrt(residual @ residual))
 
 

@@ -27,7 +27,9 @@ __all__ = [
 # unknowns beyond which tangents come from bordered systems instead of an SVD
 LARGE = 64
 NULL = 1e-7  # singular value below which a direction belongs to the null space
-TINY = 1e-300  # may stand in a denominator where a singular value is zero
+# stands in a denominator where a singular value is zero: the square of what comes out
+# is still a double
+TINY = 1e-140
 
 
 # --- tangents -------------------------------------------------------------------------

@@ -78,3 +78,12 @@ def test_a_part_of_a_decomposition_is_replaced(cubic):
     decomposition.replace(rows, decompose(cubic, points[[0, 2]]))
     assert np.array_equal(decomposition.sigma[rows], decomposition.sigma[[0, 2]])
     assert np.array_equal(decomposition.right[rows], decomposition.right[[0, 2]])
+
+
+def test_a_step_where_a_singular_value_is_zero_has_a_finite_length():
+    hyperbola = FunctionProblem(lambda u: np.array([u[0] * u[1] - 0.01]), BOX[:2])
+    decomposition = decompose(hyperbola, np.zeros((1, 2)))
+    assert decomposition.sigma[0, 0] == 0.0
+    with np.errstate(all="raise"):
+        length = np.linalg.norm(decomposition.newton_steps(rank=1), axis=1)[0]
+    assert 1e100 < length < np.inf
