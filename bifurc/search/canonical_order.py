@@ -61,25 +61,26 @@ def _order(
     """Numbers (k,) of rows (k, q) in lexicographic order, smallest first, one group
     after another. Rows alike in all columns keep their order."""
     count = len(features)
-    if groups is None:
-        groups = np.zeros(count, dtype=int)
-    _, ranks = np.unique(groups, return_inverse=True)
+    ranks = np.zeros(count, dtype=int) if groups is None else groups
     for values in features.T:
-        if ranks.max(initial=0) >= count - 1:
+        ranks = _finer_ranks(ranks, values, tolerance)
+        if ranks.max() == count - 1:
             break  # no two rows are alike any more
-        finer = ranks * count + _ranks(values, tolerance)
-        _, ranks = np.unique(finer, return_inverse=True)
     return np.argsort(ranks, kind="stable")
 
 
-def _ranks(values: np.ndarray, tolerance: float) -> np.ndarray:
-    """Ranks (k,) of values (k,): sorted, they are cut at the steps larger than
-    ``tolerance``, and what stands between two cuts is alike."""
-    ascending = np.argsort(values, kind="stable")
-    steps = np.diff(values[ascending])
-    ranks = np.zeros(len(values), dtype=int)
-    ranks[ascending[1:]] = np.cumsum(steps > tolerance)
-    return ranks
+def _finer_ranks(ranks: np.ndarray, values: np.ndarray, tolerance: float) -> np.ndarray:
+    """Ranks (k,) by former ranks (k,) and then by values (k,).
+
+    Of one former rank the sorted values are cut at the steps larger than ``tolerance``,
+    and what stands between two cuts is alike.
+    """
+    ascending = np.lexsort((values, ranks))
+    is_step = np.diff(values[ascending]) > tolerance
+    is_step |= np.diff(ranks[ascending]) > 0
+    finer = np.zeros(len(ranks), dtype=int)
+    finer[ascending[1:]] = np.cumsum(is_step)
+    return finer
 
 
 def _branch_features(branch: Branch, scale: float) -> np.ndarray:
