@@ -7,6 +7,8 @@ for an open one. All arrays are contiguous: another memory layout would be compi
 anew.
 """
 
+# numba infers the types of compiled functions
+# mypy: allow-untyped-defs, allow-untyped-calls
 from __future__ import annotations
 
 import numpy as np

@@ -12,6 +12,8 @@ A loop of four or five joints becomes one of six: its last link is cut by generi
 A configuration of the longer loop is one of the given loop where these stand still.
 """
 
+# numba infers the types of compiled functions
+# mypy: allow-untyped-defs, allow-untyped-calls
 from __future__ import annotations
 
 import json
