@@ -7,13 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.special import gammaincinv
 
+from bifurc.decisions import is_solution
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
-__all__ = ["CLOSED", "missed_probability", "random_seeds"]
+__all__ = ["missed_probability", "random_seeds"]
 
-
-CLOSED = 1e-12  # residual below which a start has reached a solution
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 
 
@@ -28,13 +27,13 @@ def random_seeds(problem: Problem, rng: np.random.Generator, count: int) -> Seed
     points, gaps = problem.project(starts)
     lowest, highest = problem.bounds.T
     is_inside = np.all((points >= lowest) & (points <= highest), axis=1)
-    is_solution = (gaps < CLOSED) & is_inside
-    solutions = points[is_solution]
+    is_taken = is_solution(gaps) & is_inside
+    solutions = points[is_taken]
     return Seeds(
         points=solutions,
         random=np.ones(len(solutions), dtype=bool),
-        gaps=gaps[~is_solution],
-        missed=points[~is_solution],
+        gaps=gaps[~is_taken],
+        missed=points[~is_taken],
     )
 
 

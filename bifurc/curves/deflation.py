@@ -18,6 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from bifurc.curves.monitor import singular_values
+from bifurc.decisions import is_shaky
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
@@ -26,9 +27,6 @@ from bifurc.singular.sphere import section
 
 __all__ = ["Deflated", "lower_rank_direction"]
 
-# singular value that counts as zero at a start: seeds reach a double component only to
-# 1e-8
-LOWER = 1e-5
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales
 
@@ -146,14 +144,14 @@ def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | No
     no higher rank on either.
     """
     sigma, right = null_spaces(problem, point[None])
-    if np.count_nonzero(sigma[0] < LOWER) != 2:
+    if np.count_nonzero(is_shaky(sigma[0])) != 2:
         return None
     null_space = right[0, problem.n - 2 :].T
     cut = section(problem, point, null_space, SECTION_RADIUS * problem.scale)
     if cut.dimension != 1 or len(cut.points) != 2:
         return None
     sigma = singular_values(problem, cut.points)
-    if sigma[:, problem.n - 2].max() > LOWER:
+    if not np.all(is_shaky(sigma[:, problem.n - 2])):
         return None
     chord: np.ndarray = cut.points[1] - cut.points[0]
     length = np.linalg.norm(chord)

@@ -8,12 +8,12 @@ import numpy as np
 
 from bifurc.branch import Outcome
 from bifurc.curves.track import End, Place, Track
+from bifurc.decisions import is_back
 from bifurc.pieces import point_and_slope, points_on_piece
 from bifurc.problem import Problem
 
 __all__ = ["end_of_curve"]
 
-RESOLVED = 1e-6  # two points farther apart, in scales, are never taken for one
 SAME_WAY = 0.9  # cosine of the angle between two passes through one point that are one
 ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
 FOOT_STEPS = 6  # of Newton's method from a sample of a piece to the foot of a point
@@ -112,7 +112,7 @@ def _is_same_pass(
     if not foot.slope @ place.tangent > SAME_WAY * speed:
         return False
     distance = np.linalg.norm(foot.offset)
-    if distance > RESOLVED * problem.scale:
+    if not is_back(float(distance), problem.scale):
         return False
     if distance < max(1e-9, 30 * tolerance) * problem.scale:
         return True

@@ -15,6 +15,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.monitor import NODES, Profile, singular_values
+from bifurc.decisions import is_level, stands_out
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
 
@@ -22,8 +23,6 @@ __all__ = ["Minima", "singular_value_minima", "stand_out"]
 
 FINE = 96  # intervals of a piece on which the interpolants are compared
 DIFFERENCE = 1e-5  # step, over the scale, of the central difference of F'
-# Slope of a singular value, over magnitude and scale, below which it is rounding.
-LEVEL = 1e-8
 # Rise of a singular value, relative and not, that is none.
 ROUNDING, ZERO = 1e-8, 1e-10
 LOCATED = 1e-12  # error of the place of a minimum, over the scale
@@ -92,8 +91,7 @@ def stand_out(
     doubtful = (values > (1.0 - 2 * TIE) * half) & (values < 1.1 * half)
     if np.any(doubtful):
         half = 0.5 * _largest_value(problem, branch, profile)
-    below: np.ndarray = values < (1.0 - TIE) * half
-    return below
+    return stands_out(values, half)
 
 
 def _largest_value(problem: Problem, branch: Branch, profile: Profile) -> float:
@@ -245,7 +243,7 @@ def _valleys(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Brackets (low, high) between which the ``slopes`` (k,) at ``s`` (k,) turn to
     rising."""
-    steep = np.abs(slopes) > LEVEL
+    steep = ~is_level(np.abs(slopes))
     s, slopes = s[steep], slopes[steep]
     if branch.closed and len(s):
         s = np.append(s, s[0] + branch.length)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.decisions import is_zero_along, stands_still
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
 
@@ -27,7 +28,6 @@ __all__ = [
 COUNT = 16
 # Chebyshev nodes of a piece, from 0 where it begins to 1 where it ends.
 NODES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(COUNT) + 0.5) / COUNT)
-STANDS_STILL = 1e-8  # the largest rate of an unknown that keeps its value
 
 
 @dataclass(frozen=True)
@@ -61,15 +61,12 @@ def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
     return out.reshape(points.shape)
 
 
-def profile_branch(
-    problem: Problem, branch: Branch, tolerance: float = 1e-9
-) -> Profile:
-    """The singular values along a curve; ``tolerance``: what counts as zero, over the
-    problem's magnitude."""
+def profile_branch(problem: Problem, branch: Branch) -> Profile:
+    """The singular values along a curve."""
     arclength = branch.places(NODES)
     values = singular_values(problem, branch(arclength))
     typical = np.median(values.reshape(-1, problem.n), axis=0)
-    rank = int(np.count_nonzero(typical > tolerance))
+    rank = int(np.count_nonzero(~is_zero_along(typical)))
     return Profile(arclength, values, max(min(rank, problem.n - 1), 1))
 
 
@@ -100,6 +97,6 @@ def dead_points(branch: Branch) -> list[np.ndarray]:
     """For each unknown the arclengths of its dead points: du_i/ds changes sign. None
     for one that stays constant."""
     slopes = np.abs(branch(branch.arclengths(64), 1)).max(axis=0)
-    moving = np.flatnonzero(slopes > STANDS_STILL)
+    moving = np.flatnonzero(~stands_still(slopes))
     roots = iter(roots_along(branch, lambda s: branch(s, 1)[:, moving]))
     return [next(roots) if i in moving else np.empty(0) for i in range(branch.n)]

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import issparse, sparray
 
+from bifurc.decisions import is_null
 from bifurc.numerics.bordered import Bordered
 from bifurc.problem import Problem
 
 __all__ = [
     "LARGE",
-    "NULL",
     "Decomposition",
     "decompose",
     "null_spaces",
@@ -26,7 +26,6 @@ __all__ = [
 
 # unknowns beyond which tangents come from bordered systems instead of an SVD
 LARGE = 64
-NULL = 1e-7  # singular value below which a direction belongs to the null space
 # stands in a denominator where a singular value is zero: the square of what comes out
 # is still a double
 TINY = 1e-140
@@ -90,12 +89,12 @@ def tangent_planes(
     to ``near`` is taken.
     """
     sigma, right = null_spaces(problem, points)
-    zeros = np.count_nonzero(sigma < NULL, axis=1)
+    zeros = np.count_nonzero(is_null(sigma), axis=1)
     nullity = np.maximum(zeros, 2)
     most = int(nullity.max(initial=2))
     numbers = np.arange(most, 0, -1)  # of the singular values, counted from the last
-    is_null = numbers <= nullity[:, None]  # (k, most)
-    rows = right[:, -most:] * is_null[:, :, None]
+    belongs = numbers <= nullity[:, None]  # (k, most)
+    rows = right[:, -most:] * belongs[:, :, None]
     left, _, across = np.linalg.svd(rows @ near, full_matrices=False)
     columns = np.swapaxes(rows, 1, 2)
     planes: np.ndarray = columns @ left @ across

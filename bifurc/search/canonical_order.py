@@ -8,14 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.decisions import is_tied
 from bifurc.problem import Problem
 from bifurc.torus import wrap
 
 __all__ = ["order_branches", "order_points"]
 
-# Features count as equal that differ by less, or by steps that do. They are lengths over the problem's
-# scale, or means of cosines and sines.
-ALIKE = 1e-6
 COARSEST = 0.1  # what a large error adds to it at most
 # The rule of Gauss and Legendre on every piece, for means along a branch.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
@@ -32,7 +30,7 @@ def order_branches(problem: Problem, branches: Sequence[Branch]) -> np.ndarray:
     if len(branches) < 2:
         return np.arange(len(branches))
     features = [_branch_features(branch, problem.scale) for branch in branches]
-    return _order(-np.array(features), ALIKE)
+    return _order(-np.array(features), is_tied.threshold)
 
 
 def order_points(
@@ -50,7 +48,8 @@ def order_points(
     """
     if len(points) < 2:
         return np.arange(len(points))
-    tolerance = ALIKE + min(2 * error / scale, COARSEST)
+    # of two rows that differ by less in one column the next one decides
+    tolerance = is_tied.threshold + min(2 * error / scale, COARSEST)
     places = wrap(points, periods, within=tolerance) / scale
     return _order(places, tolerance, groups)
 
@@ -76,7 +75,7 @@ def _finer_ranks(ranks: np.ndarray, values: np.ndarray, tolerance: float) -> np.
     and what stands between two cuts is alike.
     """
     ascending = np.lexsort((values, ranks))
-    is_step = np.diff(values[ascending]) > tolerance
+    is_step = ~is_tied(np.diff(values[ascending]), tolerance / is_tied.threshold)
     is_step |= np.diff(ranks[ascending]) > 0
     finer = np.zeros(len(ranks), dtype=int)
     finer[ascending[1:]] = np.cumsum(is_step)

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bifurc.atlas import Surface
+from bifurc.decisions import is_null
 from bifurc.limits import Deadline
-from bifurc.numerics.null_spaces import NULL, null_spaces
+from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
@@ -157,7 +158,7 @@ def components_of_seeds(
     components = Components()
     if problem.n < 2:
         return components
-    doubtful = np.flatnonzero(values[:, problem.n - 2] < NULL)
+    doubtful = np.flatnonzero(is_null(values[:, problem.n - 2]))
     local = local_dimensions(problem, points[doubtful], deadline)
     for dimension in np.unique(local.dimension[local.dimension >= 2]):
         is_regular = (local.nullity == dimension) | (dimension > 2)

@@ -11,17 +11,15 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.monitor import Profile
+from bifurc.decisions import is_same_point
 from bifurc.problem import Problem
 from bifurc.search.components import Components
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeds import Audit, Seeds
 from bifurc.singular.point import SingularPoint
 
-__all__ = ["SAME", "Findings", "PointSighting", "TracedBranch"]
+__all__ = ["Findings", "PointSighting", "TracedBranch"]
 
-# Distance, over the problem's scale, below which two points are one, and a point lies
-# on a traced branch.
-SAME = 1e-6
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
 
@@ -106,10 +104,10 @@ class Findings:
         of the others is settled."""
         if not numbers:
             return []
-        within = SAME * self.problem.scale
+        within = is_same_point.threshold * self.problem.scale
         points = self.seeds.points[list(numbers)]
         distance, _ = self.traced[branch].branch.nearest(points, within=within)
-        is_on = distance < within
+        is_on = is_same_point(distance, self.problem.scale)
         matching = list(compress(numbers, is_on))
         self._settle(matching, SeedFate(Fate.ON_FORM, branch))
         return list(compress(numbers, ~is_on))
@@ -126,7 +124,9 @@ class Findings:
         self.awaits_audit = True
         return len(self.traced) - 1
 
-    def branch_through(self, point: np.ndarray, within: float = SAME) -> int | None:
+    def branch_through(
+        self, point: np.ndarray, within: float = is_same_point.threshold
+    ) -> int | None:
         """The number of the first branch at less than ``within`` scales from a point
         (n,)."""
         reach = within * self.problem.scale
@@ -141,7 +141,7 @@ class Findings:
         points = branch(branch.length * PLACES)
         for number, known in enumerate(self.branches):
             distance, _ = known.nearest(points)
-            if np.all(distance < SAME * self.problem.scale):
+            if np.all(is_same_point(distance, self.problem.scale)):
                 return number
         return None
 
@@ -169,7 +169,9 @@ class Findings:
         """The known singular point that one located at ``u`` (n,) to within ``error``
         is."""
         for number, point in enumerate(self.points):
-            within = SAME * self.problem.scale + 2 * max(error, point.error)
+            within = is_same_point.threshold * self.problem.scale + 2 * max(
+                error, point.error
+            )
             if self._distance(point.u, u) < within:
                 return PointSighting(point, number, is_new=False)
         return None
@@ -177,7 +179,7 @@ class Findings:
     def rigid_assembly(self, u: np.ndarray) -> int:
         """The number of the rigid assembly at ``u`` (n,), which is recorded if new."""
         for number, known in enumerate(self.rigid):
-            if self._distance(known, u) < SAME * self.problem.scale:
+            if is_same_point(self._distance(known, u), self.problem.scale):
                 return number
         self.rigid.append(u)
         return len(self.rigid) - 1

@@ -10,10 +10,10 @@ import numpy as np
 
 from bifurc.atlas import MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
+from bifurc.decisions import is_same_point
 from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_points
 from bifurc.search.components import surfaces_through
-from bifurc.search.findings import SAME
 from bifurc.singular.point import Kind, SingularPoint
 
 __all__ = ["meeting_points"]
@@ -164,7 +164,7 @@ def _passes_at(
 ) -> list[float]:
     """Arclengths at which a branch passes a point, but for the ``ends`` that lie
     there."""
-    within = SAME * problem.scale + 2 * point.error
+    within = is_same_point.threshold * problem.scale + 2 * point.error
     passes = [float(s) for s in branch.passes(point.u, within)]
     if branch.outcome is not Outcome.STALLED:
         return passes

@@ -14,13 +14,19 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import Profile, profile_branch, singular_values
+from bifurc.decisions import (
+    is_mobile,
+    is_solution,
+    is_stub,
+    may_be_crossed,
+    may_be_singular,
+)
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.problem import Problem
 from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import Findings, PointSighting, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.search.settings import SearchSettings
-from bifurc.seeding import CLOSED
 from bifurc.seeds import Seeds
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
@@ -32,10 +38,7 @@ __all__ = ["Limits", "Search", "Start"]
 log = logging.getLogger(__name__)
 
 # Singular values are over the problem's magnitude, lengths over its scale.
-STUB = 2e-2  # length below which a branch that stalls at both ends is none
-NEARLY = 1e-3  # singular value below which a singular point is looked for
-RIGID = 1e-6  # singular value number n above which a seed is a rigid assembly
-LOW_RANK = 1e-4  # singular value below which a seed may be singular
+CLOSED_STUB = 20  # times shorter: a branch that does not stall and is none
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
@@ -163,9 +166,9 @@ class Search:
         """What a seed lies on; the curves there are traced."""
         point = self.findings.seeds.points[number]
         values = self.findings.seed_values[number]
-        if values[self.problem.n - 1] > RIGID:
+        if not is_mobile(float(values[self.problem.n - 1])):
             return self._rigid_fate(point)
-        if values[self.problem.n - 2] <= LOW_RANK:
+        if may_be_singular(float(values[self.problem.n - 2])):
             fate = self._fate_at_low_rank(point, values)
             if fate is not None:
                 return fate
@@ -192,7 +195,7 @@ class Search:
         direction = lower_rank_direction(self.problem, point)
         if direction is not None:
             return self._trace_lower_rank(point, direction)
-        nullity = int(np.count_nonzero(values < LOW_RANK))
+        nullity = int(np.count_nonzero(may_be_singular(values)))
         sighting = self._examine(point, nullity, SEED_REACH)
         if sighting is None:
             return None
@@ -243,9 +246,12 @@ class Search:
     def _is_curve(self, branch: Branch) -> bool:
         """Whether a traced branch is more than the trace of rounding beside a singular
         point."""
-        shortest = STUB if branch.outcome is Outcome.STALLED else STUB / 20
-        is_long = branch.length > shortest * self.problem.scale
-        return bool(len(branch.pieces)) and is_long
+        if not len(branch.pieces):
+            return False
+        unit = self.problem.scale
+        if branch.outcome is not Outcome.STALLED:
+            unit /= CLOSED_STUB
+        return not is_stub(branch.length, unit)
 
     # --- singular points --------------------------------------------------------------
 
@@ -277,11 +283,17 @@ class Search:
             # does it whether the point is reached from one start.
             offsets = np.minimum(self.problem.scale * BESIDE_END, 0.5 * branch.length)
             stretches = (offsets, branch.length - offsets)
-            return [_Candidate(looks, 10 * NEARLY, CUSP_REACH) for looks in stretches]
+            return [
+                _Candidate(looks, 10 * may_be_crossed.threshold, CUSP_REACH)
+                for looks in stretches
+            ]
         # An end is no minimum, and yet a singular point may lie there.
         ends = np.array([0.0, branch.length])
         values = self._singular_values(branch(ends))[:, profile.rank - 1]
-        return [_Candidate(end[None], NEARLY) for end in ends[values < NEARLY]]
+        return [
+            _Candidate(end[None], may_be_crossed.threshold)
+            for end in ends[may_be_crossed(values)]
+        ]
 
     def _examine_candidate(
         self, branch: Branch, candidate: _Candidate
@@ -366,7 +378,7 @@ class Search:
             findings.set_audit(audit)
             self.limits.interrupt.check()
             solutions, gaps = self.problem.project(audit.starts)
-            solutions = solutions[gaps < CLOSED]
+            solutions = solutions[is_solution(gaps)]
             seeds = findings.seeds.with_constructed(solutions)
             findings.add_seeds(seeds, self._singular_values(solutions))
             self.trace_seeds()
@@ -381,7 +393,7 @@ def _half_branch_starts(point: SingularPoint) -> list[Start]:
 def _small_minima(arclengths: np.ndarray, values: np.ndarray) -> list[_Candidate]:
     """Minima (k,) of the singular value that may be singular points."""
     candidates = []
-    for k in np.flatnonzero(values < NEARLY):
-        zero = max(NEARLY, 3 * float(values[k]))
+    for k in np.flatnonzero(may_be_crossed(values)):
+        zero = max(may_be_crossed.threshold, 3 * float(values[k]))
         candidates.append(_Candidate(arclengths[k : k + 1], zero))
     return candidates

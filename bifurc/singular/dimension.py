@@ -14,26 +14,25 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.decisions import (
+    is_null,
+    is_null_at_probe,
+    is_solution_at_probe,
+    is_surface_probe,
+)
 from bifurc.limits import Deadline
-from bifurc.numerics.null_spaces import NULL, null_spaces
+from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 
 __all__ = ["LocalDimensions", "local_dimensions"]
 
-# The same at the ends of probes, which are less exact.
-NULL_AT_ENDS = 10 * NULL
 # Length of the probes, over the scale: at much less, degenerate singular points would
 # look like surfaces.
 RADIUS = 5e-3
 # Length, over that, of the probes about the end of a probe.
 AT_END = 0.01
-# A probe that loses a larger share of itself when it is projected does not lie along
-# the solutions.
-LOST = 0.05
 # Share of its length that a probe must keep for its end to be beside the point.
 AWAY = 0.1
-# Relative residual above which the end of a probe is no solution.
-SOLVED = 1e-10
 # Points probed between two looks at the clock.
 CHUNK = 256
 
@@ -76,7 +75,7 @@ def local_dimensions(
             break
         part = slice(begin, begin + CHUNK)
         sigma, right = null_spaces(problem, points[part])
-        nullity[part] = np.count_nonzero(sigma < NULL, axis=1)
+        nullity[part] = np.count_nonzero(is_null(sigma), axis=1)
         for k in np.unique(nullity[part]):
             rows = begin + np.flatnonzero(nullity[part] == k)
             basis = right[rows - begin, problem.n - k :]
@@ -94,7 +93,7 @@ def _dimensions_of_nullity(
     if k == 0:
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
     probes = _probe(problem, points, basis, RADIUS)
-    regular = probes.loss.max(axis=1) < LOST
+    regular = is_surface_probe(probes.loss.max(axis=1))
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
         arrived = np.isfinite(probes.loss[i])
@@ -132,7 +131,7 @@ def _probe(
     offsets = problem.difference(ends, points[:, None])
     coordinates = np.einsum("bpn,bkn->bpk", offsets, basis) / length
     loss = np.linalg.norm(coordinates - directions, axis=2)
-    loss[gaps > SOLVED] = np.inf
+    loss[~is_solution_at_probe(gaps)] = np.inf
     return _Probes(ends, coordinates, loss)
 
 
@@ -156,7 +155,7 @@ def _dimension_from_ends(
         return 0
     ends, coordinates = ends[is_away], coordinates[is_away]
     sigma, right = null_spaces(problem, ends)
-    nullity = np.count_nonzero(sigma < NULL_AT_ENDS, axis=1)
+    nullity = np.count_nonzero(is_null_at_probe(sigma), axis=1)
     of_higher_rank = np.flatnonzero(nullity < coordinates.shape[1])
     if not len(of_higher_rank):
         return _dimension_of_span(coordinates)
@@ -167,7 +166,7 @@ def _dimension_from_ends(
             continue
         basis = right[i, problem.n - nullity[i] :][None]
         probes = _probe(problem, ends[i][None], basis, AT_END * RADIUS)
-        if probes.loss.max() < LOST:
+        if is_surface_probe(float(probes.loss.max())):
             largest = int(nullity[i])
     return largest if largest else -1
 
@@ -176,4 +175,4 @@ def _dimension_of_span(coordinates: np.ndarray) -> int:
     """Dimension of the space that vectors (p, k) span, but for curvature."""
     sigma = np.linalg.svd(coordinates, compute_uv=False)
     spread = sigma / np.sqrt(len(coordinates))
-    return int(np.count_nonzero(spread > LOST))
+    return int(np.count_nonzero(~is_surface_probe(spread)))

@@ -7,17 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.numerics.null_spaces import NULL
+from bifurc.decisions import is_located, is_null, solves_at_point
 from bifurc.problem import Problem
 
 __all__ = ["LocatedPoint", "block_slice", "locate_singular_point"]
 
-# Relative residual of a singular point: above it is a near miss, which doubles still
-# resolve.
-SOLVED = 1e-13
 ITERATIONS = 60
-# Length of the last step, over the scale, beyond which nothing was located.
-UNSETTLED = 1e-4
 # Singular values of the augmented matrix, over its largest: what is smaller than the
 # first is rounding, what is smaller than the second is a direction of slow convergence.
 ROUNDING, WEAK = 1e-12, 1e-6
@@ -52,7 +47,7 @@ def locate_singular_point(
     comes back.
     """
     run = _iterate(problem, start, nullity, reach)
-    if run is None or run.moves[-1] > UNSETTLED * problem.scale:
+    if run is None or not is_located(run.moves[-1], problem.scale):
         return None
     u = _solve_regular_equations(problem, run.u, nullity)
     if not _is_singular_solution(problem, u, nullity):
@@ -211,9 +206,9 @@ def _solve_regular_equations(
 
 def _is_singular_solution(problem: Problem, u: np.ndarray, nullity: int) -> bool:
     """Whether F = 0 at ``u`` (n,) and F' has a null space of dimension ``nullity``."""
-    gap = problem.gaps(u[None])[0]
-    largest_null = _largest_null_values(problem, u[None], nullity)[0]
-    return bool(gap <= SOLVED and largest_null <= NULL)
+    gap = float(problem.gaps(u[None])[0])
+    largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
+    return solves_at_point(gap) and is_null(largest_null)
 
 
 def _largest_null_values(

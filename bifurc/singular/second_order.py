@@ -10,19 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.decisions import has_no_form, is_zero_form
 from bifurc.numerics.directions import unit_vectors
 from bifurc.problem import Problem
 
 __all__ = ["second_order_tangents"]
 
-# Size of the forms, over the magnitude, below which there is none.
-NO_FORM = 1e-7
 # Singular value of the coefficients, over the largest, of a form that depends on
 # others.
 DEPENDENT = 1e-6
-# Discriminant of a double root, value of a form at a root of it, resultant of forms
-# with a common root: the coefficients are of unit length.
-ZERO = 1e-6
 
 
 def second_order_tangents(
@@ -42,13 +38,13 @@ def second_order_tangents(
         return None
     a, b, c = forms[0]
     discriminant = b * b - 4 * a * c
-    if len(forms) == 1 and abs(discriminant) < ZERO:
+    if len(forms) == 1 and is_zero_form(abs(discriminant)):
         return None
     if discriminant < 0:
         return np.empty((0, len(point)))
     roots = _real_roots(a, b, c)
     values = _values(forms, roots)
-    common = np.all(np.abs(values) < ZERO, axis=1)
+    common = np.all(is_zero_form(np.abs(values)), axis=1)
     if not np.any(common) and len(forms) == 2 and _have_common_root(forms):
         return None
     tangents: np.ndarray = roots[common] @ null_space.T
@@ -75,7 +71,7 @@ def _reduced_forms(
 def _independent_forms(forms: np.ndarray) -> np.ndarray:
     """Independent forms (i, 3), of unit length, that span the given ones (w, 3)."""
     _, sigma, right = np.linalg.svd(forms, full_matrices=False)
-    if not len(sigma) or sigma[0] < NO_FORM:
+    if not len(sigma) or has_no_form(float(sigma[0])):
         return np.empty((0, 3))
     independent: np.ndarray = right[sigma > DEPENDENT * sigma[0]]
     return independent
@@ -108,4 +104,4 @@ def _have_common_root(pair: np.ndarray) -> bool:
     outer = a * f - c * d
     low = a * e - b * d
     high = b * f - c * e
-    return bool(abs(outer**2 - low * high) < ZERO)
+    return is_zero_form(float(abs(outer**2 - low * high)))

@@ -17,8 +17,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from bifurc.decisions import is_null, is_same_half_branch
 from bifurc.numerics.directions import unit_vectors
-from bifurc.numerics.null_spaces import NULL, null_spaces
+from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
@@ -39,7 +40,7 @@ ROOT_TOLERANCE = 1e-12
 ROUNDS, LAST_STEP = 10, 1e-15
 # Of a point on a sphere, over the radius: last step of the iteration, and distance from
 # another one that is the same.
-SETTLED, SAME = 1e-4, 1e-4
+SETTLED = 1e-4
 # Residual of a point on a sphere, over the radius squared, and rounding.
 SOLVED, SOLVED_ROUNDING = 1e-8, 5e-15
 # Solutions of higher nullity on a sphere whose local dimension is looked at.
@@ -259,7 +260,9 @@ def _sphere_section(
     is_solution = (gaps < limit) & (last_steps < SETTLED * radius)
     if not np.any(is_solution):
         return Section(np.empty((0, problem.n)), 0)
-    points = _without_duplicates(ends[is_solution], SAME * radius)
+    points = _without_duplicates(
+        ends[is_solution], is_same_half_branch.threshold * radius
+    )
     return _separate_surfaces(problem, points)
 
 
@@ -293,7 +296,7 @@ def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
     nearby solutions decides.
     """
     sigma, _ = null_spaces(problem, points)
-    is_of_higher_nullity = sigma[:, -2] < NULL
+    is_of_higher_nullity = is_null(sigma[:, -2])
     candidates = np.flatnonzero(is_of_higher_nullity)
     stride = max(1, len(candidates) // MOST_TESTED)
     sample = candidates[::stride]

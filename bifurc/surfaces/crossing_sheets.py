@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.decisions import is_null
 from bifurc.numerics.directions import cosines_between_planes
-from bifurc.numerics.null_spaces import NULL
 from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
@@ -99,7 +99,7 @@ def _sign_changes(problem: Problem, charts: ChartAtlas) -> list[_SignChange]:
     normal = np.linalg.det(right[i] @ np.swapaxes(right[j], 1, 2))
     is_clear = (np.abs(across) > CLEAR) & (np.abs(normal) > CLEAR)
     lower = np.minimum(smallest[i], smallest[j])
-    is_regular = lower > NULL * problem.magnitude
+    is_regular = ~is_null(lower, problem.magnitude)
     changes = is_clear & is_regular & (across * normal < 0)
     crossings = []
     for pair in charts.neighbours[changes]:

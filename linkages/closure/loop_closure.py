@@ -7,9 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bifurc.decisions import is_solution
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
-from bifurc.seeding import CLOSED, random_seeds
+from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 from linkages.closure import kernels
 from linkages.loop import Loop
@@ -140,7 +141,7 @@ class LoopClosure(NumericalProblem):
         nonreal = np.concatenate([cut.nonreal for cut in slices])
         largest = np.abs(nonreal.imag).max(axis=1, initial=0.0)
         points, gaps = self.project(nonreal[largest < NEARLY_REAL].real)
-        return points[gaps < CLOSED]
+        return points[is_solution(gaps)]
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at

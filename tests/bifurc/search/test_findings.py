@@ -6,8 +6,9 @@ import pytest
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
+from bifurc.decisions import is_same_point
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.findings import SAME, Findings, TracedBranch
+from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeds import Audit, Level, Seeds
 from bifurc.singular.point import SingularPoint
@@ -53,16 +54,19 @@ def test_a_branch_is_known_by_a_point_on_it_and_by_its_course(findings):
     assert findings.branch_through(ON_CIRCLE[1]) is None
     number = findings.add_branch(traced(ON_CIRCLE[0]))
     assert findings.branch_through(ON_CIRCLE[1]) == number
-    assert findings.branch_through(ON_CIRCLE[1] * (1 + 5 * SAME)) is None
+    assert (
+        findings.branch_through(ON_CIRCLE[1] * (1 + 5 * is_same_point.threshold))
+        is None
+    )
     assert findings.branch_along(trace_branch(PROBLEM, ON_CIRCLE[2])) == number
 
 
 def test_a_singular_point_is_new_once(findings):
     first = findings.add_point(point_at([0.0, 1.0]))
     assert (first.number, first.is_new) == (0, True)
-    again = findings.point_near(np.array([0.0, 1.0 + 1e-8]), SAME)
+    again = findings.point_near(np.array([0.0, 1.0 + 1e-8]), is_same_point.threshold)
     assert again == (first.point, 0, False)
-    assert findings.point_near(np.array([0.0, 1.1]), SAME) is None
+    assert findings.point_near(np.array([0.0, 1.1]), is_same_point.threshold) is None
 
 
 def test_a_rigid_assembly_keeps_its_number(findings):
