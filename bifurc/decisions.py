@@ -12,7 +12,7 @@ Singular values and residuals are over the problem's ``magnitude``, lengths over
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from typing import TypeAlias, overload
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TABLE", "Decision", "Margins", "record_margins"]
+__all__ = ["TABLE", "Decision", "Margins", "decisions_in", "record_margins"]
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -78,29 +78,22 @@ class Decision:
         return bool(value < self.threshold * unit)
 
 
-TABLE: dict[str, Decision] = {}
-
-
-def _decision(
-    name: str, claim: str, quantity: str, threshold: float, reason: str
-) -> Decision:
-    """A decision that stands in the table."""
-    decision = Decision(name, claim, quantity, threshold, reason)
-    assert name not in TABLE
-    TABLE[name] = decision
-    return decision
+def decisions_in(names: Mapping[str, object]) -> dict[str, Decision]:
+    """The decisions among the ``names`` of a module, by their own names."""
+    decisions = [value for value in names.values() if isinstance(value, Decision)]
+    return {decision.name: decision for decision in decisions}
 
 
 # --- solutions ------------------------------------------------------------------------
 
-is_solution = _decision(
+is_solution = Decision(
     "solution",
     "a start has reached a solution",
     "residual",
     1e-12,
     "Newton's method ends at rounding, about 1e-15, or at a misclosure of the system",
 )
-is_solution_at_probe = _decision(
+is_solution_at_probe = Decision(
     "solution at a probe",
     "the end of a probe along the null space is a solution",
     "residual",
@@ -110,49 +103,49 @@ is_solution_at_probe = _decision(
 
 # --- rank -----------------------------------------------------------------------------
 
-is_null = _decision(
+is_null = Decision(
     "null direction",
     "a direction belongs to the null space of F'",
     "singular value",
     1e-7,
     "at a point of higher order the place, and with it F', is known to half the digits",
 )
-is_null_at_probe = _decision(
+is_null_at_probe = Decision(
     "null direction at a probe",
     "a direction belongs to the null space of F' at the end of a probe",
     "singular value",
     1e-6,
     "the ends of probes are known less well than the points they leave from",
 )
-is_zero_along = _decision(
+is_zero_along = Decision(
     "rank along a curve",
     "a singular value is zero all along a curve",
     "median of the singular value along the curve",
     1e-9,
     "a curve is known to rounding, and so is F' on it",
 )
-is_shaky = _decision(
+is_shaky = Decision(
     "lower rank at a seed",
     "a direction belongs to the null space of F' on a double curve",
     "singular value",
     1e-5,
     "seeds reach a double curve to half the digits, 1e-8, and with few more steps less",
 )
-is_mobile = _decision(
+is_mobile = Decision(
     "rigid or mobile",
     "a seed lies on a curve or a surface, and is no isolated solution",
     "smallest of all n singular values",
     1e-6,
     "on a curve it is rounding; for a smaller one than this a curve is traced",
 )
-may_be_singular = _decision(
+may_be_singular = Decision(
     "seed of low rank",
     "a seed may lie at a singular point, which is then looked for",
     "smallest regular singular value",
     1e-4,
     "a seed beside a singular point is known to half the digits",
 )
-may_be_crossed = _decision(
+may_be_crossed = Decision(
     "place to look",
     "a minimum of the singular value may be a singular point, which is then looked for",
     "smallest regular singular value",
@@ -162,42 +155,42 @@ may_be_crossed = _decision(
 
 # --- singular points ------------------------------------------------------------------
 
-solves_at_point = _decision(
+solves_at_point = Decision(
     "solution at a singular point",
     "a located singular point solves the system",
     "residual",
     1e-13,
     "rounding is some 1e-15; the residual beside a near miss is its square or more",
 )
-is_located = _decision(
+is_located = Decision(
     "located",
     "the iteration for a singular point has converged",
     "last step over the scale",
     1e-4,
     "at points of high order it stagnates where rounding hides the rest",
 )
-has_no_form = _decision(
+has_no_form = Decision(
     "no quadratic form",
     "second order says nothing about the tangents",
     "size of the forms W^T F''(V x, V x)",
     1e-7,
     "they are exact to rounding times the error of the point",
 )
-is_zero_form = _decision(
+is_zero_form = Decision(
     "value of a quadratic form",
     "a discriminant, a resultant or a value of a form is zero",
     "the number, for coefficients of unit length",
     1e-6,
     "the coefficients are exact to rounding times the error of the point",
 )
-is_surface_probe = _decision(
+is_surface_probe = Decision(
     "surface or curve",
     "a probe along the null space stays what it was when it is projected",
     "share that projection takes from a probe",
     0.05,
     "curvature takes a share of the order of the probe's length, 0.005",
 )
-is_same_half_branch = _decision(
+is_same_half_branch = Decision(
     "same half-branch",
     "two solutions on a small sphere are one",
     "distance over the radius of the sphere",
@@ -207,35 +200,35 @@ is_same_half_branch = _decision(
 
 # --- identity of points and curves ----------------------------------------------------
 
-is_same_point = _decision(
+is_same_point = Decision(
     "same point",
     "two points are one, or a point lies on a curve",
     "distance over the scale",
     1e-6,
     "points are exact to 1e-13, near singular points to half the digits",
 )
-is_back = _decision(
+is_back = Decision(
     "closed",
     "a curve has come back to its start",
     "distance over the scale",
     1e-6,
     "the start is exact to rounding over the singular value there",
 )
-is_stub = _decision(
+is_stub = Decision(
     "form or stub",
     "what stalls at both ends is the trace of rounding beside a singular point",
     "length over the scale",
     2e-2,
     "rounding bends a curve away within about the third root of 1e-15 of the point",
 )
-stands_still = _decision(
+stands_still = Decision(
     "stands still",
     "an unknown keeps its value along a form",
     "its largest rate",
     1e-8,
     "rates are exact to 1e-12",
 )
-is_tied = _decision(
+is_tied = Decision(
     "order",
     "two features of forms or points are equal, and the next one decides their order",
     "difference over the scale",
@@ -245,17 +238,19 @@ is_tied = _decision(
 
 # --- near misses ----------------------------------------------------------------------
 
-is_level = _decision(
+is_level = Decision(
     "level singular value",
     "a singular value does not change along a curve",
     "its slope over magnitude and scale",
     1e-8,
     "the slope comes from a central difference of F', exact to 1e-10",
 )
-stands_out = _decision(
+stands_out = Decision(
     "near miss",
     "a minimum of the singular value is low enough to be listed",
     "value over half the largest on the curve",
     1.0 - 1e-6,
     "a convention, not a fact; at half of the largest but for rounding it is not low",
 )
+
+TABLE = decisions_in(globals())

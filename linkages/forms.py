@@ -15,6 +15,7 @@ import numpy as np
 
 from bifurc import torus
 from linkages.axes import loop_from_axes
+from linkages.decisions import is_alike_in_geometry, keeps_angle, matches_pattern
 from linkages.entry import FormPattern
 from linkages.families.four_bar import form_patterns
 from linkages.labels import FormLabels, Symmetry
@@ -22,9 +23,6 @@ from linkages.loop import GeometryError, Loop
 
 __all__ = ["FormIdentity", "identify_form", "name_forms"]
 
-RESIDUAL_TOLERANCE = 1e-8
-ANGLE_TOLERANCE = 1e-7  # rad
-GEOMETRY_TOLERANCE = 1e-7  # relative to the characteristic length
 RATIO_DECIMALS = 9  # of the lengths of a planar four-bar, over their mean
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
@@ -118,7 +116,7 @@ def _labels(theta: np.ndarray) -> FormLabels:
     full_turns = _full_turns(theta)
     mean = np.angle(np.exp(1j * theta).mean(axis=0))
     deviation = np.abs(torus.difference(theta, mean, full_turns))
-    is_still = np.all(deviation < ANGLE_TOLERANCE, axis=0)
+    is_still = keeps_angle(deviation.max(axis=0))
     still = np.flatnonzero(is_still)
     angles = torus.wrap(mean, full_turns)[still]
     return FormLabels(
@@ -143,7 +141,7 @@ def _symmetry(theta: np.ndarray) -> Symmetry:
         for sign in (1, -1):
             further = np.roll(theta, -step, axis=1)
             difference = np.sin((theta - sign * further) / 2)
-            if np.abs(difference).max() < ANGLE_TOLERANCE:
+            if keeps_angle(float(np.abs(difference).max())):
                 return Symmetry.of_step(step, sign)
     return Symmetry.NONE
 
@@ -153,7 +151,7 @@ def _symmetry(theta: np.ndarray) -> Symmetry:
 
 def _name_by_pattern(theta: np.ndarray, patterns: Sequence[FormPattern]) -> str:
     for pattern in patterns:
-        if np.abs(pattern.residual(theta)).max() < RESIDUAL_TOLERANCE:
+        if matches_pattern(float(np.abs(pattern.residual(theta)).max())):
             return pattern.name
     return ""
 
@@ -196,25 +194,25 @@ def _four_bar_kind(
     except GeometryError:  # two of the axes coincide
         return FourBarKind()
     lengths, twists, offsets = four_bar.arrays
-    small = GEOMETRY_TOLERANCE * loop.characteristic_length
-    if np.all(np.abs(np.sin(twists)) < GEOMETRY_TOLERANCE):
+    unit = loop.characteristic_length
+    if np.all(is_alike_in_geometry(np.abs(np.sin(twists)))):
         return FourBarKind("planar")
-    if np.all(np.abs(np.concatenate([lengths, offsets])) < small):
+    if np.all(is_alike_in_geometry(np.abs(np.concatenate([lengths, offsets])), unit)):
         return FourBarKind("spherical")
     directions = np.exp(1j * twists)
-    has_opposite_lengths = np.abs(lengths[:2] - lengths[2:]).max() <= small
-    has_opposite_twists = (
-        np.abs(directions[:2] - directions[2:]).max() <= GEOMETRY_TOLERANCE
-    )
-    has_offsets = np.abs(offsets).max() > small
-    if has_offsets or not has_opposite_lengths or not has_opposite_twists:
+    between_lengths = np.abs(lengths[:2] - lengths[2:])
+    between_twists = np.abs(directions[:2] - directions[2:])
+    has_opposite_lengths = np.all(is_alike_in_geometry(between_lengths, unit))
+    has_opposite_twists = np.all(is_alike_in_geometry(between_twists))
+    has_no_offsets = np.all(is_alike_in_geometry(np.abs(offsets), unit))
+    if not (has_opposite_lengths and has_opposite_twists and has_no_offsets):
         return FourBarKind()
     # the condition of Bennett (1903): a12 sin(alpha23) = +-a23 sin(alpha12)
     first = lengths[1] * np.sin(twists[0])
     second = lengths[0] * np.sin(twists[1])
-    if abs(first - second) < small:
+    if is_alike_in_geometry(float(abs(first - second)), unit):
         return FourBarKind("Bennett", "asymmetric")
-    if abs(first + second) < small:
+    if is_alike_in_geometry(float(abs(first + second)), unit):
         return FourBarKind("Bennett", "line-symmetric")
     return FourBarKind()
 

@@ -35,6 +35,7 @@ from bifurc.branch import Branch
 from bifurc.curves.monitor import dead_points
 from bifurc.limits import Deadline
 from bifurc.seeds import Audit, Level
+from linkages.decisions import is_same_dead_point
 from linkages.loop import Loop
 from linkages.slices.elimination import Slice, slice_configurations
 from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets
@@ -42,7 +43,6 @@ from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets
 __all__ = ["SliceAudit"]
 
 FEWEST = 4  # joints that move on a motion, at least
-SAME = 1e-7  # rad: dead points at angles that agree to this are taken together
 CUT = 0.3819660112501051  # of its length: where a curve without dead points is cut
 TURN = 2 * np.pi
 SAMPLES = 64  # of a motion, to see whether it turns a joint
@@ -214,7 +214,7 @@ class Passes:
         high = [np.empty(0)]
         folds = [np.empty((0, n))]
         for branch, dead in zip(branches, turning, strict=True):
-            if np.ptp(branch.sample(SAMPLES)[:, joint]) < SAME:
+            if is_same_dead_point(float(np.ptp(branch.sample(SAMPLES)[:, joint]))):
                 continue
             angles = branch(_ends_of_stretches(branch, dead))[:, joint]
             low.append(np.minimum(angles[1:], angles[:-1]))
@@ -239,7 +239,7 @@ class Passes:
         if len(angles) < 2:
             return angles
         steps = np.diff(angles, prepend=angles[-1:] - TURN)
-        return angles[steps > SAME]
+        return angles[~is_same_dead_point(steps)]
 
     def room(self, number: int) -> float:
         """Total width (rad) of the arcs in which fewer than ``number`` configurations
@@ -378,7 +378,7 @@ def _folds_at(angle: float, joint: int, folds: Sequence[Fold]) -> list[Fold]:
     """The folds at which the joint has the ``angle``."""
     angles = np.array([fold.configuration[joint] for fold in folds])
     gaps = torus.difference(angles[:, None], np.array([angle]), np.array([TURN]))
-    is_near = np.abs(gaps[:, 0]) < SAME
+    is_near = is_same_dead_point(np.abs(gaps[:, 0]))
     return [fold for fold, near in zip(folds, is_near, strict=True) if near]
 
 

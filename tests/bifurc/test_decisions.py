@@ -1,10 +1,13 @@
 """The table of decisions: what it compares, and what it notes."""
 
+from types import ModuleType
+
 import numpy as np
 import pytest
 
-from bifurc import decisions
-from bifurc.decisions import TABLE, Decision, record_margins
+import bifurc.decisions
+import linkages.decisions
+from bifurc.decisions import Decision, record_margins
 
 
 def test_a_decision_compares_with_its_threshold_in_the_unit_given() -> None:
@@ -37,12 +40,19 @@ def test_blocks_may_be_nested() -> None:
     assert outer["test"][0].tolist() == [2.0]
 
 
-@pytest.mark.parametrize("name", sorted(TABLE))
-def test_every_decision_of_the_module_stands_in_the_table(name: str) -> None:
-    decision = TABLE[name]
-    assert decision.name == name
+MODULES = [bifurc.decisions, linkages.decisions]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_no_two_decisions_share_a_name(module: ModuleType) -> None:
+    decisions = [one for one in vars(module).values() if isinstance(one, Decision)]
+    assert len(decisions) == len(module.TABLE)
+    assert not bifurc.decisions.TABLE.keys() & linkages.decisions.TABLE.keys()
+
+
+@pytest.mark.parametrize("decision", [one for m in MODULES for one in m.TABLE.values()])
+def test_a_decision_says_what_it_compares_and_why(decision: Decision) -> None:
     assert decision.threshold > 0
-    assert decision in vars(decisions).values()
     for text in (decision.claim, decision.quantity, decision.reason):
         assert text
         assert text[0].islower() or text[0] in "WNV"
