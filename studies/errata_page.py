@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from linkages.errata.misprints import ERRATA
+from linkages.errata.words import WORDS
 
 __all__ = ["HEAD", "errata_page"]
 
@@ -28,8 +29,36 @@ scanner's. `bifurc verify NAME` measures the rows of one linkage again.
 """
 
 
+WORDS_HEAD = """
+# Wrong in words
+
+Statements that do not hold, or only for some linkages, and what the program finds.
+
+| source | place | says | what holds | seen |
+|---|---|---|---|---|
+"""
+
+
 def errata_page() -> str:
     """The page as Markdown."""
+    return HEAD + _misprints() + WORDS_HEAD + _words()
+
+
+def _words() -> str:
+    rows = []
+    for erratum in WORDS:
+        texts = (
+            erratum.source,
+            erratum.place,
+            erratum.printed,
+            erratum.corrected,
+            erratum.see(),
+        )
+        rows.append(f"| {' | '.join(texts)} |")
+    return "\n".join(rows) + "\n"
+
+
+def _misprints() -> str:
     rows = []
     for erratum in ERRATA:
         printed, corrected = erratum.measure()
@@ -43,7 +72,7 @@ def errata_page() -> str:
         cells = [text.replace("|", r"\|") for text in texts]
         cells += [f"{printed:.1g}", _remainder(corrected)]
         rows.append(f"| {' | '.join(cells)} |")
-    return HEAD + "\n".join(rows) + "\n"
+    return "\n".join(rows) + "\n"
 
 
 def _remainder(amount: float) -> str:

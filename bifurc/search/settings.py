@@ -8,9 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bifurc.curves.continuation import TraceSettings
+from bifurc.decisions import is_same_point
 from bifurc.errors import ProblemError
 
 __all__ = ["SearchSettings"]
+
+# Points and curves are told apart to `bifurc.decisions.is_same_point`: curves that are
+# followed less closely than a tenth of that may be found twice.
+LOOSEST = 0.1 * is_same_point.threshold
 
 
 @dataclass(frozen=True)
@@ -21,7 +26,7 @@ class SearchSettings:
     search ends when it is used up, but for the step it is in. ``charts``: the most with
     which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
     takes the time to find out if a branch is missing. ``tracing``: how a curve is
-    followed. Raises `ProblemError` outside the ranges.
+    followed, to a tolerance of at most 1e-7. Raises `ProblemError` outside the ranges.
     """
 
     starts: int = 200
@@ -41,3 +46,6 @@ class SearchSettings:
             raise ProblemError("budget", self.budget, "a positive number of seconds")
         if self.charts < 0:
             raise ProblemError("charts", self.charts, "0 or more")
+        if self.tracing.tolerance > LOOSEST:
+            allowed = f"at most {LOOSEST:.0e} in a search, which compares points"
+            raise ProblemError("tolerance", self.tracing.tolerance, allowed)

@@ -85,7 +85,7 @@ SEARCH_OPTIONS = (
     click.option(
         "--tolerance",
         default=1e-13,
-        type=POSITIVE,
+        type=NumberRange(1e-14, 1e-7),
         show_default=True,
         help="How closely curves are followed.",
     ),

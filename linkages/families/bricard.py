@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -328,6 +329,28 @@ def patterns(
     return tuple(out)
 
 
+def revised_patterns(
+    a12: float,
+    a23: float,
+    a34: float,
+    alpha12: float,
+    alpha23: float,
+    alpha34: float,
+    R1: float,
+    R2: float,
+    R3: float,
+) -> tuple[FormPattern, ...]:
+    """Forms I' and II', and, where one closed curve holds both, "Forms I' and II'".
+
+    Lengths and offsets in one unit, twists in rad.
+    """
+    a = (a12, a23, a34)
+    c = (math.cos(alpha12), math.cos(alpha23), math.cos(alpha34))
+    s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
+    equations = revised_equations(a, c, s, (R1, R2, R3))
+    return tuple(_three_patterns("revised", "'", -1, equations))
+
+
 def _octahedral_patterns(
     alpha12: float, alpha23: float, alpha34: float, R1: float, R2: float, R3: float
 ) -> tuple[FormPattern, ...]:
@@ -468,18 +491,6 @@ def _offset(number: int, default: float) -> Parameter:
     return Parameter.length(f"R{number}", default, meaning, -1.0, 1.0)
 
 
-def _revised_length(name: str, default: float) -> Parameter:
-    return Parameter.length(name, default, f"length {name}", 0.5, 1.6)
-
-
-def _revised_twist(link: int, degrees: float) -> Parameter:
-    return Parameter.angle(f"alpha{link}", degrees, f"twist of link {link}", 15, 165)
-
-
-def _revised_offset(name: str, default: float) -> Parameter:
-    return Parameter.length(name, default, f"offset {name}", -0.5, 0.5)
-
-
 LENGTHS = (
     _length("12", "45", 2.4),
     _length("23", "56", 2.9),
@@ -487,6 +498,24 @@ LENGTHS = (
 )
 TWISTS = (_twist("12", "45", 40), _twist("23", "56", 80), _twist("34", "61", 130))
 OFFSETS = (_offset(1, 0.5), _offset(2, 0.55), _offset(3, 0.42))
+# Song (2013), eq. (4.3.9): the linkage of (4.2.25) with other directions of the axes
+REVISED_TWISTS = (
+    *TWISTS[:2],
+    Parameter(
+        "alpha34",
+        math.radians(-50),
+        ParameterKind.ANGLE,
+        "twist of link 34 and 61",
+        -math.pi + 0.2,
+        -0.2,
+    ),
+)
+REVISED_OFFSETS = tuple(
+    replace(
+        offset, meaning=f"offset of joint {k}, that of joint {k + 3} with the sign -"
+    )
+    for k, offset in enumerate(OFFSETS, start=1)
+)
 OPPOSITE_LINKS: tuple[tuple[int, int], ...] = ((12, 45), (23, 56), (34, 61))
 OPPOSITE_JOINTS: tuple[tuple[int, int], ...] = ((1, 4), (2, 5), (3, 6))
 LINKS = Condition(
@@ -592,19 +621,9 @@ ENTRIES: tuple[Entry, ...] = (
     Entry(
         "bricard-line-symmetric-revised",
         "Revised general line-symmetric Bricard 6R",
-        "Mavroidis and Roth (1995); Song (2013), eq. 2.4.19",
+        "Mavroidis and Roth (1995); Song (2013), eqs (2.4.19), (4.3.1)-(4.3.9)",
         revised_line_symmetric,
-        (
-            _revised_length("a12", 1.0),
-            _revised_length("a23", 0.8),
-            _revised_length("a34", 1.25),
-            _revised_twist(12, 50),
-            _revised_twist(23, 77),
-            _revised_twist(34, 110),
-            _revised_offset("R1", 0.3),
-            _revised_offset("R2", -0.45),
-            _revised_offset("R3", 0.6),
-        ),
+        (*LENGTHS, *REVISED_TWISTS, *REVISED_OFFSETS),
         conditions=(
             Condition(
                 "a12 = a45, a23 = a56, a34 = a61, twists likewise",
@@ -614,10 +633,17 @@ ENTRIES: tuple[Entry, ...] = (
                 "R1 = -R4, R2 = -R5, R3 = -R6", (opposite_offsets(*OPPOSITE_JOINTS),)
             ),
         ),
+        patterns=revised_patterns,
         formulas=partial(_general_formulas, "bricard-line-symmetric-revised", -1),
         relations=(
             Relation(RelationKind.SAME, "bricard-line-symmetric", BY_IDENTIFICATION),
         ),
-        facts={"joints": 6, "mobility": 1},
+        facts={
+            "mobility": 1,
+            "rank": 5,
+            "forms": 2,
+            "bifurcations": 0,
+            "components": 2,
+        },
     ),
 )

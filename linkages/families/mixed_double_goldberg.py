@@ -455,6 +455,16 @@ def _links(order: Order, kind: Kind) -> Condition:
     return Condition(f"links {links}, twists likewise, R = 0", (zero_offsets(),))
 
 
+def _default_delta(order: Order, kind: Kind) -> float:
+    """The twist delta (deg) of the member that stands for its family.
+
+    Joint 1 of the mixed Types I and II turns fully, as in the figures 3.4.2 and 3.4.4 of
+    Song (2013), where m3 m4 < 0: where delta is between alpha and gamma.
+    """
+    turns = kind is Kind.MIXED and order in (Order.I, Order.II)
+    return 45 if turns else 83
+
+
 def _entry(order: Order, kind: Kind) -> Entry:
     facts: dict[str, Any] = {"joints": 6, "mobility": 1}
     if order is Order.III:
@@ -464,7 +474,10 @@ def _entry(order: Order, kind: Kind) -> Entry:
         f"{kind.value.title}, Type {order.name}",
         "Song and Chen (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3",
         partial(double_goldberg_type, order=order, kind=kind),
-        (length_a(66), *twists_of_links(a=66, b=50, c=28, d=83)),
+        (
+            length_a(66),
+            *twists_of_links(a=66, b=50, c=28, d=_default_delta(order, kind)),
+        ),
         conditions=(EQUAL_RATIOS, _links(order, kind)),
         formulas=_formulas(order, kind),
         guesses=_guesses(order, kind),

@@ -1,0 +1,38 @@
+"""Statements of the sources in words: what the program sees bears the correction out,
+and stands on the page of the docs."""
+
+from pathlib import Path
+
+import pytest
+
+from linkages.errata.words import WORDS
+
+PAGE = Path(__file__).parents[3] / "docs" / "errata.md"
+SEEN = {
+    "table 3.5.1, against table 3.5.2": (
+        "Type II: it is l-shape-goldberg-variant-6r; "
+        "Type IV: it is serial-goldberg-variant-6r"
+    ),
+    "section 3.4.3": "it is mixed-double-goldberg-type-iii",
+    "section 3.4.2": (
+        "2 2 1 1 1 1 turns for delta = 45 deg; 0 0 1 1 1 1 turns for delta = 83 deg"
+    ),
+    "section 4.2": "in 5 of 12 random ones both are one closed curve",
+    "section 5.2.1": "4 of 12 random ones have more than one component",
+}
+
+
+@pytest.mark.parametrize("erratum", WORDS, ids=lambda erratum: erratum.place)
+def test_what_is_seen_stands_on_the_page(erratum):
+    seen = erratum.see()
+    assert seen == SEEN.get(erratum.place, seen)
+    row = f"| {erratum.source} | {erratum.place} | {erratum.printed} |"
+    lines = PAGE.read_text(encoding="utf-8").splitlines()
+    (line,) = [line for line in lines if line.startswith(row)]
+    assert line.endswith(f"| {seen} |")
+
+
+def test_every_statement_that_can_be_measured_is():
+    places = [erratum.place for erratum in WORDS]
+    assert SEEN.keys() <= set(places)
+    assert len(set(places)) == len(places)
