@@ -348,7 +348,7 @@ def test_a_seed_that_is_no_whole_number_is_refused(seed):
 
 
 def test_curves_are_followed_more_closely_than_points_are_told_apart():
-    with pytest.raises(ProblemError, match="tolerance: 1e-06 .* at most 1e-07"):
+    with pytest.raises(ProblemError, match=r"tolerance: 1e-06 .* at most 1e-07"):
         SearchSettings(tracing=TraceSettings(tolerance=1e-6))
     assert SearchSettings(tracing=TraceSettings(tolerance=1e-7)).tracing.tolerance
 
