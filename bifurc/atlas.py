@@ -36,7 +36,7 @@ SHOWN_IN_NOTEBOOK = 50
 ROUNDING = 1e-12  # of the largest unknown: less is shown as 0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Form:
     """A smooth motion branch with its name, the singular values along it, the smallest
     regular one of them (0 where it passes a singular point), and the number of the
@@ -63,7 +63,7 @@ class Form:
         return f"<Form {self.name!r}: {_course(self.branch)}>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MeetingPoint:
     """A singular point with its name, its ``kind`` once all forms are known, and the
     ``passes``: (index of the form, arclength) for every time a form goes through it.
@@ -88,7 +88,7 @@ class MeetingPoint:
         return f"<MeetingPoint {self.name!r}: {', '.join(words)}>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Event:
     """Something at one arclength of a form: a near miss with its ``value``, or a dead
     point of unknown ``index``."""
@@ -106,7 +106,7 @@ class Event:
         return f"<Event: {kind} on form {self.form} at s = {self.s:.6g}>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """A component of ``dimension`` 2 or more: solutions (k, n) seen on it, and
     ``charts`` that cover it.
@@ -151,7 +151,7 @@ class Provenance:
     seconds: float = 0.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Atlas:
     """All that `bifurc.search.explore.explore` found of a problem.
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bifurc.checks import check_whole
+from bifurc.errors import ProblemError
 from bifurc.pieces import evaluate, feet
 from bifurc.torus import into_box, tree_box, whole_turns
 
@@ -45,7 +47,7 @@ class Outcome(Enum):
     )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Branch:
     """A smooth solution curve u(s), s the arclength from 0 to ``length``.
 
@@ -105,6 +107,8 @@ class Branch:
     def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
         """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of
         a closed curve."""
+        if derivative < 0:
+            raise ProblemError("derivative", derivative, "0 or more")
         s = np.asarray(s, dtype=float)
         flat = np.ascontiguousarray(s.ravel())
         points: np.ndarray = evaluate(self._curve, flat, derivative)
@@ -113,6 +117,7 @@ class Branch:
     def arclengths(self, count: int) -> np.ndarray:
         """``count`` equally spaced arclengths; a closed curve's last one stops short of
         the start."""
+        check_whole("count", count, 0)
         return np.linspace(0.0, self.length, count, endpoint=not self.closed)
 
     def sample(self, count: int) -> np.ndarray:
@@ -153,9 +158,16 @@ class Branch:
         arclength (k,) there.
 
         Of a point farther away than ``within`` it is only said that it is, which takes
-        a twentieth of the time.
+        a twentieth of the time. Nothing is near a branch of no pieces. Raises
+        `ProblemError` for points of another shape or not finite.
         """
         points = np.atleast_2d(np.asarray(points, dtype=float))
+        if points.ndim != 2 or points.shape[1] != self.n:
+            raise ProblemError("shape of the points", points.shape, f"(k, {self.n})")
+        if not np.all(np.isfinite(points)):
+            raise ProblemError("points", points, "finite")
+        if not len(self.pieces):
+            return np.full(len(points), np.inf), np.zeros(len(points))
         samples = self._samples
         spacing = samples.spacing
         # next to a foot that is near enough there is a sample in reach

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.sparse import csc_array, issparse, sparray
 
+from bifurc.checks import check_callable, floats_of
 from bifurc.errors import ProblemError
 from bifurc.numerics.bordered import as_dense
 from bifurc.numerics.collocation import march_by_collocation
@@ -21,6 +22,8 @@ from bifurc.seeds import Seeds
 __all__ = ["FunctionProblem", "NumericalProblem"]
 
 PROBES = 7  # points at which a function is tried out and its derivatives are measured
+WRONG = 1e-2  # relative difference from which on a given derivative is wrong
+LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
 HESSIAN_STEP = 1e-5  # the same for F'
@@ -88,13 +91,19 @@ class FunctionProblem(NumericalProblem):
         units: Sequence[str] | None = None,
         periods: Sequence[float] | None = None,
     ):
+        check_callable("function", function)
+        if jacobian is not None:
+            check_callable("jacobian", jacobian)
         self.bounds = _checked_bounds(bounds)
         n = len(self.bounds)
-        self.names = tuple(names or (f"u{i + 1}" for i in range(n)))
-        self.units = tuple(units or ("",) * n)
+        default_names = [f"u{i + 1}" for i in range(n)]
+        self.names = _checked_texts("names", default_names if names is None else names)
+        self.units = _checked_texts("units", [""] * n if units is None else units)
+        if len(set(self.names)) < len(self.names):
+            raise ProblemError("names", self.names, "all different")
         self.periods = np.full(n, np.inf)
         if periods is not None:
-            self.periods = np.array(periods, dtype=float)
+            self.periods = floats_of("periods", periods)
         self._check_lengths(n)
         self._function = function
         self._jacobian = jacobian
@@ -105,8 +114,10 @@ class FunctionProblem(NumericalProblem):
         self.scale = float(np.median(high - low)) / 4.0
         rng = np.random.default_rng(0)
         probes = rng.uniform(low, high, (PROBES, n))
-        self._check_value(probes[0])
+        probes = self._probes_with_value(probes)
         self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
+        for probe in probes:
+            self._check_jacobian(probe)
         sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
         self.magnitude = float(np.median(sizes)) or 1.0
 
@@ -169,7 +180,7 @@ class FunctionProblem(NumericalProblem):
 
     def _value(self, point: np.ndarray) -> np.ndarray:
         """F (m,) at one point (n,)."""
-        return np.asarray(self._function(point), dtype=float)
+        return floats_of("value of the function", self._function(point))
 
     # --- checks -----------------------------------------------------------------------
 
@@ -190,18 +201,57 @@ class FunctionProblem(NumericalProblem):
             allowed = "positive, inf where an unknown has none"
             raise ProblemError("periods", self.periods.tolist(), allowed)
 
-    def _check_value(self, probe: np.ndarray) -> None:
-        """Raise `ProblemError` unless the function gives a finite vector."""
-        value = self._value(probe)
-        is_finite = np.all(np.isfinite(value))
-        if value.ndim != 1 or not is_finite:
-            allowed = "a vector of finite numbers"
-            raise ProblemError("value of the function", value, allowed)
+    def _probes_with_value(self, probes: np.ndarray) -> np.ndarray:
+        """Those of the probes (k, n) where the function gives a finite vector.
+
+        Raises `ProblemError` where it gives no vector, vectors of several lengths, or
+        none that is finite.
+        """
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            values = [self._value(probe) for probe in probes]
+        for value in values:
+            if value.ndim != 1 or not len(value):
+                allowed = "a vector of finite numbers"
+                raise ProblemError("value of the function", value, allowed)
+        lengths = sorted({len(value) for value in values})
+        if len(lengths) > 1:
+            allowed = "one number at all points"
+            raise ProblemError("number of equations", lengths, allowed)
+        is_finite = np.isfinite(values).all(axis=1)
+        if not np.any(is_finite):
+            allowed = "a vector of finite numbers somewhere inside the bounds"
+            raise ProblemError("value of the function", values[0], allowed)
+        finite: np.ndarray = probes[is_finite]
+        return finite
+
+    def _check_jacobian(self, probe: np.ndarray) -> None:
+        """Raise `ProblemError` unless F' has its shape and is finite at a probe (n,),
+        and agrees with differences where it is given."""
+        jacobian = as_dense(self.jacobian(probe))
+        shape = (len(self._value(probe)), self.n)
+        if jacobian.shape != shape:
+            raise ProblemError("shape of the jacobian", jacobian.shape, str(shape))
+        if not np.all(np.isfinite(jacobian)):
+            raise ProblemError("jacobian", jacobian, "finite")
+        if self.derivatives != "given" or self.n > LARGEST_COMPARED:
+            return
+        by_difference = self._central_difference(probe)
+        if not np.all(np.isfinite(by_difference)):
+            return  # at the rim of where the function is defined
+        gaps = np.abs(jacobian - by_difference)
+        if gaps.max() > WRONG * (1.0 + np.abs(by_difference).max()):
+            row, column = np.unravel_index(np.argmax(gaps), gaps.shape)
+            allowed = (
+                f"the derivative of the function, {by_difference[row, column]:.6g} "
+                f"by differences at {probe}"
+            )
+            name = f"jacobian[{row}, {column}]"
+            raise ProblemError(name, jacobian[row, column], allowed)
 
 
 def _checked_bounds(bounds: Sequence[Sequence[float]]) -> np.ndarray:
     """The bounds as an array (n, 2)."""
-    checked = np.array(bounds, dtype=float)
+    checked = floats_of("bounds", bounds)
     allowed = "rows of (low, high) with low < high"
     if checked.ndim != 2 or checked.shape[1] != 2:
         raise ProblemError("bounds", checked.tolist(), allowed)
@@ -209,6 +259,14 @@ def _checked_bounds(bounds: Sequence[Sequence[float]]) -> np.ndarray:
     if not np.all(low < high):
         raise ProblemError("bounds", checked.tolist(), allowed)
     return checked
+
+
+def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
+    """The ``texts`` as a tuple; raises `ProblemError` for anything but texts."""
+    is_row = isinstance(texts, Sequence) and not isinstance(texts, str)
+    if not is_row or not all(isinstance(text, str) for text in texts):
+        raise ProblemError(name, repr(texts), "texts, one for each unknown")
+    return tuple(texts)
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:

@@ -10,6 +10,7 @@ import networkx as nx
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.checks import check_type
 from bifurc.torus import wrap
 
 __all__ = ["ArcAttributes", "arc_attributes", "arc_graph", "transition_graph"]
@@ -43,6 +44,7 @@ def transition_graph(atlas: Atlas) -> nx.MultiGraph:
     are nodes as well, with their ``dimension``, joined to the forms that meet them and
     to the surfaces with which they share a singular point.
     """
+    check_type("atlas", atlas, Atlas)
     graph = nx.MultiGraph()
     for form in atlas.forms:
         graph.add_node(
@@ -80,6 +82,7 @@ def arc_graph(atlas: Atlas) -> nx.MultiGraph:
     Node attributes: ``kind``, ``u`` (n,). Edge attributes: `ArcAttributes`. A closed
     form that passes no singular point is a loop on a node of its own.
     """
+    check_type("atlas", atlas, Atlas)
     graph = nx.MultiGraph()
     for point in atlas.points:
         graph.add_node(point.name, kind=point.kind.value, u=point.point.u)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bifurc import torus
+from bifurc.checks import floats_of
 from bifurc.errors import ProblemError
 from bifurc.seeds import Seeds
 
@@ -225,7 +226,7 @@ class Problem(ABC):
     def check_point(self, point: np.ndarray, name: str) -> np.ndarray:
         """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or
         values not finite."""
-        checked = np.array(point, dtype=float)
+        checked = floats_of(name, point)
         if checked.shape != (self.n,):
             raise ProblemError(f"shape of {name}", checked.shape, f"({self.n},)")
         if not np.all(np.isfinite(checked)):

@@ -28,7 +28,7 @@ class Level(StrEnum):
     INTERRUPTED = "interrupted"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Audit:
     """What a problem can say of a list of branches.
 
@@ -41,7 +41,7 @@ class Audit:
     starts: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Seeds:
     """Solutions to start from.
 

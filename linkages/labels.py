@@ -12,6 +12,7 @@ from enum import StrEnum
 from typing import TypedDict, cast
 
 from bifurc.atlas import Atlas, Form
+from bifurc.checks import check_type
 from bifurc.errors import BifurcError
 from linkages.loop import GeometryError, Loop
 
@@ -58,6 +59,7 @@ def subject_of(loop: Loop) -> Subject:
 def loop_of(atlas: Atlas) -> Loop:
     """The loop that an atlas is of. Raises `NoLinkageError` where it is of something
     else."""
+    check_type("atlas", atlas, Atlas)
     subject = atlas.subject
     for key in Subject.__required_keys__:
         if key not in subject:

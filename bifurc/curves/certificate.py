@@ -75,7 +75,7 @@ class CertificateValues(TypedDict):
     reversals: list[float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Certificate:
     """What was certified of a branch, and where not.
 

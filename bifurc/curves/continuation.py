@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
+from bifurc.checks import check_number, check_type, check_whole
 from bifurc.curves.bridges import bridge_from
 from bifurc.curves.ends import end_of_curve
 from bifurc.curves.track import CAUTIOUS, BridgeRule, End, Place, Track
@@ -36,6 +37,9 @@ class TraceSettings:
     max_length: float = 1000.0
 
     def __post_init__(self) -> None:
+        check_whole("order", self.order, 2)
+        for name in ("tolerance", "shortest", "longest", "max_length"):
+            check_number(name, getattr(self, name))
         if not 2 <= self.order <= 30:
             raise ProblemError("order", self.order, "from 2 to 30")
         if not 1e-14 <= self.tolerance <= 1e-2:
@@ -65,9 +69,13 @@ def trace_branch(
     branch of no pieces whose ``gap`` is the residual left. Raises `ProblemError` for a
     start or direction of the wrong shape.
     """
+    check_type("problem", problem, Problem)
+    check_type("settings", settings, TraceSettings)
     start = problem.check_point(start, "start")
     if direction is not None:
         direction = problem.check_point(direction, "direction")
+        if not np.any(direction):
+            raise ProblemError("direction", direction, "a vector other than zero")
     tangent = null_vector(problem, start, direction)
     forward = _follow(problem, Place(start, tangent), settings)
     if forward.outcome in (Outcome.CLOSED, Outcome.OPEN, Outcome.STEP_LIMIT):

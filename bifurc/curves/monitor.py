@@ -30,7 +30,7 @@ COUNT = 16
 NODES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(COUNT) + 0.5) / COUNT)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Profile:
     """Singular values of F', over the problem's magnitude, at Chebyshev nodes of every
     piece of a curve.

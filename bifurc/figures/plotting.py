@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from bifurc.atlas import Atlas
+from bifurc.checks import check_type
 from bifurc.errors import ProblemError
 from bifurc.figures.drawing import (
     PanelSettings,
@@ -56,6 +57,7 @@ def plot_transition_map(
     tells the forms apart best. Angles are drawn in degrees on the torus. Raises
     `ProblemError` for numbers that are not two of the unknowns.
     """
+    check_type("atlas", atlas, Atlas)
     if joints is None:
         plane = plane_of(atlas, *choose_plane(atlas))
     else:

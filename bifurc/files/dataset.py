@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 from bifurc.atlas import Atlas, Provenance
+from bifurc.checks import check_type
 from bifurc.curves.continuation import TraceSettings
 from bifurc.files.atomic import replace_file
 from bifurc.files.checksum import checksum
@@ -138,6 +139,7 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
     Entries of ``atlas.subject`` become variables along ``joint`` and attributes
     called ``linkage_...``.
     """
+    check_type("atlas", atlas, Atlas)
     frame = atlas_frame(atlas)
     variables: dict[str, xr.Variable] = {}
     for table in TABLES:
@@ -216,6 +218,7 @@ def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
 def from_dataset(dataset: xr.Dataset) -> Atlas:
     """The atlas that `to_dataset` stored; raises `AtlasFileError` that says what is
     missing or wrong."""
+    check_type("dataset", dataset, xr.Dataset)
     _check_format(dataset, "dataset")
     return _read(dataset, "dataset")
 

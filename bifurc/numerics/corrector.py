@@ -139,13 +139,13 @@ def project_by_least_squares(
     problem: Problem, starts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) reached from every start (k, n), and the relative residual (k,)
-    left at each."""
+    left at each, infinite where F is not defined."""
     points = np.array(starts, dtype=float)
     gaps = np.empty(len(points))
     for k, start in enumerate(points):
         end = _least_squares(problem, start)
         points[k] = end.point
-        gaps[k] = end.gap
+        gaps[k] = end.gap if math.isfinite(end.gap) else math.inf
     return points, gaps
 
 
@@ -158,9 +158,11 @@ def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
     best = _iterate(problem, start)
     damping = 1e-2  # over the residual
     for _ in range(LEAST_SQUARES_STEPS):
-        if best.gap <= 1e-15 or damping > 1e9:
+        if not best.gap > 1e-15 or damping > 1e9:
             break
         jacobian = problem.relative_jacobians(best.point[None])[0]
+        if not np.all(np.isfinite(jacobian)):
+            break
         weight = damping * best.gap
         normal = jacobian.T @ jacobian + weight * np.eye(problem.n)
         right = jacobian.T @ best.residual

@@ -10,6 +10,7 @@ from html import escape
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.checks import check_type, check_whole
 from bifurc.errors import RouteError
 from bifurc.graphs import ArcAttributes
 from bifurc.problem import Problem
@@ -29,7 +30,7 @@ __all__ = ["Leg", "Route", "find_route"]
 NO_WAY = 1e-9  # length below which a leg is none
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Leg:
     """One stretch of a route: along ``form`` from arclength ``start`` to ``end``,
     backwards where end < start.
@@ -61,7 +62,7 @@ class Leg:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Route:
     """A chain of legs from one configuration to another, and the path (k, n) along
     them, without jumps.
@@ -126,8 +127,13 @@ def find_route(
     that was explored, which an atlas does not hold. The path has about ``count`` points
     and no jumps; it begins at ``start`` (the point of a name is taken into half a
     period about zero). Raises `RouteError` for an unknown name, a configuration on no
-    form or surface, a component that is only sampled, or where no route exists.
+    form or surface, a component that is only sampled, or where no route exists, and
+    `ProblemError` for anything but an atlas, a problem and a count of at least 2.
     """
+    check_type("atlas", atlas, Atlas)
+    if problem is not None:
+        check_type("problem", problem, Problem)
+    check_whole("count", count, 2)
     search = begin_search(atlas, problem)
     places = {START: place_of(search, start), GOAL: place_of(search, goal)}
     ways = WayGraph(search)

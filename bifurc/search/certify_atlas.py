@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from bifurc.atlas import Atlas
+from bifurc.checks import check_type
 from bifurc.curves.certificate import certify_branch
+from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 
 __all__ = ["certify_atlas"]
@@ -14,6 +16,10 @@ __all__ = ["certify_atlas"]
 def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
     """The atlas with a certificate on every form, from singular point to singular
     point."""
+    check_type("problem", problem, Problem)
+    check_type("atlas", atlas, Atlas)
+    if atlas.names != problem.names:
+        raise ProblemError("unknowns of the atlas", atlas.names, str(problem.names))
     forms = []
     for index, form in enumerate(atlas.forms):
         stops = _singular_arclengths(atlas, index)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from bifurc.atlas import Atlas, Provenance
+from bifurc.checks import check_callable, check_type
 from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
@@ -43,8 +44,15 @@ def explore(
     says so. When the budget of time is used up, the completeness and the provenance say
     so. Raises `ProblemError` for settings or a seed that cannot be used.
     """
-    if not isinstance(settings, SearchSettings):
-        raise ProblemError("settings", repr(settings), "SearchSettings")
+    check_type("problem", problem, Problem)
+    check_type("settings", settings, SearchSettings)
+    if seeds is not None:
+        check_type("seeds", seeds, Seeds)
+        if seeds.points.ndim != 2 or seeds.points.shape[1] != problem.n:
+            shape = f"(k, {problem.n})"
+            raise ProblemError("shape of the seeds", seeds.points.shape, shape)
+    if progress is not None:
+        check_callable("progress", progress)
     if not isinstance(seed, int | np.integer) or not 0 <= seed <= LARGEST_SEED:
         raise ProblemError(
             "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"

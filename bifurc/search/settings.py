@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-import numpy as np
-
+from bifurc.checks import check_number, check_type, check_whole
 from bifurc.curves.continuation import TraceSettings
 from bifurc.decisions import is_same_point
 from bifurc.errors import ProblemError
@@ -36,16 +35,13 @@ class SearchSettings:
     tracing: TraceSettings = field(default_factory=TraceSettings)
 
     def __post_init__(self) -> None:
-        for name in ("starts", "charts"):
-            value = getattr(self, name)
-            if not isinstance(value, int | np.integer):
-                raise ProblemError(name, repr(value), "a whole number")
-        if self.starts < 1:
-            raise ProblemError("starts", self.starts, "at least 1")
+        check_whole("starts", self.starts, 1)
+        check_whole("charts", self.charts, 0)
+        check_number("budget", self.budget)
+        check_type("prove", self.prove, bool)
+        check_type("tracing", self.tracing, TraceSettings)
         if not self.budget > 0:
             raise ProblemError("budget", self.budget, "a positive number of seconds")
-        if self.charts < 0:
-            raise ProblemError("charts", self.charts, "0 or more")
         if self.tracing.tolerance > LOOSEST:
             allowed = f"at most {LOOSEST:.0e} in a search, which compares points"
             raise ProblemError("tolerance", self.tracing.tolerance, allowed)

@@ -29,7 +29,7 @@ class Kind(Enum):
     UNDECIDED = "undecided"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SingularPoint:
     """A located singular point.
 

@@ -47,7 +47,7 @@ class Covering(Enum):
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ChartAtlas:
     """A surface of solutions, or several, as charts that overlap.
 

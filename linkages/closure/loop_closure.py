@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bifurc.checks import check_type
 from bifurc.decisions import is_solution
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
@@ -39,6 +40,7 @@ class LoopClosure(NumericalProblem):
     curvature_residual = 0.2
 
     def __init__(self, loop: Loop):
+        check_type("loop", loop, Loop)
         n = loop.n
         self.loop = loop
         self.names = tuple(f"theta{i + 1}" for i in range(n))
