@@ -16,12 +16,20 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from enum import Enum
 from typing import TypeAlias, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TABLE", "Decision", "Margins", "decisions_in", "record_margins"]
+__all__ = [
+    "TABLE",
+    "Decision",
+    "Margins",
+    "Role",
+    "decisions_in",
+    "record_margins",
+]
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -43,12 +51,23 @@ def record_margins() -> Iterator[Margins]:
         _recorded.reset(token)
 
 
+class Role(Enum):
+    """What hangs on a decision."""
+
+    # A count, a kind, a level or a word.
+    VERDICT = "verdict"
+    # Whether something is looked at more closely; both sides end in the same answer.
+    LOOK = "look"
+    # Nothing but what is listed: a convention.
+    CONVENTION = "convention"
+
+
 @dataclass(frozen=True)
 class Decision:
     """Whether a ``quantity`` is below a ``threshold``.
 
     ``claim`` is what is taken for true where it is, ``reason`` why the threshold stands
-    where it does.
+    where it does, ``role`` what hangs on it.
     """
 
     name: str
@@ -56,6 +75,7 @@ class Decision:
     quantity: str
     threshold: float
     reason: str
+    role: Role = Role.VERDICT
 
     @overload
     def __call__(self, value: float, unit: float = 1.0) -> bool: ...
@@ -144,6 +164,7 @@ may_be_singular = Decision(
     "smallest regular singular value",
     1e-4,
     "a seed beside a singular point is known to half the digits",
+    Role.LOOK,
 )
 may_be_crossed = Decision(
     "place to look",
@@ -151,6 +172,7 @@ may_be_crossed = Decision(
     "smallest regular singular value",
     1e-3,
     "the place of a minimum is exact to 1e-5 and better; location decides",
+    Role.LOOK,
 )
 
 # --- singular points ------------------------------------------------------------------
@@ -250,7 +272,8 @@ stands_out = Decision(
     "a minimum of the singular value is low enough to be listed",
     "value over half the largest on the curve",
     1.0 - 1e-6,
-    "a convention, not a fact; at half of the largest but for rounding it is not low",
+    "at half of the largest but for rounding it is not low",
+    Role.CONVENTION,
 )
 
 TABLE = decisions_in(globals())

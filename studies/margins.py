@@ -203,7 +203,7 @@ def _entry(decision: Decision, quantities: Floats) -> str:
     """What a decision says, and its margin, as an item of a list."""
     margin = margin_of(decision, quantities)
     lines = [
-        f"**{decision.name}**: {decision.claim}.",
+        f"**{decision.name}** ({decision.role.value}): {decision.claim}.",
         f"Quantity: {decision.quantity}; threshold {decision.threshold:.3g}: "
         f"{decision.reason}.",
         _margin_text(margin),
