@@ -157,18 +157,18 @@ def hessians(theta, geometry):
 # --- least squares with one factorisation and many right-hand sides -----------------------------------
 
 
+INVERSE_STEPS = 2  # a small singular value stands out after one
+
+
 @register_jitable
 def _factor(matrix, scale):
-    """Householder QR of ``matrix`` in place; the smallest |diagonal| of R comes
-    back."""
+    """Householder QR of ``matrix`` in place."""
     rows, columns = matrix.shape
-    smallest = np.inf
     for k in range(min(rows, columns)):
         norm = 0.0
         for i in range(k, rows):
             norm += matrix[i, k] * matrix[i, k]
         norm = np.sqrt(norm)
-        smallest = min(smallest, norm)
         if norm == 0.0:
             scale[k] = 0.0
             continue
@@ -186,7 +186,34 @@ def _factor(matrix, scale):
             matrix[k, j] -= dot
             for i in range(k + 1, rows):
                 matrix[i, j] -= dot * matrix[i, k]
-    return smallest
+
+
+@register_jitable
+def _smallest_singular_value(matrix, vector):
+    """The smallest singular value of the R that `_factor` left, about, and its right
+    singular vector in ``vector``: inverse iteration on R^T R.
+
+    A diagonal entry of R alone may be larger by any factor. 0 where R is singular.
+    """
+    size = min(matrix.shape)
+    for k in range(size):
+        if matrix[k, k] == 0.0:
+            return 0.0
+        vector[k] = 1.0 + 0.1 * k  # along no vector of a symmetric loop, nor across it
+    length = np.sqrt(np.sum(vector[:size] * vector[:size]))
+    for _ in range(INVERSE_STEPS):
+        for k in range(size):
+            total = vector[k] / length
+            for j in range(k):
+                total -= matrix[j, k] * vector[j]
+            vector[k] = total / matrix[k, k]
+        for k in range(size - 1, -1, -1):
+            total = vector[k]
+            for j in range(k + 1, size):
+                total -= matrix[k, j] * vector[j]
+            vector[k] = total / matrix[k, k]
+        length = np.sqrt(np.sum(vector[:size] * vector[:size]))
+    return 1.0 / np.sqrt(length)
 
 
 @register_jitable
@@ -305,8 +332,8 @@ def _settle(theta, tangent, geometry, coupling, matrix, scale, noise):
     One Gauss-Newton iteration solves min |[J; t] d + [F; 0]| by QR. Below ``noise`` the
     residual is rounding, which a small singular value would only amplify: then nothing
     is moved. Leaves the factored [J; t] in ``matrix`` and returns the length of the
-    correction, the residual norm at its end and the smallest diagonal entry of R, a
-    free estimate of the smallest regular singular value.
+    correction, the residual norm at its end and the smallest singular value of [J; t],
+    which is the smallest regular one of J.
     """
     n = theta.shape[0]
     residual, jacobian, right, step = (
@@ -331,8 +358,8 @@ def _settle(theta, tangent, geometry, coupling, matrix, scale, noise):
     _solve(matrix, scale, right, step)
     tangent[:] = step / np.sqrt(np.sum(step * step))
     matrix[:6], matrix[6] = jacobian, tangent
-    smallest = _factor(matrix, scale)
-    return moved, norm, smallest
+    _factor(matrix, scale)
+    return moved, norm, _smallest_singular_value(matrix, step)
 
 
 @register_jitable
@@ -457,11 +484,18 @@ def _expand(
     scale,
     order,
     tolerance,
+    blur,
     longest,
     coefficients,
 ):
     """Fill the series at a settled point; its trusted radius (0 for none) and largest
-    residual come back."""
+    residual come back.
+
+    The series is cut off where its last terms fall to the tolerance, or to ``blur``,
+    the distance to which the point is known: below it the terms are rounding, which a
+    small singular value makes grow like a series that does not reach to where that
+    value vanishes. The residual has to be within the tolerance in any case.
+    """
     n = theta.shape[0]
     place, heading = np.empty(n), np.empty(n)
     screws, quaternion, translation = (
@@ -470,7 +504,7 @@ def _expand(
         np.empty(3),
     )
     _series(theta, tangent, geometry, coupling, matrix, scale, order, coefficients)
-    radius = _trusted_radius(coefficients, tolerance, longest)
+    radius = _trusted_radius(coefficients, max(tolerance, blur), longest)
     for _ in range(20):
         worst = _largest_residual(
             coefficients,
@@ -509,6 +543,17 @@ def _meet(left, right, at, guess, place, heading, other, slope):
 
 
 RAN, STALLED, OPEN = 0, 1, 2
+# Times the distance to which points are known: how far apart two pieces may be where
+# one hands over to the other.
+HANDOVER = 20.0
+BLURRED = 1e-3  # the largest distance to which a point may be known
+
+
+@register_jitable
+def _blur(noise, sigma):
+    """The distance to which a point of a curve is known whose smallest regular singular
+    value is ``sigma``."""
+    return noise / max(sigma, noise / BLURRED)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -552,6 +597,7 @@ def march(
     _, gap, sigmas[0] = _settle(
         point, heading, geometry, coupling, matrix, scale, noise
     )
+    blur = _blur(noise, sigmas[0])
     residuals[0] = gap
     if gap > limit:
         return OPEN, pieces[:0], steps[:0], radii[:0], residuals[:1], sigmas[:0]
@@ -564,6 +610,7 @@ def march(
         scale,
         order,
         tolerance,
+        blur,
         longest,
         pieces[0],
     )
@@ -592,6 +639,7 @@ def march(
                 scale,
                 order,
                 tolerance,
+                _blur(noise, sigmas[made]),
                 longest,
                 pieces[made],
             )
@@ -607,9 +655,8 @@ def march(
                 other,
                 slope,
             )
-            # a point of the curve is known to rounding over the smallest singular
-            # value, no better
-            if apart <= 100.0 * tolerance + 4.0 * noise / sigmas[made]:
+            blur = _blur(noise, min(sigmas[made - 1], sigmas[made]))
+            if apart <= 100.0 * tolerance + HANDOVER * blur:
                 steps[made] = radius - back
                 status = RAN
                 made += 1
