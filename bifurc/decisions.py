@@ -166,6 +166,13 @@ may_be_singular = Decision(
     "a seed beside a singular point is known to half the digits",
     Role.LOOK,
 )
+is_beside_singular = Decision(
+    "seed beside a singular point",
+    "a small singular value at a seed vanishes nearby, and is not as small all around",
+    "the value over its rate of change, which is a distance, over the scale",
+    1e-2,
+    "beside a surface both are small; the place is known to 1e-4 at a point of order 4",
+)
 may_be_crossed = Decision(
     "place to look",
     "a minimum of the singular value may be a singular point, which is then looked for",
@@ -173,6 +180,23 @@ may_be_crossed = Decision(
     1e-3,
     "the place of a minimum is exact to 1e-5 and better; location decides",
     Role.LOOK,
+)
+
+# --- surfaces -------------------------------------------------------------------------
+
+is_closed_on_surface = Decision(
+    "surface or curves on it",
+    "the solutions fill all directions of the null space",
+    "residual above the null space, up to a twentieth of the scale away",
+    1e-12,
+    "on a surface it is rounding, 1e-15; curves beside one leave their distance from it",
+)
+closes_to_rounding = Decision(
+    "surface without doubt",
+    "what a surface misses is rounding",
+    "largest residual on the surface",
+    5e-15,
+    "rounding of F is 1e-15 or less; what is between this and 1e-12 is in doubt",
 )
 
 # --- singular points ------------------------------------------------------------------
@@ -183,6 +207,13 @@ solves_at_point = Decision(
     "residual",
     1e-13,
     "rounding is some 1e-15; the residual beside a near miss is its square or more",
+)
+vanishes_here = Decision(
+    "singular point or near miss",
+    "a null singular value at a located point is zero, and not small all around",
+    "the value over its rate of change, which is a distance, over the scale",
+    1e-3,
+    "beside a surface both are small; at points of higher order the place is known so",
 )
 is_located = Decision(
     "located",

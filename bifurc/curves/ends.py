@@ -9,6 +9,7 @@ import numpy as np
 from bifurc.branch import Outcome
 from bifurc.curves.track import End, Place, Track
 from bifurc.decisions import is_back
+from bifurc.numerics.blur import same_reach, smallest_regular
 from bifurc.pieces import point_and_slope, points_on_piece
 from bifurc.problem import Problem
 
@@ -111,12 +112,14 @@ def _is_same_pass(
     speed = np.linalg.norm(foot.slope)
     if not foot.slope @ place.tangent > SAME_WAY * speed:
         return False
-    distance = np.linalg.norm(foot.offset)
-    if not is_back(float(distance), problem.scale):
-        return False
+    distance = float(np.linalg.norm(foot.offset))
     if distance < max(1e-9, 30 * tolerance) * problem.scale:
         return True
     # where a singular value is small a point is known no better than rounding over it
+    known_to = float(same_reach(smallest_regular(problem, place.point[None]))[0])
+    unit = max(1.0, known_to / is_back.threshold) * problem.scale
+    if not is_back(distance, unit):
+        return False
     residual = problem.jacobian(place.point) @ foot.offset
     rounding = max(1e-14, 0.1 * tolerance) * problem.scale
     return bool(np.linalg.norm(residual) < rounding * problem.magnitude)

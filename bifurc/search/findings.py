@@ -12,6 +12,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.monitor import Profile
 from bifurc.decisions import is_same_point
+from bifurc.numerics.blur import same_reach, smallest_regular
 from bifurc.problem import Problem
 from bifurc.search.components import Components
 from bifurc.search.seed_fates import Fate, SeedFate
@@ -104,10 +105,12 @@ class Findings:
         of the others is settled."""
         if not numbers:
             return []
-        within = is_same_point.threshold * self.problem.scale
         points = self.seeds.points[list(numbers)]
-        distance, _ = self.traced[branch].branch.nearest(points, within=within)
-        is_on = is_same_point(distance, self.problem.scale)
+        values = self.seed_values[list(numbers)]
+        within = self._same_place(values[:, max(self.problem.n - 2, 0)])
+        reach = float(within.max())
+        distance, _ = self.traced[branch].branch.nearest(points, within=reach)
+        is_on = is_same_point(distance, within / is_same_point.threshold)
         matching = list(compress(numbers, is_on))
         self._settle(matching, SeedFate(Fate.ON_FORM, branch))
         return list(compress(numbers, ~is_on))
@@ -124,12 +127,12 @@ class Findings:
         self.awaits_audit = True
         return len(self.traced) - 1
 
-    def branch_through(
-        self, point: np.ndarray, within: float = is_same_point.threshold
-    ) -> int | None:
-        """The number of the first branch at less than ``within`` scales from a point
-        (n,)."""
-        reach = within * self.problem.scale
+    def branch_through(self, point: np.ndarray, within: float = 0.0) -> int | None:
+        """The number of the first branch through a point (n,), as far as that is known,
+        or at less than ``within`` scales from it."""
+        sigma = smallest_regular(self.problem, point[None])
+        known_to = float(self._same_place(sigma)[0])
+        reach = max(known_to, within * self.problem.scale)
         for number, branch in enumerate(self.branches):
             distance, _ = branch.nearest(point, within=reach)
             if distance[0] < reach:
@@ -139,11 +142,19 @@ class Findings:
     def branch_along(self, branch: Branch) -> int | None:
         """The number of the first known branch that runs along another one."""
         points = branch(branch.length * PLACES)
+        within = self._same_place(smallest_regular(self.problem, points))
         for number, known in enumerate(self.branches):
             distance, _ = known.nearest(points)
-            if np.all(is_same_point(distance, self.problem.scale)):
+            if np.all(is_same_point(distance, within / is_same_point.threshold)):
                 return number
         return None
+
+    def _same_place(self, sigma: np.ndarray) -> np.ndarray:
+        """How far from a curve points of it may be found, where the smallest regular
+        singular value is ``sigma`` (k,)."""
+        reach = np.maximum(is_same_point.threshold, same_reach(sigma))
+        within: np.ndarray = reach * self.problem.scale
+        return within
 
     def set_audit(self, audit: Audit) -> None:
         """Record what the problem says of the branches known now."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import Profile, profile_branch, singular_values
 from bifurc.decisions import (
+    is_beside_singular,
     is_mobile,
     is_solution,
     is_stub,
@@ -22,6 +23,7 @@ from bifurc.decisions import (
     may_be_singular,
 )
 from bifurc.limits import Deadline, HeldInterrupt
+from bifurc.numerics.blur import distance_to_singular, sharpened, smallest_regular
 from bifurc.problem import Problem
 from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import Findings, PointSighting, TracedBranch
@@ -125,8 +127,17 @@ class Search:
         if seeds is None:
             rng = np.random.default_rng(random_seed)
             seeds = self.problem.seeds(rng, self.settings.starts)
-        self.findings.add_seeds(seeds, self._singular_values(seeds.points))
+        self._add_seeds(seeds, 0)
         self.limits.interrupt.check()
+
+    def _add_seeds(self, seeds: Seeds, known: int) -> None:
+        """Add the ``seeds`` after the first ``known`` ones, each as near to its curve
+        as it can be known."""
+        points = seeds.points[known:]
+        sigma = smallest_regular(self.problem, points)
+        sharp = sharpened(self.problem, points, sigma)
+        seeds = replace(seeds, points=np.concatenate([seeds.points[:known], sharp]))
+        self.findings.add_seeds(seeds, self._singular_values(sharp))
 
     def sort_seeds(self) -> None:
         """Find the seeds that lie on components of dimension 2 and more."""
@@ -168,7 +179,7 @@ class Search:
         values = self.findings.seed_values[number]
         if not is_mobile(float(values[self.problem.n - 1])):
             return self._rigid_fate(point)
-        if may_be_singular(float(values[self.problem.n - 2])):
+        if self._may_be_singular(point, values):
             fate = self._fate_at_low_rank(point, values)
             if fate is not None:
                 return fate
@@ -177,6 +188,13 @@ class Search:
         if trace.fate is None:
             return self._rigid_fate(point)
         return trace.fate
+
+    def _may_be_singular(self, point: np.ndarray, values: np.ndarray) -> bool:
+        """Whether a seed (n,) may be a singular point: a singular value is small there,
+        and not just as small as it is all around."""
+        if not may_be_singular(float(values[self.problem.n - 2])):
+            return False
+        return is_beside_singular(distance_to_singular(self.problem, point))
 
     def _rigid_fate(self, point: np.ndarray) -> SeedFate:
         return SeedFate(Fate.RIGID, self.findings.rigid_assembly(point))
@@ -379,8 +397,8 @@ class Search:
             self.limits.interrupt.check()
             solutions, gaps = self.problem.project(audit.starts)
             solutions = solutions[is_solution(gaps)]
-            seeds = findings.seeds.with_constructed(solutions)
-            findings.add_seeds(seeds, self._singular_values(solutions))
+            known = len(findings.seeds.points)
+            self._add_seeds(findings.seeds.with_constructed(solutions), known)
             self.trace_seeds()
 
 

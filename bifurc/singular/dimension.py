@@ -15,21 +15,26 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import (
+    is_closed_on_surface,
     is_null,
     is_null_at_probe,
     is_solution_at_probe,
     is_surface_probe,
 )
 from bifurc.limits import Deadline
+from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 
-__all__ = ["LocalDimensions", "local_dimensions"]
+__all__ = ["LocalDimensions", "local_dimensions", "misclosures"]
 
 # Length of the probes, over the scale: at much less, degenerate singular points would
 # look like surfaces.
 RADIUS = 5e-3
-# Length, over that, of the probes about the end of a probe.
+# Distances, over the scale, at which it is seen what a surface misses, and the largest
+# height above the null space there, over them.
+REACHES, LOW = (5e-2, 2e-2, RADIUS), 0.2
+# Length, over `RADIUS`, of the probes about the end of a probe.
 AT_END = 0.01
 # Share of its length that a probe must keep for its end to be beside the point.
 AWAY = 0.1
@@ -94,13 +99,49 @@ def _dimensions_of_nullity(
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
     probes = _probe(problem, points, basis, RADIUS)
     regular = is_surface_probe(probes.loss.max(axis=1))
+    if k > 1:
+        candidates = np.flatnonzero(regular)
+        missed = misclosures(problem, points[candidates], basis[candidates])
+        regular[candidates] = is_closed_on_surface(missed)
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
         arrived = np.isfinite(probes.loss[i])
         ends = probes.ends[i, arrived]
         coordinates = probes.coordinates[i, arrived]
-        dimension[i] = _dimension_from_ends(problem, ends, coordinates)
+        found = _dimension_from_ends(problem, ends, coordinates)
+        # what does not fill all directions of the null space has fewer dimensions
+        dimension[i] = min(found, max(k - 1, 1))
     return dimension, regular
+
+
+def misclosures(problem: Problem, points: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """The largest relative residual (b,) that is left beside solutions (b, n) when only
+    the equations across the null spaces (b, k, n) are solved; infinite where that
+    fails.
+
+    Above every direction of the null space there is one point that solves them. On a
+    component of dimension k it solves the others, too, to rounding. Beside one it
+    misses them by what it takes to see that these are curves: the farther away the
+    more, so the farthest of the `REACHES` counts above which the points lie low.
+    """
+    count, k, n = basis.shape
+    missed = np.full(count, np.inf)
+    waiting = np.arange(count)
+    directions = _probe_directions(k)
+    for reach in REACHES:
+        if not len(waiting):
+            break
+        length = reach * problem.scale
+        starts = points[waiting, None] + length * (directions @ basis[waiting])
+        flat = starts.reshape(-1, n)
+        bases = np.swapaxes(basis[waiting], 1, 2)
+        ends, gaps = correct_normal(problem, flat, np.repeat(bases, len(directions), 0))
+        heights = np.linalg.norm(ends - flat, axis=1).reshape(len(waiting), -1)
+        is_low = heights.max(axis=1) < LOW * length
+        largest = gaps.reshape(len(waiting), -1).max(axis=1)
+        missed[waiting[is_low]] = largest[is_low]
+        waiting = waiting[~is_low]
+    return missed
 
 
 class _Probes(NamedTuple):

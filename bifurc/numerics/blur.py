@@ -1,0 +1,99 @@
+"""How well a point of a curve is known, and how far a singular point is from it.
+
+F is known to rounding. Across a curve it grows in proportion to the distance, most
+slowly along the weakest regular direction: rounding over the smallest regular singular
+value is the distance to which a point of the curve is known. Beside a surface that is
+no solution but nearly one, that value is small all along the curve; beside a singular
+point it is small because it vanishes there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bifurc.numerics.null_spaces import decompose
+from bifurc.problem import Problem
+
+__all__ = ["blur", "distance_to_singular", "same_reach", "sharpened", "smallest_regular"]
+
+ROUNDING = 1e-15  # of F, over the magnitude
+# Singular value at which a direction is weak, and that below which F says nothing of a
+# direction.
+WEAK, NOTHING = 1e-3, 1e-11
+# Times the blur: two points of one curve are no farther apart.
+ALIKE = 20.0
+STEPS = 4  # of Newton's method, from a start to the curve beside it
+FARTHEST = 1e-2  # length of these steps, over the scale
+TINY = 1e-300  # keeps a rate of zero from being divided by
+
+
+def smallest_regular(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """The smallest regular singular value (k,) of F', over the magnitude, at points
+    (k, n) of curves: number n - 1."""
+    values = np.linalg.svd(problem.relative_jacobians(points), compute_uv=False)
+    number = problem.n - 2
+    if not 0 <= number < values.shape[1]:
+        return np.full(len(points), np.inf if number < 0 else 0.0)
+    smallest: np.ndarray = values[:, number]
+    return smallest
+
+
+def blur(sigma: np.ndarray | float) -> np.ndarray:
+    """The distance, over the scale, to which points of a curve are known whose smallest
+    regular singular value is ``sigma`` (k,); 0 where F says nothing of a direction."""
+    values = np.asarray(sigma, dtype=float)
+    distances: np.ndarray = ROUNDING / np.maximum(values, NOTHING)
+    return np.where(values > NOTHING, distances, 0.0)
+
+
+def same_reach(sigma: np.ndarray | float) -> np.ndarray:
+    """How far apart, over the scale, two points of one curve may be found for rounding
+    alone, where its smallest regular singular value is ``sigma`` (k,)."""
+    return ALIKE * blur(sigma)
+
+
+def sharpened(problem: Problem, points: np.ndarray, sigma: np.ndarray) -> np.ndarray:
+    """Solutions (k, n) as near to their curves as doubles tell, from ``points`` (k, n)
+    at which the smallest regular singular value is ``sigma`` (k,).
+
+    What counts as a solution by its residual may lie far from the curve where that
+    value is small. Steps of rank n - 1 lead there; one that does not help is not taken.
+    """
+    sharp = np.array(points)
+    weak = np.flatnonzero((sigma < WEAK) & (sigma > NOTHING))
+    farthest = FARTHEST * problem.scale
+    for _ in range(STEPS):
+        if not len(weak):
+            break
+        decomposition = decompose(problem, sharp[weak])
+        steps = decomposition.newton_steps(problem.n - 1)
+        gaps = np.linalg.norm(decomposition.residuals, axis=1)
+        trials = sharp[weak] + steps
+        is_near = np.linalg.norm(trials - points[weak], axis=1) < farthest
+        is_better = is_near & (problem.gaps(trials) < gaps)
+        weak = weak[is_better]
+        sharp[weak] = trials[is_better]
+    return sharp
+
+
+def distance_to_singular(
+    problem: Problem, point: np.ndarray, nullity: int = 2
+) -> float:
+    """The distance, over the scale, at which a singular point of a ``nullity`` would
+    lie from a solution (n,), to first order.
+
+    V are as many weakest directions and W what the other ones leave of the equations:
+    on V the largest of those singular values changes at the rate |W^T F''(V, V)|. On a
+    surface both vanish, and beside one both are small: it is their quotient that tells.
+    """
+    weakest = problem.n - nullity
+    decomposition = decompose(problem, point[None])
+    if decomposition.sigma.shape[1] <= weakest:
+        return 0.0
+    sigma = float(decomposition.sigma[0, weakest])
+    left = decomposition.left[0, :, weakest:]
+    right = decomposition.right[0, weakest:]
+    hessian = problem.hessian(point) / problem.magnitude
+    reduced = np.einsum("mw,mij,ai,bj->wab", left, hessian, right, right)
+    rate = float(np.linalg.norm(reduced)) * problem.scale
+    return sigma / (rate + TINY)
