@@ -192,11 +192,18 @@ is_closed_on_surface = Decision(
     "on a surface it is rounding, 1e-15; curves beside one leave their distance from it",
 )
 closes_to_rounding = Decision(
-    "surface without doubt",
-    "what a surface misses is rounding",
-    "largest residual on the surface",
+    "closed but for rounding",
+    "what a surface or a singular point misses is rounding",
+    "largest residual on the surface, or at the point",
     5e-15,
     "rounding of F is 1e-15 or less; what is between this and 1e-12 is in doubt",
+)
+is_known_curve = Decision(
+    "curve without doubt",
+    "a form is a curve, and not a part of a surface",
+    "rounding over the median of its smallest regular singular value, over the scale",
+    1e-6,
+    "at this distance two points count as one; points of ordinary curves: 1e-13",
 )
 
 # --- singular points ------------------------------------------------------------------

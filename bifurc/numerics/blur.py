@@ -14,9 +14,18 @@ import numpy as np
 from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
 
-__all__ = ["blur", "distance_to_singular", "same_reach", "sharpened", "smallest_regular"]
+__all__ = [
+    "ROUNDING",
+    "blur",
+    "distance_to_singular",
+    "rounding_unit",
+    "same_reach",
+    "sharpened",
+    "smallest_regular",
+]
 
-ROUNDING = 1e-15  # of F, over the magnitude
+ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
+PROBE = 1e-12  # step, over the scale, after which F differs by its slope and rounding
 # Singular value at which a direction is weak, and that below which F says nothing of a
 # direction.
 WEAK, NOTHING = 1e-3, 1e-11
@@ -25,6 +34,24 @@ ALIKE = 20.0
 STEPS = 4  # of Newton's method, from a start to the curve beside it
 FARTHEST = 1e-2  # length of these steps, over the scale
 TINY = 1e-300  # keeps a rate of zero from being divided by
+
+
+def rounding_unit(problem: Problem, points: np.ndarray) -> float:
+    """How many times larger than `ROUNDING` the rounding of F is at points (k, n), 1 at
+    least.
+
+    F is evaluated beside the points: what its slope does not explain is rounding.
+    """
+    if not len(points):
+        return 1.0
+    rng = np.random.default_rng(0)
+    steps = PROBE * problem.scale * rng.normal(size=points.shape)
+    change = problem.relative_residuals(points + steps)
+    change -= problem.relative_residuals(points)
+    jacobians = problem.relative_jacobians(points)
+    expected = np.einsum("kmn,kn->km", jacobians, steps)
+    rounding = np.linalg.norm(change - expected, axis=1).max()
+    return max(1.0, float(rounding) / ROUNDING)
 
 
 def smallest_regular(problem: Problem, points: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_branches, order_points
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
+from bifurc.search.doubts import doubts_of
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
 from bifurc.torus import wrap
@@ -36,6 +37,7 @@ def assemble_atlas(
     surfaces = _surfaces(findings, periods)
     located = [replace(point, u=wrap(point.u, periods)) for point in findings.points]
     points = meeting_points(problem, located, branches, surfaces, periods)
+    doubts = doubts_of(problem, traced, points, surfaces)
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
     gap = 0.0 if is_mobile else closure_gap(problem, findings.seeds, findings.gaps)
@@ -49,7 +51,7 @@ def assemble_atlas(
         dead_points=_dead_points(problem, traced, periods),
         rigid=rigid[order_points(rigid, periods, problem.scale)],
         surfaces=surfaces,
-        completeness=judge_completeness(findings, provenance),
+        completeness=judge_completeness(findings, provenance, doubts),
         closure_gap=gap,
         provenance=provenance,
     )

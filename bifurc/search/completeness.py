@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
 
 from bifurc.atlas import Provenance
 from bifurc.branch import Outcome
@@ -11,13 +13,33 @@ from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeding import missed_probability
 from bifurc.seeds import Completeness, Level
 
-__all__ = ["judge_completeness"]
+__all__ = ["IN_DOUBT", "judge_completeness"]
+
+IN_DOUBT = "in doubt: "  # how the statement on an answer begins that is not decided
 
 NO_SOLUTION = SeedFate(Fate.NO_SOLUTION)
 
 
-def judge_completeness(findings: Findings, provenance: Provenance) -> Completeness:
-    """What the audit proves, and the estimate for the rest."""
+def judge_completeness(
+    findings: Findings, provenance: Provenance, doubts: Sequence[str] = ()
+) -> Completeness:
+    """What the audit proves, and the estimate for the rest.
+
+    Of an answer that holds ``doubts`` nothing is proved: the statement begins with
+    them.
+    """
+    completeness = _without_doubts(findings, provenance)
+    if not doubts:
+        return completeness
+    level = completeness.level
+    if level in (Level.PROVED, Level.CERTIFIED):
+        level = Level.ESTIMATED
+    statement = f"{IN_DOUBT}{'; '.join(doubts)}; {completeness.statement}"
+    return replace(completeness, level=level, statement=statement)
+
+
+def _without_doubts(findings: Findings, provenance: Provenance) -> Completeness:
+    """The same, where everything is decided."""
     hits = _count_hits(findings)
     missed = missed_probability(list(hits.values()))
     estimate = _estimate(hits, missed)

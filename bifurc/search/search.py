@@ -44,6 +44,7 @@ CLOSED_STUB = 20  # times shorter: a branch that does not stall and is none
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
+DEEP = 0.1  # times the largest singular value of a curve: low enough to be looked at
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
 CUSP_REACH = 0.2  # how far from there the cusp may lie
 
@@ -277,7 +278,9 @@ class Search:
         """Record a branch and the singular points on it."""
         profile = profile_branch(self.problem, branch)
         minima = singular_value_minima(self.problem, branch, profile)
-        candidates = _small_minima(*minima) + self._candidate_ends(branch, profile)
+        candidates = _small_minima(*minima)
+        candidates += _deep_places(profile, minima[0])
+        candidates += self._candidate_ends(branch, profile)
         located: list[float] = []
         starts: list[Start] = []
         for candidate in candidates:
@@ -406,6 +409,29 @@ def _half_branch_starts(point: SingularPoint) -> list[Start]:
     """Starts on all half-branches of a singular point, a little off it."""
     directions = point.half_branches
     return [Start(point.u + point.radius * along, along) for along in directions]
+
+
+def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
+    """Nodes of a profile where the singular value is far smaller than elsewhere on the
+    curve, and no minimum (k,) is near.
+
+    Beside a surface it is so small all along that its slope is lost in rounding.
+    """
+    arclengths = profile.arclength.ravel()
+    values = profile.smallest.ravel()
+    if not may_be_crossed(float(values.max())):
+        return []
+    walled = np.concatenate([[np.inf], values, [np.inf]])
+    is_lowest = (values <= walled[:-2]) & (values < walled[2:])
+    candidates = []
+    for k in np.flatnonzero(is_lowest & (values < DEEP * values.max())):
+        before, after = arclengths[max(k - 1, 0)], arclengths[k + 1 : k + 2]
+        is_beside = (minima >= before) & (minima <= after.max(initial=before))
+        if not np.any(is_beside):
+            candidates.append(
+                _Candidate(arclengths[k : k + 1], may_be_crossed.threshold)
+            )
+    return candidates
 
 
 def _small_minima(arclengths: np.ndarray, values: np.ndarray) -> list[_Candidate]:

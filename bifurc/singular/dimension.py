@@ -22,6 +22,7 @@ from bifurc.decisions import (
     is_surface_probe,
 )
 from bifurc.limits import Deadline
+from bifurc.numerics.blur import rounding_unit
 from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
@@ -102,7 +103,8 @@ def _dimensions_of_nullity(
     if k > 1:
         candidates = np.flatnonzero(regular)
         missed = misclosures(problem, points[candidates], basis[candidates])
-        regular[candidates] = is_closed_on_surface(missed)
+        unit = rounding_unit(problem, points[candidates])
+        regular[candidates] = is_closed_on_surface(missed, unit)
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
         arrived = np.isfinite(probes.loss[i])

@@ -20,6 +20,12 @@ ROUNDING, WEAK = 1e-12, 1e-6
 MOVES_POINT = 0.1
 # Condition of the augmented matrix at which convergence is no longer quadratic.
 HIGHER_ORDER = 1e7
+# Distance, over the reach, from which the iteration has to come back to a simple point,
+# and how much shorter its second step then is than its first.
+ASIDE, AT_ONCE = 0.1, 1e-2
+# Error, over the condition of the matrix, to which that point and the curves through it
+# are known.
+KNOWN_TO = 2e-14
 # |F| and singular value, over the magnitude, below which rounding hides the point.
 HIDDEN = 1e-12
 
@@ -52,6 +58,9 @@ def locate_singular_point(
     u = _solve_regular_equations(problem, run.u, nullity)
     if not _is_singular_solution(problem, u, nullity):
         return None
+    if run.condition >= HIGHER_ORDER and _is_simple(problem, run, u, reach):
+        error = KNOWN_TO * run.condition * problem.scale
+        return LocatedPoint(u, run.basis, error)
     error = _location_error(run.moves, run.condition) * problem.scale
     for direction in run.weak:
         size = np.linalg.norm(direction)
@@ -181,6 +190,25 @@ def block_slice(begin: int, number: int, size: int) -> slice:
     ``begin``."""
     start = begin + number * size
     return slice(start, start + size)
+
+
+def _is_simple(problem: Problem, run: _Run, u: np.ndarray, reach: float) -> bool:
+    """Whether the iteration comes back to a point (n,) at once from beside it.
+
+    At a point of higher order it gains a constant factor in each step. Beside a surface
+    the matrix is as badly conditioned, but only because F is small in all directions of
+    the null space: a simple point is one there, too, and known to rounding times the
+    condition.
+    """
+    away = ASIDE * min(reach, problem.scale)
+    k = run.basis.shape[1]
+    aside = u + away * run.basis @ (np.ones(k) / np.sqrt(k))
+    again = _iterate(problem, aside, k, 2 * reach)
+    if again is None or len(again.moves) < 2:
+        return False
+    apart = np.linalg.norm(problem.difference(again.u, u))
+    allowed = AT_ONCE * away + KNOWN_TO * run.condition * problem.scale
+    return bool(again.moves[1] < AT_ONCE * again.moves[0] and apart < allowed)
 
 
 # --- after the iteration --------------------------------------------------------------

@@ -1,0 +1,104 @@
+"""What doubles leave undecided in the answer of a search, with the candidates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bifurc.atlas import MeetingPoint, Surface
+from bifurc.branch import Branch, Outcome
+from bifurc.curves.monitor import Profile
+from bifurc.decisions import closes_to_rounding, is_known_curve
+from bifurc.numerics.blur import ROUNDING, blur, rounding_unit
+from bifurc.numerics.null_spaces import null_spaces
+from bifurc.problem import Problem
+from bifurc.search.findings import TracedBranch
+from bifurc.singular.dimension import misclosures
+from bifurc.singular.point import Kind
+
+__all__ = ["doubts_of"]
+
+MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
+
+
+def doubts_of(
+    problem: Problem,
+    traced: Sequence[TracedBranch],
+    points: Sequence[MeetingPoint],
+    surfaces: Sequence[Surface],
+) -> tuple[str, ...]:
+    """One sentence for each thing that doubles do not decide: surfaces that may be
+    curves, curves that may be surfaces, ends of forms at nothing known, singular points
+    of no certain kind."""
+    doubts: list[str] = []
+    for surface in surfaces:
+        doubts += _doubts_of_surface(problem, surface)
+    for index, branch in enumerate(traced):
+        doubts += _doubts_of_form(index, branch.branch, branch.profile, points)
+    for point in points:
+        doubts += _doubts_of_point(problem, point)
+    return tuple(doubts)
+
+
+def _doubts_of_surface(problem: Problem, surface: Surface) -> list[str]:
+    """Whether what a surface misses is more than rounding."""
+    missed = _misclosure(problem, surface)
+    unit = rounding_unit(problem, surface.samples[:MOST_SAMPLES])
+    if closes_to_rounding(missed, unit):
+        return []
+    return [
+        f"{surface.name} may be a surface, or curves on one that misses the equations "
+        f"by {missed:.1e}, where rounding is {unit * ROUNDING:.0e}"
+    ]
+
+
+def _misclosure(problem: Problem, surface: Surface) -> float:
+    """The largest relative residual seen on a surface."""
+    if surface.charts is not None:
+        return float(problem.gaps(surface.charts.centers).max(initial=0.0))
+    samples = surface.samples[:MOST_SAMPLES]
+    _, right = null_spaces(problem, samples)
+    missed = misclosures(problem, samples, right[:, problem.n - surface.dimension :])
+    is_seen = np.isfinite(missed)
+    return float(missed[is_seen].max(initial=0.0))
+
+
+def _doubts_of_form(
+    index: int, branch: Branch, profile: Profile, points: Sequence[MeetingPoint]
+) -> list[str]:
+    """Whether a form is a curve, as far as doubles tell, and has no loose end."""
+    doubts = []
+    sigma = float(np.median(profile.smallest))
+    known_to = float(blur(sigma))
+    is_regular = profile.rank == branch.n - 1
+    if is_regular and not is_known_curve(known_to):
+        doubts.append(
+            f"form {index + 1} may be a curve or a part of a surface: its smallest "
+            f"regular singular value is {sigma:.1e}"
+        )
+    if branch.outcome is Outcome.STALLED:
+        ends = {s for point in points for form, s in point.passes if form == index}
+        loose = len({0.0, branch.length} - ends)
+        if loose:
+            doubts.append(
+                f"form {index + 1} stalls at {loose} of its 2 ends, where it may end "
+                "or go on"
+            )
+    return doubts
+
+
+def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
+    """Whether a singular point is one, and of which kind."""
+    place = point.point.u[None]
+    gap = float(problem.gaps(place)[0])
+    unit = rounding_unit(problem, place)
+    if not closes_to_rounding(gap, unit):
+        return [
+            f"{point.name} may be a {point.kind.value} or a near miss: it misses the "
+            f"equations by {gap:.1e}"
+        ]
+    if point.kind is Kind.UNDECIDED:
+        reason = point.note or "sections of two radii disagree"
+        return [f"{point.name} is undecided: {reason}"]
+    return []
