@@ -44,7 +44,8 @@ CLOSED_STUB = 20  # times shorter: a branch that does not stall and is none
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
-DEEP = 0.1  # times the largest singular value of a curve: low enough to be looked at
+# Times the singular values within some nodes: low enough for a place to be looked at.
+DEEP, BESIDE = 0.1, 16
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
 CUSP_REACH = 0.2  # how far from there the cusp may lie
 
@@ -412,26 +413,35 @@ def _half_branch_starts(point: SingularPoint) -> list[Start]:
 
 
 def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
-    """Nodes of a profile where the singular value is far smaller than elsewhere on the
-    curve, and no minimum (k,) is near.
+    """Nodes of a profile where the singular value is far smaller than a little before
+    and a little after, and no minimum (k,) is near.
 
-    Beside a surface it is so small all along that its slope is lost in rounding.
+    Beside a surface that value is so small all along that its slope is lost in
+    rounding, by which minima are found.
     """
-    arclengths = profile.arclength.ravel()
     values = profile.smallest.ravel()
-    if not may_be_crossed(float(values.max())):
-        return []
+    arclengths = profile.arclength.ravel()
+    before, after = _highest_beside(values)
+    is_deep = may_be_crossed(values) & (values < DEEP * np.minimum(before, after))
     walled = np.concatenate([[np.inf], values, [np.inf]])
     is_lowest = (values <= walled[:-2]) & (values < walled[2:])
     candidates = []
-    for k in np.flatnonzero(is_lowest & (values < DEEP * values.max())):
-        before, after = arclengths[max(k - 1, 0)], arclengths[k + 1 : k + 2]
-        is_beside = (minima >= before) & (minima <= after.max(initial=before))
-        if not np.any(is_beside):
-            candidates.append(
-                _Candidate(arclengths[k : k + 1], may_be_crossed.threshold)
-            )
+    for k in np.flatnonzero(is_deep & is_lowest):
+        beside = arclengths[max(k - 1, 0) : k + 2]
+        is_found = (minima >= beside[0]) & (minima <= beside[-1])
+        if not np.any(is_found):
+            look = arclengths[k : k + 1]
+            candidates.append(_Candidate(look, may_be_crossed.threshold))
     return candidates
+
+
+def _highest_beside(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The largest of a few values before each of a row (k,), and of a few after it."""
+    nothing = np.zeros(BESIDE)
+    padded = np.concatenate([nothing, values, nothing])
+    windows = np.lib.stride_tricks.sliding_window_view(padded, BESIDE)
+    highest = windows.max(axis=1)
+    return highest[: len(values)], highest[BESIDE + 1 :]
 
 
 def _small_minima(arclengths: np.ndarray, values: np.ndarray) -> list[_Candidate]:
