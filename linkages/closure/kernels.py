@@ -451,27 +451,39 @@ def _trusted_radius(coefficients, tolerance, longest):
 
 
 @register_jitable
-def _largest_residual(
+def _largest_error(
     coefficients,
     radius,
     geometry,
     coupling,
+    matrix,
+    scale,
     place,
     heading,
     screws,
     quaternion,
     translation,
 ):
-    """Largest closure residual of the piece over six points of its trusted interval."""
-    worst = 0.0
+    """Largest closure residual of the piece over six points of its trusted interval,
+    and largest distance from the curve, estimated with the factored [J; t].
+
+    A residual of the size of rounding may be a large distance, where a singular value
+    is small.
+    """
+    worst, farthest = 0.0, 0.0
+    right, step = np.empty(7), place.copy()
     for fraction in (-1.0, -0.8, -0.45, 0.45, 0.8, 1.0):
         _evaluate(coefficients, fraction * radius, place, heading)
         _forward(_angles(place, coupling), geometry, screws, quaternion, translation)
         total = 0.0
         for row in range(3):
+            right[row], right[row + 3] = 2.0 * quaternion[row + 1], translation[row]
             total += 4.0 * quaternion[row + 1] ** 2 + translation[row] ** 2
+        right[6] = 0.0
+        _solve(matrix, scale, right, step)
         worst = max(worst, np.sqrt(total))
-    return worst
+        farthest = max(farthest, np.sqrt(np.sum(step * step)))
+    return worst, farthest
 
 
 @register_jitable
@@ -494,7 +506,8 @@ def _expand(
     The series is cut off where its last terms fall to the tolerance, or to ``blur``,
     the distance to which the point is known: below it the terms are rounding, which a
     small singular value makes grow like a series that does not reach to where that
-    value vanishes. The residual has to be within the tolerance in any case.
+    value vanishes. The residual has to be within the tolerance in any case, and the
+    estimated distance from the curve within that or what rounding explains.
     """
     n = theta.shape[0]
     place, heading = np.empty(n), np.empty(n)
@@ -506,18 +519,21 @@ def _expand(
     _series(theta, tangent, geometry, coupling, matrix, scale, order, coefficients)
     radius = _trusted_radius(coefficients, max(tolerance, blur), longest)
     for _ in range(20):
-        worst = _largest_residual(
+        worst, farthest = _largest_error(
             coefficients,
             radius,
             geometry,
             coupling,
+            matrix,
+            scale,
             place,
             heading,
             screws,
             quaternion,
             translation,
         )
-        if worst <= 3.0 * tolerance + 4e-15:
+        is_closed = worst <= 3.0 * tolerance + 4e-15
+        if is_closed and farthest <= 3.0 * tolerance + HANDOVER * blur:
             return radius, worst
         radius *= 0.85
     return 0.0, worst
@@ -525,8 +541,12 @@ def _expand(
 
 @register_jitable
 def _meet(left, right, at, guess, place, heading, other, slope):
-    """Where on the series ``right`` the point ``left(at)`` lies, near ``guess``; and
-    the distance left over."""
+    """Where on the series ``right`` the point ``left(at)`` lies, near ``guess``; the
+    distance left over, and the cosine of the angle between them there.
+
+    A centre beyond the reach of the series before it may lie on the curve all right,
+    and its tangent point backwards.
+    """
     n = place.shape[0]
     _evaluate(left, at, place, heading)
     x, distance = guess, 0.0
@@ -539,13 +559,18 @@ def _meet(left, right, at, guess, place, heading, other, slope):
             square += slope[i] * slope[i]
             distance += gap * gap
         x += along / square
-    return x, np.sqrt(distance)
+    cosine = 0.0
+    for i in range(n):
+        cosine += heading[i] * slope[i]
+    cosine /= np.sqrt(np.sum(heading * heading) * square)
+    return x, np.sqrt(distance), cosine
 
 
 RAN, STALLED, OPEN = 0, 1, 2
 # Times the distance to which points are known: how far apart two pieces may be where
 # one hands over to the other.
 HANDOVER = 20.0
+SAME_WAY = 0.9  # cosine of the angle there, at least
 BLURRED = 1e-3  # the largest distance to which a point may be known
 
 
@@ -645,7 +670,7 @@ def march(
             )
             if radii[made] <= beyond * radius:
                 continue
-            back, apart = _meet(
+            back, apart, cosine = _meet(
                 pieces[made - 1],
                 pieces[made],
                 radius,
@@ -656,7 +681,8 @@ def march(
                 slope,
             )
             blur = _blur(noise, min(sigmas[made - 1], sigmas[made]))
-            if apart <= 100.0 * tolerance + HANDOVER * blur:
+            is_same = apart <= 100.0 * tolerance + HANDOVER * blur
+            if is_same and cosine > SAME_WAY:
                 steps[made] = radius - back
                 status = RAN
                 made += 1
