@@ -20,19 +20,14 @@ __all__ = [
     "distance_to_singular",
     "rounding_unit",
     "same_reach",
-    "sharpened",
     "smallest_regular",
 ]
 
 ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
 PROBE = 1e-12  # step, over the scale, after which F differs by its slope and rounding
-# Singular value at which a direction is weak, and that below which F says nothing of a
-# direction.
-WEAK, NOTHING = 1e-3, 1e-11
+NOTHING = 1e-11  # singular value below which F says nothing of a direction
 # Times the blur: two points of one curve are no farther apart.
 ALIKE = 20.0
-STEPS = 4  # of Newton's method, from a start to the curve beside it
-FARTHEST = 1e-2  # length of these steps, over the scale
 TINY = 1e-300  # keeps a rate of zero from being divided by
 
 
@@ -57,6 +52,8 @@ def rounding_unit(problem: Problem, points: np.ndarray) -> float:
 def smallest_regular(problem: Problem, points: np.ndarray) -> np.ndarray:
     """The smallest regular singular value (k,) of F', over the magnitude, at points
     (k, n) of curves: number n - 1."""
+    if not len(points):
+        return np.empty(0)
     values = np.linalg.svd(problem.relative_jacobians(points), compute_uv=False)
     number = problem.n - 2
     if not 0 <= number < values.shape[1]:
@@ -77,30 +74,6 @@ def same_reach(sigma: np.ndarray | float) -> np.ndarray:
     """How far apart, over the scale, two points of one curve may be found for rounding
     alone, where its smallest regular singular value is ``sigma`` (k,)."""
     return ALIKE * blur(sigma)
-
-
-def sharpened(problem: Problem, points: np.ndarray, sigma: np.ndarray) -> np.ndarray:
-    """Solutions (k, n) as near to their curves as doubles tell, from ``points`` (k, n)
-    at which the smallest regular singular value is ``sigma`` (k,).
-
-    What counts as a solution by its residual may lie far from the curve where that
-    value is small. Steps of rank n - 1 lead there; one that does not help is not taken.
-    """
-    sharp = np.array(points)
-    weak = np.flatnonzero((sigma < WEAK) & (sigma > NOTHING))
-    farthest = FARTHEST * problem.scale
-    for _ in range(STEPS):
-        if not len(weak):
-            break
-        decomposition = decompose(problem, sharp[weak])
-        steps = decomposition.newton_steps(problem.n - 1)
-        gaps = np.linalg.norm(decomposition.residuals, axis=1)
-        trials = sharp[weak] + steps
-        is_near = np.linalg.norm(trials - points[weak], axis=1) < farthest
-        is_better = is_near & (problem.gaps(trials) < gaps)
-        weak = weak[is_better]
-        sharp[weak] = trials[is_better]
-    return sharp
 
 
 def distance_to_singular(

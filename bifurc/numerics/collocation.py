@@ -16,7 +16,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from bifurc.numerics.bordered import Bordered
+from bifurc.numerics.blur import blur, smallest_regular
 from bifurc.numerics.corrector import correct_across
+from bifurc.numerics.null_spaces import LARGE
 from bifurc.pieces import points_on_piece
 from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 
@@ -24,19 +26,21 @@ __all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
 
 PREDICT_FROM = 10  # nodes through which the next one is predicted
 LOOSE = 30  # times the tolerance: the residual that a piece may have between its nodes
+TAIL = 4.0  # times the distance to which points are known: last coefficients
 FAILED = 0.4  # factor of the width where no correction converges
 NEWTON_STEPS = 8  # from a share of the arclength to the parameter
 
 
 @dataclass(frozen=True)
 class _Aim:
-    """Where a piece begins, (n,), the unit vector along which it lies, (n,), and how
-    good it has to be."""
+    """Where a piece begins, (n,), the unit vector along which it lies, (n,), how good
+    it has to be, and to which distance, over the scale, its points are known."""
 
     start: np.ndarray
     heading: np.ndarray
     order: int
     tolerance: float
+    known_to: float
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,8 @@ def march_by_collocation(
         is_inside = np.all((low <= point) & (point <= high))
         if pieces and not is_inside:
             break
-        aim = _Aim(point, heading, order, tolerance)
+        known_to = _known_to(problem, point)
+        aim = _Aim(point, heading, order, tolerance, known_to)
         accepted = _next_piece(problem, aim, width, settings.shortest)
         if accepted is None:
             return March.of_pieces(MarchStatus.STALLED, pieces, order, problem.n)
@@ -106,7 +111,7 @@ def bridge_by_collocation(
     nodes next to it need only be as good as ``tolerance``.
     """
     odd = order - 1 + order % 2  # an even number of nodes leaves the middle free
-    aim = _Aim(start, heading, odd, tolerance)
+    aim = _Aim(start, heading, odd, tolerance, _known_to(problem, start))
     attempt = _attempt(problem, aim, width)
     if isinstance(attempt, _Rejected):
         return None
@@ -141,7 +146,8 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
     coefficients = basis.from_values @ nodes
     last_two = np.abs(coefficients[-2:])
     tail = float(last_two.max())
-    enough = aim.tolerance * problem.scale
+    # below the distance to which points are known, coefficients are rounding
+    enough = max(aim.tolerance, TAIL * aim.known_to) * problem.scale
     root = 1.0 / aim.order  # the tail goes with this power of the width, upside down
     if tail <= enough:
         powers, length = _by_arclength(coefficients)
@@ -154,6 +160,14 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
         tail = max(tail, residual)
     shrinkage = (enough / tail) ** root
     return _Rejected(min(0.75, max(0.3, 0.9 * shrinkage)))
+
+
+def _known_to(problem: Problem, point: np.ndarray) -> float:
+    """The distance, over the scale, to which a point (n,) of a curve is known; 0 for a
+    large problem, of which singular values are not taken."""
+    if problem.n > LARGE:
+        return 0.0
+    return float(blur(smallest_regular(problem, point[None]))[0])
 
 
 def _residual_between_nodes(problem: Problem, piece: np.ndarray) -> float:

@@ -23,12 +23,13 @@ from bifurc.decisions import (
     may_be_singular,
 )
 from bifurc.limits import Deadline, HeldInterrupt
-from bifurc.numerics.blur import distance_to_singular, sharpened, smallest_regular
+from bifurc.numerics.blur import distance_to_singular
 from bifurc.problem import Problem
 from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import Findings, PointSighting, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.search.settings import SearchSettings
+from bifurc.search.weak_seeds import sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
@@ -128,16 +129,15 @@ class Search:
         """Take the ``seeds`` given, or else those of the problem."""
         if seeds is None:
             rng = np.random.default_rng(random_seed)
-            seeds = self.problem.seeds(rng, self.settings.starts)
+            drawn = self.problem.seeds(rng, self.settings.starts)
+            seeds = with_weak_solutions(self.problem, drawn)
         self._add_seeds(seeds, 0)
         self.limits.interrupt.check()
 
     def _add_seeds(self, seeds: Seeds, known: int) -> None:
         """Add the ``seeds`` after the first ``known`` ones, each as near to its curve
         as it can be known."""
-        points = seeds.points[known:]
-        sigma = smallest_regular(self.problem, points)
-        sharp = sharpened(self.problem, points, sigma)
+        sharp = sharpened(self.problem, seeds.points[known:])
         seeds = replace(seeds, points=np.concatenate([seeds.points[:known], sharp]))
         self.findings.add_seeds(seeds, self._singular_values(sharp))
 

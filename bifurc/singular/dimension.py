@@ -100,19 +100,21 @@ def _dimensions_of_nullity(
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
     probes = _probe(problem, points, basis, RADIUS)
     regular = is_surface_probe(probes.loss.max(axis=1))
+    most = np.full(count, k)
     if k > 1:
-        candidates = np.flatnonzero(regular)
-        missed = misclosures(problem, points[candidates], basis[candidates])
-        unit = rounding_unit(problem, points[candidates])
-        regular[candidates] = is_closed_on_surface(missed, unit)
+        missed = misclosures(problem, points, basis)
+        is_seen = np.isfinite(missed)
+        is_closed = is_closed_on_surface(missed, rounding_unit(problem, points))
+        regular &= is_closed
+        # what does not fill all directions of the null space has fewer dimensions
+        most[is_seen & ~is_closed] = k - 1
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
         arrived = np.isfinite(probes.loss[i])
         ends = probes.ends[i, arrived]
         coordinates = probes.coordinates[i, arrived]
         found = _dimension_from_ends(problem, ends, coordinates)
-        # what does not fill all directions of the null space has fewer dimensions
-        dimension[i] = min(found, max(k - 1, 1))
+        dimension[i] = min(found, most[i])
     return dimension, regular
 
 

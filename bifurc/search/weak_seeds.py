@@ -1,0 +1,83 @@
+"""Seeds beside a surface that is nearly a solution.
+
+F is small all over such a surface. What counts as a solution by its residual may lie
+far from the curves on it, and a descent of the residual, which has to follow every bend
+of the surface, gets stuck on the way to them. Newton's method knows the way: its steps
+go across the curves only, and need not make the residual smaller at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from bifurc.decisions import is_solution, may_be_crossed
+from bifurc.numerics.blur import NOTHING, smallest_regular
+from bifurc.numerics.corrector import limited
+from bifurc.numerics.null_spaces import decompose
+from bifurc.problem import Problem
+from bifurc.seeds import Seeds
+
+__all__ = ["sharpened", "with_weak_solutions"]
+
+STEPS, FARTHEST = 4, 1e-2  # from a solution to its curve, and their length in scales
+LONG_STEPS, LONGEST = 30, 0.3  # from a start that missed, and the length of each
+NEARLY = 1e-3  # residual of such a start
+
+
+def sharpened(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Solutions (k, n) as near to their curves as doubles tell, from ``points`` (k, n).
+
+    Steps of rank n - 1 are taken where a direction is weak, as long as they help.
+    """
+    sharp = np.array(points)
+    weak = _weak(problem, points)
+    farthest = FARTHEST * problem.scale
+    for _ in range(STEPS):
+        if not len(weak):
+            break
+        decomposition = decompose(problem, sharp[weak])
+        trials = sharp[weak] + decomposition.newton_steps(problem.n - 1)
+        gaps = np.linalg.norm(decomposition.residuals, axis=1)
+        is_near = np.linalg.norm(trials - points[weak], axis=1) < farthest
+        is_better = is_near & (problem.gaps(trials) < gaps)
+        weak = weak[is_better]
+        sharp[weak] = trials[is_better]
+    return sharp
+
+
+def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
+    """The seeds, and after them the solutions that are reached from where starts missed
+    by little, in a weak direction."""
+    is_near = seeds.gaps < NEARLY
+    near = np.flatnonzero(is_near)
+    weak = near[_weak(problem, seeds.missed[near])]
+    if not len(weak):
+        return seeds
+    points = seeds.missed[weak]
+    longest = LONGEST * problem.scale
+    for _ in range(LONG_STEPS):
+        steps = decompose(problem, points).newton_steps(problem.n - 1)
+        points = points + limited(steps, longest)
+    low, high = problem.bounds.T
+    is_inside = np.all((points >= low) & (points <= high), axis=1)
+    is_reached = is_inside & is_solution(problem.gaps(points))
+    reached = points[is_reached]
+    is_left = np.ones(len(seeds.missed), dtype=bool)
+    is_left[weak[is_reached]] = False
+    return replace(
+        seeds,
+        points=np.concatenate([seeds.points, reached]),
+        random=np.concatenate([seeds.random, np.ones(len(reached), dtype=bool)]),
+        gaps=seeds.gaps[is_left],
+        missed=seeds.missed[is_left],
+    )
+
+
+def _weak(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Numbers of the points (k, n) at which the smallest regular singular value is
+    small, and not nothing."""
+    sigma = smallest_regular(problem, points)
+    is_weak = may_be_crossed(sigma) & (sigma > NOTHING)
+    return np.flatnonzero(is_weak)
