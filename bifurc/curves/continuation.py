@@ -10,7 +10,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.checks import check_number, check_type, check_whole
 from bifurc.curves.bridges import bridge_from
 from bifurc.curves.ends import end_of_curve
-from bifurc.curves.track import CAUTIOUS, BridgeRule, End, Place, Track
+from bifurc.curves.track import CAUTIOUS, End, Place, Track
 from bifurc.errors import ProblemError
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import March, MarchSettings, MarchStatus, Problem
@@ -138,7 +138,7 @@ def _overcome_stall(
 ) -> End | None:
     """The end of the curve, if the track ends where it stalled or on a bridge laid from
     there; None where it goes on."""
-    if track.caution.bridges is BridgeRule.NOWHERE:
+    if not track.may_overcome_stall():
         return End(Outcome.STALLED, track.reached)
     bridge = bridge_from(problem, track, settings.tolerance)
     if bridge is None:

@@ -46,6 +46,9 @@ CAUTIOUS = (
 )
 
 
+MOST_STALLS = 15  # that are overcome on the way along one curve
+
+
 class Place(NamedTuple):
     """A ``point`` (n,) of a curve and the unit ``tangent`` (n,) there."""
 
@@ -78,6 +81,7 @@ class Track:
     def __init__(self, start: Place, order: int):
         self._start = start
         self._level = 0
+        self._stalls = 0
         self.pieces = np.empty((0, order + 1, len(start.point)))
         self.centers = np.empty(0)
         self.radii = np.empty(0)
@@ -145,6 +149,16 @@ class Track:
         self.centers = np.append(self.centers[kept], bridge.begin + radius)
         self.radii = np.append(self.radii[kept], radius)
         self.residuals = np.append(self.residuals[kept], bridge.piece.residual)
+
+    def may_overcome_stall(self) -> bool:
+        """Whether it is worth trying to get over one more stall.
+
+        A curve meets a few singular points. What stalls again and again is rounding,
+        followed where nothing else is left of the equations.
+        """
+        self._stalls += 1
+        is_cautious = self.caution.bridges is not BridgeRule.NOWHERE
+        return is_cautious and self._stalls <= MOST_STALLS
 
     def allow_shorter_steps(self) -> None:
         """There is no singular point to jump over: a sharp bend, to be followed."""

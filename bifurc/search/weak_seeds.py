@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from bifurc.decisions import is_solution, may_be_crossed
-from bifurc.numerics.blur import NOTHING, smallest_regular
+from bifurc.numerics.blur import NOTHING, ROUNDING, smallest_regular
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
@@ -29,21 +29,20 @@ NEARLY = 1e-3  # residual of such a start
 def sharpened(problem: Problem, points: np.ndarray) -> np.ndarray:
     """Solutions (k, n) as near to their curves as doubles tell, from ``points`` (k, n).
 
-    Steps of rank n - 1 are taken where a direction is weak, as long as they help.
+    Steps of rank n - 1 are taken where a direction is weak. Where they lead far away, or
+    to no better solution, the point stays.
     """
     sharp = np.array(points)
     weak = _weak(problem, points)
-    farthest = FARTHEST * problem.scale
-    for _ in range(STEPS):
-        if not len(weak):
-            break
-        decomposition = decompose(problem, sharp[weak])
-        trials = sharp[weak] + decomposition.newton_steps(problem.n - 1)
-        gaps = np.linalg.norm(decomposition.residuals, axis=1)
-        is_near = np.linalg.norm(trials - points[weak], axis=1) < farthest
-        is_better = is_near & (problem.gaps(trials) < gaps)
-        weak = weak[is_better]
-        sharp[weak] = trials[is_better]
+    if not len(weak):
+        return sharp
+    starts = sharp[weak]
+    longest = FARTHEST * problem.scale
+    ends = _after_newton_steps(problem, starts, STEPS, longest)
+    is_near = np.linalg.norm(ends - starts, axis=1) < longest
+    enough = np.maximum(problem.gaps(starts), ROUNDING)
+    is_better = is_near & (problem.gaps(ends) <= enough)
+    sharp[weak[is_better]] = ends[is_better]
     return sharp
 
 
@@ -55,11 +54,8 @@ def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
     weak = near[_weak(problem, seeds.missed[near])]
     if not len(weak):
         return seeds
-    points = seeds.missed[weak]
     longest = LONGEST * problem.scale
-    for _ in range(LONG_STEPS):
-        steps = decompose(problem, points).newton_steps(problem.n - 1)
-        points = points + limited(steps, longest)
+    points = _after_newton_steps(problem, seeds.missed[weak], LONG_STEPS, longest)
     low, high = problem.bounds.T
     is_inside = np.all((points >= low) & (points <= high), axis=1)
     is_reached = is_inside & is_solution(problem.gaps(points))
@@ -73,6 +69,17 @@ def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
         gaps=seeds.gaps[is_left],
         missed=seeds.missed[is_left],
     )
+
+
+def _after_newton_steps(
+    problem: Problem, points: np.ndarray, count: int, longest: float
+) -> np.ndarray:
+    """Where ``count`` steps of rank n - 1, none longer than ``longest``, lead from
+    points (k, n)."""
+    for _ in range(count):
+        steps = decompose(problem, points).newton_steps(problem.n - 1)
+        points = points + limited(steps, longest)
+    return points
 
 
 def _weak(problem: Problem, points: np.ndarray) -> np.ndarray:

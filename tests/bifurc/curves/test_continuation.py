@@ -9,6 +9,7 @@ from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
+from tests.bifurc.near_surfaces import CirclesBesideSphere
 
 
 def plane(function, low=-2.0, high=2.0, **more):
@@ -175,3 +176,12 @@ def test_every_order_meets_the_tolerance(order):
     )
     assert branch.outcome is Outcome.CLOSED
     assert np.linalg.norm(problem.residuals(branch.sample(3000)), axis=1).max() < 1e-9
+
+
+@pytest.mark.parametrize("e", [1e-3, 1e-5, 1e-7])
+def test_curves_beside_a_surface_are_followed_through_their_crossings(e):
+    problem = CirclesBesideSphere(e)
+    branch = trace_branch(problem, problem.points(3)[1])
+    assert branch.closed
+    assert branch.length == pytest.approx(2 * np.pi, abs=1e-13 / e)
+    assert np.abs(branch.sample(200)[:, 0]).max() < 1e-12 / e

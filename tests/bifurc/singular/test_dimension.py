@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from bifurc.function_problem import FunctionProblem
+from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
-from bifurc.singular.dimension import local_dimensions
+from bifurc.singular.dimension import local_dimensions, misclosures
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 from tests.bifurc.known_surfaces import general, planar, seeds, spherical
+from tests.bifurc.near_surfaces import CirclesBesideSphere
 
 COINCIDENT_AXES = LoopClosure(Loop((0, 1, 0, 1), (0, 0.7, 0, 0.7), (0, 0, 0, 0)))
 LOOPS = {  # name: loop, its mobility
@@ -61,3 +63,21 @@ def test_a_curve_at_a_bifurcation_keeps_dimension_one() -> None:
     local = local_dimensions(problem, np.array([[0.0, 0.0], [0.5, 0.0]]))
     assert local.dimension.tolist() == [1, 1]
     assert local.nullity.tolist() == [2, 1]
+
+
+@pytest.mark.parametrize("e", [1e-7, 1e-8, 1e-9])
+def test_points_of_a_curve_beside_a_surface_are_on_no_surface(e: float) -> None:
+    problem = CirclesBesideSphere(e)
+    local = local_dimensions(problem, problem.points(9))
+    assert np.all(local.dimension < 2)
+
+
+def test_what_a_surface_misses_is_rounding_and_what_curves_on_it_miss_is_not() -> None:
+    torus = planar(1, 1.2, 0.9, 1.3, 1.1)
+    for problem, points, low, high in (
+        (torus, seeds(torus, 40)[:50], 0.0, 5e-15),
+        (beside := CirclesBesideSphere(1e-9), beside.points(9), 1e-12, 1e-9),
+    ):
+        _, right = null_spaces(problem, points)
+        missed = misclosures(problem, points, right[:, problem.n - 2 :])
+        assert np.all((missed >= low) & (missed < high))

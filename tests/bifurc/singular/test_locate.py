@@ -4,6 +4,7 @@ import numpy as np
 
 from bifurc.function_problem import FunctionProblem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
+from tests.bifurc.near_surfaces import CirclesBesideSphere
 
 
 def plane(function) -> FunctionProblem:
@@ -93,3 +94,13 @@ def test_no_point_farther_than_the_reach_is_returned():
     start = np.array([0.3, 0.3])
     assert locate_singular_point(problem, start, 2, 0.1) is None
     assert locate_singular_point(problem, start, 2, 0.5) is not None
+
+
+def test_a_crossing_beside_a_surface_is_located_as_well_as_doubles_tell():
+    for e in (1e-4, 1e-6, 1e-8):
+        problem = CirclesBesideSphere(e)
+        near = np.array([0.0, np.sin(0.02), np.cos(0.02)])
+        located = locate_singular_point(problem, near, 2, 0.1)
+        assert located is not None
+        distance = np.linalg.norm(located.u - [0, 0, 1])
+        assert distance <= located.error < 1e-12 / e

@@ -5,9 +5,16 @@ import mpmath
 import numpy as np
 import pytest
 
+from bifurc.curves.continuation import trace_branch
+from bifurc.curves.monitor import singular_values
+from bifurc.numerics.null_spaces import null_vector
+from bifurc.singular.classify import classify_singular_point
+from bifurc.singular.locate import locate_singular_point
 from linkages.catalogue import entry
 from linkages.closure import kernels
 from linkages.closure.loop_closure import LoopClosure
+from linkages.families.four_bar import four_bar
+from linkages.linkage import load
 from linkages.loop import Loop
 
 DIGITS = 50
@@ -290,3 +297,50 @@ def test_a_march_from_an_open_loop_says_by_how_much_it_is_open():
     assert status == 2
     assert not len(pieces)
     assert gaps[-1] > 0.1
+
+
+def test_a_march_says_the_smallest_regular_singular_value():
+    linkage = load("special-double-subtractive-goldberg", alpha=2, beta=1, delta=1.0001)
+    problem = LoopClosure(linkage.loop)
+    points = problem.seeds(np.random.default_rng(0), 20).points
+    point = points[np.argmin(singular_values(problem, points)[:, 4])]
+    tangent = null_vector(problem, point)
+    _, pieces, _, _, _, sigmas = kernels.march(
+        point, tangent, problem._geometry, 16, 1e-13, 1e-9, 0.5, 40
+    )
+    expected = singular_values(problem, pieces[:, 0])[:, 4]
+    is_small = expected < 0.05
+    assert np.count_nonzero(is_small) > 5
+    assert sigmas[is_small] == pytest.approx(expected[is_small], rel=0.5)
+    assert np.all(sigmas[~is_small] > 0.05)
+
+
+@pytest.mark.parametrize("decades", [5, 7])
+def test_a_march_beside_a_surface_goes_through_a_bifurcation(decades):
+    linkage = load(
+        "special-double-subtractive-goldberg",
+        alpha=2,
+        beta=1,
+        delta=1 + 10.0**-decades,
+    )
+    problem = LoopClosure(linkage.loop)
+    crossing = np.array([0, np.pi, np.pi, np.pi, 0, np.pi])
+    located = locate_singular_point(problem, crossing, 2, 0.1)
+    point = classify_singular_point(problem, located)
+    assert len(point.half_branches) == 4
+    for along in point.half_branches:
+        branch = trace_branch(problem, point.u + point.radius * along, along)
+        assert branch.closed
+        assert len(branch.passes(point.u, 1e-3)) == 1
+
+
+def test_a_march_through_a_narrow_near_miss_does_not_turn_back():
+    # a rhombus but for 1e-11: the next centre lies beyond the reach of the series, on
+    # the curve, with its tangent backwards
+    problem = LoopClosure(four_bar(1.0, 1.0 + 1e-11, 1.0, 1.0 - 5e-12))
+    for seed in range(3):
+        points = problem.seeds(np.random.default_rng(seed), 20).points
+        values = singular_values(problem, points)[:, 2]
+        branch = trace_branch(problem, points[np.argmax(values)])
+        assert branch.closed
+        assert branch.length == pytest.approx(30.337847503, abs=1e-6)

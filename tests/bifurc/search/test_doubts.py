@@ -1,0 +1,76 @@
+"""What doubles leave undecided is said, and nothing is proved then."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bifurc.branch import Branch, Outcome
+from bifurc.curves.continuation import trace_branch
+from bifurc.curves.monitor import profile_branch
+from bifurc.search.completeness import IN_DOUBT, judge_completeness
+from bifurc.search.doubts import doubts_of
+from bifurc.search.explore import explore
+from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.settings import SearchSettings
+from bifurc.atlas import Provenance
+from bifurc.seeds import Audit, Level
+from tests.bifurc.known_surfaces import SPHERE
+from tests.bifurc.near_surfaces import CirclesBesideSphere
+
+FEW = SearchSettings(starts=12, charts=300)
+
+
+def test_curves_beside_a_surface_are_told_from_it():
+    atlas = explore(CirclesBesideSphere(1e-6), settings=FEW)
+    assert [len(atlas.forms), len(atlas.bifurcations)] == [2, 2]
+    assert all(form.branch.closed for form in atlas.forms)
+    assert not atlas.surfaces and not len(atlas.rigid)
+    assert IN_DOUBT not in atlas.completeness.statement
+
+
+def test_a_surface_that_misses_by_more_than_rounding_is_in_doubt():
+    atlas = explore(CirclesBesideSphere(1e-13), settings=FEW)
+    assert len(atlas.surfaces) == 1
+    statement = atlas.completeness.statement
+    assert statement.startswith(f"{IN_DOUBT}surface 1 may be a surface, or curves")
+    assert atlas.completeness.level is Level.ESTIMATED
+
+
+def test_a_surface_is_not_in_doubt():
+    atlas = explore(SPHERE, settings=FEW)
+    assert len(atlas.surfaces) == 1
+    assert IN_DOUBT not in atlas.completeness.statement
+
+
+def traced(problem, branch: Branch) -> TracedBranch:
+    nothing = (np.empty(0), np.empty(0))
+    return TracedBranch(branch, profile_branch(problem, branch), nothing, ())
+
+
+def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
+    for e, count in ((1e-3, 0), (1e-10, 1)):
+        problem = CirclesBesideSphere(e)
+        branch = trace_branch(problem, problem.points(3)[1])
+        doubts = doubts_of(problem, [traced(problem, branch)], [], [])
+        assert len(doubts) == count
+        assert all("form 1 may be a curve or a part of" in doubt for doubt in doubts)
+
+
+def test_a_form_that_stalls_at_nothing_known_is_in_doubt():
+    problem = CirclesBesideSphere(1.0)
+    branch = trace_branch(problem, problem.points(3)[1])
+    assert doubts_of(problem, [traced(problem, branch)], [], []) == ()
+    loose = replace(branch, outcome=Outcome.STALLED)
+    (doubt,) = doubts_of(problem, [traced(problem, loose)], [], [])
+    assert doubt.startswith("form 1 stalls at 2 of its 2 ends")
+
+
+@pytest.mark.parametrize("level", [Level.PROVED, Level.CERTIFIED])
+def test_nothing_is_proved_of_an_answer_in_doubt(level):
+    findings = Findings(SPHERE)
+    findings.set_audit(Audit(level, "no motion is missing", np.empty((0, 3))))
+    assert judge_completeness(findings, Provenance()).level is level
+    completeness = judge_completeness(findings, Provenance(), ["B1 is undecided"])
+    assert completeness.level is Level.ESTIMATED
+    assert completeness.statement.startswith("in doubt: B1 is undecided; no motion")
