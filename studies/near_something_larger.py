@@ -213,11 +213,7 @@ def draw(found: Sequence[Answer]) -> Figure:
     decades = sorted({answer.decades for answer in found})
     seeds = 1 + max(answer.seed for answer in found)
     order = list(Verdict)
-    cells = np.full((len(names) * seeds, len(decades)), np.nan)
-    for answer in found:
-        row = names.index(answer.family) * seeds + answer.seed
-        column = decades.index(answer.decades)
-        cells[row, column] = order.index(answer.verdict)
+    cells = _cells(found, names, decades, seeds)
     figure = Figure(figsize=(9.0, 0.38 * len(names) + 1.6), layout="constrained")
     axes = figure.subplots()
     colours = ListedColormap([verdict.colour for verdict in order])
@@ -231,9 +227,22 @@ def draw(found: Sequence[Answer]) -> Figure:
     axes.set_xticks([k + 0.5 for k in whole], labels)
     axes.set_xlabel("e, the distance from something larger")
     axes.tick_params(length=0)
-    handles = [Patch(color=verdict.colour, label=verdict.words) for verdict in order]
+    handles = [Patch(color=each.colour, label=each.words) for each in order]
     figure.legend(handles=handles, loc="outside upper center", ncols=4, frameon=False)
     return figure
+
+
+def _cells(
+    found: Sequence[Answer], names: list[str], decades: list[float], seeds: int
+) -> np.ndarray:
+    """Numbers of the verdicts, a row for each family and seed, a column for each half
+    decade; nan where there is none."""
+    order = list(Verdict)
+    cells = np.full((len(names) * seeds, len(decades)), np.nan)
+    for answer in found:
+        row = names.index(answer.family) * seeds + answer.seed
+        cells[row, decades.index(answer.decades)] = order.index(answer.verdict)
+    return cells
 
 
 @click.command(help=__doc__)

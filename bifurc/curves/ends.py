@@ -9,12 +9,13 @@ import numpy as np
 from bifurc.branch import Outcome
 from bifurc.curves.track import End, Place, Track
 from bifurc.decisions import is_back
-from bifurc.numerics.blur import same_reach, smallest_regular
+from bifurc.numerics.blur import same_reach
 from bifurc.pieces import point_and_slope, points_on_piece
 from bifurc.problem import Problem
 
 __all__ = ["end_of_curve"]
 
+LOOSE = 30  # times the tolerance: the largest residual that pieces may have
 SAME_WAY = 0.9  # cosine of the angle between two passes through one point that are one
 ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
 FOOT_STEPS = 6  # of Newton's method from a sample of a piece to the foot of a point
@@ -116,13 +117,14 @@ def _is_same_pass(
     if distance < max(1e-9, 30 * tolerance) * problem.scale:
         return True
     # where a singular value is small a point is known no better than rounding over it
-    known_to = float(same_reach(smallest_regular(problem, place.point[None]))[0])
-    unit = max(1.0, known_to / is_back.threshold) * problem.scale
-    if not is_back(distance, unit):
-        return False
     residual = problem.jacobian(place.point) @ foot.offset
-    rounding = max(1e-14, 0.1 * tolerance) * problem.scale
-    return bool(np.linalg.norm(residual) < rounding * problem.magnitude)
+    apart = float(np.linalg.norm(residual)) / (problem.magnitude * problem.scale)
+    if apart < max(1e-14, 0.1 * tolerance) and is_back(distance, problem.scale):
+        return True
+    if not apart < LOOSE * tolerance:
+        return False
+    reach = float(same_reach(problem, place.point[None])[0])
+    return distance < reach * problem.scale
 
 
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:

@@ -16,64 +16,84 @@ from bifurc.problem import Problem
 
 __all__ = [
     "ROUNDING",
-    "blur",
     "distance_to_singular",
+    "known_to",
     "rounding_unit",
     "same_reach",
-    "smallest_regular",
 ]
 
 ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
-PROBE = 1e-12  # step, over the scale, after which F differs by its slope and rounding
-NOTHING = 1e-11  # singular value below which F says nothing of a direction
+# Step, over the scale, after which F differs by its slope and rounding, and how far from
+# a point that is seen.
+PROBE, BESIDE = 1e-12, 1e-4
+PROBES = 8  # such steps: rounding is the largest difference
+SAFETY = 2.0  # times that
+# Singular values below which a direction is weak, and below which F says nothing of it.
+WEAK, NOTHING = 1e-3, 1e-11
 # Times the blur: two points of one curve are no farther apart.
 ALIKE = 20.0
 TINY = 1e-300  # keeps a rate of zero from being divided by
 
 
+def known_to(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """The distance, over the scale, to which points (k, n) of curves are known: what
+    rounding leaves of the weakest regular equation, over its singular value.
+
+    That equation may be small because somebody scaled it, and its rounding with it: the
+    rounding is measured. 0 where F says nothing of a direction.
+    """
+    distances = np.zeros(len(points))
+    number = problem.n - 2
+    if number < 0 or not len(points):
+        return distances
+    left, values, _ = np.linalg.svd(problem.relative_jacobians(points))
+    if number >= values.shape[1]:
+        return distances
+    sigma = values[:, number]
+    is_clear = sigma >= WEAK
+    distances[is_clear] = ROUNDING / sigma[is_clear]
+    weak = np.flatnonzero(~is_clear & (sigma > NOTHING))
+    if len(weak):
+        equation = left[weak, :, number]
+        rounding = np.abs(
+            np.einsum("pkm,km->pk", _rounding(problem, points[weak]), equation)
+        )
+        distances[weak] = SAFETY * rounding.max(axis=0) / sigma[weak]
+    return distances
+
+
+def same_reach(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """How far, over the scale, from where a curve was found its points (k, n) may be
+    found for rounding alone."""
+    return ALIKE * known_to(problem, points)
+
+
 def rounding_unit(problem: Problem, points: np.ndarray) -> float:
     """How many times larger than `ROUNDING` the rounding of F is at points (k, n), 1 at
-    least.
-
-    F is evaluated beside the points: what its slope does not explain is rounding.
-    """
+    least."""
     if not len(points):
         return 1.0
+    sizes = np.linalg.norm(_rounding(problem, points), axis=2)
+    return max(1.0, float(sizes.max()) / ROUNDING)
+
+
+def _rounding(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Samples (p, k, m) of the rounding of F, over the magnitude, about points (k, n).
+
+    F is evaluated twice, a little apart: what its slope does not explain is rounding.
+    That is done beside the points, for at some of them rounding happens to be nothing.
+    """
     rng = np.random.default_rng(0)
-    steps = PROBE * problem.scale * rng.normal(size=points.shape)
-    change = problem.relative_residuals(points + steps)
-    change -= problem.relative_residuals(points)
-    jacobians = problem.relative_jacobians(points)
-    expected = np.einsum("kmn,kn->km", jacobians, steps)
-    rounding = np.linalg.norm(change - expected, axis=1).max()
-    return max(1.0, float(rounding) / ROUNDING)
-
-
-def smallest_regular(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """The smallest regular singular value (k,) of F', over the magnitude, at points
-    (k, n) of curves: number n - 1."""
-    if not len(points):
-        return np.empty(0)
-    values = np.linalg.svd(problem.relative_jacobians(points), compute_uv=False)
-    number = problem.n - 2
-    if not 0 <= number < values.shape[1]:
-        return np.full(len(points), np.inf if number < 0 else 0.0)
-    smallest: np.ndarray = values[:, number]
-    return smallest
-
-
-def blur(sigma: np.ndarray | float) -> np.ndarray:
-    """The distance, over the scale, to which points of a curve are known whose smallest
-    regular singular value is ``sigma`` (k,); 0 where F says nothing of a direction."""
-    values = np.asarray(sigma, dtype=float)
-    distances: np.ndarray = ROUNDING / np.maximum(values, NOTHING)
-    return np.where(values > NOTHING, distances, 0.0)
-
-
-def same_reach(sigma: np.ndarray | float) -> np.ndarray:
-    """How far apart, over the scale, two points of one curve may be found for rounding
-    alone, where its smallest regular singular value is ``sigma`` (k,)."""
-    return ALIKE * blur(sigma)
+    shape = (PROBES, *points.shape)
+    places = (points + BESIDE * problem.scale * rng.normal(size=shape)).reshape(
+        -1, problem.n
+    )
+    steps = PROBE * problem.scale * rng.normal(size=places.shape)
+    change = problem.relative_residuals(places + steps)
+    change -= problem.relative_residuals(places)
+    slopes = problem.relative_jacobians(places)
+    rounding: np.ndarray = change - np.einsum("kmn,kn->km", slopes, steps)
+    return rounding.reshape(PROBES, len(points), -1)
 
 
 def distance_to_singular(

@@ -15,8 +15,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from bifurc.numerics.blur import known_to
 from bifurc.numerics.bordered import Bordered
-from bifurc.numerics.blur import blur, smallest_regular
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import LARGE
 from bifurc.pieces import points_on_piece
@@ -167,7 +167,7 @@ def _known_to(problem: Problem, point: np.ndarray) -> float:
     large problem, of which singular values are not taken."""
     if problem.n > LARGE:
         return 0.0
-    return float(blur(smallest_regular(problem, point[None]))[0])
+    return float(known_to(problem, point[None])[0])
 
 
 def _residual_between_nodes(problem: Problem, piece: np.ndarray) -> float:

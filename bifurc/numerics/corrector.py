@@ -28,6 +28,7 @@ DAMPING = 1e-14  # of normal equations, over the largest squared singular value
 # residual left by one step, as a share, above which a factorisation made elsewhere is
 # given up
 SLOW = 0.05
+BENT = 1e-13  # a residual above this may rise once for a bend, and not for rounding
 
 
 class Correction(NamedTuple):
@@ -68,25 +69,31 @@ def correct_across(
     factorisation made nearby (``factored``, of the same tangent) as long as the
     residual falls fast enough with it, and a fresh one where it does not. It converges
     as long as the system is consistent, whatever the number of redundant equations, and
-    to the smallest residual where it is not.
+    to the smallest residual where it is not. A step in a weak direction may raise the
+    residual, by the bend of the other equations, before the next one lowers it: that is
+    let pass once.
     """
     enough = 0.01 * tolerance * problem.scale
     best = _Iterate(point, np.empty(0), np.inf)
     gap_before = math.inf
     is_fresh = False
+    has_bend = False
     for _ in range(ACROSS_STEPS):
         iterate = _iterate(problem, point)
         if iterate.gap < best.gap:
             best = iterate
-        has_stopped = is_fresh and iterate.gap >= gap_before
+        has_risen = is_fresh and iterate.gap >= gap_before
+        has_stopped = has_risen and (has_bend or iterate.gap < BENT)
         if has_stopped or not math.isfinite(iterate.gap):
             break
+        has_bend = has_bend or has_risen
         rate = iterate.gap / gap_before if gap_before < math.inf else 1.0
         is_fresh = factored is None or iterate.gap > SLOW * gap_before
         if factored is None or is_fresh:
-            jacobian = problem.jacobian(best.point) / problem.magnitude
+            origin = iterate if has_risen else best
+            jacobian = problem.jacobian(origin.point) / problem.magnitude
             factored = Bordered(jacobian, tangent)
-            iterate = best
+            iterate = origin
         step = factored.solve(-iterate.residual)
         point = iterate.point + step
         gap_before = iterate.gap

@@ -7,10 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.atlas import MeetingPoint, Surface
-from bifurc.branch import Branch, Outcome
-from bifurc.curves.monitor import Profile
+from bifurc.branch import Outcome
 from bifurc.decisions import closes_to_rounding, is_known_curve
-from bifurc.numerics.blur import ROUNDING, blur, rounding_unit
+from bifurc.numerics.blur import ROUNDING, known_to, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
@@ -19,6 +18,8 @@ from bifurc.singular.point import Kind
 
 __all__ = ["doubts_of"]
 
+# Shares of the length of a form at which it is seen how well it is known.
+PLACES = (np.arange(15) + 0.5) / 15
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
 
@@ -35,7 +36,7 @@ def doubts_of(
     for surface in surfaces:
         doubts += _doubts_of_surface(problem, surface)
     for index, branch in enumerate(traced):
-        doubts += _doubts_of_form(index, branch.branch, branch.profile, points)
+        doubts += _doubts_of_form(problem, index, branch, points)
     for point in points:
         doubts += _doubts_of_point(problem, point)
     return tuple(doubts)
@@ -65,17 +66,17 @@ def _misclosure(problem: Problem, surface: Surface) -> float:
 
 
 def _doubts_of_form(
-    index: int, branch: Branch, profile: Profile, points: Sequence[MeetingPoint]
+    problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
 ) -> list[str]:
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
+    branch, profile = traced.branch, traced.profile
     doubts = []
-    sigma = float(np.median(profile.smallest))
-    known_to = float(blur(sigma))
     is_regular = profile.rank == branch.n - 1
-    if is_regular and not is_known_curve(known_to):
+    distance = float(np.median(known_to(problem, branch(branch.length * PLACES))))
+    if is_regular and not is_known_curve(distance):
         doubts.append(
-            f"form {index + 1} may be a curve or a part of a surface: its smallest "
-            f"regular singular value is {sigma:.1e}"
+            f"form {index + 1} may be a curve or a part of a surface: its place is "
+            f"known to {distance:.1e} of the scale"
         )
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}

@@ -12,7 +12,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.monitor import Profile
 from bifurc.decisions import is_same_point
-from bifurc.numerics.blur import same_reach, smallest_regular
+from bifurc.numerics.blur import same_reach
 from bifurc.problem import Problem
 from bifurc.search.components import Components
 from bifurc.search.seed_fates import Fate, SeedFate
@@ -52,7 +52,8 @@ class Findings:
     """Branches, singular points, rigid assemblies and components of a problem, nothing
     twice; and the seeds they come from.
 
-    ``seed_values`` (k, n) are the singular values at the seeds, ``fates`` what is known
+    ``seed_values`` (k, n) are the singular values at the seeds, ``seed_reach`` (k,) is
+    how far from their curves they may have been found, ``fates`` what is known
     of each by its number. ``gaps`` are the residuals of starts that only nearly solve
     the system. ``audit`` is the last word on what the branches leave out.
     """
@@ -62,6 +63,7 @@ class Findings:
         self.problem = problem
         self.seeds = Seeds(nowhere, np.empty(0, dtype=bool), np.empty(0), nowhere)
         self.seed_values = nowhere
+        self.seed_reach = np.empty(0)
         self.fates: dict[int, SeedFate] = {}
         self.traced: list[TracedBranch] = []
         self.points: list[SingularPoint] = []
@@ -88,6 +90,8 @@ class Findings:
         ``values`` (k, n) are the singular values at the new ones."""
         self.seeds = seeds
         self.seed_values = np.concatenate([self.seed_values, values])
+        own = self._same_place(seeds.points[len(self.seed_reach) :])
+        self.seed_reach = np.concatenate([self.seed_reach, own])
 
     def set_components(self, components: Components) -> None:
         """Record the components of higher dimension, and the seeds that lie on them."""
@@ -106,8 +110,7 @@ class Findings:
         if not numbers:
             return []
         points = self.seeds.points[list(numbers)]
-        values = self.seed_values[list(numbers)]
-        within = self._same_place(values[:, max(self.problem.n - 2, 0)])
+        within = self.seed_reach[list(numbers)]
         reach = float(within.max())
         distance, _ = self.traced[branch].branch.nearest(points, within=reach)
         is_on = is_same_point(distance, within / is_same_point.threshold)
@@ -130,8 +133,7 @@ class Findings:
     def branch_through(self, point: np.ndarray, within: float = 0.0) -> int | None:
         """The number of the first branch through a point (n,), as far as that is known,
         or at less than ``within`` scales from it."""
-        sigma = smallest_regular(self.problem, point[None])
-        known_to = float(self._same_place(sigma)[0])
+        known_to = float(self._same_place(point[None])[0])
         reach = max(known_to, within * self.problem.scale)
         for number, branch in enumerate(self.branches):
             distance, _ = branch.nearest(point, within=reach)
@@ -142,17 +144,16 @@ class Findings:
     def branch_along(self, branch: Branch) -> int | None:
         """The number of the first known branch that runs along another one."""
         points = branch(branch.length * PLACES)
-        within = self._same_place(smallest_regular(self.problem, points))
+        within = self._same_place(points)
         for number, known in enumerate(self.branches):
             distance, _ = known.nearest(points)
             if np.all(is_same_point(distance, within / is_same_point.threshold)):
                 return number
         return None
 
-    def _same_place(self, sigma: np.ndarray) -> np.ndarray:
-        """How far from a curve points of it may be found, where the smallest regular
-        singular value is ``sigma`` (k,)."""
-        reach = np.maximum(is_same_point.threshold, same_reach(sigma))
+    def _same_place(self, points: np.ndarray) -> np.ndarray:
+        """How far from a curve points (k, n) of it may be found."""
+        reach = np.maximum(is_same_point.threshold, same_reach(self.problem, points))
         within: np.ndarray = reach * self.problem.scale
         return within
 

@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from bifurc.curves.monitor import singular_values
 from bifurc.decisions import is_solution, may_be_crossed
-from bifurc.numerics.blur import NOTHING, ROUNDING, smallest_regular
+from bifurc.numerics.blur import NOTHING, ROUNDING
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
@@ -85,6 +86,9 @@ def _after_newton_steps(
 def _weak(problem: Problem, points: np.ndarray) -> np.ndarray:
     """Numbers of the points (k, n) at which the smallest regular singular value is
     small, and not nothing."""
-    sigma = smallest_regular(problem, points)
+    number = problem.n - 2
+    if number < 0 or not len(points):
+        return np.empty(0, dtype=int)
+    sigma = singular_values(problem, points)[:, number]
     is_weak = may_be_crossed(sigma) & (sigma > NOTHING)
     return np.flatnonzero(is_weak)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from bifurc.atlas import Atlas
+from bifurc.search.completeness import IN_DOUBT
 from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
 from linkages.app.exit_codes import ExitCode
@@ -35,7 +36,7 @@ def judge(atlas: Atlas) -> Verdict:
     if atlas.provenance.interrupted:
         return Verdict(_interrupted(atlas), ExitCode.INTERRUPTED)
     if atlas.forms or atlas.surfaces:
-        return Verdict(_mobile(atlas), ExitCode.DONE)
+        return Verdict(_mobile(atlas) + _remark(atlas), ExitCode.DONE)
     if atlas.completeness.level is Level.OUT_OF_TIME:
         return Verdict(_nothing_known(atlas), ExitCode.NOTHING_KNOWN)
     return Verdict(_immobile(atlas), ExitCode.DOES_NOT_MOVE)
@@ -50,6 +51,12 @@ def _interrupted(atlas: Atlas) -> str:
     forms = count_of(len(atlas.forms), "form")
     bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
     return f"The search was interrupted; {forms} and {bifurcations} were found by then."
+
+
+def _remark(atlas: Atlas) -> str:
+    """What to add where the answer is in doubt."""
+    is_in_doubt = atlas.completeness.statement.startswith(IN_DOUBT)
+    return " Some of it is in doubt: see its completeness." if is_in_doubt else ""
 
 
 def _mobile(atlas: Atlas) -> str:

@@ -14,7 +14,7 @@ from studies.near_something_larger import (
 )
 
 WITH_A_SURFACE = [family for family in FAMILIES if family.forms == 4]
-WITH_MORE_MOTIONS = [family for family in FAMILIES if family.bifurcations == 0]
+WITH_MORE_MOTIONS = FAMILIES[5:9]
 GOOD = {Verdict.RIGHT, Verdict.RIGHT_IN_DOUBT}
 
 

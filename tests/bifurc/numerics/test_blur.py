@@ -6,21 +6,43 @@ import pytest
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.blur import (
     ROUNDING,
-    blur,
     distance_to_singular,
+    known_to,
     rounding_unit,
     same_reach,
-    smallest_regular,
 )
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
 SMALL = (1e-1, 1e-4, 1e-8)
 
 
-def test_a_point_is_known_to_rounding_over_the_singular_value_where_there_is_one():
-    known_to = blur(np.array([1.0, 1e-6, 0.0]))
-    assert known_to == pytest.approx([ROUNDING, 1e-9, 0.0])
-    assert np.all(same_reach(np.array([1e-6])) > known_to[1])
+class Scaled(CirclesBesideSphere):
+    """The sphere, and apart from it the bilinear function times e."""
+
+    def residuals(self, points):
+        residuals = super().residuals(points)
+        x, y, z = points.T
+        residuals[:, 1] = self.e * x * self.other(x, y, z)
+        return residuals
+
+    def jacobians(self, points):
+        jacobians = super().jacobians(points)
+        jacobians[:, 1] -= jacobians[:, 0]
+        return jacobians
+
+
+@pytest.mark.parametrize("e", SMALL[1:])
+def test_a_point_is_known_to_rounding_over_the_singular_value(e):
+    problem = CirclesBesideSphere(e)
+    points = problem.points(5)
+    distances = known_to(problem, points)
+    assert np.all((distances > 0.01 * ROUNDING / e) & (distances < 10 * ROUNDING / e))
+    assert np.all(same_reach(problem, points) > distances)
+
+
+def test_scaling_an_equation_scales_its_rounding():
+    problem = Scaled(1e-8)
+    assert known_to(problem, problem.points(5)).max() < 1e-11
 
 
 @pytest.mark.parametrize("e", SMALL)
@@ -30,7 +52,6 @@ def test_the_distance_to_a_crossing_does_not_shrink_with_all_of_the_equations(e)
     points = np.stack([0 * angles, np.sin(angles), np.cos(angles)], axis=1)
     distances = [distance_to_singular(problem, point) for point in points]
     assert distances == pytest.approx(angles, rel=0.6)
-    assert smallest_regular(problem, points) == pytest.approx(e * angles, rel=0.6)
 
 
 def test_rounding_is_seen_where_large_terms_cancel():

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bifurc.atlas import Provenance
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
@@ -13,7 +14,6 @@ from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.settings import SearchSettings
-from bifurc.atlas import Provenance
 from bifurc.seeds import Audit, Level
 from tests.bifurc.known_surfaces import SPHERE
 from tests.bifurc.near_surfaces import CirclesBesideSphere
@@ -53,8 +53,8 @@ def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
         problem = CirclesBesideSphere(e)
         branch = trace_branch(problem, problem.points(3)[1])
         doubts = doubts_of(problem, [traced(problem, branch)], [], [])
-        assert len(doubts) == count
-        assert all("form 1 may be a curve or a part of" in doubt for doubt in doubts)
+        blurred = [each for each in doubts if "may be a curve or a part of" in each]
+        assert len(blurred) == count
 
 
 def test_a_form_that_stalls_at_nothing_known_is_in_doubt():

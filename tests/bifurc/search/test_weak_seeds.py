@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bifurc.search.weak_seeds import sharpened, with_weak_solutions
 from bifurc.decisions import is_solution
+from bifurc.search.weak_seeds import sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
@@ -11,7 +11,7 @@ from tests.bifurc.near_surfaces import CirclesBesideSphere
 def test_a_solution_by_its_residual_moves_onto_its_curve():
     problem = CirclesBesideSphere(1e-8)
     exact = problem.points(7)
-    rough = exact + [1e-5, 0, 0]
+    rough = exact + np.array([1e-5, 0, 0])
     rough /= np.linalg.norm(rough, axis=1)[:, None]
     assert problem.gaps(rough).max() < 1e-12
     sharp = sharpened(problem, rough)
