@@ -55,14 +55,15 @@ def _doubts_of_surface(problem: Problem, surface: Surface) -> list[str]:
 
 
 def _misclosure(problem: Problem, surface: Surface) -> float:
-    """The largest relative residual seen on a surface."""
+    """The largest relative residual seen on a surface, infinite where nothing is."""
+    seen = np.empty(0)
     if surface.charts is not None:
-        return float(problem.gaps(surface.charts.centers).max(initial=0.0))
+        seen = problem.gaps(surface.charts.centers)
     samples = surface.samples[:MOST_SAMPLES]
     _, right = null_spaces(problem, samples)
     missed = misclosures(problem, samples, right[:, problem.n - surface.dimension :])
-    is_seen = np.isfinite(missed)
-    return float(missed[is_seen].max(initial=0.0))
+    seen = np.concatenate([seen, missed[np.isfinite(missed)]])
+    return float(seen.max()) if len(seen) else np.inf
 
 
 def _doubts_of_form(
