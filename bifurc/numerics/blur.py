@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.numerics.null_spaces import decompose
+from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.problem import Problem
 
 __all__ = [
@@ -35,37 +35,46 @@ ALIKE = 20.0
 TINY = 1e-300  # keeps a rate of zero from being divided by
 
 
-def known_to(problem: Problem, points: np.ndarray) -> np.ndarray:
+def known_to(
+    problem: Problem, points: np.ndarray, values: np.ndarray | None = None
+) -> np.ndarray:
     """The distance, over the scale, to which points (k, n) of curves are known: what
     rounding leaves of the weakest regular equation, over its singular value.
 
-    That equation may be small because somebody scaled it, and its rounding with it: the
-    rounding is measured. 0 where F says nothing of a direction.
+    ``values`` (k, n) are the singular values there, where they are known. That equation
+    may be small because somebody scaled it, and its rounding with it: the rounding is
+    measured. 0 where F says nothing of a direction.
     """
     distances = np.zeros(len(points))
-    number = problem.n - 2
-    if number < 0 or not len(points):
+    if problem.n < 2 or not len(points):
         return distances
-    left, values, _ = np.linalg.svd(problem.relative_jacobians(points))
-    if number >= values.shape[1]:
-        return distances
-    sigma = values[:, number]
+    if values is None:
+        values, _ = null_spaces(problem, points)
+    sigma = values[:, problem.n - 2]
     is_clear = sigma >= WEAK
     distances[is_clear] = ROUNDING / sigma[is_clear]
     weak = np.flatnonzero(~is_clear & (sigma > NOTHING))
     if len(weak):
-        equation = left[weak, :, number]
-        rounding = np.abs(
-            np.einsum("pkm,km->pk", _rounding(problem, points[weak]), equation)
-        )
-        distances[weak] = SAFETY * rounding.max(axis=0) / sigma[weak]
+        rounding = _rounding_of_weakest(problem, points[weak])
+        distances[weak] = SAFETY * rounding / sigma[weak]
     return distances
 
 
-def same_reach(problem: Problem, points: np.ndarray) -> np.ndarray:
+def _rounding_of_weakest(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """The rounding (k,) of the weakest regular equation at points (k, n)."""
+    left, _, _ = np.linalg.svd(problem.relative_jacobians(points))
+    weakest = left[:, :, problem.n - 2]
+    parts = np.einsum("pkm,km->pk", _rounding(problem, points), weakest)
+    rounding: np.ndarray = np.abs(parts).max(axis=0)
+    return rounding
+
+
+def same_reach(
+    problem: Problem, points: np.ndarray, values: np.ndarray | None = None
+) -> np.ndarray:
     """How far, over the scale, from where a curve was found its points (k, n) may be
-    found for rounding alone."""
-    return ALIKE * known_to(problem, points)
+    found for rounding alone; ``values`` as in `known_to`."""
+    return ALIKE * known_to(problem, points, values)
 
 
 def rounding_unit(problem: Problem, points: np.ndarray) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from bifurc.atlas import MeetingPoint, Surface
 from bifurc.branch import Outcome
 from bifurc.decisions import closes_to_rounding, is_known_curve
-from bifurc.numerics.blur import ROUNDING, known_to, rounding_unit
+from bifurc.numerics.blur import known_to, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
@@ -45,13 +45,20 @@ def doubts_of(
 def _doubts_of_surface(problem: Problem, surface: Surface) -> list[str]:
     """Whether what a surface misses is more than rounding."""
     missed = _misclosure(problem, surface)
-    unit = rounding_unit(problem, surface.samples[:MOST_SAMPLES])
-    if closes_to_rounding(missed, unit):
+    if _is_rounding(problem, missed, surface.samples[:MOST_SAMPLES]):
         return []
     return [
         f"{surface.name} may be a surface, or curves on one that misses the equations "
-        f"by {missed:.1e}, where rounding is {unit * ROUNDING:.0e}"
+        f"by {missed:.1e}, more than rounding"
     ]
+
+
+def _is_rounding(problem: Problem, missed: float, points: np.ndarray) -> bool:
+    """Whether a residual is no more than rounding, which is measured at points (k, n)
+    where it is not plain."""
+    if closes_to_rounding(missed):
+        return True
+    return closes_to_rounding(missed, rounding_unit(problem, points))
 
 
 def _misclosure(problem: Problem, surface: Surface) -> float:
@@ -94,8 +101,7 @@ def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
     """Whether a singular point is one, and of which kind."""
     place = point.point.u[None]
     gap = float(problem.gaps(place)[0])
-    unit = rounding_unit(problem, place)
-    if not closes_to_rounding(gap, unit):
+    if not _is_rounding(problem, gap, place):
         return [
             f"{point.name} may be a {point.kind.value} or a near miss: it misses the "
             f"equations by {gap:.1e}"

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.monitor import Profile
+from bifurc.curves.monitor import Profile, singular_values
 from bifurc.decisions import is_same_point
 from bifurc.numerics.blur import same_reach
 from bifurc.problem import Problem
@@ -23,6 +23,11 @@ __all__ = ["Findings", "PointSighting", "TracedBranch"]
 
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
+
+
+# Singular value below which rounding may hide more than the distance at which two points
+# are one.
+WEAK = 1e-5
 
 
 @dataclass(frozen=True)
@@ -90,7 +95,7 @@ class Findings:
         ``values`` (k, n) are the singular values at the new ones."""
         self.seeds = seeds
         self.seed_values = np.concatenate([self.seed_values, values])
-        own = self._same_place(seeds.points[len(self.seed_reach) :])
+        own = self._same_place(seeds.points[len(self.seed_reach) :], values)
         self.seed_reach = np.concatenate([self.seed_reach, own])
 
     def set_components(self, components: Components) -> None:
@@ -151,9 +156,17 @@ class Findings:
                 return number
         return None
 
-    def _same_place(self, points: np.ndarray) -> np.ndarray:
-        """How far from a curve points (k, n) of it may be found."""
-        reach = np.maximum(is_same_point.threshold, same_reach(self.problem, points))
+    def _same_place(
+        self, points: np.ndarray, values: np.ndarray | None = None
+    ) -> np.ndarray:
+        """How far from a curve points (k, n) of it may be found; ``values`` (k, n) are
+        the singular values there, where they are known."""
+        if values is None:
+            values = singular_values(self.problem, points)
+        reach = np.full(len(points), is_same_point.threshold)
+        weak = np.flatnonzero(values[:, max(self.problem.n - 2, 0)] < WEAK)
+        own = same_reach(self.problem, points[weak], values[weak])
+        reach[weak] = np.maximum(reach[weak], own)
         within: np.ndarray = reach * self.problem.scale
         return within
 

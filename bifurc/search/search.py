@@ -137,9 +137,12 @@ class Search:
     def _add_seeds(self, seeds: Seeds, known: int) -> None:
         """Add the ``seeds`` after the first ``known`` ones, each as near to its curve
         as it can be known."""
-        sharp = sharpened(self.problem, seeds.points[known:])
-        seeds = replace(seeds, points=np.concatenate([seeds.points[:known], sharp]))
-        self.findings.add_seeds(seeds, self._singular_values(sharp))
+        points = seeds.points[known:]
+        values = self._singular_values(points)
+        sharp = sharpened(self.problem, points, values)
+        values[sharp.moved] = self._singular_values(sharp.points[sharp.moved])
+        both = np.concatenate([seeds.points[:known], sharp.points])
+        self.findings.add_seeds(replace(seeds, points=both), values)
 
     def sort_seeds(self) -> None:
         """Find the seeds that lie on components of dimension 2 and more."""

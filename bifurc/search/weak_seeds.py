@@ -9,6 +9,7 @@ go across the curves only, and need not make the residual smaller at once.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,23 +21,31 @@ from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
-__all__ = ["sharpened", "with_weak_solutions"]
+__all__ = ["Sharpened", "sharpened", "with_weak_solutions"]
 
 STEPS, FARTHEST = 4, 1e-2  # from a solution to its curve, and their length in scales
 LONG_STEPS, LONGEST = 30, 0.3  # from a start that missed, and the length of each
 NEARLY = 1e-3  # residual of such a start
 
 
-def sharpened(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """Solutions (k, n) as near to their curves as doubles tell, from ``points`` (k, n).
+class Sharpened(NamedTuple):
+    """Solutions ``points`` (k, n), and the numbers (j,) of those that ``moved``."""
+
+    points: np.ndarray
+    moved: np.ndarray
+
+
+def sharpened(problem: Problem, points: np.ndarray, values: np.ndarray) -> Sharpened:
+    """Solutions as near to their curves as doubles tell, from ``points`` (k, n) at
+    which the singular values are ``values`` (k, n).
 
     Steps of rank n - 1 are taken where a direction is weak. Where they lead far away, or
     to no better solution, the point stays.
     """
     sharp = np.array(points)
-    weak = _weak(problem, points)
+    weak = _weak(problem, values)
     if not len(weak):
-        return sharp
+        return Sharpened(sharp, weak)
     starts = sharp[weak]
     longest = FARTHEST * problem.scale
     ends = _after_newton_steps(problem, starts, STEPS, longest)
@@ -44,15 +53,17 @@ def sharpened(problem: Problem, points: np.ndarray) -> np.ndarray:
     enough = np.maximum(problem.gaps(starts), ROUNDING)
     is_better = is_near & (problem.gaps(ends) <= enough)
     sharp[weak[is_better]] = ends[is_better]
-    return sharp
+    return Sharpened(sharp, weak[is_better])
 
 
 def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
     """The seeds, and after them the solutions that are reached from where starts missed
     by little, in a weak direction."""
-    is_near = seeds.gaps < NEARLY
-    near = np.flatnonzero(is_near)
-    weak = near[_weak(problem, seeds.missed[near])]
+    near = np.flatnonzero(seeds.gaps < NEARLY)
+    if not len(near):
+        return seeds
+    values = singular_values(problem, seeds.missed[near])
+    weak = near[_weak(problem, values)]
     if not len(weak):
         return seeds
     longest = LONGEST * problem.scale
@@ -83,12 +94,11 @@ def _after_newton_steps(
     return points
 
 
-def _weak(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """Numbers of the points (k, n) at which the smallest regular singular value is
-    small, and not nothing."""
-    number = problem.n - 2
-    if number < 0 or not len(points):
+def _weak(problem: Problem, values: np.ndarray) -> np.ndarray:
+    """Numbers of the points with singular values (k, n) of which the smallest regular
+    one is small, and not nothing."""
+    if problem.n < 2:
         return np.empty(0, dtype=int)
-    sigma = singular_values(problem, points)[:, number]
+    sigma = values[:, problem.n - 2]
     is_weak = may_be_crossed(sigma) & (sigma > NOTHING)
     return np.flatnonzero(is_weak)

@@ -100,21 +100,20 @@ def _dimensions_of_nullity(
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
     probes = _probe(problem, points, basis, RADIUS)
     regular = is_surface_probe(probes.loss.max(axis=1))
-    most = np.full(count, k)
-    if k > 1:
-        missed = misclosures(problem, points, basis)
-        is_seen = np.isfinite(missed)
-        is_closed = is_closed_on_surface(missed, rounding_unit(problem, points))
-        regular &= is_closed
-        # what does not fill all directions of the null space has fewer dimensions
-        most[is_seen & ~is_closed] = k - 1
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
         arrived = np.isfinite(probes.loss[i])
         ends = probes.ends[i, arrived]
         coordinates = probes.coordinates[i, arrived]
-        found = _dimension_from_ends(problem, ends, coordinates)
-        dimension[i] = min(found, most[i])
+        dimension[i] = _dimension_from_ends(problem, ends, coordinates)
+    full = np.flatnonzero(dimension == k) if k > 1 else np.empty(0, dtype=int)
+    if len(full):
+        missed = misclosures(problem, points[full], basis[full])
+        unit = rounding_unit(problem, points[full])
+        is_closed = is_closed_on_surface(missed, unit)
+        regular[full] &= is_closed
+        # what does not fill all directions of the null space has fewer dimensions
+        dimension[full[np.isfinite(missed) & ~is_closed]] = k - 1
     return dimension, regular
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from bifurc.curves.monitor import singular_values
 from bifurc.decisions import is_solution
 from bifurc.search.weak_seeds import sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
@@ -14,8 +15,9 @@ def test_a_solution_by_its_residual_moves_onto_its_curve():
     rough = exact + np.array([1e-5, 0, 0])
     rough /= np.linalg.norm(rough, axis=1)[:, None]
     assert problem.gaps(rough).max() < 1e-12
-    sharp = sharpened(problem, rough)
-    assert np.abs(sharp[:, 0]).max() < 1e-6
+    sharp = sharpened(problem, rough, singular_values(problem, rough))
+    assert np.abs(sharp.points[:, 0]).max() < 1e-6
+    assert sharp.moved.tolist() == list(range(7))
     assert np.abs(rough[:, 0]).min() > 9e-6
 
 
