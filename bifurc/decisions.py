@@ -172,6 +172,7 @@ is_beside_singular = Decision(
     "the value over its rate of change, which is a distance, over the scale",
     1e-2,
     "beside a surface both are small; the place is known to 1e-4 at a point of order 4",
+    Role.LOOK,
 )
 may_be_crossed = Decision(
     "place to look",
@@ -214,13 +215,6 @@ solves_at_point = Decision(
     "residual",
     1e-13,
     "rounding is some 1e-15; the residual beside a near miss is its square or more",
-)
-vanishes_here = Decision(
-    "singular point or near miss",
-    "a null singular value at a located point is zero, and not small all around",
-    "the value over its rate of change, which is a distance, over the scale",
-    1e-3,
-    "beside a surface both are small; at points of higher order the place is known so",
 )
 is_located = Decision(
     "located",
