@@ -152,8 +152,9 @@ def _near_misses(atlas: Atlas) -> str:
     rows = []
     for miss in sorted(atlas.near_misses, key=lambda miss: miss.value):
         angles = show_configuration(atlas, miss.u)
-        rows.append((angles, f"{miss.value:.6g}", atlas.forms[miss.form].name))
-    heads = ("joint angles (deg)", "singular value", "form")
+        value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
+        rows.append((angles, value, error, atlas.forms[miss.form].name))
+    heads = ("joint angles (deg)", "singular value", "error", "form")
     return _beginning("Near misses (no bifurcation)", heads, rows)
 
 
