@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.decisions import is_located, is_null, solves_at_point
+from bifurc.decisions import Decision, is_located, solves_at_point, vanishes
 from bifurc.problem import Problem
 
 __all__ = ["LocatedPoint", "block_slice", "locate_singular_point"]
@@ -26,6 +26,8 @@ ASIDE, AT_ONCE = 0.1, 1e-2
 # Error, over the condition of the matrix, to which that point and the curves through it
 # are known.
 KNOWN_TO = 2e-14
+# Times the misclosure of the curves through it: what may be missed at a singular point.
+MISSED = 10.0
 # |F| and singular value, over the magnitude, below which rounding hides the point.
 HIDDEN = 1e-12
 
@@ -40,11 +42,15 @@ class LocatedPoint(NamedTuple):
 
 
 def locate_singular_point(
-    problem: Problem, start: np.ndarray, nullity: int, reach: float
+    problem: Problem,
+    start: np.ndarray,
+    nullity: int,
+    reach: float,
+    misclosure: float = 0.0,
 ) -> LocatedPoint | None:
     """The point near ``start`` where F = 0 and F' has a null space of dimension
     ``nullity``; None where the iteration does not converge or moves farther than
-    ``reach``.
+    ``reach``. On curves with a ``misclosure`` F = 0 to within that.
 
     Gauss-Newton on F(u) = 0, F'(u) V = 0, V^T V = I for the point and its null space
     together. Its matrix is regular at a simple singular point although F' is not. At a
@@ -56,19 +62,19 @@ def locate_singular_point(
     if run is None or not is_located(run.moves[-1], problem.scale):
         return None
     u = _solve_regular_equations(problem, run.u, nullity)
-    if not _is_singular_solution(problem, u, nullity):
+    gap = float(problem.gaps(u[None])[0])
+    if not solves_at_point(gap, _unit(misclosure, solves_at_point)):
         return None
-    if run.condition >= HIGHER_ORDER and _is_simple(problem, run, u, reach):
-        error = KNOWN_TO * run.condition * problem.scale
-        return LocatedPoint(u, run.basis, error)
-    error = _location_error(run.moves, run.condition) * problem.scale
-    for direction in run.weak:
-        size = np.linalg.norm(direction)
-        if size > MOVES_POINT:
-            stretch = _hidden_stretch(problem, u, direction / size, nullity, reach)
-            u = stretch.middle
-            error = max(error, stretch.half_length)
-    return LocatedPoint(u, run.basis, error)
+    located = _with_error(problem, run, u, reach)
+    doubt = misclosure + located.error / problem.scale
+    largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
+    return located if vanishes(largest_null, _unit(doubt, vanishes)) else None
+
+
+def _unit(doubt: float, decision: Decision) -> float:
+    """What a decision on a point is measured in where F is in doubt by so much, over
+    the magnitude."""
+    return max(1.0, MISSED * doubt / decision.threshold)
 
 
 # --- the iteration --------------------------------------------------------------------
@@ -211,6 +217,24 @@ def _is_simple(problem: Problem, run: _Run, u: np.ndarray, reach: float) -> bool
     return bool(again.moves[1] < AT_ONCE * again.moves[0] and apart < allowed)
 
 
+def _with_error(
+    problem: Problem, run: _Run, u: np.ndarray, reach: float
+) -> LocatedPoint:
+    """The point ``u`` (n,) of a run, or the middle of the stretch on which rounding
+    hides it, with its error."""
+    if run.condition >= HIGHER_ORDER and _is_simple(problem, run, u, reach):
+        return LocatedPoint(u, run.basis, KNOWN_TO * run.condition * problem.scale)
+    nullity = run.basis.shape[1]
+    error = _location_error(run.moves, run.condition) * problem.scale
+    for direction in run.weak:
+        size = np.linalg.norm(direction)
+        if size > MOVES_POINT:
+            stretch = _hidden_stretch(problem, u, direction / size, nullity, reach)
+            u = stretch.middle
+            error = max(error, stretch.half_length)
+    return LocatedPoint(u, run.basis, error)
+
+
 # --- after the iteration --------------------------------------------------------------
 
 
@@ -230,13 +254,6 @@ def _solve_regular_equations(
         shares = left[:, :rank].T @ residual / sigma[:rank]
         u = u - right[:rank].T @ shares
     return u
-
-
-def _is_singular_solution(problem: Problem, u: np.ndarray, nullity: int) -> bool:
-    """Whether F = 0 at ``u`` (n,) and F' has a null space of dimension ``nullity``."""
-    gap = float(problem.gaps(u[None])[0])
-    largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
-    return solves_at_point(gap) and is_null(largest_null)
 
 
 def _largest_null_values(

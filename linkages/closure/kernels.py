@@ -498,6 +498,7 @@ def _expand(
     tolerance,
     blur,
     longest,
+    misclosure,
     coefficients,
 ):
     """Fill the series at a settled point; its trusted radius (0 for none) and largest
@@ -506,8 +507,9 @@ def _expand(
     The series is cut off where its last terms fall to the tolerance, or to ``blur``,
     the distance to which the point is known: below it the terms are rounding, which a
     small singular value makes grow like a series that does not reach to where that
-    value vanishes. The residual has to be within the tolerance in any case, and the
-    estimated distance from the curve within that or what rounding explains.
+    value vanishes. The residual has to be within the tolerance in any case, but for
+    the ``misclosure`` at the best points of the curve, which is no fault of the series,
+    and the estimated distance from the curve within that or what rounding explains.
     """
     n = theta.shape[0]
     place, heading = np.empty(n), np.empty(n)
@@ -532,7 +534,7 @@ def _expand(
             quaternion,
             translation,
         )
-        is_closed = worst <= 3.0 * tolerance + 4e-15
+        is_closed = worst <= 3.0 * tolerance + 4.0 * misclosure
         if is_closed and farthest <= 3.0 * tolerance + HANDOVER * blur:
             return radius, worst
         radius *= 0.85
@@ -583,7 +585,17 @@ def _blur(noise, sigma):
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def march(
-    theta, tangent, geometry, order, tolerance, shortest, longest, count, coupling=None
+    theta,
+    tangent,
+    geometry,
+    order,
+    tolerance,
+    shortest,
+    longest,
+    count,
+    coupling=None,
+    closing=1e-12,
+    misclosure=0.0,
 ):
     """Up to ``count`` consecutive Taylor pieces of the motion from ``theta`` along
     ``tangent``.
@@ -593,9 +605,10 @@ def march(
     ``steps[i]`` of arclength beyond the centre of piece i - 1 (0 for the first), in the
     variable (s - centre) / radii[i], trusted from -1 to 1; neighbouring pieces overlap.
     ``sigmas`` estimate the smallest regular singular value at the centres. Status RAN:
-    all pieces made; STALLED: no trusted step of ``shortest`` is left; OPEN: the loop
-    does not close, ``residuals[-1]`` is the gap. With a ``coupling`` all of this is in
-    its unknowns: theta stands for v.
+    all pieces made; STALLED: no trusted step of ``shortest`` is left, or the loop
+    misses closure by more than ``closing`` farther on; OPEN: it does so at the start,
+    ``residuals[-1]`` is the gap. ``misclosure`` is what the curve is known to miss
+    elsewhere. With a ``coupling`` all of this is in its unknowns: theta stands for v.
 
     A piece is trusted on both sides of its centre, so the next centre lies almost two
     radii on. Near a bifurcation at distance d the radius is about d and somewhat more:
@@ -618,14 +631,14 @@ def march(
     )
     place, direction = np.empty(n), np.empty(n)
     noise = 1e-15
-    limit = 20.0 * tolerance + 1e-13
     _, gap, sigmas[0] = _settle(
         point, heading, geometry, coupling, matrix, scale, noise
     )
-    blur = _blur(noise, sigmas[0])
     residuals[0] = gap
-    if gap > limit:
+    if gap > closing:
         return OPEN, pieces[:0], steps[:0], radii[:0], residuals[:1], sigmas[:0]
+    misclosure = max(misclosure, noise, gap)
+    blur = _blur(misclosure, sigmas[0])
     radii[0], residuals[0] = _expand(
         point,
         heading,
@@ -637,6 +650,7 @@ def march(
         tolerance,
         blur,
         longest,
+        misclosure,
         pieces[0],
     )
     if radii[0] < shortest:
@@ -653,8 +667,9 @@ def march(
             moved, gap, sigmas[made] = _settle(
                 point, heading, geometry, coupling, matrix, scale, noise
             )
-            if moved > 1e-2 * radius or gap > limit:
+            if moved > 1e-2 * radius or gap > closing:
                 continue
+            misclosure = max(misclosure, gap)
             radii[made], residuals[made] = _expand(
                 point,
                 heading,
@@ -664,8 +679,9 @@ def march(
                 scale,
                 order,
                 tolerance,
-                _blur(noise, sigmas[made]),
+                _blur(misclosure, sigmas[made]),
                 longest,
+                misclosure,
                 pieces[made],
             )
             if radii[made] <= beyond * radius:
@@ -680,7 +696,7 @@ def march(
                 other,
                 slope,
             )
-            blur = _blur(noise, min(sigmas[made - 1], sigmas[made]))
+            blur = _blur(misclosure, min(sigmas[made - 1], sigmas[made]))
             is_same = apart <= 100.0 * tolerance + HANDOVER * blur
             if is_same and cosine > SAME_WAY:
                 steps[made] = radius - back
