@@ -7,6 +7,7 @@ import numpy as np
 from bifurc.curves.misclosure import visible_misclosure
 from bifurc.curves.monitor import singular_values
 from bifurc.curves.track import Bridge, BridgeRule, Place, Track
+from bifurc.decisions import is_solution
 from bifurc.numerics.collocation import bridge_by_collocation
 from bifurc.numerics.null_spaces import LARGE, decompose
 from bifurc.pieces import points_on_piece
@@ -31,6 +32,8 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     if not len(track):
         return None
     misclosure = visible_misclosure(problem, track.pieces[:, 0])
+    if not is_solution(misclosure):
+        misclosure = 0.0  # a near motion: where forms crossed, it turns
     only_singular = track.caution.bridges is BridgeRule.AT_SINGULAR_POINTS
     if only_singular and not _is_near_singular(problem, track.front.point, misclosure):
         return None
