@@ -24,6 +24,7 @@ __all__ = [
     "Form",
     "JsonObject",
     "MeetingPoint",
+    "NearMotion",
     "Provenance",
     "Surface",
 ]
@@ -42,6 +43,8 @@ class Form:
     regular one of them (0 where it passes a singular point), and the number of the
     component it belongs to.
 
+    ``misclosure`` is the largest relative residual that no correction across the form
+    removes: rounding, some 1e-15, unless the equations contradict each other a little.
     ``certificate`` says what is certified of it. ``labels`` holds what whoever knows
     more than the equations said of it, as values that JSON can hold.
     """
@@ -51,6 +54,7 @@ class Form:
     profile: Profile
     min_singular_value: float
     component: int = 0
+    misclosure: float = 0.0
     certificate: Certificate | None = None
     labels: JsonObject = field(default_factory=dict)
 
@@ -90,13 +94,14 @@ class MeetingPoint:
 
 @dataclass(frozen=True, eq=False)
 class Event:
-    """Something at one arclength of a form: a near miss with its ``value``, or a dead
-    point of unknown ``index``."""
+    """Something at one arclength of a form: a near miss with its ``value``, which is
+    off by ``error`` at most, or a dead point of unknown ``index``."""
 
     form: int
     s: float
     u: np.ndarray
     value: float = 0.0
+    error: float = 0.0
     index: int = -1
 
     def __repr__(self) -> str:
@@ -135,6 +140,21 @@ class Surface:
 
 
 @dataclass(frozen=True)
+class NearMotion:
+    """A curve along which the system is nearly solved.
+
+    Across it no correction makes the relative residual smaller than ``misclosure``
+    everywhere. Its ``length``, and whether it ``is_closed``; ``sample`` (n,) is a point
+    of it.
+    """
+
+    misclosure: float
+    length: float
+    is_closed: bool
+    sample: np.ndarray
+
+
+@dataclass(frozen=True)
 class Provenance:
     """How an atlas came about.
 
@@ -160,8 +180,9 @@ class Atlas:
     lies nearer to either end than 1e-12 of the period comes out at + period / 2. The
     branches of the forms are continuous instead.
 
-    ``closure_gap``: where there is no form, the median relative residual along the
-    valley in which the system is nearly solved (0 where there are forms). ``provenance`` says
+    ``closure_gap``: where nothing moves, the misclosure of the near motion that misses
+    least, and without one the median relative residual that starts are left with; 0
+    where there are forms or surfaces. ``provenance`` says
     how the atlas came about. ``subject`` says what was mapped, in values that JSON can
     hold: whoever maps something more than equations defines it.
     """
@@ -176,6 +197,7 @@ class Atlas:
     rigid: np.ndarray
     surfaces: tuple[Surface, ...]
     completeness: Completeness
+    near_motions: tuple[NearMotion, ...] = ()
     closure_gap: float = 0.0
     provenance: Provenance = field(default_factory=Provenance)
     subject: JsonObject = field(default_factory=dict)
@@ -292,6 +314,7 @@ def _counts(atlas: Atlas) -> str:
         (len(atlas.near_misses), "near miss"),
         (len(atlas.surfaces), "surface"),
         (len(atlas.rigid), "rigid assembly"),
+        (len(atlas.near_motions), "near motion"),
     ]
     counts = [_counted(number, noun) for number, noun in numbers if number]
     return ", ".join(counts) or "nothing"

@@ -107,11 +107,49 @@ def decisions_in(names: Mapping[str, object]) -> dict[str, Decision]:
 # --- solutions ------------------------------------------------------------------------
 
 is_solution = Decision(
-    "solution",
-    "a start has reached a solution",
-    "residual",
+    "closing",
+    "the system is solved: by a point, or all along a curve, which then is a motion",
+    "residual; along a curve the largest of the least ones across it",
     1e-12,
-    "Newton's method ends at rounding, about 1e-15, or at a misclosure of the system",
+    "the closing tolerance: a thousand times rounding, which geometry in doubles has, "
+    "too; doubles still measure it to three digits",
+)
+closes_to_rounding = Decision(
+    "closing to rounding",
+    "what is left of a residual is rounding, and no misclosure of the system",
+    "least residual across a curve",
+    1e-14,
+    "rounding leaves 1e-15 to 5e-15; above, the misclosure is measured in more digits",
+)
+nearly_closes = Decision(
+    "near motion",
+    "the system is nearly solved all along a curve, which is a near motion",
+    "the largest of the least residuals across the curve",
+    1e-2,
+    "a convention: larger errors are none of making or of rounding",
+)
+is_blurred = Decision(
+    "blurred assembly",
+    "an isolated solution on a near motion is not told from its neighbours by Newton's "
+    "method",
+    "smallest of all n singular values",
+    1e-8,
+    "rounding over it, 1e-7, is how well the place is known; places 1e-6 apart are two",
+)
+may_nearly_move = Decision(
+    "assembly that nearly moves",
+    "an isolated solution may lie on a near motion, which is then looked for",
+    "smallest of all n singular values",
+    0.02,
+    "half the shortest stretch from a stiffer one the residual is 1e-2 and larger; "
+    "assemblies of random loops have 0.03 and more",
+)
+is_stretch_short = Decision(
+    "stretch of a near motion",
+    "a curve along which the system is nearly solved is no near motion",
+    "length over the scale, where it does not close",
+    2.0,
+    "a convention: beside any solution the residual is small along some stretch",
 )
 is_solution_at_probe = Decision(
     "solution at a probe",
@@ -183,6 +221,14 @@ solves_at_point = Decision(
     "residual",
     1e-13,
     "rounding is some 1e-15; the residual beside a near miss is its square or more",
+)
+vanishes = Decision(
+    "zero at a singular point",
+    "a direction belongs to the null space of F' at a located singular point",
+    "singular value, over one and ten times the doubt of the place where that is more",
+    1e-12,
+    "at a simple singular point it is rounding, some 1e-16; doubles resolve a near miss "
+    "down to 1e-12, and the closing tolerance is no finer",
 )
 is_located = Decision(
     "located",

@@ -4,19 +4,23 @@ curves."""
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
 from bifurc import torus
 from bifurc.checks import floats_of
+from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
 from bifurc.seeds import Seeds
 
-if TYPE_CHECKING:  # SciPy takes a second to import, and only sparse problems need it
+if TYPE_CHECKING:
+    import mpmath
+
+    # SciPy takes a second to import, and only sparse problems need it
     from scipy.sparse import sparray
 
 __all__ = [
@@ -27,6 +31,9 @@ __all__ = [
     "Problem",
     "SphereProjection",
 ]
+
+
+PreciseResidual: TypeAlias = "Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]"
 
 
 class MarchStatus(IntEnum):
@@ -45,8 +52,10 @@ class MarchSettings:
     """How pieces of a curve are made. Lengths are in the unit of the unknowns.
 
     ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the
-    ``shortest`` and ``longest`` trusted radius, and the largest number, ``count``, of
-    pieces in one march.
+    ``shortest`` and ``longest`` trusted radius, the largest number, ``count``, of
+    pieces in one march. ``closing``: there is no curve where the least relative residual
+    across it is larger; ``misclosure``: how large it is known to be elsewhere on the
+    curve.
     """
 
     order: int
@@ -54,6 +63,8 @@ class MarchSettings:
     shortest: float
     longest: float
     count: int
+    closing: float = is_solution.threshold
+    misclosure: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -189,6 +200,11 @@ class Problem(ABC):
         """|F| over the magnitude (k,) at points (k, n)."""
         sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
         return sizes / self.magnitude
+
+    def precise_residual(self) -> PreciseResidual | None:
+        """F over mpmath numbers, n of them in and m out, right to whatever precision
+        is set when it is called; None where F is known in doubles only."""
+        return None
 
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None

@@ -15,7 +15,6 @@ from linkages.loop import Loop
 
 __all__ = ["Survey", "held_gap", "survey"]
 
-CLOSED = 1e-10  # closure residual at which a start is taken to have closed
 STEPS = 60  # of damped Gauss-Newton
 LONGEST_STEP = 1.0  # rad, of one joint
 # damping, over the squared residual, while that is large, and at the end
@@ -55,7 +54,7 @@ def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:
     # whether a motion is missing is not asked
     settings = SearchSettings(prove=False)
     atlas = explore(problem, settings=settings, seeds=seeds, seed=seed)
-    gaps = seeds.gaps[seeds.gaps > CLOSED]
+    gaps = seeds.gaps  # those of the starts that did not close
     return Survey(
         atlas=atlas,
         rigid=len(atlas.rigid),

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.curves.misclosure import visible_misclosure
 from bifurc.curves.monitor import singular_values
 from bifurc.curves.track import Bridge, BridgeRule, Place, Track
+from bifurc.decisions import is_solution
 from bifurc.numerics.collocation import bridge_by_collocation
 from bifurc.numerics.null_spaces import LARGE, decompose
 from bifurc.pieces import points_on_piece
@@ -16,6 +18,7 @@ __all__ = ["bridge_from"]
 
 REACHES = (0.1, 0.2, 0.05, 0.4, 0.02)  # half widths of bridges, in scales
 SLACKS = (10.0, 100.0)  # times the tolerance: how good the nodes of a bridge must be
+MISSED = 10.0  # times the misclosure of the curve: what a bridge may miss, too
 RESIDUAL = 10.0  # times the tolerance: the residual that a bridge may have
 
 
@@ -28,8 +31,11 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     """
     if not len(track):
         return None
+    misclosure = visible_misclosure(problem, track.pieces[:, 0])
+    if not is_solution(misclosure):
+        misclosure = 0.0  # a near motion: where forms crossed, it turns
     only_singular = track.caution.bridges is BridgeRule.AT_SINGULAR_POINTS
-    if only_singular and not _is_near_singular(problem, track.front.point):
+    if only_singular and not _is_near_singular(problem, track.front.point, misclosure):
         return None
     for reach in REACHES:
         begin = track.reached - reach * problem.scale
@@ -38,29 +44,35 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
         last = track.piece_at(begin)
         place = track.at(last, begin)
         width = 2 * reach * problem.scale
-        piece = _piece_across(problem, place, width, track.order, tolerance)
+        piece = _piece_across(problem, place, width, track.order, tolerance, misclosure)
         if piece is not None:
             return Bridge(last, begin, piece)
     return None
 
 
 def _piece_across(
-    problem: Problem, place: Place, width: float, order: int, tolerance: float
+    problem: Problem,
+    place: Place,
+    width: float,
+    order: int,
+    tolerance: float,
+    misclosure: float,
 ) -> Piece | None:
     """A piece of about ``width`` from ``place`` across a crossing, or None."""
+    most = RESIDUAL * tolerance + MISSED * misclosure
     for slack in SLACKS:
         loose = slack * tolerance
         piece = bridge_by_collocation(
-            problem, place.point, place.tangent, order, loose, width
+            problem, place.point, place.tangent, order, loose, width, misclosure
         )
-        if piece is None or piece.residual > RESIDUAL * tolerance:
+        if piece is None or piece.residual > most:
             continue
-        if _spans_a_crossing(problem, piece.coefficients, loose):
+        if _spans_a_crossing(problem, piece.coefficients, loose, misclosure):
             return piece
     return None
 
 
-def _is_near_singular(problem: Problem, point: np.ndarray) -> bool:
+def _is_near_singular(problem: Problem, point: np.ndarray, misclosure: float) -> bool:
     """Whether a singular point can be located near ``point``, so that a bridge is worth
     trying."""
     if problem.n > LARGE:
@@ -70,14 +82,16 @@ def _is_near_singular(problem: Problem, point: np.ndarray) -> bool:
     nullities = sorted({2, min(small, 4)} - {0, 1})
     reach = 0.05 * problem.scale
     return any(
-        locate_singular_point(problem, point, nullity, reach) is not None
+        locate_singular_point(problem, point, nullity, reach, misclosure) is not None
         for nullity in nullities
     )
 
 
-def _spans_a_crossing(problem: Problem, piece: np.ndarray, tolerance: float) -> bool:
-    """Whether a bridge meets the weakest equation to rounding, as it does where
-    branches really cross.
+def _spans_a_crossing(
+    problem: Problem, piece: np.ndarray, tolerance: float, misclosure: float
+) -> bool:
+    """Whether a bridge meets the weakest equation to rounding, or to the
+    ``misclosure`` of its curve, as it does where branches really cross.
 
     Straight across a near miss of width w that equation is off by w^2, while its
     singular value goes to zero: a residual that no correction of the size of
@@ -90,4 +104,5 @@ def _spans_a_crossing(problem: Problem, piece: np.ndarray, tolerance: float) -> 
         return True
     off = np.abs(decomposition.components(weakest))
     sigma = decomposition.sigma[:, weakest]
-    return bool(np.all(off <= 10.0 * tolerance * sigma + 1e-14))
+    most = 10.0 * tolerance * sigma + 1e-14 + MISSED * misclosure
+    return bool(np.all(off <= most))

@@ -11,6 +11,7 @@ from bifurc.checks import check_number, check_type, check_whole
 from bifurc.curves.bridges import bridge_from
 from bifurc.curves.ends import end_of_curve
 from bifurc.curves.track import CAUTIOUS, BridgeRule, End, Place, Track
+from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import March, MarchSettings, MarchStatus, Problem
@@ -60,14 +61,16 @@ def trace_branch(
     start: np.ndarray,
     direction: np.ndarray | None = None,
     settings: TraceSettings = DEFAULT_SETTINGS,
+    closing: float = is_solution.threshold,
 ) -> Branch:
     """The whole smooth curve through ``start`` (n,), first followed to the side of
     ``direction`` (n,).
 
     A curve that does not close is followed both ways to its ends. Trouble is an
     `Outcome` on the branch, not an exception: a start that cannot be corrected gives a
-    branch of no pieces whose ``gap`` is the residual left. Raises `ProblemError` for a
-    start or direction of the wrong shape.
+    branch of no pieces whose ``gap`` is the residual left. The curve ends where no
+    correction across it brings the relative residual below ``closing``. Raises
+    `ProblemError` for a start or direction of the wrong shape.
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, TraceSettings)
@@ -77,10 +80,10 @@ def trace_branch(
         if not np.any(direction):
             raise ProblemError("direction", direction, "a vector other than zero")
     tangent = null_vector(problem, start, direction)
-    forward = _follow(problem, Place(start, tangent), settings)
+    forward = _follow(problem, Place(start, tangent), settings, closing)
     if forward.outcome in (Outcome.CLOSED, Outcome.OPEN, Outcome.STEP_LIMIT):
         return forward
-    backward = _follow(problem, Place(start, -tangent), settings)
+    backward = _follow(problem, Place(start, -tangent), settings, closing)
     if not len(backward.pieces):
         return forward
     if backward.outcome is Outcome.CLOSED:
@@ -89,13 +92,15 @@ def trace_branch(
     return _joined(backward.reversed(), forward)
 
 
-def _follow(problem: Problem, start: Place, settings: TraceSettings) -> Branch:
+def _follow(
+    problem: Problem, start: Place, settings: TraceSettings, closing: float
+) -> Branch:
     """The curve from ``start`` to the side of its tangent until it closes, leaves the
     region, stalls or grows too long."""
     track = Track(start, settings.order)
     longest = settings.max_length * problem.scale
     while True:
-        march = _march(problem, track, settings)
+        march = _march(problem, track, settings, closing)
         if march.status is MarchStatus.OPEN:
             gap = float(march.residuals[-1])
             return track.empty_branch(Outcome.OPEN, problem.periods, gap)
@@ -112,7 +117,9 @@ def _follow(problem: Problem, start: Place, settings: TraceSettings) -> Branch:
             return track.branch(end, problem.periods)
 
 
-def _march(problem: Problem, track: Track, settings: TraceSettings) -> March:
+def _march(
+    problem: Problem, track: Track, settings: TraceSettings, closing: float
+) -> March:
     """Some pieces from the front of the track on."""
     march_settings = MarchSettings(
         order=settings.order,
@@ -120,7 +127,13 @@ def _march(problem: Problem, track: Track, settings: TraceSettings) -> March:
         shortest=max(track.caution.shortest, settings.shortest) * problem.scale,
         longest=settings.longest * problem.scale,
         count=AT_ONCE,
+        closing=closing,
     )
+    if closing > is_solution.threshold and len(
+        track
+    ):  # an ordinary curve misses rounding alone
+        gaps = problem.gaps(track.pieces[-AT_ONCE:, 0])
+        march_settings = replace(march_settings, misclosure=gaps.max(initial=0.0))
     front = track.front
     return problem.march(front.point, front.tangent, march_settings)
 

@@ -31,6 +31,7 @@ from bifurc.files.layout import (
     atlas_frame,
     dataset_frame,
 )
+from bifurc.files.near_motion_layout import NEAR_MOTIONS, read_near_motion
 from bifurc.files.point_layout import (
     DEAD_POINTS,
     NEAR_MISSES,
@@ -47,7 +48,7 @@ from bifurc.seeds import Completeness, Level
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
 FORMAT = "bifurc atlas"
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 
@@ -278,6 +279,7 @@ def _make_atlas(dataset: xr.Dataset, frame: Frame) -> Atlas:
         surfaces=tuple(
             read_surface(row, periods) for row in SURFACES.rows(dataset, frame)
         ),
+        near_motions=tuple(map(read_near_motion, NEAR_MOTIONS.rows(dataset, frame))),
         completeness=Completeness(
             Level(str(attributes["completeness_level"])),
             str(attributes["completeness_statement"]),

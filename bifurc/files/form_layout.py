@@ -100,6 +100,12 @@ FORMS: Table[Form] = Table(
             "smallest regular singular value along the form",
             "1",
         ),
+        Column(
+            "misclosure",
+            lambda f: f.misclosure,
+            "largest relative residual that no correction removes",
+            "1",
+        ),
         Column("rank", lambda f: f.rank, "rank of F' along the form", dtype=int),
         Column(
             "component",
@@ -192,6 +198,7 @@ def read_form(row: Row, periods: np.ndarray) -> Form:
         profile=profile,
         min_singular_value=float(row["min_singular_value"]),
         component=int(row["component"]),
+        misclosure=float(row["misclosure"]),
         certificate=_read_certificate(str(row["certificate"])),
         labels=mapping_from_text(str(row["labels"])),
     )

@@ -9,6 +9,7 @@ import xarray as xr
 
 from bifurc.atlas import Atlas
 from bifurc.files.form_layout import FORMS
+from bifurc.files.near_motion_layout import NEAR_MOTIONS
 from bifurc.files.point_layout import DEAD_POINTS, NEAR_MISSES, POINTS
 from bifurc.files.surface_layout import SURFACES
 from bifurc.files.table import JOINT, UNIT, Column, Frame, Table
@@ -62,6 +63,7 @@ TABLES: tuple[Table[Any], ...] = (
     NEAR_MISSES,
     DEAD_POINTS,
     ASSEMBLIES,
+    NEAR_MOTIONS,
     SURFACES,
 )
 

@@ -171,6 +171,7 @@ NEAR_MISSES: Table[Event] = Table(
             "smallest regular singular value there",
             "1",
         ),
+        Column("near_miss_error", lambda e: e.error, "bound of its error", "1"),
     ),
 )
 
@@ -197,6 +198,7 @@ def read_near_miss(row: Row) -> Event:
         s=float(row["near_miss_arclength"]),
         u=row["near_miss_configuration"],
         value=float(row["near_miss_value"]),
+        error=float(row["near_miss_error"]),
     )
 
 

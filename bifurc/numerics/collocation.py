@@ -24,6 +24,8 @@ __all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
 
 PREDICT_FROM = 10  # nodes through which the next one is predicted
 LOOSE = 30  # times the tolerance: the residual that a piece may have between its nodes
+# times the misclosure at the start of a piece: the same, where the system misses closure
+MISSED = 4.0
 FAILED = 0.4  # factor of the width where no correction converges
 NEWTON_STEPS = 8  # from a share of the arclength to the parameter
 
@@ -31,12 +33,13 @@ NEWTON_STEPS = 8  # from a share of the arclength to the parameter
 @dataclass(frozen=True)
 class _Aim:
     """Where a piece begins, (n,), the unit vector along which it lies, (n,), and how
-    good it has to be."""
+    good it has to be, but for the ``misclosure`` of the curve itself."""
 
     start: np.ndarray
     heading: np.ndarray
     order: int
     tolerance: float
+    misclosure: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -63,24 +66,30 @@ def march_by_collocation(
     """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,)."""
     order, tolerance = settings.order, settings.tolerance
     corrected = correct_across(problem, start, tangent, tolerance)
-    if corrected.gap > 100 * tolerance + 1e-12:
+    closing = 100 * tolerance + settings.closing
+    if corrected.gap > closing:
         return March.without_solution(corrected.gap, order, problem.n)
     point = corrected.point
     jacobian = problem.jacobian(point) / problem.magnitude
     heading = Bordered(jacobian, tangent).null_vector()
     width = settings.longest / 4
     pieces: list[Piece] = []
+    # before a cusp a residual is left that is no misclosure
+    may_miss = settings.closing > closing / 2
+    misclosure = max(settings.misclosure, corrected.gap) if may_miss else 0.0
     low, high = problem.bounds.T
     while len(pieces) < settings.count:
         is_inside = np.all((low <= point) & (point <= high))
         if pieces and not is_inside:
             break
-        aim = _Aim(point, heading, order, tolerance)
+        aim = _Aim(point, heading, order, tolerance, misclosure)
         accepted = _next_piece(problem, aim, width, settings.shortest)
-        if accepted is None:
+        if accepted is None or misclosure > closing:
             return March.of_pieces(MarchStatus.STALLED, pieces, order, problem.n)
         pieces.append(accepted.piece)
         point, heading = _end(accepted.piece)
+        if may_miss:
+            misclosure = max(misclosure, float(problem.gaps(point[None])[0]))
         width = min(accepted.next_width, 2 * settings.longest)
     return March.of_pieces(MarchStatus.RAN, pieces, order, problem.n)
 
@@ -99,14 +108,16 @@ def bridge_by_collocation(
     order: int,
     tolerance: float,
     width: float,
+    misclosure: float = 0.0,
 ) -> Piece | None:
     """One piece of about ``width`` from ``start`` (n,) along ``heading`` (n,), or None.
 
     Over a point in the middle where no series can be made: no node lies there, and the
-    nodes next to it need only be as good as ``tolerance``.
+    nodes next to it need only be as good as ``tolerance``, beyond the ``misclosure`` of
+    the curve.
     """
     odd = order - 1 + order % 2  # an even number of nodes leaves the middle free
-    aim = _Aim(start, heading, odd, tolerance)
+    aim = _Aim(start, heading, odd, tolerance, misclosure)
     attempt = _attempt(problem, aim, width)
     if isinstance(attempt, _Rejected):
         return None
@@ -146,7 +157,7 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
     if tail <= enough:
         powers, length = _by_arclength(coefficients)
         residual = _residual_between_nodes(problem, powers)
-        if residual <= LOOSE * aim.tolerance:
+        if residual <= LOOSE * aim.tolerance + MISSED * aim.misclosure:
             piece = Piece(powers, length, residual)
             growth = (enough / max(tail, 1e-18)) ** root
             factor = min(1.6, max(0.7, 0.95 * growth))
@@ -191,7 +202,8 @@ def _points_at_nodes(
         step = points[k] - points[k - 1]
         expected = offsets[k] - offsets[k - 1]
         is_far = np.linalg.norm(step) > 4 * expected
-        if is_far or corrected.gap > 100 * aim.tolerance:
+        most = 100 * aim.tolerance + MISSED * aim.misclosure
+        if is_far or corrected.gap > most:
             return None
     return points
 

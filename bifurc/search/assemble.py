@@ -8,15 +8,26 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance, Surface
+from bifurc.atlas import (
+    Atlas,
+    Event,
+    Form,
+    MeetingPoint,
+    NearMotion,
+    Provenance,
+    Surface,
+)
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points, singular_values
+from bifurc.curves.near_miss import near_miss_value
+from bifurc.decisions import closes_to_rounding
 from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_branches, order_points
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
+from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap
 
 __all__ = ["assemble_atlas"]
@@ -34,11 +45,21 @@ def assemble_atlas(
     traced = [findings.traced[k] for k in order]
     branches = [branch.branch for branch in traced]
     surfaces = _surfaces(findings, periods)
-    located = [replace(point, u=wrap(point.u, periods)) for point in findings.points]
-    points = meeting_points(problem, located, branches, surfaces, periods)
+    located = [
+        replace(point, u=wrap(point.u, periods))
+        for point in findings.points
+        if not _is_on_near_motion(findings, point)
+    ]
+    met = meeting_points(problem, located, branches, surfaces, periods)
+    points = tuple(_with_misclosure(point, traced) for point in met)
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
-    gap = 0.0 if is_mobile else closure_gap(problem, findings.seeds, findings.gaps)
+    near_motions = _near_motions(findings, periods)
+    gap = 0.0
+    if near_motions and not is_mobile:
+        gap = min(near.misclosure for near in near_motions)
+    elif not is_mobile:
+        gap = closure_gap(problem, findings.seeds, findings.gaps)
     return Atlas(
         names=problem.names,
         units=problem.units,
@@ -49,6 +70,7 @@ def assemble_atlas(
         dead_points=_dead_points(problem, traced, periods),
         rigid=rigid[order_points(rigid, periods, problem.scale)],
         surfaces=surfaces,
+        near_motions=near_motions,
         completeness=judge_completeness(findings, provenance),
         closure_gap=gap,
         provenance=provenance,
@@ -78,7 +100,15 @@ def _forms(
     for index, (branch, component) in enumerate(zip(traced, components, strict=True)):
         smallest = 0.0 if index in singular else _smallest_value(problem, branch)
         name = f"Form {index + 1}"
-        forms.append(Form(name, branch.branch, branch.profile, smallest, component))
+        form = Form(
+            name=name,
+            branch=branch.branch,
+            profile=branch.profile,
+            min_singular_value=smallest,
+            component=component,
+            misclosure=branch.misclosure,
+        )
+        forms.append(form)
     return tuple(forms)
 
 
@@ -125,6 +155,37 @@ def _surfaces(findings: Findings, periods: np.ndarray) -> tuple[Surface, ...]:
     return tuple(named)
 
 
+def _near_motions(findings: Findings, periods: np.ndarray) -> tuple[NearMotion, ...]:
+    """The near motions, the one that misses least first."""
+    near_motions = []
+    for trace in sorted(findings.near_motions, key=lambda trace: trace.misclosure):
+        sample = wrap(trace.branch(0.0), periods)
+        near_motions.append(
+            NearMotion(trace.misclosure, trace.length, trace.is_closed, sample)
+        )
+    return tuple(near_motions)
+
+
+def _with_misclosure(
+    point: MeetingPoint, traced: Sequence[TracedBranch]
+) -> MeetingPoint:
+    """The point with a note where a form through it misses closure by more than
+    rounding: then the form passes it to within the root of that."""
+    misclosures = [traced[form].misclosure for form, _ in point.passes]
+    largest = max(misclosures, default=0.0)
+    if closes_to_rounding(largest):
+        return point
+    note = f"within the closing tolerance, the forms miss {largest:.1e}"
+    return replace(point, note="; ".join(filter(None, [point.note, note])))
+
+
+def _is_on_near_motion(findings: Findings, point: SingularPoint) -> bool:
+    """Whether a singular point that no branch passes is the place of a near motion
+    where its rank drops, but for the misclosure."""
+    is_isolated = point.kind is Kind.ISOLATED
+    return is_isolated and findings.near_motion_through(point.u) is not None
+
+
 # --- events ---------------------------------------------------------------------------
 
 
@@ -139,11 +200,13 @@ def _near_misses(
         is_near_miss = is_low & ~np.isin(arclengths, branch.located)
         if not np.any(is_near_miss):
             continue
-        arclengths, values = arclengths[is_near_miss], values[is_near_miss]
+        arclengths = arclengths[is_near_miss]
+        rank = branch.profile.rank
         places = wrap(branch.branch(arclengths), periods)
         for k in order_points(places, periods, problem.scale):
-            s, value = float(arclengths[k]), float(values[k])
-            events.append(Event(form, s, places[k], value))
+            s = float(arclengths[k])
+            value, error = near_miss_value(problem, branch.branch, rank, s)
+            events.append(Event(form, s, places[k], value, error))
     return tuple(events)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
-__all__ = ["closure_gap"]
+__all__ = ["closure_gap", "valley_points"]
 
 STEPS = 12
 LONGEST = 0.5  # step, over the problem's scale
@@ -25,20 +25,23 @@ def closure_gap(problem: Problem, seeds: Seeds, gaps: Sequence[float]) -> float:
     It is taken over the random starts that missed and over the ``gaps`` of starts that
     could not be corrected.
     """
-    residuals = np.maximum(_valley_residuals(problem, seeds.missed), seeds.gaps)
+    residuals = seeds.gaps
+    if len(seeds.missed):
+        in_valley = problem.gaps(valley_points(problem, seeds.missed))
+        residuals = np.maximum(in_valley, seeds.gaps)
     everywhere = np.concatenate([residuals, gaps])
     return float(np.median(everywhere)) if len(everywhere) else 0.0
 
 
-def _valley_residuals(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """Residuals (k,) in the valley below points (k, n) that do not solve the system.
+def valley_points(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Points (k, n) in the valley below points (k, n) that do not solve the system.
 
     Gauss-Newton steps of rank n - 1 run down to the valley in which the system is
     nearly solved but not along it, so that an isolated solution at its end does not
-    hide the gap. Where there is no valley, the residuals themselves.
+    hide the gap.
     """
     if not len(points):
-        return np.empty(0)
+        return points
     lowest = points.copy()
     longest = LONGEST * problem.scale
     for _ in range(STEPS):
@@ -46,7 +49,7 @@ def _valley_residuals(problem: Problem, points: np.ndarray) -> np.ndarray:
         lengths = np.linalg.norm(steps, axis=1) + TINY
         shares = np.minimum(1.0, longest / lengths)
         lowest -= steps * shares[:, None]
-    return problem.gaps(lowest)
+    return lowest
 
 
 def _steps_across(problem: Problem, points: np.ndarray) -> np.ndarray:

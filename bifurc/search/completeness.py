@@ -6,6 +6,7 @@ from collections import Counter
 
 from bifurc.atlas import Provenance
 from bifurc.branch import Outcome
+from bifurc.decisions import closes_to_rounding
 from bifurc.search.findings import Findings
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeding import missed_probability
@@ -39,6 +40,12 @@ def judge_completeness(findings: Findings, provenance: Provenance) -> Completene
     if cut_off:
         statement = (
             f"{cut_off} of the forms are longer than they were traced; {estimate}"
+        )
+        return Completeness(Level.ESTIMATED, statement, missed)
+    loose = sum(not closes_to_rounding(t.misclosure) for t in findings.traced)
+    if loose:
+        statement = (
+            f"{loose} of the forms close within the closing tolerance only; {estimate}"
         )
         return Completeness(Level.ESTIMATED, statement, missed)
     return Completeness(audit.level, f"{audit.statement}; {estimate}", missed)

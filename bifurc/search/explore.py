@@ -67,6 +67,7 @@ def explore(
             search.trace_seeds()
             search.cover_surfaces()
             search.audit_branches()
+            search.look_for_near_motions()
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")

@@ -11,6 +11,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.monitor import Profile
+from bifurc.curves.near_motion import NearMotionTrace
 from bifurc.decisions import is_same_point
 from bifurc.problem import Problem
 from bifurc.search.components import Components
@@ -30,13 +31,14 @@ class TracedBranch:
 
     ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
     regular singular value. ``located`` are the arclengths at which there is a singular
-    point.
+    point. ``misclosure`` is the largest along the branch.
     """
 
     branch: Branch
     profile: Profile
     minima: tuple[np.ndarray, np.ndarray]
     located: tuple[float, ...]
+    misclosure: float = 0.0
 
 
 class PointSighting(NamedTuple):
@@ -48,8 +50,8 @@ class PointSighting(NamedTuple):
 
 
 class Findings:
-    """Branches, singular points, rigid assemblies and components of a problem, nothing
-    twice; and the seeds they come from.
+    """Branches, singular points, near motions, rigid assemblies and components of a
+    problem, nothing twice; and the seeds they come from.
 
     ``seed_values`` (k, n) are the singular values at the seeds, ``fates`` what is known
     of each by its number. ``gaps`` are the residuals of starts that only nearly solve
@@ -65,6 +67,7 @@ class Findings:
         self.traced: list[TracedBranch] = []
         self.points: list[SingularPoint] = []
         self.rigid: list[np.ndarray] = []
+        self.near_motions: list[NearMotionTrace] = []
         self.components = Components()
         self.gaps: list[float] = []
         self.audit: Audit | None = None
@@ -145,6 +148,30 @@ class Findings:
                 return number
         return None
 
+    def near_motion_through(self, point: np.ndarray) -> int | None:
+        """The number of the first near motion on which a point (n,) lies, as far as
+        what it misses tells."""
+        for number, near in enumerate(self.near_motions):
+            reach = near.reach * self.problem.scale
+            distance, _ = near.branch.nearest(point, within=reach)
+            if distance[0] < reach:
+                return number
+        return None
+
+    def add_near_motion(self, near: NearMotionTrace) -> int:
+        """The number of a near motion, which is recorded, with its assemblies, if it
+        is new."""
+        points = near.branch(near.length * PLACES)
+        for number, known in enumerate(self.near_motions):
+            distance, _ = known.branch.nearest(points)
+            reach = max(known.reach, near.reach)
+            if np.all(distance < reach * self.problem.scale):
+                return number
+        self.near_motions.append(near)
+        for assembly in near.assemblies:
+            self.rigid_assembly(assembly)
+        return len(self.near_motions) - 1
+
     def set_audit(self, audit: Audit) -> None:
         """Record what the problem says of the branches known now."""
         self.audit = audit
@@ -176,11 +203,18 @@ class Findings:
                 return PointSighting(point, number, is_new=False)
         return None
 
-    def rigid_assembly(self, u: np.ndarray) -> int:
-        """The number of the rigid assembly at ``u`` (n,), which is recorded if new."""
+    def rigid_at(self, u: np.ndarray) -> int | None:
+        """The number of the known rigid assembly at ``u`` (n,)."""
         for number, known in enumerate(self.rigid):
             if is_same_point(self._distance(known, u), self.problem.scale):
                 return number
+        return None
+
+    def rigid_assembly(self, u: np.ndarray) -> int:
+        """The number of the rigid assembly at ``u`` (n,), which is recorded if new."""
+        known = self.rigid_at(u)
+        if known is not None:
+            return known
         self.rigid.append(u)
         return len(self.rigid) - 1
 

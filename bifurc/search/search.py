@@ -13,16 +13,23 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.minima import singular_value_minima
+from bifurc.curves.misclosure import largest_misclosure
 from bifurc.curves.monitor import Profile, profile_branch, singular_values
+from bifurc.curves.near_motion import trace_near_motion
 from bifurc.decisions import (
+    closes_to_rounding,
     is_mobile,
     is_solution,
     is_stub,
     may_be_crossed,
     may_be_singular,
+    may_nearly_move,
+    nearly_closes,
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.problem import Problem
+from bifurc.search.assembly import polished
+from bifurc.search.closure_gap import valley_points
 from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import Findings, PointSighting, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
@@ -39,6 +46,10 @@ log = logging.getLogger(__name__)
 
 # Singular values are over the problem's magnitude, lengths over its scale.
 CLOSED_STUB = 20  # times shorter: a branch that does not stall and is none
+# A curve is traced at a misclosure a little above what it may have: the largest one
+# along it, measured afterwards, decides.
+LENIENT = 4.0 * is_solution.threshold
+NEAR_STARTS = 20  # random starts from which near motions are looked for
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
@@ -167,7 +178,10 @@ class Search:
         point = self.findings.seeds.points[number]
         values = self.findings.seed_values[number]
         if not is_mobile(float(values[self.problem.n - 1])):
-            return self._rigid_fate(point)
+            return self._fate_of_assembly(point)
+        near = self.findings.near_motion_through(point)
+        if near is not None:
+            return SeedFate(Fate.ON_NEAR_MOTION, near)
         if may_be_singular(float(values[self.problem.n - 2])):
             fate = self._fate_at_low_rank(point, values)
             if fate is not None:
@@ -175,11 +189,51 @@ class Search:
         trace = self._trace(Start(point))
         self._branch_off(trace.starts)
         if trace.fate is None:
-            return self._rigid_fate(point)
+            return self._fate_of_assembly(point)
         return trace.fate
 
-    def _rigid_fate(self, point: np.ndarray) -> SeedFate:
-        return SeedFate(Fate.RIGID, self.findings.rigid_assembly(point))
+    def _fate_of_assembly(self, point: np.ndarray) -> SeedFate:
+        """What a seed (n,) lies on that cannot move: a near motion, or nothing but
+        itself.
+
+        On a near motion only what is stiff enough to be told from its neighbours is an
+        assembly of its own, besides those where the misclosure passes zero.
+        """
+        findings = self.findings
+        solution = polished(self.problem, point)
+        known = findings.rigid_at(solution.point)
+        if known is not None:
+            return SeedFate(Fate.RIGID, known)
+        near = None
+        if may_nearly_move(solution.stiffness):
+            near = self._near_motion_through(point)
+        if near is None or solution.is_isolated:
+            return SeedFate(Fate.RIGID, findings.rigid_assembly(solution.point))
+        return SeedFate(Fate.ON_NEAR_MOTION, near)
+
+    def _near_motion_through(self, point: np.ndarray) -> int | None:
+        """The number of the near motion through a point (n,), which is traced if it is
+        new; None where there is none."""
+        number = self.findings.near_motion_through(point)
+        if number is not None:
+            return number
+        near = trace_near_motion(self.problem, point, self.settings.tracing)
+        return None if near is None else self.findings.add_near_motion(near)
+
+    def look_for_near_motions(self) -> None:
+        """Trace the near motions from the random starts that missed, where nothing
+        moves."""
+        findings = self.findings
+        is_mobile = bool(findings.traced) or bool(findings.components.seeds)
+        if is_mobile or not len(findings.seeds.missed):
+            return
+        points = valley_points(self.problem, findings.seeds.missed)
+        is_near = nearly_closes(self.problem.gaps(points))
+        for point in points[is_near][:NEAR_STARTS]:
+            if self.is_over:
+                break
+            self._near_motion_through(point)
+            self.limits.interrupt.check()
 
     def _fate_at_low_rank(
         self, point: np.ndarray, values: np.ndarray
@@ -217,7 +271,7 @@ class Search:
         number = findings.branch_through(start.point)
         if number is not None:
             return _Trace(SeedFate(Fate.ON_FORM, number), [])
-        branch = trace_branch(self.problem, *start, self.settings.tracing)
+        branch = trace_branch(self.problem, *start, self.settings.tracing, LENIENT)
         is_open = branch.outcome is Outcome.OPEN
         if is_open:
             findings.gaps.append(branch.gap)
@@ -228,7 +282,15 @@ class Search:
         number = findings.branch_along(branch)
         if number is not None:
             return _Trace(SeedFate(Fate.ON_FORM, number), [])
-        examined = self._examine_branch(branch)
+        misclosure = largest_misclosure(self.problem, branch)
+        has_failed = branch.outcome is Outcome.STALLED
+        if not is_solution(misclosure) or (
+            has_failed and not closes_to_rounding(misclosure)
+        ):
+            near = self._near_motion_through(start.point)
+            if near is not None:
+                return _Trace(SeedFate(Fate.ON_NEAR_MOTION, near), [])
+        examined = self._examine_branch(branch, misclosure)
         return _Trace(SeedFate(Fate.ON_FORM, examined.number), examined.starts)
 
     def _trace_lower_rank(self, point: np.ndarray, direction: np.ndarray) -> SeedFate:
@@ -240,7 +302,8 @@ class Search:
             outcome = branch.outcome.value
             log.info("no curve of lower rank through %s: %s", point, outcome)
             return SeedFate(Fate.NO_SOLUTION)
-        examined = self._examine_branch(branch)
+        misclosure = largest_misclosure(self.problem, branch)
+        examined = self._examine_branch(branch, misclosure)
         return SeedFate(Fate.ON_FORM, examined.number)
 
     def _is_curve(self, branch: Branch) -> bool:
@@ -255,8 +318,9 @@ class Search:
 
     # --- singular points --------------------------------------------------------------
 
-    def _examine_branch(self, branch: Branch) -> _ExaminedBranch:
-        """Record a branch and the singular points on it."""
+    def _examine_branch(self, branch: Branch, misclosure: float) -> _ExaminedBranch:
+        """Record a branch, with the ``misclosure`` along it, and the singular points on
+        it."""
         profile = profile_branch(self.problem, branch)
         minima = singular_value_minima(self.problem, branch, profile)
         candidates = _small_minima(*minima) + self._candidate_ends(branch, profile)
@@ -265,13 +329,13 @@ class Search:
         for candidate in candidates:
             if self.is_over:
                 break
-            sighting = self._examine_candidate(branch, candidate)
+            sighting = self._examine_candidate(branch, candidate, misclosure)
             if sighting is None:
                 continue
             located.append(float(candidate.looks[0]))
             if sighting.is_new:
                 starts += _half_branch_starts(sighting.point)
-        traced = TracedBranch(branch, profile, minima, tuple(located))
+        traced = TracedBranch(branch, profile, minima, tuple(located), misclosure)
         return _ExaminedBranch(self.findings.add_branch(traced), starts)
 
     def _candidate_ends(self, branch: Branch, profile: Profile) -> list[_Candidate]:
@@ -296,9 +360,10 @@ class Search:
         ]
 
     def _examine_candidate(
-        self, branch: Branch, candidate: _Candidate
+        self, branch: Branch, candidate: _Candidate, misclosure: float
     ) -> PointSighting | None:
-        """The singular point to which the looks of a candidate lead."""
+        """The singular point to which the looks of a candidate lead, on a branch with a
+        ``misclosure``."""
         for arclength in candidate.looks:
             near = branch(arclength)
             known = self.findings.point_at(near, 0.0)
@@ -308,13 +373,13 @@ class Search:
             nullity = int(np.count_nonzero(values < candidate.zero))
             if nullity < 2:
                 continue
-            sighting = self._examine(near, nullity, candidate.reach)
+            sighting = self._examine(near, nullity, candidate.reach, misclosure)
             if sighting is not None:
                 return sighting
         return None
 
     def _examine(
-        self, near: np.ndarray, nullity: int, reach: float
+        self, near: np.ndarray, nullity: int, reach: float, misclosure: float = 0.0
     ) -> PointSighting | None:
         """The singular point of a curve at less than ``reach`` scales from a solution
         ``near`` (n,); ``nullity`` is the most likely one."""
@@ -323,7 +388,9 @@ class Search:
         for k in sorted(nullities, key=lambda k: abs(k - nullity)):
             if k > problem.n:
                 continue
-            located = locate_singular_point(problem, near, k, reach * problem.scale)
+            located = locate_singular_point(
+                problem, near, k, reach * problem.scale, misclosure
+            )
             if located is None:
                 continue
             known = self.findings.point_at(located.u, located.error)

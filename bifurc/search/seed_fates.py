@@ -17,6 +17,8 @@ class Fate(Enum):
     AT_SINGULAR_POINT = "at a singular point"
     # It is a solution without motion.
     RIGID = "rigid assembly"
+    # It lies on a curve along which the system is nearly solved.
+    ON_NEAR_MOTION = "on a near motion"
     # The solutions about it are of dimension 2 or more.
     ON_COMPONENT = "on a component of higher dimension"
     # It only nearly solves the equations.
@@ -27,8 +29,8 @@ class Fate(Enum):
 class SeedFate:
     """What one seed lies on, and which one of these.
 
-    ``number`` counts the branches, the singular points or the rigid assemblies in the
-    order in which they were found. Of a component it is the dimension.
+    ``number`` counts the branches, the near motions, the singular points or the rigid
+    assemblies in the order in which they were found. Of a component it is the dimension.
     """
 
     fate: Fate

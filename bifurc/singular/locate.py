@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.decisions import is_located, is_null, solves_at_point
+from bifurc.decisions import is_located, solves_at_point, vanishes
 from bifurc.problem import Problem
 
 __all__ = ["LocatedPoint", "block_slice", "locate_singular_point"]
@@ -20,6 +20,8 @@ ROUNDING, WEAK = 1e-12, 1e-6
 MOVES_POINT = 0.1
 # Condition of the augmented matrix at which convergence is no longer quadratic.
 HIGHER_ORDER = 1e7
+# Times the misclosure of the curves through it: what may be missed at a singular point.
+MISSED = 10.0
 # |F| and singular value, over the magnitude, below which rounding hides the point.
 HIDDEN = 1e-12
 
@@ -34,11 +36,15 @@ class LocatedPoint(NamedTuple):
 
 
 def locate_singular_point(
-    problem: Problem, start: np.ndarray, nullity: int, reach: float
+    problem: Problem,
+    start: np.ndarray,
+    nullity: int,
+    reach: float,
+    misclosure: float = 0.0,
 ) -> LocatedPoint | None:
     """The point near ``start`` where F = 0 and F' has a null space of dimension
     ``nullity``; None where the iteration does not converge or moves farther than
-    ``reach``.
+    ``reach``. On curves with a ``misclosure`` F = 0 to within that.
 
     Gauss-Newton on F(u) = 0, F'(u) V = 0, V^T V = I for the point and its null space
     together. Its matrix is regular at a simple singular point although F' is not. At a
@@ -50,8 +56,7 @@ def locate_singular_point(
     if run is None or not is_located(run.moves[-1], problem.scale):
         return None
     u = _solve_regular_equations(problem, run.u, nullity)
-    if not _is_singular_solution(problem, u, nullity):
-        return None
+    converged = u
     error = _location_error(run.moves, run.condition) * problem.scale
     for direction in run.weak:
         size = np.linalg.norm(direction)
@@ -59,6 +64,9 @@ def locate_singular_point(
             stretch = _hidden_stretch(problem, u, direction / size, nullity, reach)
             u = stretch.middle
             error = max(error, stretch.half_length)
+    doubt = misclosure + error / problem.scale
+    if not _is_singular_solution(problem, converged, nullity, misclosure, doubt):
+        return None
     return LocatedPoint(u, run.basis, error)
 
 
@@ -204,11 +212,16 @@ def _solve_regular_equations(
     return u
 
 
-def _is_singular_solution(problem: Problem, u: np.ndarray, nullity: int) -> bool:
-    """Whether F = 0 at ``u`` (n,) and F' has a null space of dimension ``nullity``."""
+def _is_singular_solution(
+    problem: Problem, u: np.ndarray, nullity: int, misclosure: float, doubt: float
+) -> bool:
+    """Whether F = 0 at ``u`` (n,), but for a ``misclosure``, and F' has a null space of
+    dimension ``nullity``, but for what the ``doubt`` of the place explains."""
+    unit = max(1.0, MISSED * misclosure / solves_at_point.threshold)
+    null_unit = max(1.0, MISSED * doubt / vanishes.threshold)
     gap = float(problem.gaps(u[None])[0])
     largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
-    return solves_at_point(gap) and is_null(largest_null)
+    return solves_at_point(gap, unit) and vanishes(largest_null, null_unit)
 
 
 def _largest_null_values(

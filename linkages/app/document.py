@@ -9,7 +9,7 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from bifurc.atlas import Atlas, Event, MeetingPoint
+from bifurc.atlas import Atlas, Event, MeetingPoint, NearMotion
 from bifurc.torus import wrap
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels, loop_of
@@ -38,6 +38,7 @@ class FormDocument(TypedDict):
     symmetry: str
     sample: list[float]
     max_residual: float | None
+    misclosure: float | None
     min_singular_value: float | None
     component: int
 
@@ -65,7 +66,17 @@ class NearMissDocument(TypedDict):
 
     theta: list[float]
     singular_value: float
+    error: float
     form: str
+
+
+class NearMotionDocument(TypedDict):
+    """A path along which the loop misses closure by no more than ``misclosure``."""
+
+    misclosure: float
+    length: float
+    closed: bool
+    sample: list[float]
 
 
 class DeadPointDocument(TypedDict):
@@ -95,6 +106,7 @@ class MapDocument(TypedDict):
     near_misses: list[NearMissDocument]
     dead_points: list[DeadPointDocument]
     rigid_assemblies: list[list[float]]
+    near_motions: list[NearMotionDocument]
     completeness: CompletenessDocument
     seconds: float
     version: str
@@ -114,6 +126,7 @@ def make_document(atlas: Atlas) -> MapDocument:
         "near_misses": [_near_miss(atlas, event) for event in atlas.near_misses],
         "dead_points": [_dead_point(atlas, event) for event in atlas.dead_points],
         "rigid_assemblies": [_angles(atlas, theta) for theta in atlas.rigid],
+        "near_motions": [_near_motion(atlas, near) for near in atlas.near_motions],
         "completeness": _completeness(atlas),
         "seconds": atlas.provenance.seconds,
         "version": version("bifurc"),
@@ -147,6 +160,7 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "symmetry": labels.symmetry.value,
         "sample": _angles(atlas, sample),
         "max_residual": labels.max_residual,
+        "misclosure": form.misclosure,
         "min_singular_value": form.min_singular_value,
         "component": form.component,
     }
@@ -165,6 +179,7 @@ def _surface(atlas: Atlas, index: int) -> FormDocument:
         "symmetry": "",
         "sample": _angles(atlas, surface.samples[0]),
         "max_residual": None,
+        "misclosure": None,
         "min_singular_value": None,
         "component": atlas.components + index,
     }
@@ -193,7 +208,17 @@ def _near_miss(atlas: Atlas, event: Event) -> NearMissDocument:
     return {
         "theta": _angles(atlas, event.u),
         "singular_value": event.value,
+        "error": event.error,
         "form": atlas.forms[event.form].name,
+    }
+
+
+def _near_motion(atlas: Atlas, near: NearMotion) -> NearMotionDocument:
+    return {
+        "misclosure": near.misclosure,
+        "length": near.length,
+        "closed": near.is_closed,
+        "sample": _angles(atlas, near.sample),
     }
 
 

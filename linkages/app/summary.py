@@ -46,6 +46,7 @@ def make_summary(atlas: Atlas) -> str:
         *(_points(atlas, title, kinds) for title, kinds in POINT_TABLES),
         _near_misses(atlas),
         _rigid_assemblies(atlas),
+        _near_motions(atlas),
         _certificates(atlas),
         f"Completeness ({completeness.level}): {completeness.statement}.",
         f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
@@ -151,14 +152,26 @@ def _near_misses(atlas: Atlas) -> str:
     rows = []
     for miss in sorted(atlas.near_misses, key=lambda miss: miss.value):
         angles = show_configuration(atlas, miss.u)
-        rows.append((angles, f"{miss.value:.6g}", atlas.forms[miss.form].name))
-    heads = ("joint angles (deg)", "singular value", "form")
+        value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
+        rows.append((angles, value, error, atlas.forms[miss.form].name))
+    heads = ("joint angles (deg)", "singular value", "error", "form")
     return _beginning("Near misses (no bifurcation)", heads, rows)
 
 
 def _rigid_assemblies(atlas: Atlas) -> str:
     rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
     return _beginning("Rigid assemblies", ("joint angles (deg)",), rows)
+
+
+def _near_motions(atlas: Atlas) -> str:
+    rows = []
+    for near in atlas.near_motions:
+        angles = show_configuration(atlas, near.sample)
+        closed = "yes" if near.is_closed else "no"
+        length = f"{np.degrees(near.length):.4g}"
+        rows.append((angles, closed, length, f"{near.misclosure:.3g}"))
+    heads = ("joint angles (deg)", "closed", "length (deg)", "misclosure")
+    return _beginning("Near motions (the loop nearly closes)", heads, rows)
 
 
 def _beginning(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -3,19 +3,17 @@ and the exit code for it."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, NearMotion
+from bifurc.decisions import closes_to_rounding
 from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
 from linkages.app.exit_codes import ExitCode
 from linkages.app.texts import count_of
 
 __all__ = ["Verdict", "is_without_gaps", "judge"]
-
-# closure gap, over the characteristic length, below which a condition is missed
-# narrowly
-NEARLY_CLOSED = 1e-2
 
 
 @dataclass(frozen=True)
@@ -57,15 +55,27 @@ def _mobile(atlas: Atlas) -> str:
     if not atlas.surfaces:
         components = count_of(atlas.components, "component")
         bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
-        return (
+        sentence = (
             f"The linkage moves with mobility 1: {forms} in {components}, "
             f"{bifurcations}."
         )
+        return sentence + _within_tolerance(atlas)
     dimension = max(surface.dimension for surface in atlas.surfaces)
     sentence = f"The linkage moves with mobility {dimension}"
     if atlas.forms:
         sentence += f", and has {forms} of mobility 1"
-    return sentence + "."
+    return f"{sentence}.{_within_tolerance(atlas)}"
+
+
+def _within_tolerance(atlas: Atlas) -> str:
+    """By how much forms miss closure, where that is more than rounding."""
+    largest = max((form.misclosure for form in atlas.forms), default=0.0)
+    if closes_to_rounding(largest):
+        return ""
+    return (
+        " It moves within the closing tolerance: along the way its loop misses closure "
+        f"by {largest:.2g} of the characteristic length at most."
+    )
 
 
 def _nothing_known(atlas: Atlas) -> str:
@@ -81,11 +91,8 @@ def _immobile(atlas: Atlas) -> str:
     shaky = sum(1 for point in atlas.points if point.kind is Kind.ISOLATED)
     assemblies = len(atlas.rigid) + shaky
     gap = f"{atlas.closure_gap:.3g} of the characteristic length"
-    if 0.0 < atlas.closure_gap < NEARLY_CLOSED:
-        sentence = (
-            "The linkage nearly moves, but along the way its loop misses closure "
-            f"by {gap}."
-        )
+    if atlas.near_motions:
+        sentence = f"The linkage nearly moves: {_near_motion(atlas.near_motions[0])}."
     elif assemblies:
         sentence = "The linkage is rigid."
     else:
@@ -93,6 +100,18 @@ def _immobile(atlas: Atlas) -> str:
     if not assemblies:
         return sentence
     return f"{sentence} {_assemblies(assemblies, shaky)}"
+
+
+def _near_motion(motion: NearMotion) -> str:
+    """How far a near motion goes, and by how much it is none."""
+    degrees = f"{math.degrees(motion.length):.4g} degrees of joint-space length"
+    stretch = f"all along a closed path of {degrees}"
+    if not motion.is_closed:
+        stretch = f"along {degrees}"
+    return (
+        f"{stretch} its loop misses closure by {motion.misclosure:.3g} of the "
+        "characteristic length at most"
+    )
 
 
 def _assemblies(count: int, shaky: int) -> str:

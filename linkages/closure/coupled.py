@@ -94,6 +94,8 @@ class CoupledClosure(NumericalProblem):
             settings.longest,
             settings.count,
             self._coupling,
+            settings.closing,
+            settings.misclosure,
         )
         return March(MarchStatus(status), pieces, steps, radii, residuals)
 

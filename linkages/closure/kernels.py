@@ -458,10 +458,15 @@ def _expand(
     order,
     tolerance,
     longest,
+    misclosure,
     coefficients,
 ):
     """Fill the series at a settled point; its trusted radius (0 for none) and largest
-    residual come back."""
+    residual come back.
+
+    What the loop misses closure by at the best points of the curve, ``misclosure``, is
+    no fault of the series.
+    """
     n = theta.shape[0]
     place, heading = np.empty(n), np.empty(n)
     screws, quaternion, translation = (
@@ -483,7 +488,7 @@ def _expand(
             quaternion,
             translation,
         )
-        if worst <= 3.0 * tolerance + 4e-15:
+        if worst <= 3.0 * tolerance + 4.0 * misclosure:
             return radius, worst
         radius *= 0.85
     return 0.0, worst
@@ -513,7 +518,17 @@ RAN, STALLED, OPEN = 0, 1, 2
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def march(
-    theta, tangent, geometry, order, tolerance, shortest, longest, count, coupling=None
+    theta,
+    tangent,
+    geometry,
+    order,
+    tolerance,
+    shortest,
+    longest,
+    count,
+    coupling=None,
+    closing=1e-12,
+    misclosure=0.0,
 ):
     """Up to ``count`` consecutive Taylor pieces of the motion from ``theta`` along
     ``tangent``.
@@ -523,9 +538,10 @@ def march(
     ``steps[i]`` of arclength beyond the centre of piece i - 1 (0 for the first), in the
     variable (s - centre) / radii[i], trusted from -1 to 1; neighbouring pieces overlap.
     ``sigmas`` estimate the smallest regular singular value at the centres. Status RAN:
-    all pieces made; STALLED: no trusted step of ``shortest`` is left; OPEN: the loop
-    does not close, ``residuals[-1]`` is the gap. With a ``coupling`` all of this is in
-    its unknowns: theta stands for v.
+    all pieces made; STALLED: no trusted step of ``shortest`` is left, or the loop
+    misses closure by more than ``closing`` farther on; OPEN: it does so at the start,
+    ``residuals[-1]`` is the gap. ``misclosure`` is what the curve is known to miss
+    elsewhere. With a ``coupling`` all of this is in its unknowns: theta stands for v.
 
     A piece is trusted on both sides of its centre, so the next centre lies almost two
     radii on. Near a bifurcation at distance d the radius is about d and somewhat more:
@@ -548,13 +564,13 @@ def march(
     )
     place, direction = np.empty(n), np.empty(n)
     noise = 1e-15
-    limit = 20.0 * tolerance + 1e-13
     _, gap, sigmas[0] = _settle(
         point, heading, geometry, coupling, matrix, scale, noise
     )
     residuals[0] = gap
-    if gap > limit:
+    if gap > closing:
         return OPEN, pieces[:0], steps[:0], radii[:0], residuals[:1], sigmas[:0]
+    misclosure = max(misclosure, noise, gap)
     radii[0], residuals[0] = _expand(
         point,
         heading,
@@ -565,6 +581,7 @@ def march(
         order,
         tolerance,
         longest,
+        misclosure,
         pieces[0],
     )
     if radii[0] < shortest:
@@ -581,8 +598,9 @@ def march(
             moved, gap, sigmas[made] = _settle(
                 point, heading, geometry, coupling, matrix, scale, noise
             )
-            if moved > 1e-2 * radius or gap > limit:
+            if moved > 1e-2 * radius or gap > closing:
                 continue
+            misclosure = max(misclosure, gap)
             radii[made], residuals[made] = _expand(
                 point,
                 heading,
@@ -593,6 +611,7 @@ def march(
                 order,
                 tolerance,
                 longest,
+                misclosure,
                 pieces[made],
             )
             if radii[made] <= beyond * radius:
@@ -607,9 +626,9 @@ def march(
                 other,
                 slope,
             )
-            # a point of the curve is known to rounding over the smallest singular
-            # value, no better
-            if apart <= 100.0 * tolerance + 4.0 * noise / sigmas[made]:
+            # a point of the curve is known to rounding, or the misclosure, over the
+            # smallest singular value, no better
+            if apart <= 100.0 * tolerance + 4.0 * misclosure / sigmas[made]:
                 steps[made] = radius - back
                 status = RAN
                 made += 1

@@ -3,7 +3,7 @@ interface."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 from linkages.closure import kernels
+from linkages.kinematics import Number
 from linkages.loop import Loop
 from linkages.slices.completeness import SliceAudit
 from linkages.slices.elimination import Slice, slice_configurations
@@ -65,6 +66,12 @@ class LoopClosure(NumericalProblem):
         hessian: np.ndarray = kernels.hessians(_contiguous(point), self._geometry)
         return hessian
 
+    def precise_residual(self) -> Callable[[Sequence[Number]], list[Number]]:
+        """Closure residuals over mpmath numbers, of the loop's own numbers."""
+        from linkages.closure.precise import precise_residual  # it imports mpmath
+
+        return precise_residual(self.loop)
+
     def curvature_bound(self) -> float:
         """K with |J(x) - J(y)| <= K |x - y| near closed configurations, from the
         geometry.
@@ -106,6 +113,9 @@ class LoopClosure(NumericalProblem):
             settings.shortest,
             settings.longest,
             settings.count,
+            None,
+            settings.closing,
+            settings.misclosure,
         )
         return March(MarchStatus(status), pieces, steps, radii, residuals)
 

@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass, replace
 import numpy as np
 import pytest
 
-from bifurc.atlas import Atlas, Event, Surface
+from bifurc.atlas import Atlas, Event, NearMotion, Surface
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
@@ -78,8 +78,12 @@ def atlas() -> Atlas:
         named,
         rigid=np.array([[0.1, 1 / 3]]),
         closure_gap=1e-300,
+        near_motions=(
+            NearMotion(1e-9, 1 / 3, True, np.array([0.1, 0.2])),
+            NearMotion(2e-3, 7.0, False, np.array([-0.0, 0.2])),
+        ),
         subject=linkage,
-        near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5),),
+        near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5, error=1e-20),),
         dead_points=(
             Event(0, 2 / 3, np.array([0.3, -0.0]), index=1),
             Event(1, 0.0, np.zeros(2), index=0),

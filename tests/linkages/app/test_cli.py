@@ -33,14 +33,16 @@ KEYS = {
         "symmetry",
         "sample",
         "max_residual",
+        "misclosure",
         "min_singular_value",
         "component",
     },
     "bifurcations": {"theta", "rank", "forms", "tangents", "error"},
     "rank_drops": {"theta", "rank", "form"},
-    "near_misses": {"theta", "singular_value", "form"},
+    "near_misses": {"theta", "singular_value", "error", "form"},
     "dead_points": {"theta", "joint", "form"},
     "rigid_assemblies": None,
+    "near_motions": {"misclosure", "length", "closed", "sample"},
     "completeness": {"level", "certainty", "statement", "missed_probability"},
     "seconds": None,
     "version": None,
@@ -193,6 +195,10 @@ def test_a_surface_is_a_form_of_dimension_2(write):
 
 
 DOES_NOT_MOVE = {
+    "a linkage that nearly moves": (
+        MINE.replace("[0, 0, 0, 0]\noffsets", "[0.1, 0, 0, 0]\noffsets"),
+        "nearly moves",
+    ),
     "no real configuration": (
         MINE.replace("1.0, 2.0, 1.0, 2.0", "10, 1, 1, 1"),
         "has no real configuration",
@@ -232,6 +238,7 @@ def test_a_linkage_that_misses_its_condition_is_said_to_and_by_how_much(
     assert "misses closure by" in result.stdout
     gap = float(result.stdout.split("misses closure by ")[1].split()[0])
     assert 0.1 * relative < gap < 2 * relative
+    assert "all along a closed path of 7" in result.stdout
 
 
 # --- route --------------------------------------------------------------------------------------------

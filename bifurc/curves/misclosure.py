@@ -1,0 +1,123 @@
+"""By how much a system is not solved along a curve on which it is nearly solved.
+
+The redundant equations of a linkage agree as far as its geometry fulfils the condition
+of its motion: to rounding, or not quite. With F' = U diag(sigma) V^T a move across the
+curve changes u_i . F for i = 1 .. n - 1; what is left of F, along the other columns of
+U, no move removes to first order: it is the misclosure. A system of no more than n - 1
+equations has none. Doubles see it down to rounding, some 1e-15; where that is not
+enough, and the problem evaluates F at any precision, it is measured in more digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.curves.monitor import NODES
+from bifurc.decisions import closes_to_rounding
+from bifurc.numerics.null_spaces import Decomposition, decompose
+from bifurc.problem import PreciseResidual, Problem
+
+if TYPE_CHECKING:
+    import mpmath
+
+__all__ = ["largest_misclosure", "largest_of", "misclosures", "visible_misclosure"]
+
+HIGHEST = 48  # points with the largest residuals at which a misclosure is looked for
+# misclosures that doubles give to four digits and better
+PLAIN = 1e-11
+DIGITS = 40  # in which smaller ones are measured,
+MOST = 4  # at no more points than this, those with the largest ones in doubles
+ROUNDS = 3  # Gauss-Newton steps in many digits; each gains ten of them or more
+FLOOR = 1e-12  # singular values below this share of the largest are taken for that
+
+
+def misclosures(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """The misclosure (k,), over the magnitude, at points (k, n) of a curve."""
+    decomposition = decompose(problem, points)
+    left_over = decomposition.left[:, :, problem.n - 1 :]
+    components = np.einsum("kmi,km->ki", left_over, decomposition.residuals)
+    sizes: np.ndarray = np.linalg.norm(components, axis=1)
+    return sizes
+
+
+def visible_misclosure(problem: Problem, points: np.ndarray) -> float:
+    """The largest misclosure that doubles see at points (k, n) of a curve, 0 where it
+    is rounding."""
+    if not len(points) or closes_to_rounding(float(problem.gaps(points).max())):
+        return 0.0
+    largest = float(misclosures(problem, points).max())
+    return 0.0 if closes_to_rounding(largest) else largest
+
+
+def largest_misclosure(problem: Problem, branch: Branch) -> float:
+    """The largest misclosure along a curve; rounding, some 1e-15, where it is a curve
+    of solutions.
+
+    It is looked for at the centres of the pieces, and where the residual is largest.
+    """
+    centres = branch.pieces[:, 0]
+    largest = float(problem.gaps(centres).max(initial=0.0))
+    if closes_to_rounding(largest):
+        return largest
+    points = branch(branch.places(NODES).ravel())
+    highest = np.argsort(-problem.gaps(points), kind="stable")[:HIGHEST]
+    candidates = np.concatenate([centres, points[highest]])
+    return largest_of(problem, candidates, misclosures(problem, candidates))
+
+
+def largest_of(problem: Problem, points: np.ndarray, seen: np.ndarray) -> float:
+    """The largest misclosure at points (k, n), of which doubles see ``seen`` (k,);
+    measured in more digits where these do not tell."""
+    largest = float(seen.max(initial=0.0))
+    if closes_to_rounding(largest) or largest > PLAIN:
+        return largest
+    residual = problem.precise_residual()
+    if residual is None:
+        return largest
+    worst = points[np.argsort(-seen, kind="stable")[:MOST]]
+    return max(_precise_misclosures(problem, residual, worst))
+
+
+def _precise_misclosures(
+    problem: Problem, residual: PreciseResidual, points: np.ndarray
+) -> list[float]:
+    """The misclosures of curves through points (k, n) in `DIGITS` digits.
+
+    Gauss-Newton steps of rank n - 1 lead there, with F in many digits and F' in
+    doubles.
+    """
+    import mpmath
+
+    decomposition = decompose(problem, points)
+    inverses = _inverses(decomposition, problem.n - 1)
+    measured = []
+    with mpmath.workdps(DIGITS):
+        for point, inverse in zip(points, inverses, strict=True):
+            u = [mpmath.mpf(float(x)) for x in point]
+            for _ in range(ROUNDS):
+                step = inverse @ _as_floats(residual(u), problem.magnitude)
+                u = [x - mpmath.mpf(float(d)) for x, d in zip(u, step, strict=True)]
+            value = _as_floats(residual(u), problem.magnitude)
+            measured.append(float(np.linalg.norm(value)))
+    return measured
+
+
+def _inverses(decomposition: Decomposition, rank: int) -> np.ndarray:
+    """Matrices (k, n, m) that turn residuals into Gauss-Newton steps of a ``rank``, to
+    be subtracted."""
+    sigma = decomposition.sigma[:, :rank]
+    steep = np.maximum(sigma, FLOOR * sigma[:, :1])
+    right = decomposition.right[:, :rank] / steep[:, :, None]
+    left = decomposition.left[:, :, :rank]
+    inverses: np.ndarray = np.einsum("kin,kmi->knm", right, left)
+    return inverses
+
+
+def _as_floats(value: Sequence[mpmath.mpf], magnitude: float) -> np.ndarray:
+    """F over the magnitude (m,) in doubles, which keep its leading digits however small
+    it is."""
+    return np.array([float(part / magnitude) for part in value])

@@ -1,0 +1,55 @@
+"""The value of a near miss, and how far it may be off."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.numerics.null_spaces import Decomposition, decompose
+from bifurc.problem import Problem
+
+__all__ = ["NearMissValue", "near_miss_value"]
+
+# Rounding of F and of the singular values of F', over the magnitude.
+RESIDUAL_ROUNDING, VALUE_ROUNDING = 2e-15, 4e-15
+
+
+class NearMissValue(NamedTuple):
+    """A singular value over the magnitude, which is off by ``error`` at most."""
+
+    value: float
+    error: float
+
+
+def near_miss_value(
+    problem: Problem, branch: Branch, rank: int, s: float
+) -> NearMissValue:
+    """Singular value number ``rank`` of F' at its minimum on a branch, at arclength
+    ``s``.
+
+    Rounding in F leaves the place open by as much, over the singular value of each
+    direction, and the value changes by l^T F''(r, du) with its singular vectors l and r.
+    Along the curve it does not change to first order.
+    """
+    point = branch(s)
+    point = point + _visible_step(decompose(problem, point[None]), rank)
+    decomposition = decompose(problem, point[None])
+    sigma = decomposition.sigma[0, :rank]
+    across = decomposition.right[0, :rank]
+    left = decomposition.left[0, :, rank - 1]
+    bend = np.tensordot(left, problem.hessian(point), axes=1) / problem.magnitude
+    gradient = bend @ across[-1]
+    shifts = np.abs(across @ gradient) * RESIDUAL_ROUNDING / sigma
+    return NearMissValue(float(sigma[-1]), VALUE_ROUNDING + float(shifts.sum()))
+
+
+def _visible_step(decomposition: Decomposition, rank: int) -> np.ndarray:
+    """The Gauss-Newton step (n,) of a ``rank`` at one point, along those directions in
+    which the residual is more than rounding: a small singular value amplifies that."""
+    components = decomposition.left[0, :, :rank].T @ decomposition.residuals[0]
+    is_visible = np.abs(components) > RESIDUAL_ROUNDING
+    shares = components[is_visible] / decomposition.sigma[0, :rank][is_visible]
+    step: np.ndarray = -shares @ decomposition.right[0, :rank][is_visible]
+    return step

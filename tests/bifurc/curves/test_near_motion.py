@@ -1,0 +1,71 @@
+"""Curves along which contradictory equations are nearly solved."""
+
+import numpy as np
+import pytest
+
+from bifurc.curves.continuation import TraceSettings
+from bifurc.curves.near_motion import trace_near_motion
+from bifurc.function_problem import FunctionProblem
+from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
+
+SETTINGS = TraceSettings()
+
+
+def circle_missed(error, tilt=0.0):
+    """Two circles that meet where x = ``tilt``, their centres ``error`` / 2 apart."""
+    return FunctionProblem(
+        lambda u: np.array([u @ u - 1.0, u @ u - 1.0 + error * (u[0] - tilt)]),
+        [[-2, 2], [-2, 2]],
+    )
+
+
+@pytest.mark.parametrize("error", [1e-3, 1e-6, 1e-9])
+def test_a_near_motion_is_followed_all_round_and_closes_where_it_passes_zero(error):
+    problem = circle_missed(error)
+    near = trace_near_motion(problem, np.array([0.6, 0.8]), SETTINGS)
+    assert near.is_closed
+    assert near.length == pytest.approx(2 * np.pi, rel=1e-2)
+    largest = error / np.sqrt(2.0) / problem.magnitude
+    assert near.misclosure == pytest.approx(largest, rel=1e-2)
+    crossings = near.assemblies[np.argsort(near.assemblies[:, 1])]
+    # the place of a zero is known to rounding over the error
+    expected = [[0.0, -1.0], [0.0, 1.0]]
+    assert crossings == pytest.approx(np.array(expected), abs=1e-14 / error + 1e-9)
+
+
+def test_a_near_motion_may_begin_where_the_system_is_solved():
+    near = trace_near_motion(circle_missed(1e-4), np.array([0.0, 1.0]), SETTINGS)
+    assert near.is_closed
+    assert len(near.assemblies) == 2
+
+
+def test_a_near_motion_that_misses_everywhere_has_no_assembly():
+    near = trace_near_motion(circle_missed(1e-6, 3.0), np.array([1.0, 0.0]), SETTINGS)
+    assert near.is_closed
+    assert not len(near.assemblies)
+
+
+def test_beside_a_stiff_solution_there_is_no_near_motion():
+    problem = FunctionProblem(
+        lambda u: np.array([u @ u - 1.0, u[0] - 0.3]), [[-2, 2], [-2, 2]]
+    )
+    solution = np.array([0.3, np.sqrt(0.91)])
+    assert trace_near_motion(problem, solution, SETTINGS) is None
+
+
+@pytest.mark.parametrize("error", [1e-13, 1e-11, 1e-8, 1e-4])
+def test_one_tolerance_decides_whether_a_curve_is_a_motion(error):
+    problem = circle_missed(error)
+    atlas = explore(problem, settings=SearchSettings(starts=30))
+    largest = error / np.sqrt(2.0) / problem.magnitude
+    if largest < 1e-12:
+        assert [form.branch.closed for form in atlas.forms] == [True]
+        assert atlas.forms[0].misclosure == pytest.approx(largest, rel=0.1)
+        assert not atlas.near_motions
+        assert not len(atlas.rigid)
+    else:
+        assert not atlas.forms
+        assert len(atlas.near_motions) == 1
+        assert atlas.closure_gap == atlas.near_motions[0].misclosure
+        assert len(atlas.rigid) == 2
