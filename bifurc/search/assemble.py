@@ -9,12 +9,14 @@ import networkx as nx
 import numpy as np
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance, Surface
+from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points, singular_values
 from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_branches, order_points
+from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
-from bifurc.search.completeness import judge_completeness
+from bifurc.search.completeness import describe_doubt, judge_completeness
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
 from bifurc.torus import wrap
@@ -38,18 +40,20 @@ def assemble_atlas(
     points = meeting_points(problem, located, branches, surfaces, periods)
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
+    forms = _forms(problem, traced, points)
+    doubt = describe_doubt(problem, forms, points)
     gap = 0.0 if is_mobile else closure_gap(problem, findings.seeds, findings.gaps)
     return Atlas(
         names=problem.names,
         units=problem.units,
         periods=problem.periods,
-        forms=_forms(problem, traced, points),
+        forms=forms,
         points=points,
         near_misses=_near_misses(problem, traced, periods),
         dead_points=_dead_points(problem, traced, periods),
         rigid=rigid[order_points(rigid, periods, problem.scale)],
         surfaces=surfaces,
-        completeness=judge_completeness(findings, provenance),
+        completeness=judge_completeness(findings, provenance, doubt),
         closure_gap=gap,
         provenance=provenance,
     )
@@ -77,9 +81,30 @@ def _forms(
     forms = []
     for index, (branch, component) in enumerate(zip(traced, components, strict=True)):
         smallest = 0.0 if index in singular else _smallest_value(problem, branch)
-        name = f"Form {index + 1}"
-        forms.append(Form(name, branch.branch, branch.profile, smallest, component))
+        passes = [s for point in points for form, s in point.passes if form == index]
+        form = Form(
+            name=f"Form {index + 1}",
+            branch=branch.branch,
+            profile=branch.profile,
+            min_singular_value=smallest,
+            component=component,
+            certificate=_certificate(problem, branch, passes),
+        )
+        forms.append(form)
     return tuple(forms)
+
+
+def _certificate(
+    problem: Problem, traced: TracedBranch, passes: Sequence[float]
+) -> Certificate | None:
+    """The certificate of a branch between all singular points that it ``passes``, also
+    those that were seen from other branches only."""
+    certificate = traced.certificate
+    if certificate is None:
+        return None
+    if not certificate.leaves_doubt and len(passes) == len(traced.passes):
+        return certificate
+    return certificate_of(problem, traced.branch, traced.profile, passes)
 
 
 def _smallest_value(problem: Problem, traced: TracedBranch) -> float:

@@ -9,7 +9,7 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from bifurc.atlas import Atlas, Event, MeetingPoint
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint
 from bifurc.torus import wrap
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels, loop_of
@@ -26,6 +26,15 @@ class LinkageDocument(TypedDict):
     offsets: list[float]
 
 
+class CertificateDocument(TypedDict):
+    """What is certified of a form, and the intervals of arclength (rad) where that is
+    refused or where F' is singular to within rounding."""
+
+    status: str
+    refused: list[list[float]]
+    blurred: list[list[float]]
+
+
 class FormDocument(TypedDict):
     """A form; or a surface, with None for what makes sense for a curve only."""
 
@@ -40,6 +49,7 @@ class FormDocument(TypedDict):
     max_residual: float | None
     min_singular_value: float | None
     component: int
+    certificate: CertificateDocument | None
 
 
 class BifurcationDocument(TypedDict):
@@ -149,6 +159,18 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "max_residual": labels.max_residual,
         "min_singular_value": form.min_singular_value,
         "component": form.component,
+        "certificate": _certificate(form),
+    }
+
+
+def _certificate(form: Form) -> CertificateDocument | None:
+    certificate = form.certificate
+    if certificate is None:
+        return None
+    return {
+        "status": certificate.status.value,
+        "refused": certificate.gaps.tolist(),
+        "blurred": certificate.blurred.tolist(),
     }
 
 
@@ -167,6 +189,7 @@ def _surface(atlas: Atlas, index: int) -> FormDocument:
         "max_residual": None,
         "min_singular_value": None,
         "component": atlas.components + index,
+        "certificate": None,
     }
 
 
