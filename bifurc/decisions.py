@@ -321,6 +321,20 @@ stands_still = Decision(
     1e-8,
     "rates are exact to 1e-12",
 )
+is_slow = Decision(
+    "slow",
+    "an unknown may stand still on another stretch of the same branch",
+    "its largest rate on this stretch",
+    1e-4,
+    "what moves does so at a rate of about 1 somewhere, but for a moment",
+)
+is_same_line = Decision(
+    "same line",
+    "two passes of a curve through a place, or two pieces, run along the same line",
+    "one less the cosine of the angle between them",
+    1e-6,
+    "tangents are exact to 1e-8; branches that cross do so at larger angles",
+)
 is_tied = Decision(
     "order",
     "two features of forms or points are equal, and the next one decides their order",
@@ -345,6 +359,23 @@ stands_out = Decision(
     1.0 - 1e-6,
     "at half of the largest but for rounding it is not low",
     Role.CONVENTION,
+)
+
+# --- certificates ---------------------------------------------------------------------
+
+is_unique = Decision(
+    "one arc",
+    "there is one solution in the slice across a curve",
+    "its omega |G| in the theorem of Newton and Kantorovich",
+    0.25,
+    "the theorem asks for 1/2; on a regular arc it is 1e-8 and less",
+)
+is_closed_to_rounding = Decision(
+    "solution to rounding",
+    "only rounding is in the way of a certificate, and no jump",
+    "residual along a refused arc",
+    2e-14,
+    "rounding is some 1e-15; over a jump between sheets the residual is what they differ",
 )
 
 TABLE = decisions_in(globals())

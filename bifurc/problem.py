@@ -155,7 +155,8 @@ class Problem(ABC):
     (inf where there is none), ``bounds`` (n, 2) the region of interest (infinite where
     there is none), ``magnitude`` the typical size of F', by which residuals and
     singular values are divided, ``scale`` the typical size of the unknowns, and
-    ``derivatives`` says how F' was made.
+    ``derivatives`` says how F' was made. ``hessian_error`` is how far off `hessian` may
+    be, over a bound on F''.
     """
 
     names: tuple[str, ...]
@@ -163,6 +164,7 @@ class Problem(ABC):
     periods: np.ndarray
     bounds: np.ndarray
     curvature_residual: float = np.inf
+    hessian_error: float = 1e-6
     magnitude: float = 1.0
     scale: float = 1.0
     derivatives: str = "exact"
@@ -211,6 +213,15 @@ class Problem(ABC):
         where none is known.
 
         It need hold only where the relative residual is at most ``curvature_residual``.
+        """
+        return None
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
+        """Bounds (k,) on |F''|, over the magnitude, at all complex points no farther
+        than ``reach`` (k,) from a real point within the bounds; None where none are
+        known.
+
+        F is taken as the analytic function that it is next to a solution.
         """
         return None
 

@@ -9,7 +9,6 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
-from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
@@ -31,7 +30,6 @@ def map_linkage(
     linkage: Linkage | Loop,
     *,
     settings: SearchSettings = DEFAULT_SEARCH,
-    certify: bool = False,
     seed: int = 0,
     progress: Callable[[str, int], None] | None = None,
 ) -> Atlas:
@@ -40,17 +38,15 @@ def map_linkage(
 
     ``seed`` is that of the random starts; ``progress`` is called with what was found
     and how many. `linkages.labels.FormLabels` reads what a form is,
-    `linkages.labels.loop_of` the loop that an atlas is of. With ``certify`` every form
-    has its ``certificate``. Raises `GeometryError` for anything but a linkage.
+    `linkages.labels.loop_of` the loop that an atlas is of. Every form has its
+    ``certificate``, unless the settings say otherwise. Raises `GeometryError` for
+    anything but a linkage.
     """
     linkage = _as_linkage(linkage)
     problem = LoopClosure(linkage.loop)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
     identities = _recognise(atlas, linkage)
-    atlas = _label(atlas, identities, problem)
-    if certify:
-        atlas = certify_atlas(problem, atlas)
-    return atlas
+    return _label(atlas, identities, problem)
 
 
 def largest_residual(problem: LoopClosure, branch: Branch) -> float:

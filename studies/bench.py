@@ -38,7 +38,7 @@ from studies.methods.cases import bratu
 __all__ = ["Machine", "benchmarks", "machine", "median_time"]
 
 LINKAGE = "special-double-subtractive-goldberg"
-UNPROVED = SearchSettings(prove=False)
+UNPROVED = SearchSettings(prove=False, certify=False)
 CPU_INFO = Path("/proc/cpuinfo")
 IMPORTS = "import linkages.mapping, linkages.app.cli"
 COMMAND = "from linkages.app.cli import main; main()"

@@ -86,6 +86,12 @@ class _Pitchfork(FunctionProblem):
         """The norm of [[0, 1], [1, -6 x]] where |x| <= 1.5, over the magnitude."""
         return (4.5 + sqrt(4.5**2 + 1.0)) / self.magnitude
 
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
+        """The same with |x| <= 1.5 + ``reach``."""
+        diagonal = 3.0 * (1.5 + reach)
+        largest: np.ndarray = diagonal + np.hypot(diagonal, 1.0)
+        return largest / self.magnitude
+
 
 def pitchfork(e: float) -> Ladder:
     """The imperfect pitchfork lambda x - x^3 + e = 0, along the arc with x > 0.

@@ -1,31 +1,37 @@
 """Certificates: a traced curve lies on one arc of solutions and has not jumped to
 another.
 
-Let G be the n - 1 combinations of F whose derivatives are independent at x0 (the left
-singular vectors of F'(x0)), sigma their smallest singular value, t the unit tangent,
-and K a Lipschitz constant of F'. In the ball |x - x0| <= r with K r < sigma every
-hyperplane across t holds at most one zero of G, because there |G(x) - G(y)| >= (sigma -
-K r) |x - y|, and the zeros form a graph over t with slope at most K r / (sigma - K r):
-the uniqueness part of the theorem of Newton and Kantorovich, with the tangent as
-parameter (Ortega and Rheinboldt 1970, 12.6; Deuflhard 2004, 4.4). With K r = sigma / 2
-the slope is at most 1, so that the arc from x0 runs at least r / sqrt(2) far in the
-ball: two solutions closer than sigma / (2 sqrt(2) K) lie on one arc.
+At a place s of the dense curve u let t = u'(s), and let G = L^T F be n - 1 combinations
+of the equations with G'(u(s)) V = I for a matrix V (n, n - 1) across t. In the slice
+through u(s) across t the equations are g(y) = G(u(s) + V y) = 0, with g'(0) = I. If
 
-The points are as far apart as sigma lets them be: their number is about 3 K times the
-integral of 1 / sigma along the curve, which grows with the logarithm of 1 / width
-beside a near miss.
+    omega |g(0)| < 1/2,    |g'(y) - g'(z)| <= omega |y - z|,
 
-The check is made in doubles, without interval arithmetic. Existence is another matter:
-an overdetermined system may fail to have solutions by less than rounding. What is
-certified is that whatever solves it here is a single arc. Where sigma^2 is not far
-above rounding times K, doubles cannot tell a single arc from two that cross, and the
-certificate says where.
+there is one solution with |y| <= 2 |g(0)|, and no other in a ball that is larger, by
+the theorem of Newton and Kantorovich in its affine invariant form (Deuflhard 2004,
+theorem 2.1). Where that holds for all s from one place to another, the solutions of the
+slices change continuously, by the implicit function theorem, and are one arc: it passes
+through every slice once, and the traced curve cannot have left it. It is checked for
+all s, not only at samples: see `bifurc.curves.kantorovich`. Where pieces meet, what is
+left between them is added to |g(0)|.
+
+omega is K |V|^2 where K bounds F''. Near a surface of solutions V is large in one
+direction w, in which F'' is as small. There omega is taken from F''(u(s))(V y, V z)
+itself, with the weakest component of y and the others on scales of their own, and with
+what F'' may change by within the ball.
+
+Every solution of F solves G, whatever the number of equations. That F has solutions at
+all is not claimed: an overdetermined system may fail to have them by less than
+rounding. The check is made in doubles, without interval arithmetic: |g(0)| counts as
+2e-15 at least. Where that is too large for omega, which is about 1 / sigma^2 beside a
+bifurcation, doubles cannot tell a single arc from two that cross, and the certificate
+says where.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
 from typing import TypedDict
@@ -33,22 +39,28 @@ from typing import TypedDict
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.kantorovich import SHARE, Samples, sample_curve
+from bifurc.curves.kantorovich import Joints, check_arcs
 from bifurc.curves.monitor import Profile
+from bifurc.numerics.chebyshev import NODE_COUNT
 from bifurc.problem import Problem
 
-__all__ = ["Certificate", "CertificateStatus", "CertificateValues", "certify_branch"]
+__all__ = [
+    "HANDOVER",
+    "Certificate",
+    "CertificateStatus",
+    "CertificateValues",
+    "certify_branch",
+    "is_certifiable",
+]
 
 # distance, in scales, at which an arc is handed over to a located singular point
 HANDOVER = 1e-3
-MOST = 1_000_000  # points of one branch: a curve that needs more is left uncertified
-AT_ONCE = 20_000  # points that are looked at together
-ROUNDS = 12  # of adding points where those chosen before are too far apart
-# singular value, over the magnitude, below which more points do not help
-RESOLVED = 1e-7
-CLOSER = 0.8  # of what the ball allows: how far apart points are chosen
-MORE = 1.2  # times as many points as the ball asks for are added between two
-MOST_BETWEEN = 8  # parts into which a gap is divided in one round
+SHORTEST = 1e-9  # arc, in scales, that is not divided any more
+AT_ONCE = 400  # arcs that are looked at together
+# arcs of one branch, and for each piece: a curve that needs more is left uncertified
+MOST = 1000
+MOST_OF_PIECE = 30
+TOUCHING = 1e-12  # of the length: intervals so near to each other are one
 
 
 class CertificateStatus(StrEnum):
@@ -60,7 +72,7 @@ class CertificateStatus(StrEnum):
     UP_TO_SINGULAR_POINTS = "certified up to the singular points"
     # So is each stretch between places where F' is singular to within rounding.
     UP_TO_ROUNDING = "certified up to places singular to rounding"
-    # Some neighbouring points are too far apart, or no bound on F'' is known.
+    # Somewhere the theorem does not hold, or no bound on F'' is known.
     NOT_CERTIFIED = "not certified"
 
 
@@ -72,18 +84,16 @@ class CertificateValues(TypedDict):
     blurred: list[list[float]]
     points: int
     bound: float
-    reversals: list[float]
 
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
     """What was certified of a branch, and where not.
 
-    ``gaps`` (g, 2) are the arclengths between which the points are too far apart for
-    the theorem, ``blurred`` (b, 2) those between which F' is singular to within
-    rounding, so that doubles do not tell arcs apart; ``points`` how many were used,
-    ``bound`` the constant K, ``reversals`` the arclengths at which det [G'; t] changed
-    sign although no singular point is known there.
+    ``gaps`` (g, 2) are the arclengths between which the theorem does not hold,
+    ``blurred`` (b, 2) those between which F' is singular to within rounding, so that
+    doubles do not tell arcs apart; ``points`` at how many places F was evaluated,
+    ``bound`` the constant K, infinite where none is known.
     """
 
     status: CertificateStatus
@@ -91,7 +101,26 @@ class Certificate:
     blurred: np.ndarray
     points: int
     bound: float
-    reversals: np.ndarray
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing is left out but singular points, located or not."""
+        return self.status is not CertificateStatus.NOT_CERTIFIED
+
+    @property
+    def leaves_doubt(self) -> bool:
+        """Whether anything is left out but located singular points."""
+        return bool(len(self.gaps) or len(self.blurred))
+
+    @property
+    def refused_length(self) -> float:
+        """Arclength of all gaps."""
+        return float(np.diff(self.gaps, axis=1).sum())
+
+    def with_gaps(self, gaps: np.ndarray) -> Certificate:
+        """The certificate with further gaps (g, 2)."""
+        status = CertificateStatus.NOT_CERTIFIED
+        return replace(self, status=status, gaps=_merged([self.gaps, gaps], 0.0))
 
     def as_values(self) -> CertificateValues:
         """The certificate in values that JSON can hold."""
@@ -101,7 +130,6 @@ class Certificate:
             "blurred": self.blurred.tolist(),
             "points": self.points,
             "bound": self.bound,
-            "reversals": self.reversals.tolist(),
         }
 
     @staticmethod
@@ -113,85 +141,121 @@ class Certificate:
             blurred=_intervals(values["blurred"]),
             points=values["points"],
             bound=values["bound"],
-            reversals=np.array(values["reversals"]),
         )
 
 
-def _intervals(rows: list[list[float]]) -> np.ndarray:
-    """Intervals (k, 2) from their begins and ends, also where there are none."""
-    return np.array(rows).reshape(-1, 2)
+def is_certifiable(problem: Problem) -> bool:
+    """Whether the bounds on F'' are known that a certificate takes."""
+    is_bounded = problem.curvature_bound() is not None
+    return is_bounded and problem.complex_curvature(np.zeros(1)) is not None
 
 
 def certify_branch(
     problem: Problem, branch: Branch, profile: Profile, singular: Sequence[float] = ()
 ) -> Certificate:
-    """Whether neighbouring points of the dense curve are everywhere close enough to lie
-    on one arc.
+    """Whether the dense curve follows one arc from every singular point to the next.
 
     ``singular`` are the arclengths of located singular points, next to which nothing is
-    claimed. Needs a `Problem.curvature_bound`; without one nothing is certified. Raises
-    nothing: what is missing is in the result.
+    claimed. Needs `Problem.curvature_bound` and `Problem.complex_curvature`; without
+    them nothing is certified, nor where F' has a lower rank all along. Raises nothing:
+    what is missing is in the result.
     """
     bound = problem.curvature_bound()
-    record = _Record()
+    nowhere = np.empty((0, 2))
     is_curve = branch.length > 0 and profile.rank >= problem.n - 1
-    if bound is None or not is_curve:
-        record.add_gap(0.0, branch.length)
-        return record.certificate(np.inf, CertificateStatus.NOT_CERTIFIED)
+    if bound is None or not is_certifiable(problem) or not is_curve:
+        whole = np.array([[0.0, branch.length]])
+        status = CertificateStatus.NOT_CERTIFIED
+        return Certificate(status, whole, nowhere, points=0, bound=np.inf)
     handover = HANDOVER * problem.scale
-    for low, high in _stretches(branch, singular, handover):
-        arclengths = _first_choice(profile, bound, branch, low, high)
-        if record.points + len(arclengths) > MOST:
-            record.add_gap(low, high)
-            continue
-        for part in _parts(arclengths):
-            samples = _refined(problem, branch, part, bound)
-            record.add_samples(samples, widest_blur=2 * handover)
-    at_best = CertificateStatus.CERTIFIED
+    survey = _Survey(problem, branch)
+    survey.look_at(_arcs_between(branch, singular, handover))
+    gaps, blurred = survey.refused(widest_blur=2 * handover)
+    status = CertificateStatus.CERTIFIED
     if len(singular):
-        at_best = CertificateStatus.UP_TO_SINGULAR_POINTS
-    return record.certificate(float(bound), at_best)
+        status = CertificateStatus.UP_TO_SINGULAR_POINTS
+    if len(gaps):
+        status = CertificateStatus.NOT_CERTIFIED
+    elif len(blurred):
+        status = CertificateStatus.UP_TO_ROUNDING
+    return Certificate(status, gaps, blurred, survey.points, float(bound))
 
 
-class _Record:
-    """What has been seen of a branch so far."""
+class _Survey:
+    """What has been seen of a branch so far: arcs on which the theorem holds are done
+    with, what is refused is divided and looked at again, as long as that may help."""
 
-    def __init__(self) -> None:
+    def __init__(self, problem: Problem, branch: Branch):
         self.points = 0
-        self._gaps = [np.empty((0, 2))]
-        self._blurred = [np.empty((0, 2))]
-        self._reversals = [np.empty(0)]
+        self._problem = problem
+        self._branch = branch
+        self._joints = Joints.of(problem, branch)
+        self._open: list[np.ndarray] = []
+        self._closed: list[np.ndarray] = []
 
-    def add_gap(self, low: float, high: float) -> None:
-        """Nothing is certified between two arclengths."""
-        self._gaps.append(np.array([[low, high]]))
+    def look_at(self, arcs: np.ndarray) -> None:
+        """Look at arcs (a, 2), and at parts of them, until nothing more can be had."""
+        most = MOST + MOST_OF_PIECE * len(self._branch.pieces)
+        looked_at = 0
+        while len(arcs) and looked_at + len(arcs) <= most:
+            looked_at += len(arcs)
+            parts: list[np.ndarray] = []
+            for first in range(0, len(arcs), AT_ONCE):
+                parts += self._refused_parts(arcs[first : first + AT_ONCE])
+            arcs = np.concatenate([np.empty((0, 2)), *parts])
+        self._open.append(arcs)
+        self.points = looked_at * NODE_COUNT
 
-    def add_samples(self, samples: Samples, widest_blur: float) -> None:
-        """Neighbouring samples were looked at; where they are far apart is a gap, or a
-        blur, if F' is singular there to within rounding and it is not too wide."""
-        is_dark = samples.blurred[1:] | samples.blurred[:-1]
-        clear = _runs(samples.s, samples.far & ~is_dark)
-        dark = _runs(samples.s, samples.far & is_dark)
-        widths = dark[:, 1] - dark[:, 0]
-        is_narrow = widths <= widest_blur
-        self.points += len(samples.s)
-        self._gaps.append(clear)
-        self._gaps.append(dark[~is_narrow])
-        self._blurred.append(dark[is_narrow])
-        self._reversals.append(samples.reversals)
+    def _refused_parts(self, arcs: np.ndarray) -> Iterator[np.ndarray]:
+        """Parts (p, 2) of those of the arcs (a, 2) that are refused, to look at
+        again."""
+        checks = check_arcs(self._problem, self._branch, arcs, self._joints)
+        for k in np.flatnonzero(~checks.holds.all(axis=1)):
+            refused = _runs(checks.edges[k], ~checks.holds[k])
+            is_long = np.ptp(arcs[k]) > SHORTEST * self._problem.scale
+            if checks.is_promising[k] and is_long:
+                yield _divided(refused, arcs[k])
+            elif checks.is_closed[k]:
+                self._closed.append(refused)
+            else:
+                self._open.append(refused)
 
-    def certificate(self, bound: float, at_best: CertificateStatus) -> Certificate:
-        """The certificate, with the status ``at_best`` where nothing stands against
-        it."""
-        gaps = np.concatenate(self._gaps)
-        blurred = np.concatenate(self._blurred)
-        status = at_best
-        if len(gaps):
-            status = CertificateStatus.NOT_CERTIFIED
-        elif len(blurred):
-            status = CertificateStatus.UP_TO_ROUNDING
-        reversals = np.concatenate(self._reversals)
-        return Certificate(status, gaps, blurred, self.points, bound, reversals)
+    def refused(self, widest_blur: float) -> tuple[np.ndarray, np.ndarray]:
+        """Intervals (g, 2) and (b, 2) on which the theorem does not hold: those where F
+        is not zero or that are too wide, and those where only rounding is in the
+        way."""
+        touching = TOUCHING * self._branch.length
+        dark = _merged(self._closed, touching)
+        is_narrow = np.diff(dark, axis=1)[:, 0] <= widest_blur
+        gaps = _merged([*self._open, dark[~is_narrow]], touching)
+        return self._in_turn(gaps), self._in_turn(dark[is_narrow])
+
+    def _in_turn(self, intervals: np.ndarray) -> np.ndarray:
+        """Intervals (k, 2) with their begins on the first turn of a closed curve."""
+        if not self._branch.closed or not len(intervals):
+            return intervals
+        turns = np.floor(intervals[:, :1] / self._branch.length)
+        shifted: np.ndarray = intervals - turns * self._branch.length
+        return shifted[np.argsort(shifted[:, 0], kind="stable")]
+
+
+# --- intervals of arclength -----------------------------------------------------------
+
+
+def _arcs_between(
+    branch: Branch, singular: Sequence[float], handover: float
+) -> np.ndarray:
+    """Arcs (a, 2), each within one piece, of all that is farther than ``handover`` from
+    singular points."""
+    inner = branch.breaks
+    if branch.closed:
+        inner = np.concatenate([branch.breaks[:-1], branch.breaks + branch.length])
+    arcs = [np.empty((0, 2))]
+    for low, high in _stretches(branch, singular, handover):
+        between = inner[(inner > low) & (inner < high)]
+        edges = np.concatenate([[low], between, [high]])
+        arcs.append(np.column_stack([edges[:-1], edges[1:]]))
+    return np.concatenate(arcs)
 
 
 def _stretches(
@@ -213,69 +277,14 @@ def _stretches(
     return stretches
 
 
-def _first_choice(
-    profile: Profile, bound: float, branch: Branch, low: float, high: float
-) -> np.ndarray:
-    """Points from ``low`` to ``high``, as far apart as the singular values at the nodes
-    of the pieces allow.
-
-    Pieces shorten with the distance to a singular point or a near miss, and their nodes
-    with them.
-    """
-    s = profile.arclength.ravel()
-    sigma = profile.smallest.ravel()
-    if branch.closed:
-        turn = branch.length
-        s = np.concatenate([s - turn, s, s + turn])
-        sigma = np.tile(sigma, 3)
-    between = s[(s > low) & (s < high)]
-    grid = np.unique(np.concatenate([[low], between, [high]]))
-    local = np.maximum(np.interp(grid, s, sigma), RESOLVED)
-    inverse = 1.0 / local
-    mean = 0.5 * (inverse[1:] + inverse[:-1])
-    integral = np.cumsum(np.diff(grid) * mean)
-    count = np.concatenate([[0.0], integral])  # points from ``low`` on
-    count *= bound / (CLOSER * SHARE)
-    total = count[-1]
-    points = int(min(np.ceil(total), MOST)) + 2
-    equal_shares = np.linspace(0.0, total, points)
-    arclengths: np.ndarray = np.interp(equal_shares, count, grid)
-    return arclengths
-
-
-def _parts(s: np.ndarray) -> Iterator[np.ndarray]:
-    """The arclengths in portions that share their ends."""
-    for first in range(0, len(s) - 1, AT_ONCE):
-        yield s[first : first + AT_ONCE + 1]
-
-
-def _refined(problem: Problem, branch: Branch, s: np.ndarray, bound: float) -> Samples:
-    """Samples at ``s`` and, where neighbours are too far apart, between, as far as the
-    singular values tell."""
-    samples = sample_curve(problem, branch, s, bound)
-    for _ in range(ROUNDS):
-        is_dark = samples.blurred[1:] & samples.blurred[:-1]
-        wide = np.flatnonzero(samples.far & ~is_dark)
-        if not len(wide) or len(samples.s) > 3 * AT_ONCE:
-            break
-        between = _between(samples, wide)
-        samples = samples.joined(sample_curve(problem, branch, between, bound))
-    return samples
-
-
-def _between(samples: Samples, wide: np.ndarray) -> np.ndarray:
-    """Arclengths that divide the intervals ``wide`` after these samples as finely as
-    their balls ask for."""
-    distances = samples.distances[wide] + 1e-300
-    reach = np.maximum(samples.reach[wide], distances / MOST_BETWEEN)
-    wanted = np.ceil(MORE * distances / reach)
-    parts = np.clip(wanted, 2, MOST_BETWEEN).astype(int)
-    divisions = []
-    for i, count in zip(wide, parts, strict=True):
-        low, high = samples.s[i : i + 2]
-        ends_and_inner = np.linspace(low, high, count + 1)
-        divisions.append(ends_and_inner[1:-1])
-    return np.concatenate(divisions)
+def _divided(refused: np.ndarray, arc: np.ndarray) -> np.ndarray:
+    """Refused intervals (r, 2) of an arc (2,); one that is most of it, in halves."""
+    is_most = np.diff(refused, axis=1)[:, 0] > 0.5 * np.ptp(arc)
+    low, high = refused[is_most].T
+    middle = 0.5 * (low + high)
+    first = np.column_stack([low, middle])
+    second = np.column_stack([middle, high])
+    return np.concatenate([refused[~is_most], first, second])
 
 
 def _runs(s: np.ndarray, where: np.ndarray) -> np.ndarray:
@@ -286,3 +295,20 @@ def _runs(s: np.ndarray, where: np.ndarray) -> np.ndarray:
     begins = s[change == 1]
     ends = s[change == -1]
     return np.column_stack([begins, ends])
+
+
+def _merged(parts: Sequence[np.ndarray], touching: float) -> np.ndarray:
+    """Intervals (k, 2) in order, those that touch joined."""
+    intervals = np.concatenate([np.empty((0, 2)), *parts])
+    merged: list[list[float]] = []
+    for low, high in intervals[np.argsort(intervals[:, 0], kind="stable")]:
+        if merged and low <= merged[-1][1] + touching:
+            merged[-1][1] = max(merged[-1][1], high)
+        else:
+            merged.append([low, high])
+    return _intervals(merged)
+
+
+def _intervals(rows: list[list[float]]) -> np.ndarray:
+    """Intervals (k, 2) from their begins and ends, also where there are none."""
+    return np.array(rows).reshape(-1, 2)

@@ -41,7 +41,7 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
     a form.
 
     The smallest is drawn strongly. It vanishes at singular points (dashed, named); near
-    misses carry their value.
+    misses carry their value. Bars on the axis show where a form is not certified.
     """
     count = max(len(atlas.forms), 1)
     columns = 1 if count == 1 else 2 if count <= 8 else 3
@@ -107,6 +107,7 @@ def _draw_form(axes: Axes, atlas: Atlas, index: int, limits: _Range) -> None:
     for event in misses:
         _draw_near_miss(axes, event, form.branch.length)
     _name_stops(axes, stops, form.branch.length)
+    _mark_refusals(axes, form)
     axes.set(yscale="log", ylim=limits, xlim=(0.0, form.branch.length))
     axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
     axes.yaxis.set_minor_locator(NullLocator())
@@ -182,6 +183,27 @@ def _draw_near_miss(axes: Axes, event: Event, length: float) -> None:
         va="top",
         fontsize=7,
     )
+
+
+def _mark_refusals(axes: Axes, form: Form) -> None:
+    """Bars on the axis of arclength where nothing is certified."""
+    if form.certificate is None:
+        return
+    for low, high in form.certificate.gaps:
+        axes.plot(
+            np.array([low, 0.5 * (low + high), high]),
+            np.zeros(3),
+            transform=axes.get_xaxis_transform(),
+            marker="x",
+            markevery=[1],
+            markersize=5,
+            color="tab:red",
+            linewidth=4,
+            solid_capstyle="butt",
+            clip_on=False,
+            label="not certified",
+            zorder=5,
+        )
 
 
 def _name_stops(axes: Axes, stops: Sequence[_Stop], length: float) -> None:

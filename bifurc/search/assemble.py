@@ -17,12 +17,14 @@ from bifurc.atlas import (
     Provenance,
     Surface,
 )
+from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points, singular_values
 from bifurc.curves.near_miss import near_miss_value
 from bifurc.decisions import closes_to_rounding
 from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_branches, order_points
+from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
 from bifurc.search.doubts import doubts_of
@@ -53,9 +55,10 @@ def assemble_atlas(
     ]
     met = meeting_points(problem, located, branches, surfaces, periods)
     points = tuple(_with_misclosure(point, traced) for point in met)
-    doubts = doubts_of(problem, traced, points, surfaces)
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
+    forms = _forms(problem, traced, points)
+    doubts = doubts_of(problem, traced, forms, points, surfaces)
     near_motions = _near_motions(findings, periods)
     gap = 0.0
     if near_motions and not is_mobile:
@@ -66,7 +69,7 @@ def assemble_atlas(
         names=problem.names,
         units=problem.units,
         periods=problem.periods,
-        forms=_forms(problem, traced, points),
+        forms=forms,
         points=points,
         near_misses=_near_misses(problem, traced, periods),
         dead_points=_dead_points(problem, traced, periods),
@@ -101,17 +104,31 @@ def _forms(
     forms = []
     for index, (branch, component) in enumerate(zip(traced, components, strict=True)):
         smallest = 0.0 if index in singular else _smallest_value(problem, branch)
-        name = f"Form {index + 1}"
+        passes = [s for point in points for form, s in point.passes if form == index]
         form = Form(
-            name=name,
+            name=f"Form {index + 1}",
             branch=branch.branch,
             profile=branch.profile,
             min_singular_value=smallest,
             component=component,
             misclosure=branch.misclosure,
+            certificate=_certificate(problem, branch, passes),
         )
         forms.append(form)
     return tuple(forms)
+
+
+def _certificate(
+    problem: Problem, traced: TracedBranch, passes: Sequence[float]
+) -> Certificate | None:
+    """The certificate of a branch between all singular points that it ``passes``, also
+    those that were seen from other branches only."""
+    certificate = traced.certificate
+    if certificate is None:
+        return None
+    if not certificate.leaves_doubt and len(passes) == len(traced.passes):
+        return certificate
+    return certificate_of(problem, traced.branch, traced.profile, passes)
 
 
 def _smallest_value(problem: Problem, traced: TracedBranch) -> float:

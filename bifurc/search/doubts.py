@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bifurc.atlas import MeetingPoint, Surface
+from bifurc.atlas import Form, MeetingPoint, Surface
 from bifurc.branch import Outcome
+from bifurc.curves.certificate import Certificate
 from bifurc.decisions import closes_to_rounding, is_known_curve
 from bifurc.numerics.blur import known_to, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
@@ -26,17 +27,24 @@ MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 def doubts_of(
     problem: Problem,
     traced: Sequence[TracedBranch],
+    forms: Sequence[Form],
     points: Sequence[MeetingPoint],
     surfaces: Sequence[Surface],
 ) -> tuple[str, ...]:
     """One sentence for each thing that doubles do not decide: surfaces that may be
-    curves, curves that may be surfaces, ends of forms at nothing known, singular points
-    of no certain kind."""
+    curves, curves that may be surfaces, stretches of forms that are not certified, ends
+    of forms at nothing known, singular points of no certain kind.
+
+    The ``forms`` are those of the branches ``traced``.
+    """
     doubts: list[str] = []
     for surface in surfaces:
         doubts += _doubts_of_surface(problem, surface)
     for index, branch in enumerate(traced):
         doubts += _doubts_of_form(problem, index, branch, points)
+    for index, form in enumerate(forms):
+        if form.certificate is not None and form.certificate.leaves_doubt:
+            doubts.append(f"form {index + 1} {_refusal(form.certificate)}")
     for point in points:
         doubts += _doubts_of_point(problem, point)
     return tuple(doubts)
@@ -95,6 +103,24 @@ def _doubts_of_form(
                 "or go on"
             )
     return doubts
+
+
+def _refusal(certificate: Certificate) -> str:
+    """Where nothing is certified, in words."""
+    if len(certificate.gaps):
+        return f"is not certified {_places(certificate.gaps)}"
+    where = _places(certificate.blurred)
+    return f"is singular to within rounding {where}, where no singular point is known"
+
+
+def _places(intervals: np.ndarray) -> str:
+    """The first of some intervals (k, 2), in words, and how many more there are."""
+    low, high = intervals[0]
+    places = f"between s = {low:.6g} and {high:.6g}"
+    more = len(intervals) - 1
+    if more:
+        places += f" and at {more} more places"
+    return places
 
 
 def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.branch import Branch
+from bifurc.branch import Branch, Outcome
+from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile, singular_values
 from bifurc.curves.near_motion import NearMotionTrace
 from bifurc.decisions import is_same_point
@@ -20,7 +21,7 @@ from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeds import Audit, Seeds
 from bifurc.singular.point import SingularPoint
 
-__all__ = ["Findings", "PointSighting", "TracedBranch"]
+__all__ = ["NO_DOUBT", "Doubt", "Findings", "PointSighting", "TracedBranch"]
 
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
@@ -31,13 +32,27 @@ PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
 WEAK = 1e-5
 
 
+class Doubt(NamedTuple):
+    """Whether a branch is refused a certificate, whether it stalls, and the arclength
+    on which it is refused; less doubt is the smaller tuple."""
+
+    is_refused: bool
+    is_stalled: bool
+    refused_length: float
+
+
+NO_DOUBT = Doubt(is_refused=False, is_stalled=False, refused_length=0.0)
+
+
 @dataclass(frozen=True)
 class TracedBranch:
     """A branch with what was seen along it.
 
     ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
-    regular singular value. ``located`` are the arclengths at which there is a singular
-    point. ``misclosure`` is the largest along the branch.
+    regular singular value. ``located`` are the arclengths of minima that led to a
+    singular point, ``passes`` those at which the branch passes it. ``misclosure`` is
+    the largest along the branch. ``certificate`` says what is certified of it, None
+    where that was not asked for or the problem has no bounds.
     """
 
     branch: Branch
@@ -45,6 +60,22 @@ class TracedBranch:
     minima: tuple[np.ndarray, np.ndarray]
     located: tuple[float, ...]
     misclosure: float = 0.0
+    passes: tuple[float, ...] = ()
+    certificate: Certificate | None = None
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether there is a certificate, and it does not hold."""
+        return self.certificate is not None and not self.certificate.holds
+
+    @property
+    def doubt(self) -> Doubt:
+        """How much of the branch is in doubt."""
+        refused = 0.0
+        if self.certificate is not None and self.is_refused:
+            refused = self.certificate.refused_length
+        is_stalled = self.branch.outcome is Outcome.STALLED
+        return Doubt(self.is_refused, is_stalled, refused)
 
 
 class PointSighting(NamedTuple):

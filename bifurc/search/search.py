@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
+from bifurc.curves.certificate import HANDOVER
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.minima import singular_value_minima
@@ -31,9 +32,10 @@ from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.blur import distance_to_singular
 from bifurc.problem import Problem
 from bifurc.search.assembly import polished
+from bifurc.search.certification import certificate_of, finer_settings
 from bifurc.search.closure_gap import valley_points
 from bifurc.search.components import components_of_seeds, singular_points_of
-from bifurc.search.findings import Findings, PointSighting, TracedBranch
+from bifurc.search.findings import NO_DOUBT, Findings, PointSighting, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.search.settings import SearchSettings
 from bifurc.search.weak_seeds import sharpened, with_weak_solutions
@@ -79,10 +81,10 @@ class _Trace(NamedTuple):
 
 
 class _ExaminedBranch(NamedTuple):
-    """The number of a branch just recorded, and the starts on the branches through the
+    """A branch with what was seen along it, and the starts on the branches through the
     singular points that are new."""
 
-    number: int
+    traced: TracedBranch
     starts: list[Start]
 
 
@@ -314,7 +316,32 @@ class Search:
             if near is not None:
                 return _Trace(SeedFate(Fate.ON_NEAR_MOTION, near), [])
         examined = self._examine_branch(branch, misclosure)
-        return _Trace(SeedFate(Fate.ON_FORM, examined.number), examined.starts)
+        if examined.traced.is_refused:
+            examined = self._trace_finer(start, examined)
+            number = findings.branch_along(examined.traced.branch)
+        if number is None:
+            number = findings.add_branch(examined.traced)
+        return _Trace(SeedFate(Fate.ON_FORM, number), examined.starts)
+
+    def _trace_finer(self, start: Start, coarse: _ExaminedBranch) -> _ExaminedBranch:
+        """The branch through a start, traced again until its certificate holds, or the
+        one of which least is refused; with the starts that all of them led to."""
+        best = coarse.traced
+        starts = coarse.starts
+        for settings in finer_settings(self.settings.tracing):
+            if self.is_over:
+                break
+            branch = trace_branch(self.problem, *start, settings, LENIENT)
+            if not self._is_curve(branch):
+                continue
+            misclosure = largest_misclosure(self.problem, branch)
+            finer = self._examine_branch(branch, misclosure)
+            starts += finer.starts
+            if finer.traced.doubt < best.doubt:
+                best = finer.traced
+            if best.doubt == NO_DOUBT:
+                break
+        return _ExaminedBranch(best, starts)
 
     def _trace_lower_rank(self, point: np.ndarray, direction: np.ndarray) -> SeedFate:
         """Trace the curve of lower rank through a point (n,); what may cross it is left
@@ -327,7 +354,7 @@ class Search:
             return SeedFate(Fate.NO_SOLUTION)
         misclosure = largest_misclosure(self.problem, branch)
         examined = self._examine_branch(branch, misclosure)
-        return SeedFate(Fate.ON_FORM, examined.number)
+        return SeedFate(Fate.ON_FORM, self.findings.add_branch(examined.traced))
 
     def _is_curve(self, branch: Branch) -> bool:
         """Whether a traced branch is more than the trace of rounding beside a singular
@@ -342,14 +369,15 @@ class Search:
     # --- singular points --------------------------------------------------------------
 
     def _examine_branch(self, branch: Branch, misclosure: float) -> _ExaminedBranch:
-        """Record a branch, with the ``misclosure`` along it, and the singular points on
-        it."""
+        """Look for the singular points on a branch with a ``misclosure``, and certify
+        it between them."""
         profile = profile_branch(self.problem, branch)
         minima = singular_value_minima(self.problem, branch, profile)
         candidates = _small_minima(*minima)
         candidates += _deep_places(profile, minima[0])
         candidates += self._candidate_ends(branch, profile)
         located: list[float] = []
+        passes: list[float] = []
         starts: list[Start] = []
         for candidate in candidates:
             if self.is_over:
@@ -357,11 +385,32 @@ class Search:
             sighting = self._examine_candidate(branch, candidate, misclosure)
             if sighting is None:
                 continue
-            located.append(float(candidate.looks[0]))
+            place = float(candidate.looks[0])
+            located.append(place)
+            if self._is_at(branch, place, sighting.point):
+                passes.append(place)
             if sighting.is_new:
                 starts += _half_branch_starts(sighting.point)
-        traced = TracedBranch(branch, profile, minima, tuple(located), misclosure)
-        return _ExaminedBranch(self.findings.add_branch(traced), starts)
+        certificate = None
+        if self.settings.certify:
+            certificate = certificate_of(self.problem, branch, profile, passes)
+        traced = TracedBranch(
+            branch=branch,
+            profile=profile,
+            minima=minima,
+            located=tuple(located),
+            misclosure=misclosure,
+            passes=tuple(passes),
+            certificate=certificate,
+        )
+        return _ExaminedBranch(traced, starts)
+
+    def _is_at(self, branch: Branch, s: float, point: SingularPoint) -> bool:
+        """Whether a branch passes a singular point at arclength ``s``, and not only
+        near it."""
+        gap = self.problem.difference(branch(s), point.u)
+        within = 0.5 * HANDOVER * self.problem.scale + point.error
+        return bool(np.linalg.norm(gap) < within)
 
     def _candidate_ends(self, branch: Branch, profile: Profile) -> list[_Candidate]:
         """The ends of an open branch where a singular point may lie."""

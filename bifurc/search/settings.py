@@ -24,14 +24,17 @@ class SearchSettings:
     ``starts``: random starts that are projected onto the solutions. ``budget`` (s): the
     search ends when it is used up, but for the step it is in. ``charts``: the most with
     which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
-    takes the time to find out if a branch is missing. ``tracing``: how a curve is
-    followed, to a tolerance of at most 1e-7. Raises `ProblemError` outside the ranges.
+    takes the time to find out if a branch is missing. ``certify``: whether every branch
+    gets a certificate, and is traced again, finer, where that is refused. ``tracing``:
+    how a curve is followed, to a tolerance of at most 1e-7. Raises `ProblemError`
+    outside the ranges.
     """
 
     starts: int = 200
     budget: float = math.inf
     charts: int = 1500
     prove: bool = True
+    certify: bool = True
     tracing: TraceSettings = field(default_factory=TraceSettings)
 
     def __post_init__(self) -> None:
@@ -39,6 +42,7 @@ class SearchSettings:
         check_whole("charts", self.charts, 0)
         check_number("budget", self.budget)
         check_type("prove", self.prove, bool)
+        check_type("certify", self.certify, bool)
         check_type("tracing", self.tracing, TraceSettings)
         if not self.budget > 0:
             raise ProblemError("budget", self.budget, "a positive number of seconds")

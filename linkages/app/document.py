@@ -9,7 +9,7 @@ from typing import TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from bifurc.atlas import Atlas, Event, MeetingPoint, NearMotion
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.torus import wrap
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels, loop_of
@@ -24,6 +24,15 @@ class LinkageDocument(TypedDict):
     lengths: list[float]
     twists: list[float]
     offsets: list[float]
+
+
+class CertificateDocument(TypedDict):
+    """What is certified of a form, and the intervals of arclength (rad) where that is
+    refused or where F' is singular to within rounding."""
+
+    status: str
+    refused: list[list[float]]
+    blurred: list[list[float]]
 
 
 class FormDocument(TypedDict):
@@ -41,6 +50,7 @@ class FormDocument(TypedDict):
     misclosure: float | None
     min_singular_value: float | None
     component: int
+    certificate: CertificateDocument | None
 
 
 class BifurcationDocument(TypedDict):
@@ -163,6 +173,18 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "misclosure": form.misclosure,
         "min_singular_value": form.min_singular_value,
         "component": form.component,
+        "certificate": _certificate(form),
+    }
+
+
+def _certificate(form: Form) -> CertificateDocument | None:
+    certificate = form.certificate
+    if certificate is None:
+        return None
+    return {
+        "status": certificate.status.value,
+        "refused": certificate.gaps.tolist(),
+        "blurred": certificate.blurred.tolist(),
     }
 
 
@@ -182,6 +204,7 @@ def _surface(atlas: Atlas, index: int) -> FormDocument:
         "misclosure": None,
         "min_singular_value": None,
         "component": atlas.components + index,
+        "certificate": None,
     }
 
 

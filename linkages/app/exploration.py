@@ -13,9 +13,7 @@ from linkages.mapping import map_linkage
 __all__ = ["explore_linkage", "require_uninterrupted"]
 
 
-def explore_linkage(
-    linkage: Linkage, search: SearchOptions, certify: bool = False
-) -> Atlas:
+def explore_linkage(linkage: Linkage, search: SearchOptions) -> Atlas:
     """The transition map of a linkage; progress is shown on standard error.
 
     Ctrl-C ends the search early, and the atlas holds what was found by then. Raises
@@ -28,7 +26,6 @@ def explore_linkage(
             return map_linkage(
                 linkage,
                 settings=settings,
-                certify=certify,
                 seed=search.seed,
                 progress=status,
             )

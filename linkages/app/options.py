@@ -54,13 +54,15 @@ class SearchOptions:
     """How a linkage is explored: what stands on the command line.
 
     ``starts`` is the number of random starts, ``seed`` that of their generator,
-    ``tolerance`` that of the curves, ``budget`` the most seconds.
+    ``tolerance`` that of the curves, ``budget`` the most seconds; ``certify``: whether
+    forms get certificates.
     """
 
     starts: int = 200
     seed: int = 0
     tolerance: float = 1e-13
     budget: float = math.inf
+    certify: bool = True
 
     def settings(self) -> SearchSettings:
         """The settings of the search; raises `bifurc.ProblemError`."""
@@ -68,7 +70,12 @@ class SearchOptions:
         from bifurc.search.settings import SearchSettings
 
         tracing = TraceSettings(tolerance=self.tolerance)
-        return SearchSettings(starts=self.starts, budget=self.budget, tracing=tracing)
+        return SearchSettings(
+            starts=self.starts,
+            budget=self.budget,
+            certify=self.certify,
+            tracing=tracing,
+        )
 
 
 SEARCH_OPTIONS = (

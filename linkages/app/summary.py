@@ -194,9 +194,19 @@ def _certificates(atlas: Atlas) -> str:
                 certificate.status,
                 str(certificate.points),
                 f"{certificate.bound:.3g}",
-                str(len(certificate.gaps)),
-                str(len(certificate.reversals)),
+                _show_intervals(certificate.gaps),
+                _show_intervals(certificate.blurred),
             )
         )
-    heads = ("name", "status", "points", "bound K", "gaps", "alarms")
+    heads = ("name", "status", "points", "bound K", "refused (rad)", "blurred (rad)")
     return section("Certificates (each form is one arc of solutions)", heads, rows)
+
+
+def _show_intervals(intervals: NDArray[np.float64]) -> str:
+    """The first interval of arclength, and how many more there are."""
+    if not len(intervals):
+        return "-"
+    low, high = intervals[0]
+    text = f"{low:.6g} to {high:.6g}"
+    more = len(intervals) - 1
+    return f"{text} and {more} more" if more else text

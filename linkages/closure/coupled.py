@@ -38,6 +38,7 @@ class CoupledClosure(NumericalProblem):
     """
 
     curvature_residual = LoopClosure.curvature_residual
+    hessian_error = LoopClosure.hessian_error
 
     def __init__(
         self, loop: Loop, matrix: np.ndarray, offset: np.ndarray | None = None
@@ -79,6 +80,13 @@ class CoupledClosure(NumericalProblem):
         rule."""
         stretch = float(np.linalg.norm(self.matrix, 2))
         return self._closure.curvature_bound() * stretch**2
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
+        """Bounds (m,) on |F''| at all complex unknowns no farther than ``reach`` (m,)
+        from real ones."""
+        stretch = float(np.linalg.norm(self.matrix, 2))
+        of_angles = self._closure.complex_curvature(stretch * reach)
+        return of_angles * stretch**2
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings

@@ -28,6 +28,7 @@ NEARLY_REAL = 0.2  # rad: imaginary parts of configurations whose real part is a
 ROUNDING = 4e-16  # below this residual norm a projection has nothing left to gain
 PROJECTION_STEPS = 60
 SPHERE_STEPS = 25
+LARGEST_EXPONENT = 300.0  # beyond it a bound is of no use
 
 
 class LoopClosure(NumericalProblem):
@@ -39,6 +40,7 @@ class LoopClosure(NumericalProblem):
     """
 
     curvature_residual = 0.2
+    hessian_error = 1e-14
 
     def __init__(self, loop: Loop):
         check_type("loop", loop, Loop)
@@ -83,6 +85,28 @@ class LoopClosure(NumericalProblem):
         ``curvature_residual`` to spare. K is the largest eigenvalue of the matrix of
         these bounds.
         """
+        reach_before, reach_after = self._reaches()
+        distance = np.minimum(reach_before + self.curvature_residual, reach_after)
+        return _bound_from_distances(distance)
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
+        """Bounds (k,) on |F''| at all complex points no farther than ``reach`` (k,),
+        rad, from a real one.
+
+        Derivatives of every order are iterated products of screws: those by joints i <=
+        ... <= j are at most 1/2 for the rotation and the distance of the end point from
+        axis j for the translation, however many they are. The Taylor series in the
+        imaginary parts y then sums up to exp(|y_1| + ... + |y_n|) times the bound for
+        real points.
+        """
+        _, reach_after = self._reaches()
+        exponents = np.minimum(np.sqrt(self.n) * reach, LARGEST_EXPONENT)
+        growth: np.ndarray = np.exp(exponents)
+        return _bound_from_distances(reach_after) * growth
+
+    def _reaches(self) -> tuple[np.ndarray, np.ndarray]:
+        """How far the base point and the end point can be from the axis of every joint
+        (n,), by the links before it and after it."""
         table = self.loop.arrays
         size = self.loop.characteristic_length
         lengths = np.abs(table.lengths) / size
@@ -93,12 +117,7 @@ class LoopClosure(NumericalProblem):
         before = links_before - offsets + offsets[0]
         # from axis j on to the end of the loop
         after = np.cumsum((lengths + offsets)[::-1])[::-1] - offsets
-        reach_before = np.maximum(before, 0.0) + self.curvature_residual
-        distance = np.minimum(reach_before, after)
-        joints = np.arange(self.n)
-        later = np.maximum.outer(joints, joints)
-        bounds = np.sqrt(0.25 + distance[later] ** 2)
-        return float(np.linalg.eigvalsh(bounds)[-1])
+        return np.maximum(before, 0.0), after
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
@@ -176,6 +195,16 @@ class LoopClosure(NumericalProblem):
             SPHERE_STEPS,
         )
         return SphereProjection(points, gaps, last_steps)
+
+
+def _bound_from_distances(distance: np.ndarray) -> float:
+    """A bound on the second derivative where the end point is no farther from axis j
+    than ``distance`` (n,): the largest eigenvalue of the matrix of bounds by two
+    joints."""
+    joints = np.arange(len(distance))
+    later = np.maximum.outer(joints, joints)
+    bounds = np.sqrt(0.25 + distance[later] ** 2)
+    return float(np.linalg.eigvalsh(bounds)[-1])
 
 
 def _contiguous(values: np.ndarray) -> np.ndarray:

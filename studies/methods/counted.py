@@ -35,6 +35,7 @@ class Counted(NumericalProblem):
             "scale",
             "derivatives",
             "curvature_residual",
+            "hessian_error",
         ):
             setattr(self, name, getattr(problem, name))
         # by collocation F and F' are evaluated through the methods below
@@ -62,6 +63,10 @@ class Counted(NumericalProblem):
     def curvature_bound(self) -> float | None:
         """As of the problem."""
         return self._problem.curvature_bound()
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
+        """As of the problem."""
+        return self._problem.complex_curvature(reach)
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings

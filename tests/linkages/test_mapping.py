@@ -52,7 +52,9 @@ def test_a_name_in_place_of_a_linkage_is_refused():
         map_linkage("bennett")
 
 
-def test_a_map_is_certified_on_request():
+def test_a_map_is_certified_unless_the_settings_say_otherwise():
     loop = entry("bennett").build()
-    atlas = map_linkage(loop, settings=SearchSettings(starts=20), certify=True)
+    atlas = map_linkage(loop, settings=SearchSettings(starts=20))
     assert atlas.forms[0].certificate.status == "certified"
+    without = map_linkage(loop, settings=SearchSettings(starts=20, certify=False))
+    assert without.forms[0].certificate is None

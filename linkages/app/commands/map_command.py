@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,9 +30,9 @@ __all__ = ["map_command"]
 @out_option("dataset, graph, summary and figures")
 @json_option("; angles in radians")
 @click.option(
-    "--certify",
+    "--no-certify",
     is_flag=True,
-    help="Prove that no form jumps from one arc to another, and say where.",
+    help="Do not prove that no form jumps from one arc to another.",
 )
 @click.option(
     "--digits",
@@ -49,7 +50,7 @@ def map_command(
     parameters: tuple[str, ...],
     out: Path | None,
     as_json: bool,
-    certify: bool,
+    no_certify: bool,
     digits: int | None,
     verbose: bool,
     search: SearchOptions,
@@ -81,7 +82,7 @@ def map_command(
     chosen = choose_linkage(linkage, parameters)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_linkage(chosen, search, certify)
+        atlas = explore_linkage(chosen, replace(search, certify=not no_certify))
         try:
             report(atlas, as_json)
         finally:  # where nothing can be shown, there are still the files

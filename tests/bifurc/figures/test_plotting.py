@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
+from bifurc.curves.certificate import Certificate, CertificateStatus
 from bifurc.errors import ProblemError
 from bifurc.figures.plotting import (
     plot_form_graph,
@@ -99,6 +101,21 @@ def test_singular_values_have_a_panel_a_form_and_name_where_they_vanish(
         assert axes.get_yscale() == "log" and {"B1", "B2"} <= {
             text.get_text() for text in axes.texts
         }
+
+
+def test_bars_on_the_axis_show_where_a_form_is_not_certified(circle: Atlas) -> None:
+    refused = Certificate(
+        status=CertificateStatus.NOT_CERTIFIED,
+        gaps=np.array([[0.5, 0.6]]),
+        blurred=np.empty((0, 2)),
+        points=0,
+        bound=1.0,
+    )
+    forms = (replace(circle.forms[0], certificate=refused), *circle.forms[1:])
+    first, second = plot_singular_values(replace(circle, forms=forms)).axes[:2]
+    bars = [line for line in first.lines if line.get_label() == "not certified"]
+    assert [line.get_xdata()[[0, -1]].tolist() for line in bars] == [[0.5, 0.6]]
+    assert not any(line.get_label() == "not certified" for line in second.lines)
 
 
 def test_edges_between_the_same_forms_are_drawn_apart(parallelogram: Atlas) -> None:

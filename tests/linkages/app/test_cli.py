@@ -36,6 +36,7 @@ KEYS = {
         "misclosure",
         "min_singular_value",
         "component",
+        "certificate",
     },
     "bifurcations": {"theta", "rank", "forms", "tangents", "error"},
     "rank_drops": {"theta", "rank", "form"},
@@ -148,10 +149,20 @@ def test_json_speaks_of_radians_joints_from_1_and_relative_residuals():
     assert {d["joint"] for d in document["dead_points"]} <= set(range(1, 7))
     problem = closure_of(document)
     for form in document["forms"]:
+        certificate = form["certificate"]
+        assert certificate["status"] == "certified up to the singular points"
+        assert certificate["refused"] == certificate["blurred"] == []
         assert 0 < form["max_residual"] < 1e-12
         assert form["min_singular_value"] == 0
         assert np.abs(problem.residuals(np.array([form["sample"]]))).max() < 1e-12
         assert np.abs(form["sample"]).max() <= np.pi + 1e-9
+
+
+def test_a_map_without_certificates_has_none():
+    result = bifurc("map", "bennett", "--json", "--no-certify")
+    (form,) = json.loads(result.stdout)["forms"]
+    assert form["certificate"] is None
+    assert "Certificates" not in bifurc("map", "bennett", "--no-certify").stdout
 
 
 def closure_of(document):

@@ -1,0 +1,124 @@
+"""Signs that a traced curve has jumped from one branch to another.
+
+A branch is analytic. What stands still on one stretch of it, however short, does so all
+along, and the rank of F' is the same but for single points. It has no kinks, and it
+does not pass the same place twice along the same line, or it would have closed before.
+
+Where the theorem of `bifurc.curves.certificate` holds a curve cannot jump. Stretches
+are compared across other places only: beside a near miss an unknown may well all but
+stand still.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.curves.monitor import Profile
+from bifurc.decisions import (
+    is_same_line,
+    is_same_point,
+    is_slow,
+    is_zero_along,
+    stands_still,
+)
+from bifurc.problem import Problem
+
+__all__ = ["changes_of_course", "kinks", "repeats_itself"]
+
+# shares of its length at which a curve is looked at again
+PLACES = np.array([0.07, 0.23, 0.41, 0.61, 0.83])
+SEVERAL = 2  # of these places: a curve may touch itself at one
+LEAST = 4  # samples of a stretch that is compared
+
+
+def repeats_itself(problem: Problem, branch: Branch) -> bool:
+    """Whether a curve passes several of its places more than once along the same
+    line."""
+    within = is_same_point.threshold * problem.scale
+    repeated = 0
+    for s in branch.length * PLACES:
+        arclengths = branch.passes(branch(s), within)
+        cosines = branch(arclengths, 1) @ branch(s, 1)
+        is_along = is_same_line(1.0 - np.abs(cosines))
+        repeated += int(np.count_nonzero(is_along) > 1)
+    return repeated >= SEVERAL
+
+
+def kinks(branch: Branch) -> np.ndarray:
+    """Arclengths (k,) at which a curve goes on in another direction."""
+    begins = _directions(branch, branch.breaks[:-1])
+    ends = _directions(branch, branch.breaks[1:])
+    arclengths = branch.breaks[1:]
+    after = np.roll(begins, -1, axis=0)
+    if not branch.closed:
+        arclengths, ends, after = arclengths[:-1], ends[:-1], after[:-1]
+    cosines = np.sum(ends * after, axis=1)
+    goes_on = is_same_line(1.0 - cosines)
+    places: np.ndarray = arclengths[~goes_on]
+    return places
+
+
+def _directions(branch: Branch, s: np.ndarray) -> np.ndarray:
+    """Unit tangents (p, n) of the p pieces at arclengths (p,), one for each."""
+    x = (s - branch.centers) / branch.radii
+    degrees = np.arange(1, branch.pieces.shape[1])
+    powers = degrees * x[:, None] ** (degrees - 1)
+    slopes = np.einsum("pk,pkn->pn", powers, branch.pieces[:, 1:])
+    directions: np.ndarray = slopes / np.linalg.norm(slopes, axis=1, keepdims=True)
+    return directions
+
+
+def changes_of_course(branch: Branch, profile: Profile, cuts: np.ndarray) -> np.ndarray:
+    """Those of the ``cuts`` (c,), arclengths in order, at which an unknown comes to
+    rest or sets out, or the rank of F' changes."""
+    if not len(cuts):
+        return cuts
+    s = profile.arclength.ravel()
+    stretches = np.searchsorted(cuts, s)
+    if branch.closed:
+        stretches %= len(cuts)  # what comes after the last cut runs into the first
+    rates = np.abs(branch(s, 1))
+    values = profile.values.reshape(len(s), -1)
+    courses: dict[int, _Course] = {}
+    for stretch in range(len(cuts) + 1):
+        inside = stretches == stretch
+        if np.count_nonzero(inside) >= LEAST:
+            courses[stretch] = _Course.of(rates[inside], values[inside])
+    changes = []
+    for k, cut in enumerate(cuts):
+        after = (k + 1) % len(cuts) if branch.closed else k + 1
+        are_known = k in courses and after in courses
+        if are_known and courses[k].differs_from(courses[after]):
+            changes.append(cut)
+    return np.array(changes)
+
+
+@dataclass(frozen=True)
+class _Course:
+    """What is the same all along a branch: which unknowns stand still (n,), which move
+    (n,), and the rank of F'."""
+
+    stands: np.ndarray
+    moves: np.ndarray
+    rank: int
+
+    @staticmethod
+    def of(rates: np.ndarray, values: np.ndarray) -> _Course:
+        """That of a stretch with rates (k, n) of the unknowns and singular values (k,
+        n)."""
+        largest = rates.max(axis=0)
+        typical = np.median(values, axis=0)
+        return _Course(
+            stands=stands_still(largest),
+            moves=~is_slow(largest),
+            rank=int(np.count_nonzero(~is_zero_along(typical))),
+        )
+
+    def differs_from(self, other: _Course) -> bool:
+        """Whether one branch cannot have both."""
+        sets_out = np.any(self.stands & other.moves)
+        comes_to_rest = np.any(self.moves & other.stands)
+        return bool(sets_out or comes_to_rest or self.rank != other.rank)

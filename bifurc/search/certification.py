@@ -1,0 +1,77 @@
+"""Certificates in a search: made after a branch is traced and before it is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.curves.certificate import (
+    HANDOVER,
+    Certificate,
+    CertificateStatus,
+    certify_branch,
+    is_certifiable,
+)
+from bifurc.curves.continuation import TraceSettings
+from bifurc.curves.jumps import changes_of_course, kinks, repeats_itself
+from bifurc.curves.monitor import Profile
+from bifurc.problem import Problem
+
+__all__ = ["certificate_of", "finer_settings"]
+
+FINEST = 1e-14  # tolerance with which a refused branch is traced again
+LONGEST = 0.1  # trusted radius, in scales
+# Beside a crossing near something larger rounding bends a curve over from farther away:
+# shorter radii than this, in scales, are not trusted, and a bridge is laid across.
+SHORTEST = 1e-3
+
+
+def certificate_of(
+    problem: Problem, branch: Branch, profile: Profile, singular: Sequence[float]
+) -> Certificate | None:
+    """What is certified of a branch with singular points at some arclengths.
+
+    Where it must have jumped is a gap of the certificate. For a problem without the
+    bounds that a certificate takes there is one only if it says that.
+    """
+    certificate = certify_branch(problem, branch, profile, singular)
+    if certificate.status is CertificateStatus.CERTIFIED:
+        return certificate
+    is_possible = is_certifiable(problem)
+    cuts = np.array(singular)
+    if is_possible:
+        open_intervals = np.concatenate([certificate.gaps, certificate.blurred])
+        cuts = np.concatenate([cuts, open_intervals.mean(axis=1)])
+    jumps = _jumps(problem, branch, profile, np.sort(cuts))
+    if len(jumps):
+        return certificate.with_gaps(jumps)
+    return certificate if is_possible else None
+
+
+def _jumps(
+    problem: Problem, branch: Branch, profile: Profile, cuts: np.ndarray
+) -> np.ndarray:
+    """Intervals (k, 2) of arclength about the ``cuts`` (c,) in one of which at least
+    the branch must have jumped; all of it where there are none."""
+    if repeats_itself(problem, branch):
+        if not len(cuts):
+            return np.array([[0.0, branch.length]])
+        jumps = cuts
+    else:
+        changes = changes_of_course(branch, profile, cuts)
+        jumps = np.union1d(changes, kinks(branch))
+    handover = HANDOVER * problem.scale
+    return np.column_stack([jumps - handover, jumps + handover])
+
+
+def finer_settings(settings: TraceSettings) -> Iterator[TraceSettings]:
+    """With what a branch is traced again that has no certificate, in turn."""
+    longest = min(LONGEST, settings.longest)
+    shortest = max(SHORTEST, settings.shortest)
+    yield replace(settings, tolerance=FINEST, longest=longest)
+    if shortest < longest:
+        yield replace(settings, tolerance=FINEST, shortest=shortest)
+        yield replace(settings, tolerance=FINEST, shortest=shortest, longest=longest)

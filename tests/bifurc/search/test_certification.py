@@ -1,0 +1,121 @@
+"""A search certifies its branches, traces again what is refused, and says what is
+left."""
+
+import numpy as np
+import pytest
+
+from bifurc.curves.certificate import CertificateStatus
+from bifurc.function_problem import FunctionProblem
+from bifurc.search import search as search_module
+from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
+from bifurc.seeds import Audit, Level, Seeds
+from linkages.catalogue import entry
+from linkages.closure.loop_closure import LoopClosure
+from linkages.families.bricard import bricard_line_symmetric_zero_offset
+from tests.bifurc.curves.test_jumps import polyline
+
+ERRORS = [1e-2, 1e-3, 1e-4]
+SETTINGS = SearchSettings(starts=40)
+trace_branch = search_module.trace_branch
+
+
+class Hyperbola(FunctionProblem):
+    """x y = gap in a box, with an audit that finds nothing missing."""
+
+    def __init__(self, gap: float):
+        super().__init__(lambda u: np.array([u[0] * u[1] - gap]), [[-1, 1], [-1, 1]])
+        self.magnitude = 1.0
+
+    def curvature_bound(self) -> float:
+        return 1.0
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
+        return np.ones_like(reach)
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        seeds = super().seeds(rng, count)
+        audit = Audit(Level.PROVED, "nothing is missing", np.empty((0, 2)))
+        return Seeds(*list(vars(seeds).values())[:4], lambda branches, seconds: audit)
+
+
+def counts(atlas):
+    return len(atlas.forms), len(atlas.bifurcations)
+
+
+@pytest.mark.parametrize("error", ERRORS)
+def test_a_right_map_near_a_surface_is_certified(error):
+    loop = entry("special-double-subtractive-goldberg").build(
+        alpha=2.0, beta=1.0, delta=1.0 + error
+    )
+    atlas = explore(LoopClosure(loop), settings=SETTINGS)
+    assert counts(atlas) == (4, 4)
+    assert all(form.certificate.holds for form in atlas.forms)
+    assert atlas.completeness.level is Level.PROVED
+
+
+@pytest.mark.parametrize("error", [1e-2, 1e-3])
+def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
+    loop = bricard_line_symmetric_zero_offset(
+        1.0, 1.0 + error, 1.3, 1.0, 1.0 + error, 1.9
+    )
+    atlas = explore(LoopClosure(loop), settings=SETTINGS)
+    assert counts(atlas) == (4, 4)
+    assert all(form.certificate.holds for form in atlas.forms)
+    assert atlas.completeness.level is Level.PROVED
+
+
+def jumping_branch(problem, start, direction, settings):
+    """A curve that runs along the axes instead of the hyperbola between them."""
+    if settings.tolerance == SETTINGS.tracing.tolerance:
+        return polyline([(1.0, 0.0), (-1.0, 0.0)])
+    return trace_branch(problem, start, direction, settings)
+
+
+def test_a_branch_that_is_refused_is_traced_again(monkeypatch):
+    monkeypatch.setattr(search_module, "trace_branch", jumping_branch)
+    atlas = explore(Hyperbola(1e-8), settings=SETTINGS)
+    assert counts(atlas) == (2, 0)
+    for form in atlas.forms:
+        assert form.certificate.status is CertificateStatus.CERTIFIED
+        assert form.branch.length == pytest.approx(2.0, abs=1e-3)
+    assert atlas.completeness.level is Level.PROVED
+
+
+def test_where_a_branch_stays_refused_nothing_is_proved(monkeypatch):
+    straight = polyline([(1.0, 0.0), (-1.0, 0.0)])
+    monkeypatch.setattr(search_module, "trace_branch", lambda *_: straight)
+    atlas = explore(Hyperbola(1e-8), settings=SETTINGS)
+    form = atlas.forms[0]
+    assert form.certificate.status is CertificateStatus.NOT_CERTIFIED
+    ((low, high),) = form.certificate.gaps
+    assert low < 1.0 < high < low + 0.01
+    assert atlas.completeness.level is Level.ESTIMATED
+    assert f"not certified between s = {low:.6g} and {high:.6g}" in (
+        atlas.completeness.statement
+    )
+
+
+def test_without_certificates_the_audit_alone_decides(monkeypatch):
+    straight = polyline([(1.0, 0.0), (-1.0, 0.0)])
+    monkeypatch.setattr(search_module, "trace_branch", lambda *_: straight)
+    settings = SearchSettings(starts=40, certify=False)
+    atlas = explore(Hyperbola(1e-8), settings=settings)
+    assert atlas.forms[0].certificate is None
+    assert atlas.completeness.level is Level.PROVED
+
+
+def test_a_branch_that_turns_off_at_a_crossing_is_refused_there(monkeypatch):
+    corner = polyline([(-1.0, 0.0), (0.0, 0.0), (0.0, 1.0)])
+    monkeypatch.setattr(search_module, "trace_branch", lambda *_: corner)
+    cross = FunctionProblem(lambda u: [u[0] * u[1]], [(-1, 1), (-1, 1)])
+    atlas = explore(cross, settings=SETTINGS)
+    certificate = atlas.forms[0].certificate
+    assert certificate.status is CertificateStatus.NOT_CERTIFIED
+    assert certificate.gaps.mean() == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_problem_without_bounds_has_no_certificates():
+    circle = FunctionProblem(lambda u: [u @ u - 1.0], [(-2, 2), (-2, 2)])
+    (form,) = explore(circle, settings=SETTINGS).forms
+    assert form.certificate is None
