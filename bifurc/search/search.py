@@ -23,6 +23,7 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.problem import Problem
+from bifurc.search.canonical_course import canonical_course
 from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import Findings, PointSighting, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
@@ -257,6 +258,7 @@ class Search:
 
     def _examine_branch(self, branch: Branch) -> _ExaminedBranch:
         """Record a branch and the singular points on it."""
+        branch = canonical_course(self.problem, branch)
         profile = profile_branch(self.problem, branch)
         minima = singular_value_minima(self.problem, branch, profile)
         candidates = _small_minima(*minima) + self._candidate_ends(branch, profile)
