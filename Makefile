@@ -16,8 +16,8 @@ test: .venv/ready  ## all tests, the examples of README and docs among them
 
 # OpenBLAS picks its kernels by the processor; other kernels give other last bits.
 PROCESSORS := Prescott Nehalem Haswell Zen SkylakeX
-FRAGILE := tests/test_literature.py tests/test_maps.py tests/bifurc/singular tests/bifurc/surfaces \
-  tests/bifurc/curves/test_monitor.py
+FRAGILE := tests/test_literature.py tests/bifurc/curves/test_monitor.py tests/bifurc/surfaces/test_covering.py \
+  tests/bifurc/search/test_canonical_order.py tests/studies/test_same_answer.py
 
 test-processors: .venv/ready  ## all tests with the last bits of five processors, with one thread and with two
 	for kernel in $(PROCESSORS); do for threads in 1 2; do \
@@ -25,7 +25,7 @@ test-processors: .venv/ready  ## all tests with the last bits of five processors
 	  OPENBLAS_CORETYPE=$$kernel OPENBLAS_NUM_THREADS=$$threads $(BIN)/python -m pytest -n auto || exit 1; \
 	done; done
 
-test-fragile: .venv/ready  ## the tests that once hung on the last bits, under three processors
+test-fragile: .venv/ready  ## what once hung on the last bits, and a sample of studies.same_answer, under three processors
 	for kernel in Nehalem Haswell SkylakeX; do \
 	  echo "$$kernel"; OPENBLAS_CORETYPE=$$kernel $(BIN)/python -m pytest -n auto $(FRAGILE) || exit 1; \
 	done

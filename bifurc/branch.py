@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -23,6 +23,7 @@ SAMPLES = 12  # of a piece, from which the feet of points are looked for
 FOOT_STEPS = 5  # of Newton's method from a sample to a foot
 PATIENT_FOOT_STEPS = 8  # where the foot may be as far away as a sample's neighbour
 ON_THE_CURVE = 1e-7  # of the spacing of samples: so far off a point is still on it
+SLIVER = 1e-3  # of its radius: so little of a piece is left to the next one
 SAME_PASS = 1e-6  # arclength: feet no farther apart are one
 
 
@@ -102,6 +103,15 @@ class Branch:
             return np.zeros(self.n, dtype=int)
         return whole_turns(self.travel, self.periods)
 
+    @property
+    def gained(self) -> np.ndarray:
+        """What each unknown (n,) gains in one turn of a closed curve: `travel` without
+        its rounding."""
+        gained = np.zeros(self.n)
+        turning = self.winding != 0
+        gained[turning] = self.winding[turning] * self.periods[turning]
+        return gained
+
     # --- points -----------------------------------------------------------------------
 
     def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
@@ -148,6 +158,51 @@ class Branch:
             outcome=self.outcome,
             gap=self.gap,
         )
+
+    def begun_at(self, s: float) -> Branch:
+        """The same closed curve with its arclengths counted from ``s``.
+
+        The piece that holds ``s`` comes first and, as far as ``s``, last. Raises
+        `ProblemError` for an open curve.
+        """
+        if not self.closed:
+            raise ProblemError("outcome", self.outcome.name, "a closed curve")
+        count = len(self.pieces)
+        first, last = self._pieces_around(s)
+        numbers = np.arange(first, last + count + 1)
+        turns, kept = np.divmod(numbers, count)
+        ahead = turns * self.length - s
+        pieces = self.pieces[kept]
+        pieces[:, 0] += turns[:, None] * self.gained
+        inner = self.breaks[kept + 1] + ahead
+        return replace(
+            self,
+            pieces=pieces,
+            centers=self.centers[kept] + ahead,
+            radii=self.radii[kept],
+            breaks=np.concatenate([[0.0], inner[:-1], [self.length]]),
+            residuals=self.residuals[kept],
+        )
+
+    def _pieces_around(self, s: float) -> tuple[int, int]:
+        """Numbers of the pieces that begin and end a closed curve cut at ``s``: one and
+        the same, but where one part of it would be a sliver."""
+        number = int(np.searchsorted(self.breaks, s, side="right")) - 1
+        number = min(max(number, 0), len(self.pieces) - 1)
+        sliver = SLIVER * self.radii[number]
+        first, last = number, number
+        if self.breaks[number + 1] - s < sliver:
+            first += 1
+        elif s - self.breaks[number] < sliver:
+            last -= 1
+        return first, last
+
+    def moved_by_periods(self, turns: np.ndarray) -> Branch:
+        """The same curve with whole numbers (n,) of periods added to the unknowns."""
+        pieces = self.pieces.copy()
+        moving = turns != 0
+        pieces[:, 0, moving] += turns[moving] * self.periods[moving]
+        return replace(self, pieces=pieces)
 
     # --- feet of points ---------------------------------------------------------------
 

@@ -342,6 +342,23 @@ is_tied = Decision(
     1e-6,
     "features of mirror images differ by rounding, about 1e-13",
 )
+is_unclear_start = Decision(
+    "start of a form",
+    "a function has no clear top on a curve, and the next one says where it begins",
+    "the lead of the top over all others, in thousandths of the range of the function; "
+    "or its bend, if that is less clear",
+    1.0,
+    "a top is exact to 1e-12, and symmetry makes two of them equal to 1e-12",
+    Role.CONVENTION,
+)
+is_slow_at_start = Decision(
+    "direction of a form",
+    "an unknown does not clearly move at the start, and the next one says which way",
+    "its rate over the largest",
+    0.05,
+    "rates are exact to 1e-11, and symmetry makes them zero to 1e-11",
+    Role.CONVENTION,
+)
 
 # --- near misses ----------------------------------------------------------------------
 

@@ -35,5 +35,40 @@ is_same_dead_point = Decision(
     1e-7,
     "dead points are exact to half the digits",
 )
+is_singular_end = Decision(
+    "regular end of a path",
+    "a path ended at a configuration of lower rank, on a motion or shaky",
+    "smallest singular value there",
+    1e-6,
+    "paths to such configurations stop before they arrive, as a rule",
+)
+is_real_end = Decision(
+    "real end of a path",
+    "a configuration at which a path ended is an assembly",
+    "largest imaginary part of an angle, rad",
+    1e-6,
+    "ends are exact to rounding over the singular value",
+)
+is_same_end = Decision(
+    "same end of two paths",
+    "two paths ended at one configuration",
+    "largest difference of an angle, rad",
+    1e-6,
+    "ends are exact to rounding over the singular value",
+)
+is_near_its_end = Decision(
+    "end of a path",
+    "a path that stopped is where it ends, at a configuration of lower rank",
+    "what is left of it",
+    1e-3,
+    "rounding stops a path to such a configuration at 1e-4 and later",
+)
+is_in_reach = Decision(
+    "path to infinity",
+    "a path that stopped on the way was lost, and was not on its way to infinity",
+    "largest imaginary part of an angle, rad",
+    6.0,
+    "paths are followed up to 12; of isolated configurations 9 is the largest one seen",
+)
 
 TABLE = decisions_in(globals())

@@ -17,7 +17,7 @@ from linkages.labels import subject_of
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["largest_residual", "map_linkage"]
+__all__ = ["largest_residual", "map_linkage", "name_atlas"]
 
 DEFAULT_SEARCH = SearchSettings()
 
@@ -45,8 +45,14 @@ def map_linkage(
     linkage = _as_linkage(linkage)
     problem = LoopClosure(linkage.loop)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
+    return name_atlas(atlas, linkage)
+
+
+def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
+    """The atlas of a linkage with the names of its forms, their labels, and the loop as
+    its subject."""
     identities = _recognise(atlas, linkage)
-    return _label(atlas, identities, problem)
+    return _label(atlas, identities, LoopClosure(linkage.loop))
 
 
 def largest_residual(problem: LoopClosure, branch: Branch) -> float:

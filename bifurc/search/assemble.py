@@ -23,7 +23,12 @@ from bifurc.curves.monitor import dead_points, singular_values
 from bifurc.curves.near_miss import near_miss_value
 from bifurc.decisions import closes_to_rounding
 from bifurc.problem import Problem
-from bifurc.search.canonical_order import order_branches, order_points
+from bifurc.search.canonical_course import wrapped_periods
+from bifurc.search.canonical_order import (
+    order_branches,
+    order_points,
+    order_surfaces,
+)
 from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
@@ -43,11 +48,11 @@ def assemble_atlas(
 
     Every point in it is wrapped: see `Atlas`.
     """
-    periods = _wrapped_periods(problem)
+    periods = wrapped_periods(problem)
     order = order_branches(problem, findings.branches)
     traced = [findings.traced[k] for k in order]
     branches = [branch.branch for branch in traced]
-    surfaces = _surfaces(findings, periods)
+    surfaces = _surfaces(problem, findings, periods)
     located = [
         replace(point, u=wrap(point.u, periods))
         for point in findings.points
@@ -80,16 +85,6 @@ def assemble_atlas(
         closure_gap=gap,
         provenance=provenance,
     )
-
-
-def _wrapped_periods(problem: Problem) -> np.ndarray:
-    """Periods (n,) of the unknowns to wrap; inf for those whose bounds reach
-    farther."""
-    half = 0.5 * problem.periods
-    low, high = problem.bounds.T
-    is_bounded = np.isfinite(problem.bounds).any(axis=1)
-    reaches_farther = is_bounded & ((low < -half) | (high > half))
-    return np.where(reaches_farther, np.inf, problem.periods)
 
 
 # --- forms and surfaces ---------------------------------------------------------------
@@ -164,11 +159,14 @@ def _component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     return numbers
 
 
-def _surfaces(findings: Findings, periods: np.ndarray) -> tuple[Surface, ...]:
+def _surfaces(
+    problem: Problem, findings: Findings, periods: np.ndarray
+) -> tuple[Surface, ...]:
     """The surfaces, numbered from 1."""
     surfaces = findings.components.surfaces(findings.seeds.points)
+    in_order = [surfaces[k] for k in order_surfaces(problem, surfaces)]
     named = []
-    for number, surface in enumerate(surfaces, start=1):
+    for number, surface in enumerate(in_order, start=1):
         samples = wrap(surface.samples, periods)
         named.append(replace(surface, name=f"surface {number}", samples=samples))
     return tuple(named)

@@ -7,13 +7,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bifurc.atlas import Surface
 from bifurc.branch import Branch
 from bifurc.decisions import is_tied
 from bifurc.problem import Problem
 from bifurc.torus import wrap
 
-__all__ = ["order_branches", "order_points"]
+__all__ = ["order_branches", "order_points", "order_surfaces", "order_values"]
 
+OF_CHARTS = 0.1  # what the layout of charts makes of a mean, and a share of the area
 COARSEST = 0.1  # what a large error adds to it at most
 # The rule of Gauss and Legendre on every piece, for means along a branch.
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
@@ -31,6 +33,20 @@ def order_branches(problem: Problem, branches: Sequence[Branch]) -> np.ndarray:
         return np.arange(len(branches))
     features = [_branch_features(branch, problem.scale) for branch in branches]
     return _order(-np.array(features), is_tied.threshold)
+
+
+def order_surfaces(problem: Problem, surfaces: Sequence[Surface]) -> np.ndarray:
+    """Numbers (k,) of surfaces by dimension, those with charts first, the largest of
+    these first.
+
+    Those of about equal area, as mirror images are, stand in the order of the means of
+    their cosines and then of their sines, the largest first. Charts are laid out anew
+    with every seed: what differs by less than they do is equal.
+    """
+    if len(surfaces) < 2:
+        return np.arange(len(surfaces))
+    features = [_surface_features(surface, problem.scale) for surface in surfaces]
+    return _order(np.array(features), OF_CHARTS)
 
 
 def order_points(
@@ -54,6 +70,12 @@ def order_points(
     return _order(places, tolerance, groups)
 
 
+def order_values(values: np.ndarray, tolerance: float) -> np.ndarray:
+    """Numbers (k,) of values (k,), smallest first. Those between which no step is
+    larger than ``tolerance`` keep their order."""
+    return _order(values[:, None], tolerance)
+
+
 def _order(
     features: np.ndarray, tolerance: float, groups: np.ndarray | None = None
 ) -> np.ndarray:
@@ -61,6 +83,8 @@ def _order(
     after another. Rows alike in all columns keep their order."""
     count = len(features)
     ranks = np.zeros(count, dtype=int) if groups is None else groups
+    if not count:
+        return ranks
     for values in features.T:
         ranks = _finer_ranks(ranks, values, tolerance)
         if ranks.max() == count - 1:
@@ -93,6 +117,21 @@ def _branch_features(branch: Branch, scale: float) -> np.ndarray:
     upper = products[np.triu_indices(len(means))]
     winding = _unsigned(branch.winding)
     return np.concatenate([length, means, upper, winding])
+
+
+def _surface_features(surface: Surface, scale: float) -> np.ndarray:
+    """Numbers (q,) that tell surfaces apart, in ascending order: dimension, whether
+    there are no charts, size and means."""
+    charts = surface.charts
+    kind = [float(surface.dimension), float(charts is None)]
+    n = surface.samples.shape[1]
+    if charts is None or not charts.area > 0:
+        return np.concatenate([kind, np.zeros(1 + 2 * n)])
+    middles = charts.triangles.mean(axis=1)
+    shares = charts.triangle_areas / charts.area
+    means = shares @ _embedded(middles, charts.periods, scale)
+    size = [-np.log(charts.area)]
+    return np.concatenate([kind, size, -means])
 
 
 def _quadrature(branch: Branch) -> tuple[np.ndarray, np.ndarray]:

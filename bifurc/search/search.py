@@ -32,6 +32,7 @@ from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.blur import distance_to_singular
 from bifurc.problem import Problem
 from bifurc.search.assembly import polished
+from bifurc.search.canonical_course import canonical_course
 from bifurc.search.certification import certificate_of, finer_settings
 from bifurc.search.closure_gap import valley_points
 from bifurc.search.components import components_of_seeds, singular_points_of
@@ -371,6 +372,7 @@ class Search:
     def _examine_branch(self, branch: Branch, misclosure: float) -> _ExaminedBranch:
         """Look for the singular points on a branch with a ``misclosure``, and certify
         it between them."""
+        branch = canonical_course(self.problem, branch)
         profile = profile_branch(self.problem, branch)
         minima = singular_value_minima(self.problem, branch, profile)
         candidates = _small_minima(*minima)

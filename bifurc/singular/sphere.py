@@ -167,10 +167,26 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     is_crossing = np.arange(len(angles)) < len(zeros.crossings)
     limit = np.where(is_crossing, ROOT, TOUCH) * size + noise
     left_over = np.linalg.norm(equations(unit_vectors(angles)), axis=1)
+    in_doubt = is_crossing & (left_over > limit) & (left_over < TOUCH * size + noise)
+    if np.any(in_doubt):
+        condition = _conditions(values, leading, angles[in_doubt])
+        limit[in_doubt] += noise * condition
     is_solution = left_over < limit
     points = equations.points(unit_vectors(angles[is_solution]))
     is_doubtful = bool(np.any(is_solution & ~is_crossing))
     return Section(points, 1 if len(points) else 0, is_doubtful)
+
+
+def _conditions(
+    values: np.ndarray, leading: _FourierSeries, angles: np.ndarray
+) -> np.ndarray:
+    """By what (k,) an error of the leading combination is multiplied in the equations
+    at its roots ``angles`` (k,): the rates of all of them over its own. ``values``
+    (`COUNT`, codimension) are those of the equations on the circle."""
+    rates = [_FourierSeries(column).rates(angles) for column in values.T]
+    own = np.abs(leading.rates(angles))
+    all_rates = np.linalg.norm(rates, axis=0)
+    return np.asarray(all_rates / np.maximum(own, np.finfo(float).tiny))
 
 
 class _FourierSeries:
@@ -184,15 +200,25 @@ class _FourierSeries:
         self.samples = samples
         self._coefficients = np.fft.rfft(samples) / COUNT
         self._coefficients[1:-1] *= 2
-        self._rates = np.arange(len(self._coefficients))
+        self._orders = np.arange(len(self._coefficients))
 
     def __call__(self, angles: np.ndarray) -> np.ndarray:
         """Values at angles (...)."""
-        offsets = np.asarray(angles) - FIRST
-        phases = offsets[..., None] * self._rates
-        waves = np.exp(1j * phases)
-        values: np.ndarray = (waves @ self._coefficients).real
+        values: np.ndarray = (self._waves(angles) @ self._coefficients).real
         return values
+
+    def rates(self, angles: np.ndarray) -> np.ndarray:
+        """Derivatives at angles (...)."""
+        terms = 1j * self._orders * self._coefficients
+        rates: np.ndarray = (self._waves(angles) @ terms).real
+        return rates
+
+    def _waves(self, angles: np.ndarray) -> np.ndarray:
+        """The terms of the series (..., k) at angles (...), without coefficients."""
+        offsets = np.asarray(angles) - FIRST
+        phases = offsets[..., None] * self._orders
+        waves: np.ndarray = np.exp(1j * phases)
+        return waves
 
     def times_sign(self, angles: np.ndarray, signs: np.ndarray) -> np.ndarray:
         """Values at angles (...), times ``signs`` (...)."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
+from bifurc.decisions import is_tied
 from bifurc.torus import wrap
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels, loop_of
@@ -276,7 +277,9 @@ def _clear_arclength(atlas: Atlas, index: int) -> float:
         marks.append(marks[0] + branch.length)
     else:
         marks = [0.0, *marks, branch.length]
-    longest = int(np.argmax(np.diff(marks)))
+    gaps = np.diff(marks)
+    # of stretches as long as one another, which symmetry makes, the first
+    longest = int(np.argmax(gaps > gaps.max() - is_tied.threshold * branch.length))
     return 0.5 * (marks[longest] + marks[longest + 1])
 
 

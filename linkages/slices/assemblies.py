@@ -25,6 +25,14 @@ from importlib.resources import files
 import numpy as np
 from numba import njit
 
+from bifurc.limits import Deadline
+from linkages.decisions import (
+    is_in_reach,
+    is_near_its_end,
+    is_real_end,
+    is_same_end,
+    is_singular_end,
+)
 from linkages.loop import GeometryError, Loop
 
 __all__ = [
@@ -36,9 +44,6 @@ __all__ = [
 ]
 
 JOINTS = 6
-REAL = 1e-6  # rad: the largest imaginary part of a configuration taken for real
-REGULAR = 1e-6  # smallest singular value of F' at an isolated assembly
-EQUAL = 1e-6  # rad: two configurations that agree to this are one
 ATTEMPTS = 3  # generic geometries from which the paths start
 ROTATION = np.exp(0.7j)  # of the generic lengths and offsets from attempt to attempt
 # Lengths (over the characteristic length), twists and offsets of the cuts.
@@ -46,21 +51,28 @@ CUTS = ((0.618, 1.234, -0.377), (0.441, 0.873, 0.289))
 
 # Of the paths.
 FIRST_STEP, LONGEST_STEP = 0.02, 0.1
-# A step shorter than this share of the rest of the path is none.
-SHORTEST_SHARE = 1e-7
+# A step shorter than this share of the rest of the path is none; near the end, where
+# rounding stops a path to a singular configuration, than the other one.
+SHORTEST_SHARE, SHORTEST_STIFF_SHARE = 1e-7, 0.05
+STIFF = 1e-5
+# A step that is not all of the rest is at most this share of it. If the step to the
+# end fails, it is tried again when the rest is smaller by the other share.
+MOST_SHARE, WHOLE_AGAIN = 0.8, 1e-3
+SHORTER = 0.4  # by which a step that failed is shortened
 # The rest of a path that is taken in one step or not at all: a path to a singular
 # configuration comes to its end in ever shorter steps. Two configurations of which each
 # has the singular value s meet about s^2 behind the end.
 LAST_STRETCH = 1e-12
-TRUSTED = 1e-3  # rad: the largest first correction of an accepted step
-TRUSTED_AT_THE_END = 1e-2
-AIM = 1e-4  # rad: the first correction that the length of a step aims at
+TRUSTED = 1e-2  # rad: the largest first correction of an accepted step
+AIM = 1e-3  # rad: the first correction that the length of a step aims at
+CONTRACTION = 0.1  # of a correction to the next, on an accepted step
+ROUNDING = 1e-7  # rad: a correction that may be one of rounding
 EXACT = 1e-11  # rad: a correction after which no other is made
-CORRECTED = 1e-9  # rad: the largest last correction of an accepted step
-NEAR_THE_END = 1e-2  # the rest of a path that stops at a singular configuration
-INFINITE = 14.0  # imaginary part of an angle beyond which a path runs to infinity
+CORRECTED = 1e-5  # rad: the largest last correction of an accepted step
+CORRECTIONS, LAST_CORRECTIONS = 2, 5  # of a step, and of the last step of a path
+FAR_AWAY = 2.0  # imaginary part beyond which dual quaternions save digits
+INFINITE = 12.0  # imaginary part of an angle beyond which a path runs to infinity
 MOST_STEPS = 2000
-DIFFERENCE = 1e-7  # of the path parameter, for the velocity of the equations
 
 
 class PathEnd(IntEnum):
@@ -109,37 +121,31 @@ class Assemblies:
     statement: str
 
 
-def isolated_assemblies(loop: Loop) -> Assemblies:
+def isolated_assemblies(loop: Loop, seconds: float = np.inf) -> Assemblies:
     """All real configurations of ``loop`` at which its closure has full rank.
 
-    Raises `GeometryError` for a loop of more than six joints.
+    After about so many ``seconds`` no further path is followed. Raises `GeometryError`
+    for a loop of more than six joints.
     """
     if not isinstance(loop, Loop):
         raise GeometryError("loop", type(loop).__name__, "a Loop, such as linkage.loop")
     if loop.n > JOINTS:
         raise GeometryError("number of joints", loop.n, f"at most {JOINTS}")
+    deadline = Deadline(seconds)
     longer = _with_six_joints(loop)
+    known = np.empty((0, JOINTS), dtype=complex)
     for attempt in range(ATTEMPTS):
-        start = _generic_loop(attempt)
-        paths = follow_paths(start, longer.table)
-        lost = _lost_paths(paths)
-        if not lost:
+        paths = _paths_in_time(_generic_loop(attempt), longer.table, deadline)
+        ends = _Ends.of(paths, longer.table)
+        known = _distinct(np.concatenate([known, ends.regular]))
+        if ends.are_complete or deadline.passed:
             break
-    angles = paths.angles[paths.ends == PathEnd.ARRIVED]
-    regular = angles[_smallest_singular_values(angles, longer.table) > REGULAR]
-    distinct = _distinct(regular)
-    jumped = len(distinct) < len(regular)
-    real = distinct[np.abs(distinct.imag).max(axis=1, initial=0.0) < REAL].real
-    at_infinity = int(np.count_nonzero(paths.ends == PathEnd.AT_INFINITY))
-    singular = len(paths.ends) - len(regular) - at_infinity - lost
-    statement = (
-        f"of 16 paths {len(regular)} ended at isolated configurations, {singular} at "
-        f"singular ones, {at_infinity} at infinity, {lost} were lost"
-    )
+    real = known[is_real_end(_largest_imaginary_parts(known))].real
+    configurations = longer.configurations_of_given_loop(real)
     return Assemblies(
-        configurations=longer.configurations_of_given_loop(real),
-        complete=not lost and not jumped,
-        statement=statement,
+        configurations=configurations,
+        complete=ends.are_complete,
+        statement=ends.statement(len(configurations)),
     )
 
 
@@ -173,7 +179,8 @@ class _LongerLoop:
         """Those of the configurations (k, 6) in which the further joints stand still,
         as configurations (m, n) of the given loop, rad in (-pi, pi]."""
         away = np.abs(_wrapped(angles[:, self.joints :] - self.still))
-        own = angles[np.all(away < EQUAL, axis=1), : self.joints].copy()
+        stands_still = is_same_end(away.max(axis=1, initial=0.0))
+        own = angles[stands_still, : self.joints].copy()
         own[:, 0] -= self.shift
         return _wrapped(own)
 
@@ -278,32 +285,106 @@ def _generic_loop(number: int) -> GenericLoop:
     return GenericLoop(table, follow_paths(loop, table).angles)
 
 
-def _lost_paths(paths: Paths) -> int:
-    """How many paths stopped on the way: no end of theirs is known."""
-    stopped = paths.ends == PathEnd.STOPPED
-    return int(np.count_nonzero(stopped & (paths.rest > NEAR_THE_END)))
+def _paths_in_time(start: GenericLoop, table: np.ndarray, deadline: Deadline) -> Paths:
+    """The paths of all configurations of ``start`` to ``table`` (3, 6), none of them
+    begun after the deadline."""
+    count = len(start.configurations)
+    angles = start.configurations.copy()
+    rest = np.ones(count)
+    ends = np.full(count, PathEnd.STOPPED)
+    for k in range(count):
+        if deadline.passed:
+            break
+        one = GenericLoop(start.table, start.configurations[k : k + 1])
+        path = follow_paths(one, table)
+        angles[k], rest[k], ends[k] = path.angles[0], path.rest[0], path.ends[0]
+    return Paths(angles, rest, ends)
+
+
+@dataclass(frozen=True)
+class _Ends:
+    """Where paths ended: at ``regular`` configurations (k, 6), complex; and how many of
+    them at ``singular`` ones, ``at_infinity``, on the way there (``distant``), or
+    ``lost``."""
+
+    regular: np.ndarray
+    singular: int
+    at_infinity: int
+    distant: int
+    lost: int
+
+    @staticmethod
+    def of(paths: Paths, table: np.ndarray) -> _Ends:
+        """From the paths to a geometry, ``table`` (3, 6)."""
+        has_arrived = paths.ends == PathEnd.ARRIVED
+        has_stopped = paths.ends == PathEnd.STOPPED
+        arrived = paths.angles[has_arrived]
+        is_singular = is_singular_end(_smallest_singular_values(arrived, table))
+        stopped, rest = paths.angles[has_stopped], paths.rest[has_stopped]
+        is_near = is_near_its_end(rest)
+        is_lost = is_in_reach(_largest_imaginary_parts(stopped[~is_near]))
+        return _Ends(
+            regular=arrived[~is_singular],
+            singular=int(np.count_nonzero(is_singular) + np.count_nonzero(is_near)),
+            at_infinity=int(np.count_nonzero(paths.ends == PathEnd.AT_INFINITY)),
+            distant=int(np.count_nonzero(~is_lost)),
+            lost=int(np.count_nonzero(is_lost)),
+        )
+
+    @property
+    def are_complete(self) -> bool:
+        """Whether no path was lost, and none went over to another one: two would end at
+        one configuration, or one of two conjugate configurations would be missing."""
+        in_reach = is_in_reach(_largest_imaginary_parts(self.regular))
+        configurations = self.regular[in_reach]
+        both = np.concatenate([configurations, configurations.conj()])
+        numbers = {len(_distinct(each)) for each in (configurations, both)}
+        return not self.lost and numbers == {len(configurations)}
+
+    def statement(self, real: int) -> str:
+        """Where the paths ended, as a sentence; ``real`` assemblies are known."""
+        regular = len(self.regular)
+        parts = [f"{regular} of 16 paths ended at isolated configurations"]
+        if regular:
+            parts[0] += f", {real or 'none'} of them real"
+        if self.singular:
+            parts.append(f"{self.singular} on motions or where the rank is low")
+        if self.at_infinity + self.distant:
+            parts.append(f"{self.at_infinity + self.distant} ran to infinity")
+        if self.lost:
+            parts.append(f"{self.lost} stopped on the way")
+        return ", ".join(parts)
+
+
+def _largest_imaginary_parts(angles: np.ndarray) -> np.ndarray:
+    """The largest size of an imaginary part (k,) in each of the configurations
+    (k, 6)."""
+    parts: np.ndarray = np.abs(angles.imag).max(axis=1, initial=0.0)
+    return parts
 
 
 def _smallest_singular_values(angles: np.ndarray, table: np.ndarray) -> np.ndarray:
     """The smallest singular value (k,) of F' at configurations (k, 6), complex."""
     if not len(angles):
         return np.empty(0)
-    links = np.zeros((JOINTS, 8), dtype=complex)
-    _fill_links(np.ascontiguousarray(table, dtype=complex), links)
-    jacobians = np.empty((len(angles), 6, JOINTS), dtype=complex)
-    for configuration, jacobian in zip(angles, jacobians, strict=True):
-        _closure(links, configuration, jacobian, np.empty(6, dtype=complex))
-    return np.linalg.svd(jacobians, compute_uv=False)[:, -1]
+    geometry = np.empty((4, JOINTS), dtype=complex)
+    _fill_geometry(np.ascontiguousarray(table, dtype=complex), geometry)
+    screws = np.empty((len(angles), 6, JOINTS), dtype=complex)
+    no_change = np.zeros((3, JOINTS), dtype=complex)
+    for configuration, of_configuration in zip(angles, screws, strict=True):
+        rights = np.empty((6, 2), dtype=complex)
+        _close(configuration, geometry, no_change, of_configuration, rights)
+    values: np.ndarray = np.linalg.svd(screws, compute_uv=False)[:, -1]
+    return values
 
 
 def _distinct(angles: np.ndarray) -> np.ndarray:
     """Configurations (k, 6), complex, without those that stand there before."""
-    kept: list[np.ndarray] = []
-    for configuration in angles:
-        gaps = [np.abs(_wrapped(configuration - other)).max() for other in kept]
-        if min(gaps, default=np.inf) > EQUAL:
-            kept.append(configuration)
-    return np.array(kept).reshape(-1, JOINTS)
+    gaps = _wrapped(angles[:, None] - angles[None])
+    is_equal = is_same_end(np.abs(gaps).max(axis=2, initial=0.0))
+    is_repeated = np.tril(is_equal, -1).any(axis=1)
+    distinct: np.ndarray = angles[~is_repeated]
+    return distinct
 
 
 def _wrapped(angles: np.ndarray) -> np.ndarray:
@@ -335,100 +416,194 @@ def _follow(theta, first, last):
     was made, is the parameter: near the end it keeps all its digits.
     """
     n = len(theta)
-    links = np.zeros((n, 8), np.complex128)
-    jacobian = np.empty((6, n), np.complex128)
-    velocity, trial = np.empty(n, np.complex128), np.empty(n, np.complex128)
-    before, velocity_before = np.empty(n, np.complex128), np.empty(n, np.complex128)
+    change = first - last
+    work = _workspace(n)
+    steps = work[3]  # the last step of Newton's method, and the velocity
+    if not _correct(theta, first, change, work, TRUSTED, CORRECTIONS) <= TRUSTED:
+        return 1.0, PathEnd.STOPPED.value
+    velocity, trial = steps[:, 1].copy(), np.empty(n, np.complex128)
+    before, velocity_before = np.zeros_like(trial), np.zeros_like(trial)
     rest, step, last_step = 1.0, FIRST_STEP, 0.0
-    regular = _velocity(theta, first, last, rest, links, jacobian, velocity)
+    whole_below = 1.0  # the rest below which a step of all of it is tried
     for _ in range(MOST_STEPS):
-        if not regular:
-            return rest, PathEnd.STOPPED.value
         at_the_end = rest < LAST_STRETCH
-        step = rest if at_the_end else min(step, rest)
-        for i in range(n):
-            trial[i] = theta[i] + step * velocity[i]
-            if last_step > 0:
-                slope = (theta[i] - before[i]) / last_step
-                bend = (2 * velocity[i] + velocity_before[i] - 3 * slope) / last_step
-                twist = (velocity[i] + velocity_before[i] - 2 * slope) / last_step**2
-                trial[i] += step**2 * (bend + step * twist)
-        _links_at(first, last, rest - step, links)
-        trusted = TRUSTED_AT_THE_END if at_the_end else TRUSTED
-        correction = _correct(trial, links, jacobian, trusted)
-        if not correction <= trusted:
-            step *= 0.4
-            if at_the_end or step < SHORTEST_SHARE * rest:
+        to_the_end = at_the_end or (step >= rest and rest <= whole_below)
+        step = rest if to_the_end else min(step, MOST_SHARE * rest)
+        _predict(theta, velocity, before, velocity_before, last_step, step, trial)
+        table = last + (rest - step) * change
+        most = LAST_CORRECTIONS if to_the_end else CORRECTIONS
+        correction = _correct(trial, table, change, work, TRUSTED, most)
+        if not correction <= TRUSTED:
+            whole_below = WHOLE_AGAIN * rest if to_the_end else whole_below
+            step *= SHORTER
+            if at_the_end or step < _shortest_share(rest) * rest:
                 return rest, PathEnd.STOPPED.value
             continue
-        for i in range(n):
-            before[i], velocity_before[i] = theta[i], velocity[i]
-            theta[i] = trial[i]
+        before[:], velocity_before[:] = theta, velocity
+        theta[:], velocity[:] = trial, steps[:, 1]
         rest, last_step = rest - step, step
-        if rest <= 0.0:
+        if to_the_end:
             return 0.0, PathEnd.ARRIVED.value
-        for i in range(n):
-            if abs(theta[i].imag) > INFINITE:
-                return rest, PathEnd.AT_INFINITY.value
-        regular = _velocity(theta, first, last, rest, links, jacobian, velocity)
+        if _largest_imaginary_part(theta) > INFINITE:
+            return rest, PathEnd.AT_INFINITY.value
         growth = (AIM / (correction + 1e-14)) ** 0.25
         step = min(LONGEST_STEP, step * min(2.0, max(0.5, growth)))
     return rest, PathEnd.STOPPED.value
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _correct(theta, links, jacobian, trusted):
+def _shortest_share(rest):
+    """The smallest share of the ``rest`` of a path that is a step."""
+    return SHORTEST_SHARE if rest > STIFF else SHORTEST_STIFF_SHARE
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _largest_imaginary_part(theta):
+    """The largest size of an imaginary part in ``theta`` (n,)."""
+    largest = 0.0
+    for angle in theta:
+        largest = max(largest, abs(angle.imag))
+    return largest
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _workspace(n):
+    """Geometry (4, n), screws (6, n), the closure error with its rate (6, 2) and what
+    solves for them (n, 2), to be filled."""
+    geometry, screws = np.empty((4, n), np.complex128), np.empty((6, n), np.complex128)
+    rights, steps = np.empty((6, 2), np.complex128), np.empty((n, 2), np.complex128)
+    return geometry, screws, rights, steps
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _predict(theta, velocity, before, velocity_before, last_step, step, trial):
+    """Fill the point ``trial`` (6,) a ``step`` ahead on the cubic through the last two
+    points and their velocities; on the tangent where there is no ``last_step``."""
+    for i in range(len(theta)):
+        trial[i] = theta[i] + step * velocity[i]
+        if last_step > 0:
+            slope = (theta[i] - before[i]) / last_step
+            bend = (2 * velocity[i] + velocity_before[i] - 3 * slope) / last_step
+            twist = (velocity[i] + velocity_before[i] - 2 * slope) / last_step**2
+            trial[i] += step**2 * (bend + step * twist)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _correct(theta, table, change, work, trusted, most):
     """The first correction of Newton's method on ``theta`` (6,), in place; infinite
-    where it is larger than ``trusted`` or the next ones do not converge."""
-    n = len(theta)
-    step, error = np.empty(n, np.complex128), np.empty(6, np.complex128)
-    first, size = 0.0, np.inf
-    for i in range(4):
-        _closure(links, theta, jacobian, error)
-        if not _solve(jacobian, error, step):
+    where it is larger than ``trusted`` or the next ones, at most ``most`` in all, do
+    not converge.
+
+    The first correction says how far the prediction was off; each following one is to
+    be smaller by `CONTRACTION`, which it is not where another configuration is near.
+    The last array of ``work`` holds the velocity along the path afterwards.
+    """
+    geometry, screws, rights, steps = work
+    _fill_geometry(table, geometry)
+    is_far_away = _largest_imaginary_part(theta) > FAR_AWAY
+    first, size = np.inf, np.inf
+    for i in range(most):
+        _close(theta, geometry, change, screws, rights)
+        if is_far_away:
+            _close_far_away(theta, table, screws, rights)
+        if not _solve(screws, rights, steps):
             return np.inf
-        size = 0.0
-        for j in range(n):
-            size = max(size, abs(step[j]))
+        former, size = size, 0.0
+        for j in range(len(theta)):
+            size = max(size, abs(steps[j, 0].real) + abs(steps[j, 0].imag))
         if i == 0:
             first = size
         if not size <= trusted:
             return np.inf
-        for j in range(n):
-            theta[j] -= step[j]
+        if i > 0 and size > max(CONTRACTION * former, ROUNDING):
+            return np.inf
+        theta -= steps[:, 0]
         if size < EXACT:
             break
     return first if size < CORRECTED else np.inf
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _velocity(theta, first, last, rest, links, jacobian, velocity):
-    """Fill ``velocity`` (6,), d theta / dt along the path; False where F' is
-    singular."""
-    _links_at(first, last, rest - DIFFERENCE, links)
-    change, error = np.empty(6, np.complex128), np.empty(6, np.complex128)
-    _closure(links, theta, jacobian, change)
-    _links_at(first, last, rest, links)
-    _closure(links, theta, jacobian, error)
-    for i in range(6):
-        change[i] = -(change[i] - error[i]) / DIFFERENCE
-    return _solve(jacobian, change, velocity)
+def _fill_geometry(table, geometry):
+    """Fill lengths, offsets, cosines and sines of the twists (4, 6) from a ``table``
+    (3, 6) of lengths, twists and offsets."""
+    for i in range(table.shape[1]):
+        geometry[0, i], geometry[1, i] = table[0, i], table[2, i]
+        geometry[2, i], geometry[3, i] = _cosine_and_sine(table[1, i])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _links_at(first, last, rest, links):
-    """Fill the links (6, 8) of the geometry between two tables (3, 6)."""
-    _fill_links(last + rest * (first - last), links)
+def _cosine_and_sine(angle):
+    """Cosine and sine of a complex angle."""
+    c, s = np.cos(angle.real), np.sin(angle.real)
+    e = np.exp(angle.imag)
+    cosh, sinh = (e + 1.0 / e) / 2, (e - 1.0 / e) / 2
+    return complex(c * cosh, -s * sinh), complex(s * cosh, c * sinh)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _closure(links, theta, jacobian, error):
-    """Fill the closure error (6,), the vector parts of the unit dual quaternion of the
-    whole loop, and its derivative ``jacobian`` (6, n).
+def _close(theta, geometry, change, screws, rights):
+    """Fill the joint screws (6, n), direction over moment, in ``rights`` (6, 2) the
+    closure error, and its rate where the table of the geometry has the rates ``change``
+    (3, 6).
 
-    The vector part of a quaternion vanishes for the identity only.
+    The screws are the derivatives of the error where the loop is closed. The error
+    (skew part of the rotation, translation) vanishes for half turns, too: no path leads
+    from a closed loop to one.
+    """
+    frame = np.zeros((3, 4), np.complex128)  # columns: three axes, origin
+    for r in range(3):
+        frame[r, r] = 1.0
+    normal = np.empty(6, np.complex128)
+    rights[:, 1] = 0.0
+    for i in range(len(theta)):
+        _fill_line(frame, 2, screws[:, i])
+        _advance(frame, theta[i], geometry[:, i])
+        _fill_line(frame, 0, normal)  # about which the twist turns
+        for r in range(6):
+            rights[r, 1] += change[1, i] * normal[r]
+        for r in range(3):
+            slide = change[0, i] * normal[r] + change[2, i] * screws[r, i]
+            rights[r + 3, 1] += slide
+    for r in range(3):
+        u, v = (r + 1) % 3, (r + 2) % 3
+        rights[r, 0] = 0.5 * (frame[v, u] - frame[u, v])
+        rights[r + 3, 0] = frame[r, 3]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _fill_line(frame, axis, line):
+    """Fill the ``line`` (6,), direction over moment, of an axis of a frame (3, 4)."""
+    for r in range(3):
+        u, v = (r + 1) % 3, (r + 2) % 3
+        line[r] = frame[r, axis]
+        line[r + 3] = frame[u, 3] * frame[v, axis] - frame[v, 3] * frame[u, axis]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _advance(frame, angle, link):
+    """Move a frame (3, 4) over a joint and its ``link`` (4,): length, offset, cosine and
+    sine of the twist."""
+    c, s = _cosine_and_sine(angle)
+    length, offset, ca, sa = link
+    for r in range(3):
+        x, y = c * frame[r, 0] + s * frame[r, 1], c * frame[r, 1] - s * frame[r, 0]
+        z = frame[r, 2]
+        frame[r, 3] += offset * z + length * x
+        frame[r, 0], frame[r, 1], frame[r, 2] = x, ca * y + sa * z, ca * z - sa * y
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _close_far_away(theta, table, screws, rights):
+    """Fill joint screws and closure error as `_close` does, from unit dual quaternions:
+    twice the vector parts of that of the whole loop, and their derivatives.
+
+    Where angles have large imaginary parts the entries of a quaternion grow with half
+    of these only, and it takes many digits less.
     """
     n = len(theta)
+    links = np.zeros((n, 8), np.complex128)
+    _fill_links(table, links)
     after = np.empty((n + 1, 8), np.complex128)
     turned, derivative = np.empty(8, np.complex128), np.empty(8, np.complex128)
     before, longer = np.empty(8, np.complex128), np.empty(8, np.complex128)
@@ -441,14 +616,14 @@ def _closure(links, theta, jacobian, error):
         before[r] = 0.0
     before[0] = 1.0 if after[0, 0].real >= 0 else -1.0
     for r in range(3):
-        error[r] = before[0] * after[0, r + 1]
-        error[r + 3] = before[0] * after[0, r + 5]
+        rights[r, 0] = 2 * before[0] * after[0, r + 1]
+        rights[r + 3, 0] = 2 * before[0] * after[0, r + 5]
     for i in range(n):
         _turn_by_right_angle(after[i], turned)
         _multiply(before, turned, derivative)
         for r in range(3):
-            jacobian[r, i] = derivative[r + 1] / 2
-            jacobian[r + 3, i] = derivative[r + 5] / 2
+            screws[r, i] = derivative[r + 1]
+            screws[r + 3, i] = derivative[r + 5]
         _turn(theta[i], links[i], turned)
         _multiply(before, turned, longer)
         before, longer = longer, before
@@ -474,7 +649,7 @@ def _multiply(p, q, out):
 @njit(cache=True, nogil=True, error_model="numpy")
 def _turn(angle, q, out):
     """Fill (cos(angle/2) + k sin(angle/2)) q (8,)."""
-    c, s = np.cos(angle / 2), np.sin(angle / 2)
+    c, s = _cosine_and_sine(angle / 2)
     _turn_by_right_angle(q, out)
     for r in range(8):
         out[r] = c * q[r] + s * out[r]
@@ -498,36 +673,42 @@ def _fill_links(table, links):
     `linkages.slices.elimination`, from a table (3, n) of a, alpha and R."""
     for i in range(table.shape[1]):
         a, alpha, offset = table[0, i], table[1, i], table[2, i]
-        c, s = np.cos(alpha / 2), np.sin(alpha / 2)
+        c, s = _cosine_and_sine(alpha / 2)
         links[i, 0], links[i, 1], links[i, 2], links[i, 3] = c, s, 0, 0
         links[i, 4], links[i, 5] = -a * s / 2, a * c / 2
         links[i, 6], links[i, 7] = offset * s / 2, offset * c / 2
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _solve(matrix, right, solution):
-    """Fill the ``solution`` (n,) of matrix x = right by elimination with row pivots;
-    False for a singular matrix. Overwrites both."""
-    n = len(right)
+def _solve(matrix, rights, solutions):
+    """Fill the ``solutions`` (6, 2) of matrix X = rights by elimination with row
+    pivots; False for a singular matrix. Overwrites both."""
+    n = len(rights)
     for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(matrix[i, k]) > abs(matrix[pivot, k]):
-                pivot = i
-        if not 0.0 < abs(matrix[pivot, k]) < np.inf:
+        pivot, largest = k, 0.0
+        for i in range(k, n):
+            size = abs(matrix[i, k].real) + abs(matrix[i, k].imag)
+            if size > largest:
+                pivot, largest = i, size
+        if not 0.0 < largest < np.inf:
             return False
         if pivot != k:
             for j in range(k, n):
                 matrix[k, j], matrix[pivot, j] = matrix[pivot, j], matrix[k, j]
-            right[k], right[pivot] = right[pivot], right[k]
+            for j in range(2):
+                rights[k, j], rights[pivot, j] = rights[pivot, j], rights[k, j]
+        inverse = 1.0 / matrix[k, k]
         for i in range(k + 1, n):
-            factor = matrix[i, k] / matrix[k, k]
+            factor = matrix[i, k] * inverse
             for j in range(k + 1, n):
                 matrix[i, j] -= factor * matrix[k, j]
-            right[i] -= factor * right[k]
+            for j in range(2):
+                rights[i, j] -= factor * rights[k, j]
+        matrix[k, k] = inverse
     for k in range(n - 1, -1, -1):
-        total = right[k]
-        for j in range(k + 1, n):
-            total -= matrix[k, j] * solution[j]
-        solution[k] = total / matrix[k, k]
+        for j in range(2):
+            total = rights[k, j]
+            for i in range(k + 1, n):
+                total -= matrix[k, i] * solutions[i, j]
+            solutions[k, j] = total * matrix[k, k]
     return True

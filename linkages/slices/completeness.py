@@ -1,8 +1,8 @@
 """What slices prove about the motions that were found: whether there is room for one
-more.
+more; and the isolated assemblies.
 
 In: the complete slices of every joint, and the traced motions. Out: how sure it is that
-no motion is missing, why, and configurations from which a missing one might be reached.
+nothing is missing, why, and configurations from which what is missing might be reached.
 
 The configurations with joint j at a given angle, real or not, number the same D_j at
 all but finitely many angles: they lie on complex curves on which the joint moves, and
@@ -18,14 +18,16 @@ Where there is room, the configurations that are not real can be followed from s
 slice (`linkages.slices.nonreal_tracking`): no motion appears as long as none of them
 becomes real but at the dead points of traced motions.
 
-All this is checked in doubles, without interval arithmetic. It is about motions: an
-assembly that cannot move shows in no slice.
+An assembly that cannot move shows in no slice. The isolated ones are ends of 16 paths
+(`linkages.slices.assemblies`), and what the paths lead to is handed on as starts.
+
+All this is checked in doubles, without interval arithmetic.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -33,10 +35,13 @@ import numpy as np
 from bifurc import torus
 from bifurc.branch import Branch
 from bifurc.curves.monitor import dead_points
+from bifurc.decisions import is_tied
 from bifurc.limits import Deadline
+from bifurc.search.canonical_order import order_values
 from bifurc.seeds import Audit, Level
 from linkages.decisions import is_same_dead_point
 from linkages.loop import Loop
+from linkages.slices.assemblies import Assemblies, isolated_assemblies
 from linkages.slices.elimination import Slice, slice_configurations
 from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets
 
@@ -46,6 +51,12 @@ FEWEST = 4  # joints that move on a motion, at least
 CUT = 0.3819660112501051  # of its length: where a curve without dead points is cut
 TURN = 2 * np.pi
 SAMPLES = 64  # of a motion, to see whether it turns a joint
+ALL_ASSEMBLIES = (
+    "no isolated assembly of full rank is missing: the 16 paths that lead to all of "
+    "them were followed"
+)
+MISSING_ASSEMBLIES = "isolated assemblies may be missing"
+RANDOM_ASSEMBLIES = "isolated assemblies are those that random starts reached"
 
 
 @dataclass(frozen=True)
@@ -57,10 +68,23 @@ class SliceAudit:
     slices: tuple[Slice, ...]
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
-        """How sure it is that ``branches`` are all motions; where numbers leave room,
-        the configurations that are not real are followed for about ``seconds``, so 0 is
-        for numbers alone."""
+        """How sure it is that ``branches`` are all motions, and the isolated assemblies
+        as starts.
+
+        Where numbers leave room, the configurations that are not real are followed for
+        about ``seconds``, and so are the paths to isolated assemblies: 0 is for numbers
+        alone.
+        """
         deadline = Deadline(seconds)
+        motions = self._judge_motions(branches, deadline)
+        if deadline.passed:
+            statement = f"{motions.statement}; {RANDOM_ASSEMBLIES}"
+            return replace(motions, statement=statement)
+        assemblies = isolated_assemblies(self.loop, deadline.left)
+        return _with_assemblies(motions, assemblies)
+
+    def _judge_motions(self, branches: Sequence[Branch], deadline: Deadline) -> Audit:
+        """How sure it is that ``branches`` are all motions."""
         nowhere = np.empty((0, self.loop.n))
         if not all(cut.is_complete for cut in self.slices):
             return Audit(Level.ESTIMATED, self._incompleteness(), nowhere)
@@ -112,7 +136,9 @@ class SliceAudit:
         for of_joint, cut in zip(passes, self.slices, strict=True):
             widths.append(of_joint.room(_number(cut)))
         joints = [joint for joint, width in enumerate(widths) if width > 0]
-        return sorted(joints, key=lambda joint: (widths[joint], joint))
+        room = np.array([widths[joint] for joint in joints])
+        # a symmetry makes widths equal, and then rounding would decide
+        return [joints[k] for k in order_values(room, is_tied.threshold)]
 
     def _follow_nonreal(
         self, passes: Sequence[Passes], room: Sequence[int], deadline: Deadline
@@ -170,6 +196,20 @@ class SliceAudit:
         if following.room:
             rest = f"; no motion turns {_joint_names(following.room)} alone"
         return f"no motion is missing: at every angle {', and '.join(parts)}{rest}"
+
+
+def _with_assemblies(motions: Audit, assemblies: Assemblies) -> Audit:
+    """The audit of motions with what is known of isolated assemblies."""
+    level = motions.level
+    known = ALL_ASSEMBLIES
+    if not assemblies.complete:
+        known = f"{MISSING_ASSEMBLIES}: {assemblies.statement}"
+        level = Level.CERTIFIED if level is Level.PROVED else level
+    return Audit(
+        level=level,
+        statement=f"{motions.statement}; {known}",
+        starts=np.concatenate([motions.starts, assemblies.configurations]),
+    )
 
 
 @dataclass(frozen=True)

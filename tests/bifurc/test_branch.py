@@ -5,6 +5,7 @@ import pytest
 
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
+from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
@@ -254,3 +255,32 @@ def test_a_branch_is_shown_in_a_few_lines(traced, parabola):
     assert len(others) == 2
     assert f"{len(branch.pieces)} pieces" in others[1]
     assert "left the region" in repr(parabola)
+
+
+def test_a_closed_curve_begun_elsewhere_is_the_same_curve(traced):
+    _, branch = traced
+    middle = 0.5 * (branch.breaks[3] + branch.breaks[4])
+    beside_a_break = branch.breaks[5] + 1e-6 * branch.radii[5]
+    for begin in (0.0, middle, branch.breaks[3], beside_a_break, branch.length - 1e-9):
+        moved = branch.begun_at(begin)
+        assert moved.length == branch.length
+        assert moved.winding.tolist() == branch.winding.tolist()
+        assert np.all(np.diff(moved.breaks) > 1e-6)
+        s = np.linspace(0.0, branch.length, 301)
+        gap = moved(s) - branch(begin + s)
+        assert np.abs(gap).max() < 1e-12
+        assert np.abs(moved(s, 1) - branch(begin + s, 1)).max() < 1e-10
+
+
+def test_no_open_curve_is_begun_elsewhere(parabola):
+    with pytest.raises(ProblemError, match="a closed curve"):
+        parabola.begun_at(0.5)
+
+
+def test_whole_periods_move_a_curve_of_angles(traced):
+    _, branch = traced
+    turns = np.array([1, 0, -2, 0, 0, 3])
+    moved = branch.moved_by_periods(turns)
+    s = np.linspace(0.0, branch.length, 31)
+    assert moved(s) - branch(s) == pytest.approx(np.tile(2 * np.pi * turns, (31, 1)))
+    assert np.abs(moved(s, 1) - branch(s, 1)).max() == 0.0

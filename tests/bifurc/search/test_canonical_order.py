@@ -3,13 +3,20 @@
 import numpy as np
 import pytest
 
-from bifurc.branch import Branch
+from bifurc.atlas import Surface
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.canonical_order import order_branches, order_points
+from bifurc.search.canonical_order import (
+    order_branches,
+    order_points,
+    order_surfaces,
+    order_values,
+)
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
+from bifurc.surfaces.covering import cover_surface
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
+from tests.bifurc.known_surfaces import Level
 
 NO_PERIODS = np.full(2, np.inf)
 
@@ -26,28 +33,7 @@ def circles(*centers):
 
 def beginning_elsewhere(branch):
     """The same closed curve, begun at its third piece and run the other way."""
-    shifted = Branch(
-        pieces=np.roll(branch.pieces, -2, axis=0),
-        centers=np.concatenate(
-            [branch.centers[2:], branch.centers[:2] + branch.length]
-        ),
-        radii=np.roll(branch.radii, -2),
-        breaks=np.concatenate([branch.breaks[2:], branch.breaks[1:3] + branch.length]),
-        residuals=np.roll(branch.residuals, -2),
-        periods=branch.periods,
-        outcome=branch.outcome,
-    )
-    first = shifted.breaks[0]
-    moved = Branch(
-        shifted.pieces,
-        shifted.centers - first,
-        shifted.radii,
-        shifted.breaks - first,
-        shifted.residuals,
-        shifted.periods,
-        shifted.outcome,
-    )
-    return moved.reversed()
+    return branch.begun_at(branch.breaks[2]).reversed()
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -131,7 +117,50 @@ def test_groups_come_before_places():
     assert order_points(points, NO_PERIODS, 1.0, groups=groups).tolist() == [1, 2, 0]
 
 
+def test_values_but_for_rounding_equal_keep_their_order():
+    assert order_values(np.array([1.0, 0.5, 1.0 - 1e-9]), 1e-6).tolist() == [1, 0, 2]
+    assert order_values(np.array([1.0, 0.5, 1.0 - 1e-5]), 1e-6).tolist() == [1, 2, 0]
+
+
+def one_sphere(middle, begin):
+    """A sphere on the x axis as a surface, charts laid out from the point at ``begin``
+    (rad) from its far end."""
+    problem = Level(
+        lambda x, y, z: (x - middle) ** 2 + y * y + z * z - 0.25,
+        lambda x, y, z: (2 * (x - middle), 2 * y, 2 * z),
+        2.0,
+    )
+    far = middle + 0.5 * np.cos(begin)
+    start = np.array([[far, 0.5 * np.sin(begin), 0.0]])
+    charts = cover_surface(problem, start, radius=0.5)
+    return problem, Surface(2, start, charts=charts)
+
+
+def spheres_from(begin):
+    """Two equal spheres as surfaces, the left one first."""
+    problem, left = one_sphere(-1.0, begin)
+    _, right = one_sphere(1.0, 0.7 * begin)
+    return problem, [left, right]
+
+
+def test_equal_surfaces_stand_in_one_order_whatever_their_charts():
+    for begin in (0.0, 1.0):
+        problem, surfaces = spheres_from(begin)
+        for listed in (surfaces, surfaces[::-1]):
+            first = listed[order_surfaces(problem, listed)[0]]
+            assert first.charts.centers[:, 0].min() > 0
+
+
+def test_surfaces_stand_by_dimension_and_those_with_charts_first():
+    problem, surfaces = spheres_from(0.0)
+    spread = Surface(2, np.zeros((4, 3)))
+    solid = Surface(3, np.zeros((2, 3)))
+    order = order_surfaces(problem, [solid, spread, *surfaces])
+    assert order[2:].tolist() == [1, 0]
+
+
 def test_nothing_to_order_is_no_error():
     problem = circles((0.0, 0.0))
     assert order_branches(problem, []).tolist() == []
+    assert order_surfaces(problem, []).tolist() == []
     assert order_points(np.empty((0, 2)), NO_PERIODS, 1.0).tolist() == []

@@ -116,3 +116,33 @@ def _random_table(rng):
 def test_a_loop_of_seven_joints_is_refused():
     with pytest.raises(GeometryError, match="number of joints: 7"):
         isolated_assemblies(Loop((1,) * 7, (1,) * 7, (0,) * 7))
+
+
+def test_no_path_is_begun_after_the_time_is_over():
+    found = isolated_assemblies(SIXTEEN, seconds=0.0)
+    assert not found.complete
+    assert not len(found.configurations)
+    assert "16 stopped on the way" in found.statement
+
+
+def test_paths_far_from_real_configurations_are_followed_by_quaternions():
+    # three of its paths end at angles with imaginary parts of 4 to 9
+    table = assemblies._with_six_joints(entry("yu-baker").build()).table
+    paths = follow_paths(assemblies._stored_loop(), table)
+    ends = assemblies._Ends.of(paths, table)
+    far = ends.regular[np.abs(ends.regular.imag).max(axis=1) > 4]
+    assert len(far) == 4
+    _, screws, rights, _ = assemblies._workspace(6)
+    for configuration in far:
+        assemblies._close_far_away(configuration, table.astype(complex), screws, rights)
+        assert np.abs(rights[:, 0]).max() < 1e-9
+
+
+def test_a_path_that_goes_over_to_another_one_is_noticed():
+    one, other = 0.3 + 0.1j, 0.5 - 0.2j
+    pair = np.array([[one] * 6, [np.conj(one)] * 6])
+    alone = np.array([[one] * 6, [other] * 6])
+    twice = np.array([[one] * 6, [one] * 6])
+    for regular, complete in ((pair, True), (alone, False), (twice, False)):
+        ends = assemblies._Ends(regular, 14, 0, 0, 0)
+        assert ends.are_complete is complete

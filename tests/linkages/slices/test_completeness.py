@@ -1,5 +1,7 @@
 """What the slices prove of a list of motions, and that no planted motion refutes it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,8 @@ from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
+from linkages.slices import completeness
+from linkages.slices.assemblies import isolated_assemblies
 
 # near this twist of a plane-symmetric Bricard linkage a second, small motion appears
 # beside the large one
@@ -172,3 +176,48 @@ def test_random_members_are_proved_and_other_seeds_find_the_same(name, seed):
     assert [a.completeness.level for a in atlases] == ["proved"] * 2
     lengths = [sorted(form.branch.length for form in a.forms) for a in atlases]
     np.testing.assert_allclose(lengths[0], lengths[1], rtol=1e-9)
+
+
+# --- isolated assemblies --------------------------------------------------------------
+
+# the 6R of the CUIK suite with 16 real assemblies: see test_assemblies.py
+SIXTEEN = Loop(
+    (0.3, 1, 0, 1.5, 0, 1.1353),
+    (np.pi / 2, 0.0175, np.pi / 2, 0.0175, np.pi / 2, 1.4716),
+    (0.1049, 0.0106, 0, 0.2, 0, 0),
+)
+ONE_START = SearchSettings(starts=1)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    ("loop", "count"), [(SIXTEEN, 16), (entry("yu-baker-two-ratios").build(), 6)]
+)
+def test_every_isolated_assembly_is_in_the_atlas_whatever_the_seed(loop, count, seed):
+    atlas = explore(LoopClosure(loop), settings=ONE_START, seed=seed)
+    assert len(atlas.rigid) == count
+    assert atlas.completeness.level == "proved"
+    assert "no isolated assembly of full rank is missing" in (
+        atlas.completeness.statement
+    )
+
+
+def test_without_time_isolated_assemblies_are_said_to_be_those_of_random_starts():
+    problem = LoopClosure(SIXTEEN)
+    atlas = explore(problem, settings=NUMBERS_ALONE)
+    assert "are those that random starts reached" in atlas.completeness.statement
+    audit = problem.seeds(np.random.default_rng(0), 1).audit([], 1e-9)
+    assert "are those that random starts reached" in audit.statement
+    assert not len(audit.starts)
+
+
+def test_nothing_is_proved_where_a_path_to_an_assembly_is_lost(monkeypatch):
+    def lose_one(loop, seconds):
+        found = isolated_assemblies(loop, seconds)
+        return replace(found, complete=False, statement="1 stopped on the way")
+
+    monkeypatch.setattr(completeness, "isolated_assemblies", lose_one)
+    atlas = explore(LoopClosure(entry("bennett").build()))
+    assert atlas.completeness.level == "certified"
+    assert "isolated assemblies may be missing" in atlas.completeness.statement
+    assert "1 stopped on the way" in atlas.completeness.statement

@@ -1,0 +1,210 @@
+"""Where a branch begins and which way it runs, by the curve itself: the seed from which
+it was traced and last bits do not change it.
+
+The start of a closed curve is where a fixed function of the unknowns is largest. Where
+two of its maxima are nearly equal, as they are on a curve that a symmetry maps to
+itself, or where the maximum is flat, the next function decides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.decisions import is_slow_at_start, is_unclear_start
+from bifurc.numerics.roots import bracketed_roots
+from bifurc.problem import Problem
+from bifurc.torus import wrap
+
+__all__ = ["canonical_course", "wrapped_periods"]
+
+FUNCTIONS = 8  # that are tried
+# By how much a maximum stands above all others, over the range of the function.
+CLEAR_MARGIN = 1e-3
+PLACES = (np.arange(10) + 0.5) / 10  # of every piece, where the function is sampled
+# Of the samples: so close to the highest, over the range, are those beside a top that
+# may be the highest.
+HIGH = 0.1
+# Of a maximum: its second derivative times the square of the length of the curve, over
+# the range of the function (20 for a cosine once round). Its place is known to rounding
+# over this.
+CLEAR_BEND = 0.1
+BEND_STEP = 1e-3  # of the difference for it, over the length of the curve
+SEAM = 1e-7  # share of a period: so near to its end an unknown begins at the end
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+
+
+def canonical_course(problem: Problem, branch: Branch) -> Branch:
+    """The same curve with a start and a direction of its own.
+
+    It winds forwards: the first winding number that is not zero is positive. A curve
+    that does not wind leaves its start with the first unknown that clearly moves
+    growing. An open curve begins at that of its ends where the function is larger.
+    Periodic unknowns begin within half a period of zero.
+    """
+    if not len(branch.pieces):
+        return branch
+    if branch.closed:
+        branch = branch.begun_at(_clearest_top(problem, branch))
+        if not _runs_forwards(branch):
+            branch = branch.reversed()
+    elif _begins_at_the_lower_end(problem, branch):
+        branch = branch.reversed()
+    start = branch(0.0)
+    periods = wrapped_periods(problem)
+    wrapped = wrap(start, periods, within=SEAM)
+    return branch.moved_by_periods(_turns(wrapped - start, periods))
+
+
+def wrapped_periods(problem: Problem) -> np.ndarray:
+    """Periods (n,) of the unknowns to wrap; inf for those whose bounds reach
+    farther."""
+    half = 0.5 * problem.periods
+    low, high = problem.bounds.T
+    is_bounded = np.isfinite(problem.bounds).any(axis=1)
+    reaches_farther = is_bounded & ((low < -half) | (high > half))
+    return np.where(reaches_farther, np.inf, problem.periods)
+
+
+def _turns(gaps: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """Gaps (n,) in whole periods, 0 where there is none."""
+    turns = np.zeros(len(periods))
+    periodic = np.isfinite(periods)
+    turns[periodic] = np.rint(gaps[periodic] / periods[periodic])
+    return turns
+
+
+# --- where it begins ------------------------------------------------------------------
+
+
+class _Top(NamedTuple):
+    """The arclength at which a function is largest on a curve, and how clearly: by its
+    margin and its bend, each over what is clear."""
+
+    arclength: float
+    clarity: float
+
+
+def _clearest_top(problem: Problem, branch: Branch) -> float:
+    """The arclength at which a closed curve begins: the top of the first function that
+    has a clear one, or else of the one that has the clearest."""
+    samples = branch.places(PLACES).ravel()
+    points = branch(samples)
+    clearest = _Top(0.0, 0.0)
+    for number in range(FUNCTIONS):
+        height = _Height.of(problem, number, branch)
+        top = height.top(samples, points)
+        if not is_unclear_start(top.clarity):
+            return top.arclength % branch.length
+        if top.clarity > clearest.clarity:
+            clearest = top
+    return clearest.arclength % branch.length
+
+
+@dataclass(frozen=True)
+class _Height:
+    """A function along a closed curve: the sum over the unknowns of ``weights`` (n,)
+    times the cosine of an angle beyond its phase, or times an unknown without a period
+    over the scale.
+
+    ``angular`` (n,) and ``linear`` (n,) are the unknowns' factors, 0 for those of the
+    other kind.
+    """
+
+    branch: Branch
+    weights: np.ndarray
+    phases: np.ndarray
+    angular: np.ndarray
+    linear: np.ndarray
+
+    @staticmethod
+    def of(problem: Problem, number: int, branch: Branch) -> _Height:
+        """Function ``number`` of those that are tried: their coefficients are spread
+        evenly (Weyl 1916), so that no symmetry of a problem respects them."""
+        columns = np.arange(1, problem.n + 1) + number * problem.n
+        weights = 0.5 + (columns * GOLDEN) % 1.0
+        phases = 2 * np.pi * ((columns * np.sqrt(2.0)) % 1.0)
+        periodic = np.isfinite(problem.periods)
+        angular = np.zeros(problem.n)
+        angular[periodic] = 2 * np.pi / problem.periods[periodic]
+        signs = np.where(np.sin(phases) > 0, 1.0, -1.0)
+        linear = np.where(periodic, 0.0, signs / problem.scale)
+        return _Height(branch, weights, phases, angular, linear)
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Heights (k,) of points (k, n)."""
+        waves = np.cos(points * self.angular - self.phases)
+        terms = np.where(self.angular > 0, waves, points * self.linear)
+        heights: np.ndarray = terms @ self.weights
+        return heights
+
+    def slopes(self, s: np.ndarray) -> np.ndarray:
+        """Rates of the height (k,) at arclengths (k,)."""
+        angles = self.branch(s) * self.angular - self.phases
+        gradients = self.linear - self.angular * np.sin(angles)
+        rates = gradients * self.branch(s, 1)
+        slopes: np.ndarray = rates @ self.weights
+        return slopes
+
+    def top(self, samples: np.ndarray, points: np.ndarray) -> _Top:
+        """Where the height is largest on the curve, of which ``samples`` (k,) are
+        arclengths in order and ``points`` (k, n) what stands there."""
+        heights = self.at(points)
+        extent = float(np.ptp(heights))
+        is_high = heights > heights.max() - HIGH * extent
+        is_top = (heights >= np.roll(heights, 1)) & (heights > np.roll(heights, -1))
+        low, high = np.roll(samples, 1), np.roll(samples, -1)
+        low[0] -= self.branch.length
+        high[-1] += self.branch.length
+        near = is_high & is_top
+        tops = bracketed_roots(self.slopes, low[near], high[near])
+        order = np.argsort(self.at(self.branch(tops)))
+        if not len(tops):
+            return _Top(0.0, 0.0)
+        best = float(tops[order[-1]])
+        return _Top(best, min(self._margin(tops[order]), self._bend(best)) / extent)
+
+    def _margin(self, tops: np.ndarray) -> float:
+        """By how much the last of the ``tops`` (k,), the lowest first, stands above the
+        one before it, over what is clear."""
+        heights = self.at(self.branch(tops[-2:]))
+        margin = heights[-1] - heights[0] if len(tops) > 1 else np.inf
+        return float(margin) / CLEAR_MARGIN
+
+    def _bend(self, top: float) -> float:
+        """Minus the second derivative at a top times the square of the length of the
+        curve, over what is clear."""
+        step = BEND_STEP * self.branch.length
+        before, after = self.slopes(np.array([top - step, top + step]))
+        bend = (before - after) / (2 * step)
+        return float(bend) * self.branch.length**2 / CLEAR_BEND
+
+
+# --- which way it runs ----------------------------------------------------------------
+
+
+def _runs_forwards(branch: Branch) -> bool:
+    """Whether a closed curve winds forwards, or without winding leaves its start with
+    the first unknown that clearly moves growing."""
+    turning = branch.winding[branch.winding != 0]
+    if len(turning):
+        return bool(turning[0] > 0)
+    rates = branch(0.0, 1)
+    sizes = np.abs(rates)
+    moving = rates[~is_slow_at_start(sizes, sizes.max())]
+    return bool(moving[0] > 0)
+
+
+def _begins_at_the_lower_end(problem: Problem, branch: Branch) -> bool:
+    """Whether an open curve ends where the first function that tells its ends apart is
+    larger."""
+    ends = branch(np.array([0.0, branch.length]))
+    margin = CLEAR_MARGIN * branch.length / problem.scale
+    for number in range(FUNCTIONS):
+        begin, end = _Height.of(problem, number, branch).at(ends)
+        if abs(end - begin) > margin:
+            return bool(end > begin)
+    return False
