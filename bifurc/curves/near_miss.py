@@ -7,13 +7,15 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.numerics.null_spaces import Decomposition, decompose
+from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
 from bifurc.problem import Problem
 
 __all__ = ["NearMissValue", "near_miss_value"]
 
 # Rounding of F and of the singular values of F', over the magnitude.
 RESIDUAL_ROUNDING, VALUE_ROUNDING = 2e-15, 4e-15
+# Step, over the scale, that is longer than anything rounding explains.
+LONGEST_STEP = 1e-3
 
 
 class NearMissValue(NamedTuple):
@@ -34,15 +36,18 @@ def near_miss_value(
     Along the curve it does not change to first order.
     """
     point = branch(s)
-    point = point + _visible_step(decompose(problem, point[None]), rank)
+    step = _visible_step(decompose(problem, point[None]), rank)
+    if np.linalg.norm(step) < LONGEST_STEP * problem.scale:
+        point = point + step
     decomposition = decompose(problem, point[None])
     sigma = decomposition.sigma[0, :rank]
     across = decomposition.right[0, :rank]
     left = decomposition.left[0, :, rank - 1]
     bend = np.tensordot(left, problem.hessian(point), axes=1) / problem.magnitude
     gradient = bend @ across[-1]
-    shifts = np.abs(across @ gradient) * RESIDUAL_ROUNDING / sigma
-    return NearMissValue(float(sigma[-1]), VALUE_ROUNDING + float(shifts.sum()))
+    shifts = np.abs(across @ gradient) * RESIDUAL_ROUNDING / np.maximum(sigma, TINY)
+    error = VALUE_ROUNDING + float(shifts.sum())
+    return NearMissValue(float(sigma[-1]), min(error, float(sigma[0])))
 
 
 def _visible_step(decomposition: Decomposition, rank: int) -> np.ndarray:
@@ -50,6 +55,7 @@ def _visible_step(decomposition: Decomposition, rank: int) -> np.ndarray:
     which the residual is more than rounding: a small singular value amplifies that."""
     components = decomposition.left[0, :, :rank].T @ decomposition.residuals[0]
     is_visible = np.abs(components) > RESIDUAL_ROUNDING
-    shares = components[is_visible] / decomposition.sigma[0, :rank][is_visible]
+    sigma = np.maximum(decomposition.sigma[0, :rank][is_visible], TINY)
+    shares = components[is_visible] / sigma
     step: np.ndarray = -shares @ decomposition.right[0, :rank][is_visible]
     return step

@@ -67,8 +67,13 @@ def _jumps(
     return np.column_stack([jumps - handover, jumps + handover])
 
 
-def finer_settings(settings: TraceSettings) -> Iterator[TraceSettings]:
-    """With what a branch is traced again that has no certificate, in turn."""
+def finer_settings(
+    problem: Problem, settings: TraceSettings
+) -> Iterator[TraceSettings]:
+    """With what a branch is traced again that has no certificate, in turn; nothing where
+    no certificate could show that it is right then."""
+    if not is_certifiable(problem):
+        return
     longest = min(LONGEST, settings.longest)
     shortest = max(SHORTEST, settings.shortest)
     yield replace(settings, tolerance=FINEST, longest=longest)

@@ -329,7 +329,7 @@ class Search:
         one of which least is refused; with the starts that all of them led to."""
         best = coarse.traced
         starts = coarse.starts
-        for settings in finer_settings(self.settings.tracing):
+        for settings in finer_settings(self.problem, self.settings.tracing):
             if self.is_over:
                 break
             branch = trace_branch(self.problem, *start, settings, LENIENT)

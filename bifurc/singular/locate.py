@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.decisions import Decision, is_located, solves_at_point, vanishes
+from bifurc.decisions import Decision, is_located, is_null, solves_at_point, vanishes
 from bifurc.problem import Problem
 
 __all__ = ["LocatedPoint", "block_slice", "locate_singular_point"]
@@ -63,11 +63,12 @@ def locate_singular_point(
         return None
     u = _solve_regular_equations(problem, run.u, nullity)
     gap = float(problem.gaps(u[None])[0])
-    if not solves_at_point(gap, _unit(misclosure, solves_at_point)):
+    largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
+    is_solution = solves_at_point(gap, _unit(misclosure, solves_at_point))
+    if not is_solution or not is_null(largest_null):
         return None
     located = _with_error(problem, run, u, reach)
     doubt = misclosure + located.error / problem.scale
-    largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
     return located if vanishes(largest_null, _unit(doubt, vanishes)) else None
 
 

@@ -312,7 +312,7 @@ def test_indices_of_nothing_are_refused(atlas: Atlas, name: str, index: int) -> 
         ("labels", "{"),
         ("labels", "[1]"),
         ("certificate", "{}"),
-        ("sample_nodes", 7),
+        ("sample_nodes", 10007),
         ("sample_nodes", 0),
         ("polygon_size", 5),
     ],

@@ -51,19 +51,19 @@ def traced(problem, branch: Branch) -> TracedBranch:
 def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
     clear = CirclesBesideSphere(1e-3)
     branch = trace_branch(clear, clear.points(3)[1])
-    assert doubts_of(clear, [traced(clear, branch)], [], []) == ()
+    assert doubts_of(clear, [traced(clear, branch)], [], [], []) == ()
     # the great circle is a solution whatever e is
     blurred = CirclesBesideSphere(1e-10)
-    (doubt,) = doubts_of(blurred, [traced(blurred, branch)], [], [])
+    (doubt,) = doubts_of(blurred, [traced(blurred, branch)], [], [], [])
     assert doubt.startswith("form 1 may be a curve or a part of a surface")
 
 
 def test_a_form_that_stalls_at_nothing_known_is_in_doubt():
     problem = CirclesBesideSphere(1.0)
     branch = trace_branch(problem, problem.points(3)[1])
-    assert doubts_of(problem, [traced(problem, branch)], [], []) == ()
+    assert doubts_of(problem, [traced(problem, branch)], [], [], []) == ()
     loose = replace(branch, outcome=Outcome.STALLED)
-    (doubt,) = doubts_of(problem, [traced(problem, loose)], [], [])
+    (doubt,) = doubts_of(problem, [traced(problem, loose)], [], [], [])
     assert doubt.startswith("form 1 stalls at 2 of its 2 ends")
 
 
