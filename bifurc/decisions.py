@@ -230,6 +230,13 @@ is_closed_on_surface = Decision(
     is_solution.threshold,
     "on a surface it is rounding, 1e-15; curves beside one leave their distance from it",
 )
+misses_by_rounding = Decision(
+    "exact but for rounding",
+    "what a surface or a singular point misses is rounding",
+    "largest residual on the surface, or at the point",
+    5e-15,
+    "rounding of F is 1e-15 or less; what is between this and 1e-12 is in doubt",
+)
 is_known_curve = Decision(
     "curve without doubt",
     "a form is a curve, and not a part of a surface",

@@ -18,15 +18,20 @@ from bifurc.curves.certificate import (
 from bifurc.curves.continuation import TraceSettings
 from bifurc.curves.jumps import changes_of_course, kinks, repeats_itself
 from bifurc.curves.monitor import Profile
+from bifurc.numerics.blur import known_to
 from bifurc.problem import Problem
+from bifurc.search.findings import TracedBranch
 
-__all__ = ["certificate_of", "finer_settings"]
+__all__ = ["certificate_of", "finer_settings", "may_be_mended"]
 
 FINEST = 1e-14  # tolerance with which a refused branch is traced again
 LONGEST = 0.1  # trusted radius, in scales
 # Beside a crossing near something larger rounding bends a curve over from farther away:
 # shorter radii than this, in scales, are not trusted, and a bridge is laid across.
 SHORTEST = 1e-3
+# Distance, over the scale, to which a point is known: from there on finer steps follow
+# rounding.
+BLURRED = 1e-10
 
 
 def certificate_of(
@@ -67,13 +72,20 @@ def _jumps(
     return np.column_stack([jumps - handover, jumps + handover])
 
 
-def finer_settings(
-    problem: Problem, settings: TraceSettings
-) -> Iterator[TraceSettings]:
-    """With what a branch is traced again that has no certificate, in turn; nothing where
-    no certificate could show that it is right then."""
-    if not is_certifiable(problem):
-        return
+def may_be_mended(problem: Problem, traced: TracedBranch) -> bool:
+    """Whether a branch that is refused may be traced better: not where its points are
+    known so poorly that doubles do not follow one arc."""
+    certificate = traced.certificate
+    if certificate is None or not is_certifiable(problem):
+        return False
+    middles = certificate.gaps.mean(axis=1)
+    if not len(middles):
+        return True
+    return bool(np.any(known_to(problem, traced.branch(middles)) < BLURRED))
+
+
+def finer_settings(settings: TraceSettings) -> Iterator[TraceSettings]:
+    """With what a branch is traced again that has no certificate, in turn."""
     longest = min(LONGEST, settings.longest)
     shortest = max(SHORTEST, settings.shortest)
     yield replace(settings, tolerance=FINEST, longest=longest)

@@ -9,7 +9,7 @@ import numpy as np
 from bifurc.atlas import Form, MeetingPoint, Surface
 from bifurc.branch import Outcome
 from bifurc.curves.certificate import Certificate
-from bifurc.decisions import closes_to_rounding, is_known_curve
+from bifurc.decisions import is_known_curve, misses_by_rounding
 from bifurc.numerics.blur import known_to, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
@@ -64,9 +64,9 @@ def _doubts_of_surface(problem: Problem, surface: Surface) -> list[str]:
 def _is_rounding(problem: Problem, missed: float, points: np.ndarray) -> bool:
     """Whether a residual is no more than rounding, which is measured at points (k, n)
     where it is not plain."""
-    if closes_to_rounding(missed):
+    if misses_by_rounding(missed):
         return True
-    return closes_to_rounding(missed, rounding_unit(problem, points))
+    return misses_by_rounding(missed, rounding_unit(problem, points))
 
 
 def _misclosure(problem: Problem, surface: Surface) -> float:

@@ -33,7 +33,7 @@ from bifurc.numerics.blur import distance_to_singular
 from bifurc.problem import Problem
 from bifurc.search.assembly import polished
 from bifurc.search.canonical_course import canonical_course
-from bifurc.search.certification import certificate_of, finer_settings
+from bifurc.search.certification import certificate_of, finer_settings, may_be_mended
 from bifurc.search.closure_gap import valley_points
 from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import NO_DOUBT, Findings, PointSighting, TracedBranch
@@ -317,7 +317,7 @@ class Search:
             if near is not None:
                 return _Trace(SeedFate(Fate.ON_NEAR_MOTION, near), [])
         examined = self._examine_branch(branch, misclosure)
-        if examined.traced.is_refused:
+        if examined.traced.is_refused and may_be_mended(self.problem, examined.traced):
             examined = self._trace_finer(start, examined)
             number = findings.branch_along(examined.traced.branch)
         if number is None:
@@ -329,7 +329,7 @@ class Search:
         one of which least is refused; with the starts that all of them led to."""
         best = coarse.traced
         starts = coarse.starts
-        for settings in finer_settings(self.problem, self.settings.tracing):
+        for settings in finer_settings(self.settings.tracing):
             if self.is_over:
                 break
             branch = trace_branch(self.problem, *start, settings, LENIENT)

@@ -33,6 +33,7 @@ def test_every_trace_is_certified_but_at_places_that_are_singular_to_rounding(ca
     assert {t.certificate for t in traces} == {
         "certified",
         "certified up to the singular points",
+        "certified up to places singular to rounding",
     }
     # a four-bar has no other form to cross; both special double-Goldberg forms that are
     # traced do
