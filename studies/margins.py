@@ -12,6 +12,7 @@ a page of the docs.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -35,8 +36,18 @@ from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
 from studies.hard_cases import crossings
 from studies.near_misses import near_misses
+from studies.near_something_larger import FAMILIES
 
-__all__ = ["DECISIONS", "Margin", "histogram", "margin_of", "page", "random_curve"]
+__all__ = [
+    "DECISIONS",
+    "PAGE",
+    "Margin",
+    "heading",
+    "histogram",
+    "margin_of",
+    "page",
+    "random_curve",
+]
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -47,8 +58,10 @@ LOWEST, HIGHEST = (
     4,
 )  # decades of the histogram; what lies outside is put at its ends
 CURVES = 40
+DECADES = (2.0, 5.0, 8.0)  # of the members of families that end in something larger
 DEGREE = 4  # of the random plane curves
 PAGE = Path("docs/decisions.md")
+WIDTH = 118  # of the lines of the page
 
 
 class Margin(NamedTuple):
@@ -148,6 +161,15 @@ def random_curve(rng: np.random.Generator) -> FunctionProblem:
     return FunctionProblem(value, [(-2.0, 2.0), (-2.0, 2.0)])
 
 
+def _near_something_larger() -> Iterator[Case]:
+    """Members of families that end in a surface, or in more motions."""
+    for family in FAMILIES:
+        for decades in DECADES:
+            member = family.member(10.0**-decades)
+            search = partial(map_linkage, member, settings=SETTINGS)
+            yield Case("near something larger", search)
+
+
 def _plane_curves(count: int) -> Iterator[Case]:
     """Random plane curves."""
     rng = np.random.default_rng(0)
@@ -168,15 +190,24 @@ def _gather(cases: Iterator[Case]) -> dict[str, Floats]:
             case.search()
         for name, quantities in margins.items():
             gathered[name] += quantities
-    return {name: np.concatenate([np.empty(0), *own]) for name, own in gathered.items()}
+    joined = {
+        name: np.concatenate([np.empty(0), *own]) for name, own in gathered.items()
+    }
+    return {name: own[~np.isnan(own)] for name, own in joined.items()}
 
 
 HEAD = """# Decisions, and how clear they are
 
+What *proved*, *certified*, *estimated*, *in doubt* and *undecided* mean stands in [how sure](how_sure.md).
+
 Every comparison on which a count, a kind, a level or a word hangs compares one quantity with one threshold. They stand
 in `bifurc/decisions.py` and `linkages/decisions.py`; singular values and residuals are over the problem's magnitude,
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
-over the catalogue, random members of its linkages, linkages that nearly bifurcate, hard cases and random plane curves.
+over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, hard
+cases and random plane curves.
+
+A *verdict* decides a count, a kind, a level or a word. A *look* decides only whether something is looked at more
+closely, and a *convention* only what is listed: neither needs a gap.
 """
 
 
@@ -202,13 +233,17 @@ def page(quantities: dict[str, Floats]) -> str:
 def _entry(decision: Decision, quantities: Floats) -> str:
     """What a decision says, and its margin, as an item of a list."""
     margin = margin_of(decision, quantities)
-    lines = [
-        f"**{decision.name}** ({decision.role.value}): {decision.claim}.",
-        f"Quantity: {decision.quantity}; threshold {decision.threshold:.3g}: "
-        f"{decision.reason}.",
-        _margin_text(margin),
-    ]
-    return "\n".join(lines) + "\n"
+    text = (
+        f"{heading(decision)} {decision.claim}. Quantity: {decision.quantity}; "
+        f"{decision.reason}. {_margin_text(margin)}"
+    )
+    return textwrap.fill(text, WIDTH) + "\n"
+
+
+def heading(decision: Decision) -> str:
+    """How the entry of a decision on the page begins."""
+    role, threshold = decision.role.value, decision.threshold
+    return f"**{decision.name}** ({role}, below {threshold:.3g}):"
 
 
 def _margin_text(margin: Margin) -> str:
@@ -236,6 +271,7 @@ def main(members: int, near: int, target: bool) -> None:
     def cases() -> Iterator[Case]:
         yield from _catalogue_cases(members)
         yield from _near_bifurcations(near)
+        yield from _near_something_larger()
         yield from _hard_curves()
         yield from _plane_curves(CURVES)
 

@@ -24,7 +24,13 @@ from bifurc.problem import PreciseResidual, Problem
 if TYPE_CHECKING:
     import mpmath
 
-__all__ = ["largest_misclosure", "largest_of", "misclosures", "visible_misclosure"]
+__all__ = [
+    "largest_misclosure",
+    "largest_of",
+    "misclosure_at",
+    "misclosures",
+    "visible_misclosure",
+]
 
 HIGHEST = 48  # points with the largest residuals at which a misclosure is looked for
 # misclosures that doubles give to four digits and better
@@ -79,21 +85,31 @@ def largest_of(problem: Problem, points: np.ndarray, seen: np.ndarray) -> float:
     if residual is None:
         return largest
     worst = points[np.argsort(-seen, kind="stable")[:MOST]]
-    return max(_precise_misclosures(problem, residual, worst))
+    return max(_precise_misclosures(problem, residual, worst, problem.n - 1))
+
+
+def misclosure_at(problem: Problem, point: np.ndarray, rank: int) -> float:
+    """What no move removes of F near a point (n,) where F' has a ``rank``: in many
+    digits where the problem has them, else the residual."""
+    residual = problem.precise_residual()
+    if residual is None:
+        return float(problem.gaps(point[None])[0])
+    return _precise_misclosures(problem, residual, point[None], rank)[0]
 
 
 def _precise_misclosures(
-    problem: Problem, residual: PreciseResidual, points: np.ndarray
+    problem: Problem, residual: PreciseResidual, points: np.ndarray, rank: int
 ) -> list[float]:
-    """The misclosures of curves through points (k, n) in `DIGITS` digits.
+    """The misclosures next to points (k, n) where F' has a ``rank``, in `DIGITS`
+    digits.
 
-    Gauss-Newton steps of rank n - 1 lead there, with F in many digits and F' in
+    Gauss-Newton steps of that rank lead there, with F in many digits and F' in
     doubles.
     """
     import mpmath
 
     decomposition = decompose(problem, points)
-    inverses = _inverses(decomposition, problem.n - 1)
+    inverses = _inverses(decomposition, rank)
     measured = []
     with mpmath.workdps(DIGITS):
         for point, inverse in zip(points, inverses, strict=True):

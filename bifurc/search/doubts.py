@@ -9,6 +9,7 @@ import numpy as np
 from bifurc.atlas import Form, MeetingPoint, Surface
 from bifurc.branch import Outcome
 from bifurc.curves.certificate import Certificate
+from bifurc.curves.misclosure import misclosure_at
 from bifurc.decisions import is_known_curve, misses_by_rounding
 from bifurc.numerics.blur import known_to, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
@@ -127,11 +128,16 @@ def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
     """Whether a singular point is one, and of which kind."""
     place = point.point.u[None]
     gap = float(problem.gaps(place)[0])
-    if not _is_rounding(problem, gap, place):
-        return [
-            f"{point.name} may be a {point.kind.value} or a near miss: it misses the "
-            f"equations by {gap:.1e}"
-        ]
+    # beside the exact point F grows with the square of the distance
+    explained = (point.point.error / problem.scale) ** 2
+    if not _is_rounding(problem, gap - explained, place):
+        rank = problem.n - point.point.null_space.shape[1]
+        missed = misclosure_at(problem, point.point.u, rank)
+        if not misses_by_rounding(missed - explained):
+            return [
+                f"{point.name} may be a {point.kind.value} or a near miss: it misses "
+                f"the equations by {missed:.1e}"
+            ]
     if point.kind is Kind.UNDECIDED:
         reason = point.note or "sections of two radii disagree"
         return [f"{point.name} is undecided: {reason}"]
