@@ -40,6 +40,11 @@ from bifurc.torus import wrap
 
 __all__ = ["assemble_atlas"]
 
+NEAR_ASSEMBLIES = (
+    "on near motions there may be more isolated solutions than are listed, where the "
+    "misclosure passes zero"
+)
+
 
 def assemble_atlas(
     problem: Problem, findings: Findings, provenance: Provenance
@@ -65,6 +70,8 @@ def assemble_atlas(
     forms = _forms(problem, traced, points)
     doubts = doubts_of(problem, traced, forms, points, surfaces)
     near_motions = _near_motions(findings, periods)
+    if near_motions:
+        doubts = (*doubts, NEAR_ASSEMBLIES)
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)

@@ -24,6 +24,7 @@ from bifurc.search.findings import TracedBranch
 
 __all__ = ["certificate_of", "finer_settings", "may_be_mended"]
 
+CUSP_REACH = 0.2  # of a cusp, in scales: so far from it a branch may end
 FINEST = 1e-14  # tolerance with which a refused branch is traced again
 LONGEST = 0.1  # trusted radius, in scales
 # Beside a crossing near something larger rounding bends a curve over from farther away:
@@ -68,6 +69,10 @@ def _jumps(
     else:
         changes = changes_of_course(branch, profile, cuts)
         jumps = np.union1d(changes, kinks(branch))
+        if not is_certifiable(problem):
+            # next to a cusp a curve ends in what rounding leaves
+            near = np.abs(jumps[:, None] - cuts) < CUSP_REACH * problem.scale
+            jumps = jumps[~near.any(axis=1)]
     handover = HANDOVER * problem.scale
     return np.column_stack([jumps - handover, jumps + handover])
 

@@ -10,7 +10,7 @@ from bifurc.atlas import Form, MeetingPoint, Surface
 from bifurc.branch import Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.misclosure import misclosure_at
-from bifurc.decisions import is_known_curve, misses_by_rounding
+from bifurc.decisions import is_known_curve, is_same_point, misses_by_rounding
 from bifurc.numerics.blur import known_to, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
@@ -97,13 +97,22 @@ def _doubts_of_form(
         )
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}
-        loose = len({0.0, branch.length} - ends)
+        loose = sum(
+            s not in ends and not _is_at_bounds(problem, branch(s))
+            for s in (0.0, branch.length)
+        )
         if loose:
             doubts.append(
                 f"form {index + 1} stalls at {loose} of its 2 ends, where it may end "
                 "or go on"
             )
     return doubts
+
+
+def _is_at_bounds(problem: Problem, point: np.ndarray) -> bool:
+    """Whether a point (n,) lies at an end of the bounds."""
+    gaps = np.abs(point[:, None] - problem.bounds)
+    return bool(np.any(is_same_point(gaps, problem.scale)))
 
 
 def _refusal(certificate: Certificate) -> str:

@@ -244,7 +244,11 @@ class Search:
         if number is not None:
             return number
         near = trace_near_motion(self.problem, point, self.settings.tracing)
-        return None if near is None else self.findings.add_near_motion(near)
+        if near is None or not nearly_closes(near.misclosure):
+            return None
+        if closes_to_rounding(near.misclosure):
+            return None  # a form runs there
+        return self.findings.add_near_motion(near)
 
     def look_for_near_motions(self) -> None:
         """Trace the near motions from the random starts that missed, where nothing

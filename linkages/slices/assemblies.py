@@ -334,12 +334,17 @@ class _Ends:
     @property
     def are_complete(self) -> bool:
         """Whether no path was lost, and none went over to another one: two would end at
-        one configuration, or one of two conjugate configurations would be missing."""
+        one configuration, or one of two conjugate configurations would be missing.
+
+        What runs to infinity does so in conjugate pairs: where one angle goes to +i
+        infinity, that of the other goes to -i infinity.
+        """
         in_reach = is_in_reach(_largest_imaginary_parts(self.regular))
         configurations = self.regular[in_reach]
         both = np.concatenate([configurations, configurations.conj()])
         numbers = {len(_distinct(each)) for each in (configurations, both)}
-        return not self.lost and numbers == {len(configurations)}
+        are_pairs = (self.at_infinity + self.distant) % 2 == 0
+        return not self.lost and are_pairs and numbers == {len(configurations)}
 
     def statement(self, real: int) -> str:
         """Where the paths ended, as a sentence; ``real`` assemblies are known."""
