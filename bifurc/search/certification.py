@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bifurc.branch import Branch
+from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import (
     HANDOVER,
     Certificate,
@@ -69,10 +69,10 @@ def _jumps(
     else:
         changes = changes_of_course(branch, profile, cuts)
         jumps = np.union1d(changes, kinks(branch))
-        if not is_certifiable(problem):
-            # next to a cusp a curve ends in what rounding leaves
-            near = np.abs(jumps[:, None] - cuts) < CUSP_REACH * problem.scale
-            jumps = jumps[~near.any(axis=1)]
+        if branch.outcome is Outcome.STALLED:
+            # a curve that stalls at a cusp ends in what rounding leaves
+            from_end = np.minimum(jumps, branch.length - jumps)
+            jumps = jumps[from_end > CUSP_REACH * problem.scale]
     handover = HANDOVER * problem.scale
     return np.column_stack([jumps - handover, jumps + handover])
 
