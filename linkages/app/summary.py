@@ -184,7 +184,7 @@ def _beginning(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) 
 
 def _certificates(atlas: Atlas) -> str:
     rows = []
-    for form in atlas.forms:
+    for form in sorted(atlas.forms, key=lambda form: form.name):
         certificate = form.certificate
         if certificate is None:
             continue
