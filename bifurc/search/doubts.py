@@ -15,7 +15,7 @@ from bifurc.numerics.blur import known_to, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
-from bifurc.singular.dimension import misclosures
+from bifurc.singular.dimension import misclosures_beside
 from bifurc.singular.point import Kind
 
 __all__ = ["doubts_of"]
@@ -77,7 +77,9 @@ def _misclosure(problem: Problem, surface: Surface) -> float:
         seen = problem.gaps(surface.charts.centers)
     samples = surface.samples[:MOST_SAMPLES]
     _, right = null_spaces(problem, samples)
-    missed = misclosures(problem, samples, right[:, problem.n - surface.dimension :])
+    missed = misclosures_beside(
+        problem, samples, right[:, problem.n - surface.dimension :]
+    )
     seen = np.concatenate([seen, missed[np.isfinite(missed)]])
     return float(seen.max()) if len(seen) else np.inf
 

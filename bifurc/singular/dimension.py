@@ -27,7 +27,7 @@ from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 
-__all__ = ["LocalDimensions", "local_dimensions", "misclosures"]
+__all__ = ["LocalDimensions", "local_dimensions", "misclosures_beside"]
 
 # Length of the probes, over the scale: at much less, degenerate singular points would
 # look like surfaces.
@@ -108,7 +108,7 @@ def _dimensions_of_nullity(
         dimension[i] = _dimension_from_ends(problem, ends, coordinates)
     full = np.flatnonzero(dimension == k) if k > 1 else np.empty(0, dtype=int)
     if len(full):
-        missed = misclosures(problem, points[full], basis[full])
+        missed = misclosures_beside(problem, points[full], basis[full])
         unit = rounding_unit(problem, points[full])
         is_closed = is_closed_on_surface(missed, unit)
         regular[full] &= is_closed
@@ -117,7 +117,9 @@ def _dimensions_of_nullity(
     return dimension, regular
 
 
-def misclosures(problem: Problem, points: np.ndarray, basis: np.ndarray) -> np.ndarray:
+def misclosures_beside(
+    problem: Problem, points: np.ndarray, basis: np.ndarray
+) -> np.ndarray:
     """The largest relative residual (b,) that is left beside solutions (b, n) when only
     the equations across the null spaces (b, k, n) are solved; infinite where that
     fails.

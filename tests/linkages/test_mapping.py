@@ -58,3 +58,31 @@ def test_a_map_is_certified_unless_the_settings_say_otherwise():
     assert atlas.forms[0].certificate.status == "certified"
     without = map_linkage(loop, settings=SearchSettings(starts=20, certify=False))
     assert without.forms[0].certificate is None
+
+
+def test_a_form_is_no_near_motion():
+    # two stiff assemblies, from which a step aside leads to the form
+    parameters = {"a": 1.5, "c": 2.3, "shift": -0.9}
+    angles = {
+        "alpha": 100,
+        "beta": 25,
+        "gamma": 70,
+        "delta": 80,
+        "kink_1": -105,
+        "kink_2": 110,
+    }
+    radians = {name: np.radians(angle) for name, angle in angles.items()}
+    for seed in range(2):
+        atlas = map_linkage(load("waldron-hybrid", **parameters, **radians), seed=seed)
+        assert (len(atlas.forms), len(atlas.rigid)) == (1, 2)
+        assert not atlas.near_motions
+        distances, _ = atlas.forms[0].branch.nearest(atlas.rigid)
+        assert distances.min() > 1e-3
+
+
+def test_where_a_loop_nearly_moves_more_assemblies_are_not_ruled_out():
+    twists = np.radians([100, 40, 100, 40])
+    atlas = map_linkage(Loop((1.0, 0.65, 1.0, 0.65), tuple(twists), (0.0,) * 4))
+    assert len(atlas.near_motions) == 1
+    assert atlas.completeness.level == "estimated"
+    assert "there may be more isolated solutions" in atlas.completeness.statement

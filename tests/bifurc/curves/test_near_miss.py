@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from bifurc.curves.continuation import trace_branch
+from bifurc.curves.near_miss import near_miss_value
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
@@ -38,3 +40,11 @@ def test_a_near_miss_that_doubles_resolve_is_no_rank_drop(power):
     expected = [0.12289117, 0.14503899, 0.25317093, 0.35926642]
     bound = max(event.error for event in atlas.near_misses) / offset
     assert ratios == pytest.approx(expected, abs=bound + 1e-8)
+
+
+def test_where_the_singular_value_is_zero_the_value_is_bounded():
+    axes = FunctionProblem(lambda u: np.array([u[0] * u[1]]), [[-2, 2], [-2, 2]])
+    branch = trace_branch(axes, [1.0, 0.0])
+    value, error = near_miss_value(axes, branch, 1, branch.length / 2)
+    assert value < 1e-12
+    assert np.isfinite(error)

@@ -9,12 +9,16 @@ from bifurc.atlas import Provenance
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
+from bifurc.function_problem import FunctionProblem
 from bifurc.search.completeness import IN_DOUBT, judge_completeness
 from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Audit, Level
+from bifurc.singular.point import Kind
+from linkages.closure.loop_closure import LoopClosure
+from linkages.families.four_bar import four_bar
 from tests.bifurc.known_surfaces import SPHERE
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
@@ -75,3 +79,22 @@ def test_nothing_is_proved_of_an_answer_in_doubt(level):
     completeness = judge_completeness(findings, Provenance(), ["B1 is undecided"])
     assert completeness.level is Level.ESTIMATED
     assert completeness.statement.startswith("in doubt: B1 is undecided; no motion")
+
+
+@pytest.mark.parametrize("power", [3, 5])
+def test_a_form_that_ends_at_a_cusp_and_at_the_bounds_is_not_in_doubt(power):
+    problem = FunctionProblem(
+        lambda u: np.array([u[1] ** 2 - u[0] ** power]), [(-2.0, 2.1)] * 2
+    )
+    atlas = explore(problem, settings=SearchSettings(starts=40))
+    assert [point.kind for point in atlas.points] == [Kind.CUSP]
+    assert IN_DOUBT not in atlas.completeness.statement
+
+
+def test_a_point_is_in_doubt_for_what_it_misses_in_many_digits():
+    # a kite but for e: where it is flat it misses closure by 2/3 e
+    for error, is_doubtful in ((1e-14, True), (0.0, False)):
+        loop = four_bar(1.0, 2.0, 2.0 + error, 1.0)
+        atlas = explore(LoopClosure(loop), settings=FEW)
+        statement = atlas.completeness.statement
+        assert (IN_DOUBT in statement) is is_doubtful

@@ -6,7 +6,7 @@ import pytest
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
-from bifurc.singular.dimension import local_dimensions, misclosures
+from bifurc.singular.dimension import local_dimensions, misclosures_beside
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 from tests.bifurc.known_surfaces import general, planar, seeds, spherical
@@ -79,5 +79,5 @@ def test_what_a_surface_misses_is_rounding_and_what_curves_on_it_miss_is_not() -
         (beside := CirclesBesideSphere(1e-9), beside.points(9), 1e-12, 1e-9),
     ):
         _, right = null_spaces(problem, points)
-        missed = misclosures(problem, points, right[:, problem.n - 2 :])
+        missed = misclosures_beside(problem, points, right[:, problem.n - 2 :])
         assert np.all((missed >= low) & (missed < high))

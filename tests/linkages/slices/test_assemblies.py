@@ -146,3 +146,48 @@ def test_a_path_that_goes_over_to_another_one_is_noticed():
     for regular, complete in ((pair, True), (alone, False), (twice, False)):
         ends = assemblies._Ends(regular, 14, 0, 0, 0)
         assert ends.are_complete is complete
+
+
+def test_an_odd_number_of_paths_to_infinity_leaves_the_assemblies_incomplete():
+    # these paths go in conjugate pairs: one of an odd number has passed far away, and
+    # would have come back
+    def ends(regular, at_infinity):
+        angles = np.arange(1.0, regular + 1.0)[:, None] * np.ones(6)
+        return assemblies._Ends(angles.astype(complex), 0, at_infinity, 0, 0)
+
+    assert ends(14, at_infinity=2).are_complete
+    assert not ends(15, at_infinity=1).are_complete
+
+
+def test_a_path_that_passes_far_away_is_followed_again():
+    lengths = (
+        0.4652716524564463,
+        0.9543936003333449,
+        0.896826645459966,
+        1.2455789699127817,
+        0.5438285249870578,
+        0.8736610827301063,
+    )
+    twists = (
+        -2.513026474816172,
+        0.5179732958118803,
+        -0.9071647710994144,
+        2.975443373410161,
+        0.7225002386592525,
+        1.334345830914014,
+    )
+    offsets = (
+        0.19134519953158186,
+        -0.08873116118146607,
+        0.08868904588572446,
+        0.09044329037367027,
+        -0.25864022451848767,
+        -0.25456799673336755,
+    )
+    counts = []
+    for shift in range(6):
+        columns = [row[shift:] + row[:shift] for row in (lengths, twists, offsets)]
+        found = isolated_assemblies(Loop(*columns))
+        assert found.complete
+        counts.append(len(found.configurations))
+    assert counts == [4] * 6
