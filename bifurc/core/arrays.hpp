@@ -1,0 +1,62 @@
+// Dense arrays by rows: what the numerical headers work on.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace bifurc {
+
+using Index = std::ptrdiff_t;
+
+// A vector that belongs to somebody else.
+template <class T>
+using Vector = std::span<T>;
+
+// A matrix that belongs to somebody else; rows lie one after the other.
+template <class T>
+struct View {
+    T* data;
+    Index rows;
+    Index columns;
+
+    T& operator()(Index row, Index column) const { return data[row * columns + column]; }
+    Vector<T> row(Index number) const {
+        return {data + number * columns, static_cast<std::size_t>(columns)};
+    }
+    View<T> first_rows(Index count) const { return {data, count, columns}; }
+    operator View<const T>() const { return {data, rows, columns}; }
+};
+
+// A matrix with memory of its own, zero at first.
+template <class T>
+class Matrix {
+public:
+    Matrix(Index rows, Index columns) : rows_(rows), columns_(columns), values_(rows * columns) {}
+
+    Index rows() const { return rows_; }
+    Index columns() const { return columns_; }
+    T& operator()(Index row, Index column) { return values_[row * columns_ + column]; }
+    const T& operator()(Index row, Index column) const { return values_[row * columns_ + column]; }
+    Vector<T> row(Index number) { return view().row(number); }
+    View<T> view() { return {values_.data(), rows_, columns_}; }
+    View<const T> view() const { return {values_.data(), rows_, columns_}; }
+    operator View<T>() { return view(); }
+    operator View<const T>() const { return view(); }
+
+private:
+    Index rows_;
+    Index columns_;
+    std::vector<T> values_;
+};
+
+inline double squared_length(Vector<const double> values) {
+    double total = 0.0;
+    for (double value : values) total += value * value;
+    return total;
+}
+
+inline double length(Vector<const double> values) { return std::sqrt(squared_length(values)); }
+
+}  // namespace bifurc

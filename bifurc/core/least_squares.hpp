@@ -1,0 +1,189 @@
+// Small least-squares problems: one factorisation for many right-hand sides, systems of any
+// rank, and damped normal equations. All arithmetic is here, so that every processor and every
+// BLAS makes the same of it.
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "bifurc/core/arrays.hpp"
+
+namespace bifurc {
+
+// Householder QR of a matrix in place: R on and above the diagonal, below it the reflectors,
+// whose first entry is 1, with their scales beside.
+class Factorization {
+public:
+    Factorization(Index rows, Index columns) : matrix_(rows, columns), scale_(columns), work_(rows) {}
+
+    // The matrix to be factored, to be filled before `factor`.
+    View<double> matrix() { return matrix_; }
+
+    void factor() {
+        const Index rows = matrix_.rows(), columns = matrix_.columns();
+        for (Index k = 0; k < std::min(rows, columns); ++k) {
+            double square = 0.0;
+            for (Index i = k; i < rows; ++i) square += matrix_(i, k) * matrix_(i, k);
+            const double norm = std::sqrt(square);
+            if (norm == 0.0) {
+                scale_[k] = 0.0;
+                continue;
+            }
+            const double diagonal = matrix_(k, k) > 0.0 ? -norm : norm;
+            const double pivot = matrix_(k, k) - diagonal;
+            scale_[k] = -pivot / diagonal;
+            for (Index i = k + 1; i < rows; ++i) matrix_(i, k) /= pivot;
+            matrix_(k, k) = diagonal;
+            for (Index j = k + 1; j < columns; ++j) {
+                double dot = matrix_(k, j);
+                for (Index i = k + 1; i < rows; ++i) dot += matrix_(i, k) * matrix_(i, j);
+                dot *= scale_[k];
+                matrix_(k, j) -= dot;
+                for (Index i = k + 1; i < rows; ++i) matrix_(i, j) -= dot * matrix_(i, k);
+            }
+        }
+    }
+
+    // The least-squares solution for one right-hand side, which is overwritten; with more
+    // columns than rows the last unknowns are 0.
+    void solve(Vector<double> right, Vector<double> solution) const {
+        const Index rows = matrix_.rows();
+        const Index columns = std::min(rows, matrix_.columns());
+        std::fill(solution.begin(), solution.end(), 0.0);
+        for (Index k = 0; k < columns; ++k) {
+            double dot = right[k];
+            for (Index i = k + 1; i < rows; ++i) dot += matrix_(i, k) * right[i];
+            dot *= scale_[k];
+            right[k] -= dot;
+            for (Index i = k + 1; i < rows; ++i) right[i] -= dot * matrix_(i, k);
+        }
+        for (Index k = columns - 1; k >= 0; --k) {
+            double total = right[k];
+            for (Index j = k + 1; j < columns; ++j) total -= matrix_(k, j) * solution[j];
+            solution[k] = matrix_(k, k) != 0.0 ? total / matrix_(k, k) : 0.0;
+        }
+    }
+
+    // The smallest singular value of R, about, by inverse iteration on R^T R; 0 where R is
+    // singular. A diagonal entry of R alone may be larger by any factor.
+    double smallest_singular_value() {
+        const Index size = std::min(matrix_.rows(), matrix_.columns());
+        const Vector<double> vector{work_.data(), static_cast<std::size_t>(size)};
+        for (Index k = 0; k < size; ++k) {
+            if (matrix_(k, k) == 0.0) return 0.0;
+            vector[k] = 1.0 + 0.1 * k;  // along no vector of a symmetric system, nor across it
+        }
+        double norm = length(vector);
+        for (int iteration = 0; iteration < inverse_steps; ++iteration) {
+            for (Index k = 0; k < size; ++k) {
+                double total = vector[k] / norm;
+                for (Index j = 0; j < k; ++j) total -= matrix_(j, k) * vector[j];
+                vector[k] = total / matrix_(k, k);
+            }
+            for (Index k = size - 1; k >= 0; --k) {
+                double total = vector[k];
+                for (Index j = k + 1; j < size; ++j) total -= matrix_(k, j) * vector[j];
+                vector[k] = total / matrix_(k, k);
+            }
+            norm = length(vector);
+        }
+        return 1.0 / std::sqrt(norm);
+    }
+
+private:
+    static constexpr int inverse_steps = 2;  // a small singular value stands out after one
+
+    Matrix<double> matrix_;
+    std::vector<double> scale_;
+    std::vector<double> work_;
+};
+
+// The least-squares solution of a system of any rank and shape by QR with column pivoting.
+// Matrix and right-hand side are overwritten. Pivots below 1e-13 of the first count as zero,
+// and so do the unknowns that they belong to.
+inline void solve_by_rank(View<double> matrix, Vector<double> right, Vector<double> solution) {
+    constexpr double negligible = 1e-13;
+    const Index rows = matrix.rows, columns = matrix.columns;
+    std::vector<Index> order(columns);
+    std::iota(order.begin(), order.end(), Index{0});
+    std::fill(solution.begin(), solution.end(), 0.0);
+    Index rank = 0;
+    double first = 0.0;
+    for (Index k = 0; k < std::min(rows, columns); ++k) {
+        Index best = k;
+        double largest = -1.0;
+        for (Index j = k; j < columns; ++j) {
+            double square = 0.0;
+            for (Index i = k; i < rows; ++i) square += matrix(i, j) * matrix(i, j);
+            if (square > largest) {
+                best = j;
+                largest = square;
+            }
+        }
+        const double norm = std::sqrt(largest);
+        first = std::max(first, norm);
+        if (norm <= negligible * first) break;
+        std::swap(order[k], order[best]);
+        for (Index i = 0; i < rows; ++i) std::swap(matrix(i, k), matrix(i, best));
+        const double diagonal = matrix(k, k) > 0.0 ? -norm : norm;
+        const double pivot = matrix(k, k) - diagonal;
+        const double scale = -pivot / diagonal;
+        for (Index i = k + 1; i < rows; ++i) matrix(i, k) /= pivot;
+        matrix(k, k) = diagonal;
+        for (Index j = k + 1; j < columns; ++j) {
+            double dot = matrix(k, j);
+            for (Index i = k + 1; i < rows; ++i) dot += matrix(i, k) * matrix(i, j);
+            dot *= scale;
+            matrix(k, j) -= dot;
+            for (Index i = k + 1; i < rows; ++i) matrix(i, j) -= dot * matrix(i, k);
+        }
+        double dot = right[k];
+        for (Index i = k + 1; i < rows; ++i) dot += matrix(i, k) * right[i];
+        dot *= scale;
+        right[k] -= dot;
+        for (Index i = k + 1; i < rows; ++i) right[i] -= dot * matrix(i, k);
+        rank = k + 1;
+    }
+    for (Index k = rank - 1; k >= 0; --k) {
+        double total = right[k];
+        for (Index j = k + 1; j < rank; ++j) total -= matrix(k, j) * solution[order[j]];
+        solution[order[k]] = total / matrix(k, k);
+    }
+}
+
+// The step with (J^T J + damping) step = -J^T F, by Cholesky's factorisation; ``normal`` is
+// room for J^T J.
+inline void damped_step(View<const double> jacobian, Vector<const double> residual, double damping,
+                        View<double> normal, Vector<double> step) {
+    constexpr double smallest_pivot = 1e-300;
+    const Index rows = jacobian.rows, n = jacobian.columns;
+    for (Index i = 0; i < n; ++i) {
+        for (Index j = 0; j <= i; ++j) {
+            double total = i == j ? damping : 0.0;
+            for (Index row = 0; row < rows; ++row) total += jacobian(row, i) * jacobian(row, j);
+            normal(i, j) = total;
+        }
+        double total = 0.0;
+        for (Index row = 0; row < rows; ++row) total -= jacobian(row, i) * residual[row];
+        step[i] = total;
+    }
+    for (Index j = 0; j < n; ++j) {
+        for (Index k = 0; k < j; ++k) {
+            for (Index i = j; i < n; ++i) normal(i, j) -= normal(i, k) * normal(j, k);
+        }
+        const double pivot = std::sqrt(std::max(normal(j, j), smallest_pivot));
+        for (Index i = j + 1; i < n; ++i) normal(i, j) /= pivot;
+        normal(j, j) = pivot;
+    }
+    for (Index i = 0; i < n; ++i) {
+        for (Index k = 0; k < i; ++k) step[i] -= normal(i, k) * step[k];
+        step[i] /= normal(i, i);
+    }
+    for (Index i = n - 1; i >= 0; --i) {
+        for (Index k = i + 1; k < n; ++k) step[i] -= normal(k, i) * step[k];
+        step[i] /= normal(i, i);
+    }
+}
+
+}  // namespace bifurc

@@ -1,0 +1,66 @@
+// The Python module linkages._core.
+#include <nanobind/stl/optional.h>
+
+#include <optional>
+
+#include "bifurc/core/bindings.hpp"
+#include "linkages/core/closure.hpp"
+
+namespace nb = nanobind;
+namespace python = bifurc::python;
+using namespace linkages;
+using bifurc::numpy::view;
+using python::Doubles;
+using python::Table;
+
+namespace {
+
+nb::object residuals(const Table& thetas, const Table& geometry) {
+    return python::residuals(Closure(view(geometry)), thetas);
+}
+
+nb::object jacobians(const Table& thetas, const Table& geometry) {
+    return python::jacobians(Closure(view(geometry)), thetas);
+}
+
+nb::object hessian(const Doubles& theta, const Table& geometry) {
+    const Closure closure(view(geometry));
+    python::check_unknowns("theta", theta.shape(0), closure.unknowns());
+    bifurc::numpy::Array<double> out({closure.equations(), closure.unknowns(), closure.unknowns()});
+    closure.hessian(view(theta), out.matrix());
+    return out.release();
+}
+
+nb::tuple march(const Doubles& start, const Doubles& tangent, const Table& geometry, Index order,
+                double tolerance, double shortest, double longest, Index count, double closing,
+                double misclosure, const std::optional<Table>& coupling) {
+    const bifurc::MarchSettings settings{order, tolerance, shortest, longest, count, closing, misclosure};
+    const Closure closure(view(geometry));
+    if (coupling) return python::march(CoupledClosure(closure, view(*coupling)), start, tangent, settings);
+    return python::march(closure, start, tangent, settings);
+}
+
+nb::tuple project(const Table& starts, const Table& geometry, double noise, int iterations) {
+    return python::project(Closure(view(geometry)), starts, noise, iterations);
+}
+
+nb::tuple project_to_sphere(const Table& starts, const Doubles& center, double radius, const Table& geometry,
+                            int iterations) {
+    return python::project_to_sphere(Closure(view(geometry)), starts, center, radius, iterations);
+}
+
+}  // namespace
+
+NB_MODULE(_core, module) {
+    module.doc() = "Compiled parts of linkages.";
+    module.def("residuals", &residuals, nb::arg("thetas"), nb::arg("geometry"));
+    module.def("jacobians", &jacobians, nb::arg("thetas"), nb::arg("geometry"));
+    module.def("hessian", &hessian, nb::arg("theta"), nb::arg("geometry"));
+    module.def("march", &march, nb::arg("start"), nb::arg("tangent"), nb::arg("geometry"), nb::arg("order"),
+               nb::arg("tolerance"), nb::arg("shortest"), nb::arg("longest"), nb::arg("count"),
+               nb::arg("closing"), nb::arg("misclosure"), nb::arg("coupling") = nb::none());
+    module.def("project", &project, nb::arg("starts"), nb::arg("geometry"), nb::arg("noise"),
+               nb::arg("iterations"));
+    module.def("project_to_sphere", &project_to_sphere, nb::arg("starts"), nb::arg("center"), nb::arg("radius"),
+               nb::arg("geometry"), nb::arg("iterations"));
+}
