@@ -2,24 +2,20 @@
 
 import numpy as np
 
-def evaluate(
-    breaks: np.ndarray,
-    centers: np.ndarray,
-    radii: np.ndarray,
-    pieces: np.ndarray,
-    travel: np.ndarray,
-    s: np.ndarray,
-    derivative: int,
-) -> np.ndarray: ...
-def feet(
-    breaks: np.ndarray,
-    centers: np.ndarray,
-    radii: np.ndarray,
-    pieces: np.ndarray,
-    travel: np.ndarray,
-    points: np.ndarray,
-    s: np.ndarray,
-    reach: float,
-    periods: np.ndarray,
-    iterations: int,
-) -> tuple[np.ndarray, np.ndarray]: ...
+class Curve:
+    def __init__(
+        self,
+        breaks: np.ndarray,
+        centers: np.ndarray,
+        radii: np.ndarray,
+        pieces: np.ndarray,
+        periods: np.ndarray,
+        travel: np.ndarray,
+    ) -> None: ...
+    def evaluate(self, s: np.ndarray, derivative: int) -> np.ndarray: ...
+    def nearest(
+        self, points: np.ndarray, within: float
+    ) -> tuple[np.ndarray, np.ndarray]: ...
+    def passes(self, point: np.ndarray, within: float, same: float) -> np.ndarray: ...
+
+def singular_values(matrices: np.ndarray) -> np.ndarray: ...

@@ -5,24 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bifurc._core import Curve
 from bifurc.checks import check_whole
 from bifurc.errors import ProblemError
-from bifurc.pieces import evaluate, feet
-from bifurc.torus import into_box, tree_box, whole_turns
-
-if TYPE_CHECKING:
-    from scipy.spatial import cKDTree
+from bifurc.torus import whole_turns
 
 __all__ = ["Branch", "Outcome"]
 
-SAMPLES = 12  # of a piece, from which the feet of points are looked for
-FOOT_STEPS = 5  # of Newton's method from a sample to a foot
-PATIENT_FOOT_STEPS = 8  # where the foot may be as far away as a sample's neighbour
-ON_THE_CURVE = 1e-7  # of the spacing of samples: so far off a point is still on it
 SLIVER = 1e-3  # of its radius: so little of a piece is left to the next one
 SAME_PASS = 1e-6  # arclength: feet no farther apart are one
 
@@ -120,8 +112,8 @@ class Branch:
         if derivative < 0:
             raise ProblemError("derivative", derivative, "0 or more")
         s = np.asarray(s, dtype=float)
-        flat = np.ascontiguousarray(s.ravel())
-        points: np.ndarray = evaluate(self._curve, flat, derivative)
+        flat = s.ravel()
+        points = self._curve.evaluate(flat, derivative)
         return points.reshape(*s.shape, self.n)
 
     def arclengths(self, count: int) -> np.ndarray:
@@ -207,99 +199,47 @@ class Branch:
     # --- feet of points ---------------------------------------------------------------
 
     def nearest(
-        self, points: np.ndarray, neighbours: int = 3, within: float = np.inf
+        self, points: np.ndarray, within: float = np.inf
     ) -> tuple[np.ndarray, np.ndarray]:
         """Distance (k,) of each point (k, n) to the curve modulo the periods, and the
         arclength (k,) there.
 
-        Of a point farther away than ``within`` it is only said that it is, which takes
-        a twentieth of the time. Nothing is near a branch of no pieces. Raises
-        `ProblemError` for points of another shape or not finite.
+        The distance of a point no nearer than ``within`` is infinite, and its arclength
+        0. Nothing is near a branch of no pieces. Raises `ProblemError` for points of
+        another shape or not finite.
         """
         points = np.atleast_2d(np.asarray(points, dtype=float))
         if points.ndim != 2 or points.shape[1] != self.n:
             raise ProblemError("shape of the points", points.shape, f"(k, {self.n})")
         if not np.all(np.isfinite(points)):
             raise ProblemError("points", points, "finite")
-        if not len(self.pieces):
-            return np.full(len(points), np.inf), np.zeros(len(points))
-        samples = self._samples
-        spacing = samples.spacing
-        # next to a foot that is near enough there is a sample in reach
-        reach = max(within, spacing) + spacing
-        count = min(neighbours, len(samples.arclengths))
-        distances, s = samples.nearest(points, count, reach)
-        # of the other points, surely off the curve, the nearest sample will do
-        is_close = distances[:, 0] < 2 * spacing
-        if np.any(is_close):
-            repeated = np.repeat(points[is_close], count, axis=0)
-            feet_s, feet_distances = self._feet(
-                repeated, s[is_close].ravel(), 2 * spacing, FOOT_STEPS
-            )
-            s[is_close] = feet_s.reshape(-1, count)
-            distances[is_close] = feet_distances.reshape(-1, count)
-        best = (np.arange(len(points)), np.argmin(distances, axis=1))
-        distance = distances[best]
-        s = s[best]
-        in_doubt = is_close & (distance > ON_THE_CURVE * spacing)
-        for i in np.flatnonzero(in_doubt):
-            foot = self._nearest_on_all_passes(points[i], distance[i], s[i])
-            distance[i], s[i] = foot
-        return distance, s
-
-    def _nearest_on_all_passes(
-        self, point: np.ndarray, distance: float, s: float
-    ) -> tuple[float, float]:
-        """Distance of a point (n,) to the curve and the arclength there, where a foot
-        at ``distance`` and ``s`` is known.
-
-        Beside a crossing the nearest samples may all lie on another pass: every sample
-        that can lead to the foot is tried.
-        """
-        samples = self._samples
-        starts = samples.within(point, distance + samples.spacing)
-        repeated = np.tile(point, (len(starts), 1))
-        feet_s, distances = self._feet(
-            repeated, starts, 2 * samples.spacing, PATIENT_FOOT_STEPS
-        )
-        if not distances.min(initial=np.inf) < distance:
-            return distance, s
-        best = np.argmin(distances)
-        return distances[best], feet_s[best]
+        return self._curve.nearest(points, within)
 
     def passes(self, point: np.ndarray, within: float) -> np.ndarray:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below
         ``within``, in order."""
-        point = np.asarray(point, dtype=float)
-        samples = self._samples
-        starts = samples.within(point, 2.5 * samples.spacing + within)
-        repeated = np.tile(point, (len(starts), 1))
-        feet_s, distances = self._feet(
-            repeated, starts, samples.spacing, PATIENT_FOOT_STEPS
-        )
-        s = np.sort(feet_s[distances < within])
-        before_first = -np.inf
-        if self.closed and len(s) > 1:
-            before_first = s[-1] - self.length
-        steps = np.diff(s, prepend=before_first)
-        return s[steps > SAME_PASS]
-
-    def _feet(
-        self, points: np.ndarray, s: np.ndarray, reach: float, steps: int
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Arclengths (k,) near ``s`` (k,) where the curve is nearest to points (k, n),
-        and the distances (k,) there; no step is longer than ``reach``."""
-        arclengths, distances = feet(self._curve, points, s, reach, self.periods, steps)
-        return arclengths, distances
+        return self._curve.passes(np.asarray(point, dtype=float), within, SAME_PASS)
 
     # --- what is derived from the pieces ----------------------------------------------
 
     @cached_property
-    def _curve(self) -> tuple[np.ndarray, ...]:
-        """The curve as the kernels of `bifurc.pieces` take it."""
+    def _curve(self) -> Curve:
+        """The curve in compiled form."""
         travel = self.travel if self.closed else np.empty(0)
-        arrays = (self.breaks, self.centers, self.radii, self.pieces, travel)
-        return tuple(np.require(array, float, ["C", "W"]) for array in arrays)
+        return Curve(
+            breaks=self.breaks,
+            centers=self.centers,
+            radii=self.radii,
+            pieces=self.pieces,
+            periods=self.periods,
+            travel=travel,
+        )
+
+    def __getstate__(self) -> dict[str, object]:
+        """What a copy is made of: all but the compiled curve."""
+        state = dict(vars(self))
+        state.pop("_curve", None)
+        return state
 
     @cached_property
     def travel(self) -> np.ndarray:
@@ -312,53 +252,3 @@ class Branch:
         begin, end = np.einsum("ek,ekn->en", powers, self.pieces[ends])
         travel: np.ndarray = end - begin
         return travel
-
-    @cached_property
-    def _samples(self) -> _Samples:
-        """Samples of every piece, for the search of feet."""
-        on_pieces = self.places(np.arange(SAMPLES) / SAMPLES)
-        arclengths = np.append(on_pieces.ravel(), self.length)
-        return _Samples.of(self(arclengths), arclengths, self.periods)
-
-
-@dataclass(frozen=True)
-class _Samples:
-    """Points of a curve in a tree, modulo the periods, with their ``arclengths`` (k,);
-    ``spacing`` is the largest distance of two neighbours along the curve."""
-
-    tree: cKDTree
-    arclengths: np.ndarray
-    spacing: float
-    periods: np.ndarray
-
-    @staticmethod
-    def of(points: np.ndarray, arclengths: np.ndarray, periods: np.ndarray) -> _Samples:
-        """The samples ``points`` (k, n) at ``arclengths`` (k,)."""
-        # takes as long to import as all the rest of this package, and tracing alone
-        # does not need it
-        from scipy.spatial import cKDTree
-
-        tree = cKDTree(into_box(points, periods), boxsize=tree_box(periods))
-        spacing = np.diff(arclengths).max()
-        return _Samples(tree, arclengths, spacing, periods)
-
-    def nearest(
-        self, points: np.ndarray, count: int, reach: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Distances and arclengths (k, count) of the samples nearest to points (k, n);
-        the distance is infinite where none is in ``reach``."""
-        inside = into_box(points, self.periods)
-        distances, numbers = self.tree.query(
-            inside, k=count, distance_upper_bound=reach
-        )
-        shape = (len(points), count)
-        last = len(self.arclengths) - 1  # the tree gives a larger one for none in reach
-        arclengths = self.arclengths[np.minimum(numbers, last)]
-        return np.reshape(distances, shape), np.reshape(arclengths, shape)
-
-    def within(self, point: np.ndarray, reach: float) -> np.ndarray:
-        """Arclengths (j,) of all samples in ``reach`` of a point (n,)."""
-        inside = into_box(point, self.periods)
-        numbers = self.tree.query_ball_point(inside, reach)
-        near: np.ndarray = self.arclengths[numbers]
-        return near

@@ -25,10 +25,10 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
+from bifurc.problem import MarchSettings
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
-from linkages.closure import kernels
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
 from linkages.mapping import map_linkage
@@ -42,7 +42,7 @@ UNPROVED = SearchSettings(prove=False, certify=False)
 CPU_INFO = Path("/proc/cpuinfo")
 IMPORTS = "import linkages.mapping, linkages.app.cli"
 COMMAND = "from linkages.app.cli import main; main()"
-PACKAGES = ("bifurc", "numpy", "scipy", "numba", "networkx", "xarray")
+PACKAGES = ("bifurc", "numpy", "scipy", "networkx", "xarray")
 
 
 def median_time(
@@ -81,20 +81,19 @@ def _tracing_benchmarks() -> dict[str, float]:
     form = explore(problem, settings=UNPROVED).forms[0].branch
     point, tangent = form(0.3), form(0.3, 1)
 
+    settings = MarchSettings(
+        order=DEFAULT_SETTINGS.order,
+        tolerance=DEFAULT_SETTINGS.tolerance,
+        shortest=DEFAULT_SETTINGS.shortest,
+        longest=DEFAULT_SETTINGS.longest,
+        count=len(form.pieces),
+    )
+
     def trace() -> Branch:
         return trace_branch(problem, point, tangent)
 
     def march() -> object:
-        return kernels.march(
-            point,
-            tangent,
-            problem._geometry,
-            DEFAULT_SETTINGS.order,
-            DEFAULT_SETTINGS.tolerance,
-            DEFAULT_SETTINGS.shortest,
-            DEFAULT_SETTINGS.longest,
-            len(form.pieces),
-        )
+        return problem.march(point, tangent, settings)
 
     return {
         "one closed 6R form, public interface": median_time(trace),

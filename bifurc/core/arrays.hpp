@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace bifurc {
@@ -26,7 +27,11 @@ struct View {
         return {data + number * columns, static_cast<std::size_t>(columns)};
     }
     View<T> first_rows(Index count) const { return {data, count, columns}; }
-    operator View<const T>() const { return {data, rows, columns}; }
+    operator View<const T>() const
+        requires(!std::is_const_v<T>)
+    {
+        return {data, rows, columns};
+    }
 };
 
 // A matrix with memory of its own, zero at first.
@@ -40,6 +45,7 @@ public:
     T& operator()(Index row, Index column) { return values_[row * columns_ + column]; }
     const T& operator()(Index row, Index column) const { return values_[row * columns_ + column]; }
     Vector<T> row(Index number) { return view().row(number); }
+    Vector<const T> row(Index number) const { return view().row(number); }
     View<T> view() { return {values_.data(), rows_, columns_}; }
     View<const T> view() const { return {values_.data(), rows_, columns_}; }
     operator View<T>() { return view(); }

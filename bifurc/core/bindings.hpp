@@ -40,19 +40,20 @@ nb::object jacobians(const S& system, const Table& points) {
     return out.release();
 }
 
-// (status, pieces (k, order + 1, n), steps (k), radii (k), residuals (k)) as `bifurc.problem.March`
+// (status, pieces (k, order + 1, n), steps (k), radii (k), residuals (k), sigmas (k)) as `bifurc.problem.March`
 // has them: the pieces in the variable (s - centre) / radius.
 inline nb::tuple arrays_of(const MarchOutcome& outcome, Index order, Index n) {
     const auto count = static_cast<Index>(outcome.pieces.size());
     const bool is_open = outcome.status == MarchStatus::open;
     numpy::Array<double> pieces({count, order + 1, n}), steps({count}), radii({count});
-    numpy::Array<double> residuals({is_open ? 1 : count});
+    numpy::Array<double> residuals({is_open ? 1 : count}), sigmas({count});
     if (is_open) residuals.data()[0] = outcome.gap;
     for (Index i = 0; i < count; ++i) {
         const TaylorPiece& piece = outcome.pieces[i];
         steps.data()[i] = piece.step;
         radii.data()[i] = piece.radius;
         residuals.data()[i] = piece.residual;
+        sigmas.data()[i] = piece.sigma;
         const View<double> scaled = pieces.entry(i);
         double power = 1.0;
         for (Index k = 0; k <= order; ++k) {
@@ -61,7 +62,7 @@ inline nb::tuple arrays_of(const MarchOutcome& outcome, Index order, Index n) {
         }
     }
     return nb::make_tuple(static_cast<int>(outcome.status), pieces.release(), steps.release(), radii.release(),
-                          residuals.release());
+                          residuals.release(), sigmas.release());
 }
 
 template <System S>

@@ -1,32 +1,127 @@
-// A traced curve, a polynomial on every piece: evaluated, and the feet of points on it.
+// A traced curve, a polynomial on every piece: its values, and the feet of points on it.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "bifurc/core/arrays.hpp"
 
 namespace bifurc {
 
+struct Foot {
+    double distance;
+    double s;
+};
+
 // ``pieces`` (k * (order + 1), n) are the coefficients of all pieces in (s - center) / radius,
-// ``breaks`` (k + 1) the arclengths at which they hand over, ``travel`` (n) what a closed curve
-// gains in one turn, empty for an open one.
-struct Curve {
-    Vector<const double> breaks;
-    Vector<const double> centers;
-    Vector<const double> radii;
-    View<const double> pieces;
-    Vector<const double> travel;
+// ``breaks`` (k + 1) the arclengths at which they hand over, ``periods`` (n) those of the unknowns
+// (infinite where there is none), ``travel`` (n) what a closed curve gains in one turn, empty for
+// an open one.
+struct CurveData {
+    std::vector<double> breaks, centers, radii;
+    Matrix<double> pieces;
+    std::vector<double> periods, travel;
+};
+
+class Curve : private CurveData {
+public:
+    explicit Curve(CurveData data) : CurveData(std::move(data)) { take_samples(); }
 
     bool is_closed() const { return !travel.empty(); }
     double total() const { return breaks.back(); }
-    Index order() const { return pieces.rows / static_cast<Index>(radii.size()) - 1; }
-    Index unknowns() const { return pieces.columns; }
+    Index count() const { return static_cast<Index>(radii.size()); }
+    Index order() const { return count() ? pieces.rows() / count() - 1 : 0; }
+    Index unknowns() const { return pieces.columns(); }
     View<const double> piece(Index number) const {
         const Index powers = order() + 1;
-        return {pieces.data + number * powers * pieces.columns, powers, pieces.columns};
+        return {&pieces(number * powers, 0), powers, pieces.columns()};
     }
+
+    // u(s), or its derivative of the given order in s, (k, n) at arclengths (k).
+    void evaluate(Vector<const double> s, int derivative, View<double> out) const {
+        std::vector<double> factors(order() + 1, 1.0);  // k (k - 1) ... of the derivative of x^k
+        for (int j = 0; j < derivative; ++j) {
+            for (Index k = 0; k <= order(); ++k) factors[k] *= std::max<double>(static_cast<double>(k) - j, 0.0);
+        }
+        for (Index row = 0; row < out.rows; ++row) evaluate(s[row], derivative, factors, out.row(row));
+    }
+
+    // The foot of a point (n) on the curve, distances modulo the periods; an infinite distance where
+    // it is ``within`` or more.
+    //
+    // Every piece lies in a ball about its middle of half its length. Pieces are looked at in the
+    // order of the distance of these balls, samples on them in the order of the curve: Newton's
+    // method starts at those that are nearer than their neighbours, unless they are too far away to
+    // lead to a nearer foot.
+    Foot nearest(Vector<const double> point, double within, std::vector<double>& room) const {
+        Foot best{within, 0.0};
+        std::vector<std::pair<double, Index>> order_of_visit(count());
+        for (Index number = 0; number < count(); ++number) {
+            const double half = 0.5 * (breaks[number + 1] - breaks[number]);
+            const double apart = std::sqrt(squared_distance(middles_.row(number), point));
+            order_of_visit[number] = {apart - half, number};
+        }
+        std::sort(order_of_visit.begin(), order_of_visit.end());
+        for (const auto& [bound, number] : order_of_visit) {
+            if (bound >= best.distance) break;
+            look_at(number, point, best, room);
+        }
+        if (!(best.distance < within)) best.distance = std::numeric_limits<double>::infinity();
+        return best;
+    }
+
+    // All arclengths at which the curve passes a point (n) at a distance below ``within``, in order;
+    // feet no farther apart than ``same`` are one.
+    std::vector<double> passes(Vector<const double> point, double within, double same) const {
+        std::vector<double> room(2 * unknowns()), found, distinct;
+        const double reach = 2.5 * spacing_ + within;
+        for (Index i = 0; i < static_cast<Index>(arclengths_.size()); ++i) {
+            if (squared_distance(samples_.row(i), point) > reach * reach) continue;
+            const Foot foot = foot_from(arclengths_[i], point, spacing_, room);
+            if (foot.distance < within) found.push_back(foot.s);
+        }
+        std::sort(found.begin(), found.end());
+        double before = -std::numeric_limits<double>::infinity();
+        if (is_closed() && found.size() > 1) before = found.back() - total();
+        for (double s : found) {
+            if (s - before > same) distinct.push_back(s);
+            before = s;
+        }
+        return distinct;
+    }
+
+private:
+    // Samples of every piece, from which feet are looked for.
+    void take_samples() {
+        const Index n = unknowns();
+        std::vector<double> factors(order() + 1, 1.0);
+        arclengths_.clear();
+        for (Index number = 0; number < count(); ++number) {
+            const double step = (breaks[number + 1] - breaks[number]) / samples_of_piece;
+            for (Index i = 0; i < samples_of_piece; ++i) {
+                arclengths_.push_back(breaks[number] + static_cast<double>(i) * step);
+            }
+        }
+        if (count()) arclengths_.push_back(total());
+        samples_ = Matrix<double>(static_cast<Index>(arclengths_.size()), n);
+        spacing_ = 0.0;
+        for (Index i = 0; i < samples_.rows(); ++i) {
+            evaluate(arclengths_[i], 0, factors, samples_.row(i));
+            if (i) spacing_ = std::max(spacing_, arclengths_[i] - arclengths_[i - 1]);
+        }
+        middles_ = Matrix<double>(count(), n);
+        for (Index number = 0; number < count(); ++number) {
+            evaluate(0.5 * (breaks[number] + breaks[number + 1]), 0, factors, middles_.row(number));
+        }
+    }
+
+    static constexpr Index samples_of_piece = 12;
+    static constexpr int foot_steps = 10;          // of Newton's method
+    static constexpr double standing = 1e-15;      // a step, over the length, after which none follows
 
     struct Place {
         double turns;  // of the closed curve before it
@@ -37,82 +132,101 @@ struct Curve {
     Place place_of(double s) const {
         const double turns = is_closed() ? std::floor(s / total()) : 0.0;
         const double local = s - turns * total();
-        const auto inner = breaks.subspan(1, radii.size() - 1);
-        const auto after = std::upper_bound(inner.begin(), inner.end(), local);
-        const Index number = after - inner.begin();
+        const auto after = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, local);
+        const Index number = after - breaks.begin() - 1;
         return {turns, number, (local - centers[number]) / radii[number]};
     }
-};
 
-// u(s), or its derivative of the given order in s, at one arclength.
-inline void evaluate(const Curve& curve, double s, int derivative, Vector<const double> factors,
-                     Vector<double> out) {
-    const Curve::Place place = curve.place_of(s);
-    const View<const double> piece = curve.piece(place.piece);
-    const double scale = std::pow(curve.radii[place.piece], derivative);
-    for (Index j = 0; j < curve.unknowns(); ++j) {
-        double total = 0.0;
-        for (Index k = curve.order(); k >= derivative; --k) total = total * place.x + factors[k] * piece(k, j);
-        out[j] = total / scale;
-        if (derivative == 0 && curve.is_closed()) out[j] += place.turns * curve.travel[j];
-    }
-}
-
-// u(s), or its derivative of the given order in s, (k, n) at arclengths (k).
-inline void evaluate(const Curve& curve, Vector<const double> s, int derivative, View<double> out) {
-    std::vector<double> factors(curve.order() + 1, 1.0);  // k (k - 1) ... of the derivative of x^k
-    for (int j = 0; j < derivative; ++j) {
-        for (Index k = 0; k <= curve.order(); ++k) factors[k] *= std::max<double>(k - j, 0);
-    }
-    for (Index row = 0; row < out.rows; ++row) evaluate(curve, s[row], derivative, factors, out.row(row));
-}
-
-// u(s) and du/ds at one arclength.
-inline void value_and_slope(const Curve& curve, double s, Vector<double> value, Vector<double> slope) {
-    const Curve::Place place = curve.place_of(s);
-    const View<const double> piece = curve.piece(place.piece);
-    for (Index j = 0; j < curve.unknowns(); ++j) {
-        double total = piece(curve.order(), j), rate = 0.0;
-        for (Index k = curve.order() - 1; k >= 0; --k) {
-            rate = rate * place.x + total;
-            total = total * place.x + piece(k, j);
+    void evaluate(double s, int derivative, Vector<const double> factors, Vector<double> out) const {
+        const Place place = place_of(s);
+        const View<const double> of = piece(place.piece);
+        const double scale = std::pow(radii[place.piece], derivative);
+        for (Index j = 0; j < unknowns(); ++j) {
+            double sum = 0.0;
+            for (Index k = order(); k >= derivative; --k) sum = sum * place.x + factors[k] * of(k, j);
+            out[j] = sum / scale;
+            if (derivative == 0 && is_closed()) out[j] += place.turns * travel[j];
         }
-        value[j] = total;
-        slope[j] = rate / curve.radii[place.piece];
-        if (curve.is_closed()) value[j] += place.turns * curve.travel[j];
     }
-}
 
-// What is left of ``value`` after division by ``total``, of the sign of ``total``.
-inline double remainder_of(double value, double total) {
-    const double rest = std::fmod(value, total);
-    return rest < 0.0 ? rest + total : rest;
-}
+    void value_and_slope(double s, Vector<double> value, Vector<double> slope) const {
+        const Place place = place_of(s);
+        const View<const double> of = piece(place.piece);
+        for (Index j = 0; j < unknowns(); ++j) {
+            double sum = of(order(), j), rate = 0.0;
+            for (Index k = order() - 1; k >= 0; --k) {
+                rate = rate * place.x + sum;
+                sum = sum * place.x + of(k, j);
+            }
+            value[j] = sum;
+            slope[j] = rate / radii[place.piece];
+            if (is_closed()) value[j] += place.turns * travel[j];
+        }
+    }
 
-// Arclengths ``at`` (k), near which the curve is nearest to points (k, n), moved there, and the
-// distances (k): Newton's method with steps of at most ``reach``, distances modulo ``periods``.
-inline void feet(const Curve& curve, View<const double> points, Vector<double> at, Vector<double> distances,
-                 double reach, Vector<const double> periods, int iterations) {
-    const Index n = curve.unknowns();
-    std::vector<double> value(n), slope(n);
-    for (Index row = 0; row < points.rows; ++row) {
-        double& s = at[row];
-        for (int iteration = 0; iteration <= iterations; ++iteration) {
-            value_and_slope(curve, s, value, slope);
+    // a - b of unknown j, within half a period of 0
+    double gap(double a, double b, Index j) const {
+        const double apart = a - b;
+        return std::isfinite(periods[j]) ? apart - periods[j] * std::nearbyint(apart / periods[j]) : apart;
+    }
+
+    double squared_distance(Vector<const double> a, Vector<const double> b) const {
+        double total = 0.0;
+        for (Index j = 0; j < unknowns(); ++j) {
+            const double apart = gap(a[j], b[j], j);
+            total += apart * apart;
+        }
+        return total;
+    }
+
+    // The foot of a point near arclength ``s``: Newton's method with steps of at most ``reach``.
+    Foot foot_from(double s, Vector<const double> point, double reach, std::vector<double>& room) const {
+        const Index n = unknowns();
+        const Vector<double> value{room.data(), static_cast<std::size_t>(n)};
+        const Vector<double> slope{room.data() + n, static_cast<std::size_t>(n)};
+        for (int step_number = 0;; ++step_number) {
+            value_and_slope(s, value, slope);
             double along = 0.0, speed = 0.0, square = 0.0;
             for (Index j = 0; j < n; ++j) {
-                double gap = value[j] - points(row, j);
-                if (std::isfinite(periods[j])) gap -= periods[j] * std::nearbyint(gap / periods[j]);
-                along += gap * slope[j];
+                const double apart = gap(value[j], point[j], j);
+                along += apart * slope[j];
                 speed += slope[j] * slope[j];
-                square += gap * gap;
+                square += apart * apart;
             }
-            distances[row] = std::sqrt(square);
-            if (iteration == iterations) break;
-            s -= std::clamp(along / speed, -reach, reach);
-            s = curve.is_closed() ? remainder_of(s, curve.total()) : std::clamp(s, 0.0, curve.total());
+            const double step = std::clamp(along / speed, -reach, reach);
+            const bool is_standing = !(std::abs(step) > standing * total());
+            if (step_number == foot_steps || is_standing) return {std::sqrt(square), s};
+            s = is_closed() ? remainder_of(s - step) : std::clamp(s - step, 0.0, total());
         }
     }
-}
+
+    // An arclength modulo the length.
+    double remainder_of(double s) const {
+        const double rest = std::fmod(s, total());
+        return rest < 0.0 ? rest + total() : rest;
+    }
+
+    // Feet that start from the samples of one piece.
+    void look_at(Index number, Vector<const double> point, Foot& best, std::vector<double>& room) const {
+        const Index first = number * samples_of_piece;
+        double before = std::numeric_limits<double>::infinity();
+        double here = std::sqrt(squared_distance(samples_.row(first), point));
+        for (Index i = 0; i <= samples_of_piece; ++i) {
+            double after = std::numeric_limits<double>::infinity();
+            if (i < samples_of_piece) after = std::sqrt(squared_distance(samples_.row(first + i + 1), point));
+            const bool is_lowest = here <= before && here <= after;
+            if (is_lowest && here - spacing_ < best.distance) {
+                const Foot foot = foot_from(arclengths_[first + i], point, 2.0 * spacing_, room);
+                if (foot.distance < best.distance) best = foot;
+            }
+            before = here;
+            here = after;
+        }
+    }
+
+    std::vector<double> arclengths_;
+    Matrix<double> samples_{0, 0}, middles_{0, 0};
+    double spacing_ = 0.0;
+};
 
 }  // namespace bifurc

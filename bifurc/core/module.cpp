@@ -1,8 +1,12 @@
 // The Python module bifurc._core.
+#include <string>
+
 #include "bifurc/core/curve.hpp"
 #include "bifurc/core/numpy.hpp"
+#include "bifurc/core/singular_values.hpp"
 
 namespace nb = nanobind;
+using namespace nb::literals;
 using namespace bifurc;
 using numpy::Array;
 using numpy::CubeIn;
@@ -11,41 +15,88 @@ using numpy::VectorIn;
 
 namespace {
 
-Curve curve_of(const VectorIn<double>& breaks, const VectorIn<double>& centers, const VectorIn<double>& radii,
-               const CubeIn<double>& pieces, const VectorIn<double>& travel) {
-    return {numpy::view(breaks), numpy::view(centers), numpy::view(radii), numpy::rows(pieces),
-            numpy::view(travel)};
+std::vector<double> copied(const VectorIn<double>& array) { return {array.data(), array.data() + array.size()}; }
+
+// All that a curve is made of, as Python has it.
+using CurveArrays = std::tuple<VectorIn<double>, VectorIn<double>, VectorIn<double>, CubeIn<double>,
+                               VectorIn<double>, VectorIn<double>>;
+
+Curve curve_of(const CurveArrays& arrays) {
+    const auto& [breaks, centers, radii, pieces, periods, travel] = arrays;
+    const View<const double> coefficients = numpy::rows(pieces);
+    const bool fits = radii.size() == pieces.shape(0) && centers.size() == radii.size() &&
+                      breaks.size() == radii.size() + 1 && periods.size() == pieces.shape(2) &&
+                      (travel.size() == 0 || travel.size() == pieces.shape(2)) && pieces.shape(1) > 0;
+    if (!fits) throw nb::value_error("the arrays of a curve do not fit each other");
+    Matrix<double> own(coefficients.rows, coefficients.columns);
+    std::copy(pieces.data(), pieces.data() + pieces.size(), own.view().data);
+    return Curve({copied(breaks), copied(centers), copied(radii), std::move(own), copied(periods), copied(travel)});
 }
 
-nb::object evaluate_curve(const VectorIn<double>& breaks, const VectorIn<double>& centers,
-                          const VectorIn<double>& radii, const CubeIn<double>& pieces,
-                          const VectorIn<double>& travel, const VectorIn<double>& s, int derivative) {
-    const Curve curve = curve_of(breaks, centers, radii, pieces, travel);
+void check_width(const char* name, std::size_t given, Index needed) {
+    if (static_cast<Index>(given) != needed) {
+        throw nb::value_error((std::string(name) + " have another number of unknowns than the curve").c_str());
+    }
+}
+
+nb::object evaluate(const Curve& curve, const VectorIn<double>& s, int derivative) {
+    if (curve.count() == 0 && s.size() > 0) throw nb::value_error("a curve of no pieces has no points");
     Array<double> out({static_cast<Index>(s.shape(0)), curve.unknowns()});
-    evaluate(curve, numpy::view(s), derivative, out.matrix());
+    curve.evaluate(numpy::view(s), derivative, out.matrix());
     return out.release();
 }
 
-nb::tuple feet_on_curve(const VectorIn<double>& breaks, const VectorIn<double>& centers,
-                        const VectorIn<double>& radii, const CubeIn<double>& pieces,
-                        const VectorIn<double>& travel, const MatrixIn<double>& points,
-                        const VectorIn<double>& s, double reach, const VectorIn<double>& periods,
-                        int iterations) {
-    const Curve curve = curve_of(breaks, centers, radii, pieces, travel);
-    const auto count = static_cast<Index>(points.shape(0));
-    Array<double> at({count}), distances({count});
-    at.fill(numpy::view(s));
-    feet(curve, numpy::view(points), at.vector(), distances.vector(), reach, numpy::view(periods), iterations);
-    return nb::make_tuple(at.release(), distances.release());
+nb::tuple nearest(const Curve& curve, const MatrixIn<double>& points, double within) {
+    check_width("points", points.shape(1), curve.unknowns());
+    const View<const double> at = numpy::view(points);
+    Array<double> distances({at.rows}), s({at.rows});
+    {
+        nb::gil_scoped_release release;
+        std::vector<double> room(2 * curve.unknowns());
+        for (Index i = 0; i < at.rows; ++i) {
+            const Foot foot = curve.nearest(at.row(i), within, room);
+            distances.data()[i] = foot.distance;
+            s.data()[i] = foot.s;
+        }
+    }
+    return nb::make_tuple(distances.release(), s.release());
+}
+
+nb::object passes(const Curve& curve, const VectorIn<double>& point, double within, double same) {
+    check_width("points", point.size(), curve.unknowns());
+    const std::vector<double> found = curve.passes(numpy::view(point), within, same);
+    Array<double> out({static_cast<Index>(found.size())});
+    out.fill(found);
+    return out.release();
+}
+
+nb::object singular_values(const CubeIn<double>& matrices) {
+    const auto count = static_cast<Index>(matrices.shape(0)), m = static_cast<Index>(matrices.shape(1)),
+               n = static_cast<Index>(matrices.shape(2));
+    Array<double> out({count, std::min(m, n)});
+    {
+        nb::gil_scoped_release release;
+        SingularValues values(m, n);
+        for (Index i = 0; i < count; ++i) values.of({matrices.data() + i * m * n, m, n}, out.matrix().row(i));
+    }
+    return out.release();
 }
 
 }  // namespace
 
 NB_MODULE(_core, module) {
     module.doc() = "Compiled parts of bifurc.";
-    module.def("evaluate", &evaluate_curve, nb::arg("breaks"), nb::arg("centers"), nb::arg("radii"),
-               nb::arg("pieces"), nb::arg("travel"), nb::arg("s"), nb::arg("derivative"));
-    module.def("feet", &feet_on_curve, nb::arg("breaks"), nb::arg("centers"), nb::arg("radii"), nb::arg("pieces"),
-               nb::arg("travel"), nb::arg("points"), nb::arg("s"), nb::arg("reach"), nb::arg("periods"),
-               nb::arg("iterations"));
+    nb::class_<Curve>(module, "Curve")
+        .def(
+            "__init__",
+            [](Curve* place, const VectorIn<double>& breaks, const VectorIn<double>& centers,
+               const VectorIn<double>& radii, const CubeIn<double>& pieces, const VectorIn<double>& periods,
+               const VectorIn<double>& travel) {
+                new (place) Curve(curve_of({breaks, centers, radii, pieces, periods, travel}));
+            },
+            "breaks"_a, "centers"_a, "radii"_a, "pieces"_a, "periods"_a, "travel"_a)
+        .def("evaluate", &evaluate, "s"_a, "derivative"_a)
+        .def("nearest", &nearest, "points"_a, "within"_a)
+        .def("passes", &passes, "point"_a, "within"_a, "same"_a);
+    module.def("singular_values", &singular_values, "matrices"_a);
 }

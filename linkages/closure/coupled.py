@@ -15,9 +15,8 @@ from fractions import Fraction
 import numpy as np
 
 from bifurc.function_problem import NumericalProblem
-from bifurc.problem import March, MarchSettings, MarchStatus
-from linkages.closure import kernels
-from linkages.closure.loop_closure import LoopClosure
+from bifurc.problem import March, MarchSettings
+from linkages.closure.loop_closure import LoopClosure, march
 from linkages.loop import GeometryError, Loop
 
 __all__ = ["CoupledClosure", "locked_joints"]
@@ -92,20 +91,8 @@ class CoupledClosure(NumericalProblem):
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Taylor pieces of the motion from ``start`` (k,) along ``tangent`` (k,)."""
-        status, pieces, steps, radii, residuals, _ = kernels.march(
-            np.ascontiguousarray(start),
-            np.ascontiguousarray(tangent),
-            self.loop.link_geometry,
-            settings.order,
-            settings.tolerance,
-            settings.shortest,
-            settings.longest,
-            settings.count,
-            self._coupling,
-            settings.closing,
-            settings.misclosure,
-        )
-        return March(MarchStatus(status), pieces, steps, radii, residuals)
+        geometry = self.loop.link_geometry
+        return march(start, tangent, geometry, settings, self._coupling)
 
 
 def locked_joints(

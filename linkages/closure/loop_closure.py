@@ -13,13 +13,13 @@ from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
-from linkages.closure import kernels
+from linkages import _core
 from linkages.kinematics import Number
 from linkages.loop import Loop
 from linkages.slices.completeness import SliceAudit
 from linkages.slices.elimination import Slice, slice_configurations
 
-__all__ = ["LoopClosure"]
+__all__ = ["LoopClosure", "march"]
 
 # of every joint: any motion in which a joint turns by more than 15 degrees meets one
 SLICES = 24
@@ -55,18 +55,15 @@ class LoopClosure(NumericalProblem):
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """Closure residuals (k, 6): rotation, then translation over the characteristic
         length."""
-        residuals: np.ndarray = kernels.residuals(_contiguous(points), self._geometry)
-        return residuals
+        return _core.residuals(points, self._geometry)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """Derivatives (k, 6, n) of `residuals`."""
-        jacobians: np.ndarray = kernels.jacobians(_contiguous(points), self._geometry)
-        return jacobians
+        return _core.jacobians(points, self._geometry)
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
-        hessian: np.ndarray = kernels.hessians(_contiguous(point), self._geometry)
-        return hessian
+        return _core.hessian(point, self._geometry)
 
     def precise_residual(self) -> Callable[[Sequence[Number]], list[Number]]:
         """Closure residuals over mpmath numbers, of the loop's own numbers."""
@@ -123,20 +120,7 @@ class LoopClosure(NumericalProblem):
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
-        status, pieces, steps, radii, residuals, _ = kernels.march(
-            np.ascontiguousarray(start),
-            np.ascontiguousarray(tangent),
-            self._geometry,
-            settings.order,
-            settings.tolerance,
-            settings.shortest,
-            settings.longest,
-            settings.count,
-            None,
-            settings.closing,
-            settings.misclosure,
-        )
-        return March(MarchStatus(status), pieces, steps, radii, residuals)
+        return march(start, tangent, self._geometry, settings)
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Closed configurations to start from: complete slices of every joint of a 4R,
@@ -177,24 +161,43 @@ class LoopClosure(NumericalProblem):
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
         each."""
-        points, gaps = kernels.project(
-            _contiguous(starts), self._geometry, ROUNDING, PROJECTION_STEPS
-        )
-        return points, gaps
+        return _core.project(starts, self._geometry, ROUNDING, PROJECTION_STEPS)
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
     ) -> SphereProjection:
         """Closed configurations near ``starts`` (k, n) at distance ``radius`` from
         ``center`` (n,)."""
-        points, gaps, last_steps = kernels.project_to_sphere(
-            _contiguous(starts),
-            _contiguous(center),
-            radius,
-            self._geometry,
-            SPHERE_STEPS,
+        projected = _core.project_to_sphere(
+            starts, center, radius, self._geometry, SPHERE_STEPS
         )
-        return SphereProjection(points, gaps, last_steps)
+        return SphereProjection(*projected)
+
+
+def march(
+    start: np.ndarray,
+    tangent: np.ndarray,
+    geometry: np.ndarray,
+    settings: MarchSettings,
+    coupling: np.ndarray | None = None,
+) -> March:
+    """Taylor pieces of the motion of a loop with this ``geometry`` (6, n) from
+    ``start`` along ``tangent``, in the joint angles (n,) or in the unknowns (k,) of a
+    ``coupling`` (n, k + 1)."""
+    status, pieces, steps, radii, residuals, _ = _core.march(
+        start=start,
+        tangent=tangent,
+        geometry=geometry,
+        order=settings.order,
+        tolerance=settings.tolerance,
+        shortest=settings.shortest,
+        longest=settings.longest,
+        count=settings.count,
+        closing=settings.closing,
+        misclosure=settings.misclosure,
+        coupling=coupling,
+    )
+    return March(MarchStatus(status), pieces, steps, radii, residuals)
 
 
 def _bound_from_distances(distance: np.ndarray) -> float:
@@ -205,8 +208,3 @@ def _bound_from_distances(distance: np.ndarray) -> float:
     later = np.maximum.outer(joints, joints)
     bounds = np.sqrt(0.25 + distance[later] ** 2)
     return float(np.linalg.eigvalsh(bounds)[-1])
-
-
-def _contiguous(values: np.ndarray) -> np.ndarray:
-    """``values`` as the floats in one block of memory that compiled kernels take."""
-    return np.ascontiguousarray(values, dtype=float)

@@ -12,6 +12,7 @@
 
 #include "bifurc/core/arrays.hpp"
 #include "bifurc/core/least_squares.hpp"
+#include "linkages/core/lanes.hpp"
 #include "linkages/core/screws.hpp"
 
 namespace linkages {
@@ -170,45 +171,73 @@ private:
 // The motion of a closed loop as series in the arclength, one order after the other. With S_i(s)
 // the screw of joint i and V_i(s) the twist of the joints before it, dS_i/ds = [V_i, S_i] and
 // sum_i S_i dtheta_i/ds = 0, |du/ds| = 1: every order takes one product of series and one solve.
+// Joints stand four abreast.
 class MotionSeries {
 public:
     MotionSeries(Index joints, Index order)
-        : joints_(joints), screws_((order + 1) * joints), twists_((order + 1) * joints), rates_(order, joints) {}
+        : joints_(joints),
+          blocks_((joints + Lanes::width - 1) / Lanes::width),
+          screws_((order + 1) * blocks_),
+          twists_((order + 1) * blocks_),
+          rates_(order * blocks_) {}
 
-    void set_screw(Index joint, const Screw<double>& screw) { at(screws_, 0, joint) = screw; }
-    double& rate(Index k, Index joint) { return rates_(k, joint); }
+    void set_screw(Index joint, const Screw<double>& screw) { set_lane(screws_[joint / Lanes::width], joint, screw); }
+    double& rate(Index k, Index joint) {
+        return rates_[k * blocks_ + joint / Lanes::width][joint % Lanes::width];
+    }
 
     // What is left of coefficient k of sum_i S_i dtheta_i/ds without the rates of order k.
     Screw<double> known_part(Index k) const {
-        Screw<double> total{};
+        Screw<Lanes> total{};
         for (Index m = 1; m <= k; ++m) {
-            for (Index i = 0; i < joints_; ++i) total = total + rates_(k - m, i) * at(screws_, m, i);
+            for (Index b = 0; b < blocks_; ++b) total = total + rates_[(k - m) * blocks_ + b] * screws_[m * blocks_ + b];
         }
-        return total;
+        Screw<double> out;
+        for (Index row = 0; row < 3; ++row) {
+            out.direction[row] = sum(total.direction[row]);
+            out.moment[row] = sum(total.moment[row]);
+        }
+        return out;
     }
 
     // Coefficients k + 1 of the screws, once the rates of order k are known.
     void advance(Index k) {
-        for (Index i = 1; i < joints_; ++i) {
-            Screw<double> twist = at(twists_, k, i - 1);
-            for (Index m = 0; m <= k; ++m) twist = twist + rates_(k - m, i - 1) * at(screws_, m, i - 1);
-            at(twists_, k, i) = twist;
+        Screw<double> twist{};
+        for (Index b = 0; b < blocks_; ++b) {
+            Screw<Lanes> gained{};
+            for (Index m = 0; m <= k; ++m) gained = gained + rates_[(k - m) * blocks_ + b] * screws_[m * blocks_ + b];
+            for (Index joint = b * Lanes::width; joint < std::min(joints_, (b + 1) * Lanes::width); ++joint) {
+                set_lane(twists_[k * blocks_ + b], joint, twist);
+                twist = twist + lane(gained, joint);
+            }
         }
-        for (Index i = 1; i < joints_; ++i) {
-            Screw<double> total{};
-            for (Index m = 0; m <= k; ++m) total = total + bracket(at(twists_, m, i), at(screws_, k - m, i));
-            at(screws_, k + 1, i) = (1.0 / static_cast<double>(k + 1)) * total;
+        const double share = 1.0 / static_cast<double>(k + 1);
+        for (Index b = 0; b < blocks_; ++b) {
+            Screw<Lanes> total{};
+            for (Index m = 0; m <= k; ++m) {
+                total = total + bracket(twists_[m * blocks_ + b], screws_[(k - m) * blocks_ + b]);
+            }
+            screws_[(k + 1) * blocks_ + b] = Lanes{share, share, share, share} * total;
         }
     }
 
 private:
-    using Screws = std::vector<Screw<double>>;
-    Screw<double>& at(Screws& of, Index k, Index joint) { return of[k * joints_ + joint]; }
-    const Screw<double>& at(const Screws& of, Index k, Index joint) const { return of[k * joints_ + joint]; }
+    static Screw<double> lane(const Screw<Lanes>& block, Index joint) {
+        const Index i = joint % Lanes::width;
+        return {{block.direction[0][i], block.direction[1][i], block.direction[2][i]},
+                {block.moment[0][i], block.moment[1][i], block.moment[2][i]}};
+    }
 
-    Index joints_;
-    Screws screws_, twists_;  // coefficient by coefficient, joint by joint
-    Matrix<double> rates_;
+    static void set_lane(Screw<Lanes>& block, Index joint, const Screw<double>& screw) {
+        for (Index row = 0; row < 3; ++row) {
+            block.direction[row][joint % Lanes::width] = screw.direction[row];
+            block.moment[row][joint % Lanes::width] = screw.moment[row];
+        }
+    }
+
+    Index joints_, blocks_;
+    std::vector<Screw<Lanes>> screws_, twists_;  // coefficient by coefficient, block by block
+    std::vector<Lanes> rates_;
 };
 
 namespace detail {

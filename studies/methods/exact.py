@@ -45,7 +45,7 @@ def distance_in_digits(case: Case, point: np.ndarray) -> float:
 def distances(case: Case, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Distance (k,) of each point to the reference curve, and the arclength (k,)
     there."""
-    return case.reference.nearest(points, neighbours=1)
+    return case.reference.nearest(points)
 
 
 def largest_distance(case: Case, points: np.ndarray) -> float:

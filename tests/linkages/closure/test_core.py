@@ -10,8 +10,8 @@ from bifurc.curves.monitor import singular_values
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import locate_singular_point
+from linkages import _core
 from linkages.catalogue import entry
-from linkages.closure import kernels
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.four_bar import four_bar
 from linkages.linkage import load
@@ -40,6 +40,21 @@ def loop(request):
 
 def geometry(loop):
     return LoopClosure(loop)._geometry
+
+
+def march(start, tangent, geometry, order, tolerance, shortest, longest, count):
+    return _core.march(
+        start,
+        tangent,
+        geometry,
+        order,
+        tolerance,
+        shortest,
+        longest,
+        count,
+        closing=1e-12,
+        misclosure=0.0,
+    )
 
 
 def product(loop, theta):
@@ -87,7 +102,7 @@ def shifted(loop, theta, shifts):
 
 def test_the_residual_agrees_with_50_digits(loop):
     thetas = np.random.default_rng(0).uniform(-np.pi, np.pi, (10, loop.n))
-    found = kernels.residuals(thetas, geometry(loop))
+    found = _core.residuals(thetas, geometry(loop))
     with mpmath.workdps(DIGITS):
         for theta, row in zip(thetas, found, strict=True):
             # products of n rotations in double: a few n roundings
@@ -99,7 +114,7 @@ def test_the_residual_agrees_with_50_digits(loop):
 
 def test_the_jacobian_agrees_with_50_digits_also_where_the_loop_is_open(loop):
     theta = np.random.default_rng(1).uniform(-np.pi, np.pi, loop.n)
-    found = kernels.jacobians(theta[None], geometry(loop))[0]
+    found = _core.jacobians(theta[None], geometry(loop))[0]
     with mpmath.workdps(DIGITS):
         step = mpmath.mpf(10) ** -20  # central differences: an error of 1e-40
         for j in range(loop.n):
@@ -112,7 +127,7 @@ def test_the_jacobian_agrees_with_50_digits_also_where_the_loop_is_open(loop):
 
 def test_the_hessian_agrees_with_50_digits_also_where_the_loop_is_open(loop):
     theta = np.random.default_rng(2).uniform(-np.pi, np.pi, loop.n)
-    found = kernels.hessians(theta, geometry(loop))
+    found = _core.hessian(theta, geometry(loop))
     assert np.array_equal(found, np.swapaxes(found, 1, 2))
     with mpmath.workdps(DIGITS):
         step = mpmath.mpf(10) ** -12  # second differences: an error of 1e-24
@@ -242,7 +257,7 @@ def test_taylor_coefficients_of_the_motion_agree_with_40_digits(name):
     values = np.linalg.svd(problem.jacobians(starts), compute_uv=False)[:, loop.n - 2]
     start = starts[np.argmax(np.where(gaps < 1e-14, values, 0.0))]
     tangent = np.linalg.svd(problem.jacobians(start[None])[0])[2][-1]
-    _, pieces, _, radii, _, _ = kernels.march(
+    _, pieces, _, radii, _, _ = march(
         start, tangent, geometry(loop), 16, 1e-13, 1e-9, 2.0, 1
     )
     with mpmath.workdps(40):
@@ -270,7 +285,7 @@ def test_pieces_overlap_and_follow_each_other_at_the_stated_arclengths():
         ]
     )
     tangent = np.linalg.svd(problem.jacobians(start[None])[0])[2][-1]
-    status, pieces, steps, radii, residuals, sigmas = kernels.march(
+    status, pieces, steps, radii, residuals, sigmas = march(
         start, tangent, geometry(loop), 16, 1e-13, 1e-9, 2.0, 12
     )
     assert status == 0
@@ -291,7 +306,7 @@ def test_pieces_overlap_and_follow_each_other_at_the_stated_arclengths():
 def test_a_march_from_an_open_loop_says_by_how_much_it_is_open():
     loop = LOOPS["planar 4R"]
     long = Loop((1.0, 1.0, 1.0, 5.0), loop.twists, loop.offsets)
-    status, pieces, _, _, gaps, _ = kernels.march(
+    status, pieces, _, _, gaps, _ = march(
         np.zeros(4), np.ones(4) / 2, geometry(long), 16, 1e-13, 1e-9, 2.0, 5
     )
     assert status == 2
@@ -305,7 +320,7 @@ def test_a_march_says_the_smallest_regular_singular_value():
     points = problem.seeds(np.random.default_rng(0), 20).points
     point = points[np.argmin(singular_values(problem, points)[:, 4])]
     tangent = null_vector(problem, point)
-    _, pieces, _, _, _, sigmas = kernels.march(
+    _, pieces, _, _, _, sigmas = march(
         point, tangent, problem._geometry, 16, 1e-13, 1e-9, 0.5, 40
     )
     expected = singular_values(problem, pieces[:, 0])[:, 4]
