@@ -1,4 +1,4 @@
-# Each target sets up the virtual environment .venv first, if that is missing or older than pyproject.toml.
+# Each target sets up the virtual environment .venv first, if that is missing or older than what it is made of.
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -6,7 +6,7 @@ LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
   zero_offset_line_symmetric_bricard first_reconfigurable_bricard
 
-.PHONY: map test test-fragile test-processors lint studies bench clean
+.PHONY: map test test-fragile test-processors lint studies bench dist clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -42,10 +42,15 @@ bench: .venv/ready  ## a short, fixed set of benchmarks, with versions and machi
 	mkdir -p out
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.bench --out out/bench.json
 
-clean:
-	rm -rf .venv out
+dist: .venv/ready  ## sdist and wheel into dist/
+	$(BIN)/python -m pip install --quiet build
+	$(BIN)/python -m build
 
-.venv/ready: pyproject.toml
+clean:
+	rm -rf .venv build dist out
+
+.venv/ready: pyproject.toml CMakeLists.txt $(wildcard */core/*)
+	@command -v c++ > /dev/null || { echo "A C++ compiler is missing (on Debian and Ubuntu: apt install g++)." >&2; exit 1; }
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	touch $@

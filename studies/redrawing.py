@@ -14,7 +14,6 @@ from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
 from bifurc.files.atomic import replace_files
 from linkages.app.files import write_data, write_figures
-from linkages.app.status import compilation_announced
 from linkages.app.summary import make_summary
 
 __all__ = ["Claim", "Redrawing", "angles_along", "largest"]
@@ -62,8 +61,7 @@ class Redrawing:
         """Print the tables and the claims; write the figure and the results of the map
         to a folder."""
         out.mkdir(parents=True, exist_ok=True)
-        with compilation_announced():
-            atlas = self.compute()
+        atlas = self.compute()
         sentences = "\n".join(_judge(claim) for claim in self.claims(atlas))
         summary = f"{make_summary(atlas)}\n\nWhat the source says\n{sentences}"
         click.echo(summary)

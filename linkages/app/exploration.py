@@ -5,7 +5,7 @@ from __future__ import annotations
 from bifurc.atlas import Atlas
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import SearchOptions
-from linkages.app.status import StatusLine, compilation_announced
+from linkages.app.status import StatusLine
 from linkages.app.verdict import judge
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
@@ -22,13 +22,12 @@ def explore_linkage(linkage: Linkage, search: SearchOptions) -> Atlas:
     settings = search.settings()
     status = StatusLine()
     try:
-        with compilation_announced():
-            return map_linkage(
-                linkage,
-                settings=settings,
-                seed=search.seed,
-                progress=status,
-            )
+        return map_linkage(
+            linkage,
+            settings=settings,
+            seed=search.seed,
+            progress=status,
+        )
     finally:
         status.wipe()
 

@@ -13,7 +13,6 @@ import click
 __all__ = [
     "EchoHandler",
     "StatusLine",
-    "compilation_announced",
     "library_messages",
     "say_more",
 ]
@@ -75,35 +74,3 @@ def say_more() -> None:
     """Let the library say all it has to say, inside a block of `library_messages`."""
     for name in LIBRARIES:
         logging.getLogger(name).setLevel(logging.INFO)
-
-
-@contextmanager
-def compilation_announced() -> Iterator[None]:
-    """Say once on standard error when kernels are being compiled, and how long it took
-    altogether."""
-    from numba.core import event
-
-    class Announcement(event.Listener):
-        """Notes when the first compilation starts and the last one ends."""
-
-        def __init__(self) -> None:
-            self.start: float | None = None
-            self.end = 0.0
-
-        def on_start(self, event: event.Event) -> None:
-            if self.start is None:
-                self.start = time.monotonic()
-                text = "compiling kernels (once, kept on disk; about half a minute) ..."
-                click.echo(text, err=True)
-
-        def on_end(self, event: event.Event) -> None:
-            self.end = time.monotonic()
-
-    announcement = Announcement()
-    try:
-        with event.install_listener("numba:compile", announcement):
-            yield
-    finally:
-        if announcement.start is not None:
-            seconds = announcement.end - announcement.start
-            click.echo(f"compiled in {seconds:.1f} s", err=True)
