@@ -47,7 +47,16 @@ class MarchStatus(IntEnum):
     OPEN = 2
 
 
-@dataclass(frozen=True)
+class Anchor(NamedTuple):
+    """A ``point`` (n,) of a curve and its unit ``tangent`` (n,) there, and the distance
+    ``within`` which the curve is there again."""
+
+    point: np.ndarray
+    tangent: np.ndarray
+    within: float
+
+
+@dataclass(frozen=True, eq=False)
 class MarchSettings:
     """How pieces of a curve are made. Lengths are in the unit of the unknowns.
 
@@ -55,7 +64,8 @@ class MarchSettings:
     ``shortest`` and ``longest`` trusted radius, the largest number, ``count``, of
     pieces in one march. ``closing``: there is no curve where the least relative residual
     across it is larger; ``misclosure``: how large it is known to be elsewhere on the
-    curve.
+    curve. With an ``anchor`` the march may end early where the curve is there again, or
+    leaves the bounds.
     """
 
     order: int
@@ -65,6 +75,7 @@ class MarchSettings:
     count: int
     closing: float = is_solution.threshold
     misclosure: float = 0.0
+    anchor: Anchor | None = None
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,10 @@ def march(
     count: int,
     closing: float,
     misclosure: float,
+    anchor: np.ndarray,
+    within: float,
+    periods: np.ndarray,
+    bounds: np.ndarray,
     coupling: np.ndarray | None = None,
 ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
 def project(

@@ -65,14 +65,24 @@ inline nb::tuple arrays_of(const MarchOutcome& outcome, Index order, Index n) {
                           residuals.release(), sigmas.release());
 }
 
+// Where a march may stop early, as Python has it: an anchor (2, n) of a point and a direction, empty
+// where there is none.
+inline std::optional<Region> region_of(const Table& anchor, double within, const Doubles& periods,
+                                       const Table& bounds) {
+    if (anchor.shape(0) == 0) return {};
+    const View<const double> place = numpy::view(anchor);
+    return Region{place.row(0), place.row(1), within, numpy::view(periods), numpy::view(bounds)};
+}
+
 template <System S>
-nb::tuple march(const S& system, const Doubles& start, const Doubles& tangent, const MarchSettings& settings) {
+nb::tuple march(const S& system, const Doubles& start, const Doubles& tangent, const MarchSettings& settings,
+                const std::optional<Region>& region = {}) {
     check_unknowns("start", start.shape(0), system.unknowns());
     check_unknowns("tangent", tangent.shape(0), system.unknowns());
     MarchOutcome outcome;
     {
         nb::gil_scoped_release release;
-        outcome = Marcher(system, settings).run(numpy::view(start), numpy::view(tangent));
+        outcome = Marcher(system, settings).run(numpy::view(start), numpy::view(tangent), region);
     }
     return arrays_of(outcome, settings.order, system.unknowns());
 }

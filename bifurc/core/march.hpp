@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "bifurc/core/system.hpp"
@@ -20,6 +21,22 @@ struct MarchSettings {
     Index count;        // of pieces, at most
     double closing;     // there is no curve where the least residual across it is larger
     double misclosure;  // how large that is known to be elsewhere on the curve
+};
+
+// Where a march may stop early: it passes ``anchor`` (n), modulo the ``periods`` (n), at a distance
+// below ``within`` in the direction ``heading`` (n), or leaves the ``bounds`` (n, 2).
+struct Region {
+    Vector<const double> anchor;
+    Vector<const double> heading;
+    double within;
+    Vector<const double> periods;
+    View<const double> bounds;
+
+    // a - b of unknown j, within half a period of 0
+    double gap(double a, double b, Index j) const {
+        const double apart = a - b;
+        return std::isfinite(periods[j]) ? apart - periods[j] * std::nearbyint(apart / periods[j]) : apart;
+    }
 };
 
 // One piece: the series of u(s) about a point of the curve that lies ``step`` of arclength
@@ -49,6 +66,8 @@ constexpr double shrink = 0.85;        // of a radius that is too long
 constexpr int shrinks = 20;
 constexpr int corrections = 6;
 constexpr std::array hops = {0.9, 0.5, 0.2, 0.0};  // of the new centre beyond the radius, over it
+constexpr int foot_steps = 8;
+constexpr std::array samples = {-1.0, -0.5, 0.0, 0.5, 1.0};  // where a piece is held against the bounds
 constexpr std::array probes = {-1.0, -0.8, -0.45, 0.45, 0.8, 1.0};  // where a piece is checked
 }  // namespace march
 
@@ -90,7 +109,9 @@ public:
 
     // Up to ``count`` consecutive pieces from ``start`` along ``tangent``. Stalled: no trusted
     // step is left, or the system is no longer solved farther on; open: nor at the start.
-    MarchOutcome run(Vector<const double> start, Vector<const double> tangent) {
+    // The march also ends, with what it has made, where it comes to an end of the ``region``.
+    MarchOutcome run(Vector<const double> start, Vector<const double> tangent,
+                     const std::optional<Region>& region = {}) {
         std::vector<double> point(start.begin(), start.end());
         std::vector<double> direction(tangent.begin(), tangent.end());
         const Settled first = settle(point, direction);
@@ -102,11 +123,14 @@ public:
         if (piece.radius < settings_.shortest) return outcome;
         outcome.pieces.push_back(std::move(piece));
         outcome.status = MarchStatus::ran;
+        double center = 0.0;  // arclength from the start
         while (static_cast<Index>(outcome.pieces.size()) < settings_.count) {
             if (!append(outcome.pieces)) {
                 outcome.status = MarchStatus::stalled;
                 break;
             }
+            center += outcome.pieces.back().step;
+            if (region && is_at_an_end(outcome.pieces.back(), *region, 0.5 * outcome.pieces[0].radius - center)) break;
         }
         return outcome;
     }
@@ -240,6 +264,42 @@ private:
             }
         }
         return false;
+    }
+
+    // Whether a piece leaves the bounds of a region, or passes its anchor later than ``after``.
+    bool is_at_an_end(const TaylorPiece& piece, const Region& region, double after) {
+        for (double x : march::samples) {
+            evaluate(piece.coefficients, x * piece.radius, place_, heading_);
+            for (Index j = 0; j < n_; ++j) {
+                if (place_[j] < region.bounds(j, 0) || place_[j] > region.bounds(j, 1)) return true;
+            }
+        }
+        double square = 0.0;
+        for (Index j = 0; j < n_; ++j) {
+            const double apart = region.gap(piece.coefficients(0, j), region.anchor[j], j);
+            square += apart * apart;
+        }
+        return std::sqrt(square) < 1.1 * piece.radius && passes_anchor(piece, region, after);
+    }
+
+    // Newton's method for the foot of the anchor on a piece, from its middle.
+    bool passes_anchor(const TaylorPiece& piece, const Region& region, double after) {
+        double s = 0.0, square = 0.0;
+        for (int iteration = 0; iteration < march::foot_steps; ++iteration) {
+            evaluate(piece.coefficients, s, place_, heading_);
+            double along = 0.0;
+            square = 0.0;
+            for (Index j = 0; j < n_; ++j) {
+                const double apart = region.gap(place_[j], region.anchor[j], j);
+                along += apart * heading_[j];
+                square += apart * apart;
+            }
+            s -= along / squared_length(heading_);
+        }
+        double cosine = 0.0;
+        for (Index j = 0; j < n_; ++j) cosine += heading_[j] * region.heading[j];
+        return s > after && std::abs(s) <= piece.radius && std::sqrt(square) < region.within &&
+               cosine > march::same_way * length(heading_);
     }
 
     struct Meeting {

@@ -9,16 +9,17 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.checks import check_number, check_type, check_whole
 from bifurc.curves.bridges import bridge_from
-from bifurc.curves.ends import end_of_curve
+from bifurc.curves.ends import end_of_curve, same_place
 from bifurc.curves.track import CAUTIOUS, End, Place, Track
 from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
 from bifurc.numerics.null_spaces import null_vector
-from bifurc.problem import March, MarchSettings, MarchStatus, Problem
+from bifurc.problem import Anchor, March, MarchSettings, MarchStatus, Problem
 
 __all__ = ["DEFAULT_SETTINGS", "TraceSettings", "trace_branch"]
 
-AT_ONCE = 14  # pieces made before the end of the curve is looked for
+# Pieces made before the end of the curve is looked for: beside a bend, and at least.
+AT_A_BEND, AT_ONCE = 14, 40
 CLEAR = 10.0  # times the radius of least caution: from there on a bend is passed
 
 
@@ -126,13 +127,14 @@ def _march(
         tolerance=settings.tolerance,
         shortest=max(track.caution.shortest, settings.shortest) * problem.scale,
         longest=settings.longest * problem.scale,
-        count=AT_ONCE,
+        count=AT_A_BEND if track.is_at_a_bend else max(AT_ONCE, len(track)),
         closing=closing,
+        anchor=Anchor(*track.begin, same_place(settings.tolerance) * problem.scale),
     )
     if closing > is_solution.threshold and len(
         track
     ):  # an ordinary curve misses rounding alone
-        gaps = problem.gaps(track.pieces[-AT_ONCE:, 0])
+        gaps = problem.gaps(track.pieces[-AT_A_BEND:, 0])
         march_settings = replace(march_settings, misclosure=gaps.max(initial=0.0))
     front = track.front
     return problem.march(front.point, front.tangent, march_settings)

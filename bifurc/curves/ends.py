@@ -13,7 +13,7 @@ from bifurc.numerics.blur import same_reach
 from bifurc.pieces import point_and_slope, points_on_piece
 from bifurc.problem import Problem
 
-__all__ = ["end_of_curve"]
+__all__ = ["end_of_curve", "same_place"]
 
 LOOSE = 30  # times the tolerance: the largest residual that pieces may have
 SAME_WAY = 0.9  # cosine of the angle between two passes through one point that are one
@@ -42,6 +42,12 @@ def end_of_curve(
     if closing is not None and (leaving is None or closing < leaving):
         return End(Outcome.CLOSED, closing, begin)
     return None if leaving is None else End(Outcome.LEFT_REGION, leaving)
+
+
+def same_place(tolerance: float) -> float:
+    """The distance, over the scale, within which a curve traced to a ``tolerance`` is
+    where it was before."""
+    return max(1e-9, 30 * tolerance)
 
 
 class _Anchor(NamedTuple):
@@ -114,7 +120,7 @@ def _is_same_pass(
     if not foot.slope @ place.tangent > SAME_WAY * speed:
         return False
     distance = float(np.linalg.norm(foot.offset))
-    if distance < max(1e-9, 30 * tolerance) * problem.scale:
+    if distance < same_place(tolerance) * problem.scale:
         return True
     # where a singular value is small a point is known no better than rounding over it
     residual = problem.jacobian(place.point) @ foot.offset

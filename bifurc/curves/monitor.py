@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.decisions import is_zero_along, stands_still
 from bifurc.numerics.roots import bracketed_roots
@@ -55,7 +56,7 @@ def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
     padded with zeros."""
     flat = points.reshape(-1, points.shape[-1])
     jacobians = problem.jacobians(flat) / problem.magnitude
-    values = np.linalg.svd(jacobians, compute_uv=False)
+    values = _core.singular_values(jacobians)
     out = np.zeros((len(flat), problem.n))
     out[:, : values.shape[1]] = values[:, : problem.n]
     return out.reshape(points.shape)

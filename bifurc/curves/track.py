@@ -108,6 +108,16 @@ class Track:
         return self.at(-1, self.reached) if len(self) else self._start
 
     @property
+    def begin(self) -> Place:
+        """Where the first piece begins."""
+        return self.at(0, 0.0) if len(self) else self._start
+
+    @property
+    def is_at_a_bend(self) -> bool:
+        """Whether steps are taken that would be a sign of a singular point elsewhere."""
+        return self._level > 0
+
+    @property
     def caution(self) -> Caution:
         """How cautiously the next pieces are made."""
         return CAUTIOUS[self._level]

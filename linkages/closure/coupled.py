@@ -92,7 +92,7 @@ class CoupledClosure(NumericalProblem):
     ) -> March:
         """Taylor pieces of the motion from ``start`` (k,) along ``tangent`` (k,)."""
         geometry = self.loop.link_geometry
-        return march(start, tangent, geometry, settings, self._coupling)
+        return march(self, geometry, start, tangent, settings, self._coupling)
 
 
 def locked_joints(

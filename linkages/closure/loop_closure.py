@@ -10,7 +10,13 @@ import numpy as np
 from bifurc.checks import check_type
 from bifurc.decisions import is_solution
 from bifurc.function_problem import NumericalProblem
-from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
+from bifurc.problem import (
+    March,
+    MarchSettings,
+    MarchStatus,
+    Problem,
+    SphereProjection,
+)
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 from linkages import _core
@@ -120,7 +126,7 @@ class LoopClosure(NumericalProblem):
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
-        return march(start, tangent, self._geometry, settings)
+        return march(self, self._geometry, start, tangent, settings)
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Closed configurations to start from: complete slices of every joint of a 4R,
@@ -175,15 +181,19 @@ class LoopClosure(NumericalProblem):
 
 
 def march(
+    problem: Problem,
+    geometry: np.ndarray,
     start: np.ndarray,
     tangent: np.ndarray,
-    geometry: np.ndarray,
     settings: MarchSettings,
     coupling: np.ndarray | None = None,
 ) -> March:
     """Taylor pieces of the motion of a loop with this ``geometry`` (6, n) from
     ``start`` along ``tangent``, in the joint angles (n,) or in the unknowns (k,) of a
     ``coupling`` (n, k + 1)."""
+    anchor, within = np.empty((0, problem.n)), 0.0
+    if settings.anchor is not None:
+        anchor, within = np.array(settings.anchor[:2]), settings.anchor.within
     status, pieces, steps, radii, residuals, _ = _core.march(
         start=start,
         tangent=tangent,
@@ -195,6 +205,10 @@ def march(
         count=settings.count,
         closing=settings.closing,
         misclosure=settings.misclosure,
+        anchor=anchor,
+        within=within,
+        periods=problem.periods,
+        bounds=problem.bounds,
         coupling=coupling,
     )
     return March(MarchStatus(status), pieces, steps, radii, residuals)

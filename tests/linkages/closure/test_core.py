@@ -54,6 +54,10 @@ def march(start, tangent, geometry, order, tolerance, shortest, longest, count):
         count,
         closing=1e-12,
         misclosure=0.0,
+        anchor=np.empty((0, len(start))),
+        within=0.0,
+        periods=np.full(len(start), np.inf),
+        bounds=np.full((len(start), 2), [-np.inf, np.inf]),
     )
 
 
