@@ -220,6 +220,11 @@ class Branch:
         ``within``, in order."""
         return self._curve.passes(np.asarray(point, dtype=float), within, SAME_PASS)
 
+    def turning_points(self, unknown: int) -> np.ndarray:
+        """Arclengths, in order, at which the derivative of an unknown (from 0) changes
+        sign."""
+        return self._curve.turning_points(unknown)
+
     # --- what is derived from the pieces ----------------------------------------------
 
     @cached_property

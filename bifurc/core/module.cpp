@@ -2,6 +2,7 @@
 #include <string>
 
 #include "bifurc/core/curve.hpp"
+#include "bifurc/core/inverse.hpp"
 #include "bifurc/core/numpy.hpp"
 #include "bifurc/core/singular_values.hpp"
 
@@ -82,6 +83,29 @@ nb::object singular_values(const CubeIn<double>& matrices) {
     return out.release();
 }
 
+nb::tuple determinants_and_inverses(const CubeIn<double>& matrices) {
+    const auto count = static_cast<Index>(matrices.shape(0)), n = static_cast<Index>(matrices.shape(1));
+    if (static_cast<Index>(matrices.shape(2)) != n) throw nb::value_error("matrices: they must be square");
+    Array<double> determinants({count}), inverses({count, n, n});
+    {
+        nb::gil_scoped_release release;
+        Matrix<double> matrix(n, n);
+        for (Index i = 0; i < count; ++i) {
+            std::copy_n(matrices.data() + i * n * n, n * n, matrix.view().data);
+            determinants.data()[i] = invert(matrix, inverses.entry(i));
+        }
+    }
+    return nb::make_tuple(determinants.release(), inverses.release());
+}
+
+nb::object turning_points(const Curve& curve, Index unknown) {
+    if (unknown < 0 || unknown >= curve.unknowns()) throw nb::index_error("no such unknown");
+    const std::vector<double> found = curve.turning_points(unknown);
+    Array<double> out({static_cast<Index>(found.size())});
+    out.fill(found);
+    return out.release();
+}
+
 }  // namespace
 
 NB_MODULE(_core, module) {
@@ -97,6 +121,8 @@ NB_MODULE(_core, module) {
             "breaks"_a, "centers"_a, "radii"_a, "pieces"_a, "periods"_a, "travel"_a)
         .def("evaluate", &evaluate, "s"_a, "derivative"_a)
         .def("nearest", &nearest, "points"_a, "within"_a)
+        .def("turning_points", &turning_points, "unknown"_a)
         .def("passes", &passes, "point"_a, "within"_a, "same"_a);
+    module.def("determinants_and_inverses", &determinants_and_inverses, "matrices"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
 }

@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc._core import determinants_and_inverses
 from bifurc.branch import Branch
 from bifurc.decisions import is_closed_to_rounding, is_unique
 from bifurc.numerics.chebyshev import (
@@ -317,11 +318,13 @@ class _Inverse:
     @staticmethod
     def of(nodes: _Nodes) -> _Inverse:
         frames = nodes.frames
-        determinants = np.linalg.det(frames)
+        flat = frames.reshape(-1, nodes.n, nodes.n)
+        determinants, inverses = determinants_and_inverses(flat)
         # a node on a singular point, to the last bit, says nothing of Q
-        is_singular = determinants == 0.0
-        regular = np.where(is_singular[..., None, None], np.eye(nodes.n), frames)
-        adjugates = determinants[..., None, None] * np.linalg.inv(regular)
+        inverses[determinants == 0.0] = 0.0
+        adjugates = determinants[:, None, None] * inverses
+        adjugates = adjugates.reshape(frames.shape)
+        determinants = determinants.reshape(frames.shape[:2])
         p = coefficients(determinants[..., None])[..., 0]
         interpolation = _interpolation(nodes, adjugates, p)
         frame_sizes = _norms(frames)

@@ -98,6 +98,8 @@ def dead_points(branch: Branch) -> list[np.ndarray]:
     """For each unknown the arclengths of its dead points: du_i/ds changes sign. None
     for one that stays constant."""
     slopes = np.abs(branch(branch.arclengths(64), 1)).max(axis=0)
-    moving = np.flatnonzero(~stands_still(slopes))
-    roots = iter(roots_along(branch, lambda s: branch(s, 1)[:, moving]))
-    return [next(roots) if i in moving else np.empty(0) for i in range(branch.n)]
+    is_constant = stands_still(slopes)
+    return [
+        np.empty(0) if is_constant[i] else branch.turning_points(i)
+        for i in range(branch.n)
+    ]
