@@ -4,6 +4,7 @@ interface."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -88,7 +89,7 @@ class LoopClosure(NumericalProblem):
         ``curvature_residual`` to spare. K is the largest eigenvalue of the matrix of
         these bounds.
         """
-        reach_before, reach_after = self._reaches()
+        reach_before, reach_after = self._reaches
         distance = np.minimum(reach_before + self.curvature_residual, reach_after)
         return _bound_from_distances(distance)
 
@@ -102,11 +103,12 @@ class LoopClosure(NumericalProblem):
         imaginary parts y then sums up to exp(|y_1| + ... + |y_n|) times the bound for
         real points.
         """
-        _, reach_after = self._reaches()
+        _, reach_after = self._reaches
         exponents = np.minimum(np.sqrt(self.n) * reach, LARGEST_EXPONENT)
         growth: np.ndarray = np.exp(exponents)
         return _bound_from_distances(reach_after) * growth
 
+    @cached_property
     def _reaches(self) -> tuple[np.ndarray, np.ndarray]:
         """How far the base point and the end point can be from the axis of every joint
         (n,), by the links before it and after it."""
