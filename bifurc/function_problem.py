@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import csc_array, issparse, sparray
 
 from bifurc.checks import check_callable, floats_of
 from bifurc.errors import ProblemError
@@ -18,6 +18,10 @@ from bifurc.numerics.corrector import (
 from bifurc.problem import March, MarchSettings, Problem, SphereProjection
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
+
+if TYPE_CHECKING:
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import sparray
 
 __all__ = ["FunctionProblem", "NumericalProblem"]
 
@@ -132,7 +136,8 @@ class FunctionProblem(NumericalProblem):
         so."""
         if self._jacobian is not None:
             jacobian = self._jacobian(point)
-            return jacobian if issparse(jacobian) else np.asarray(jacobian, dtype=float)
+            is_sparse = hasattr(jacobian, "tocsc")
+            return jacobian if is_sparse else np.asarray(jacobian, dtype=float)
         if self.derivatives == "complex step":
             return self._complex_step(point)
         return self._central_difference(point)
@@ -272,8 +277,10 @@ def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:
     """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1
     |A|_inf)."""
-    if not issparse(matrix):
+    if isinstance(matrix, np.ndarray):
         return float(np.linalg.norm(matrix, ord=2))
+    from scipy.sparse import csc_array
+
     sizes: np.ndarray | sparray = abs(csc_array(matrix))
     largest_column = sizes.sum(axis=0).max()
     largest_row = sizes.sum(axis=1).max()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import gammaincinv
 
 from bifurc.decisions import is_solution
 from bifurc.problem import Problem
@@ -58,6 +57,8 @@ def missed_probability(hits: Sequence[int]) -> float:
     among N starts; n1 is close to Poisson, and its upper limit (Garwood 1936) is used
     in its place: 3 / N where nothing was hit just once.
     """
+    from scipy.special import gammaincinv
+
     starts = int(sum(hits))
     if starts == 0:
         return 1.0

@@ -24,8 +24,6 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
-from scipy.spatial import cKDTree
 
 from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
@@ -79,6 +77,8 @@ class Valley:
 
     def dense(self) -> np.ndarray:
         """Points of the cubic through points and tangents, `FINE` a step."""
+        from scipy.interpolate import CubicHermiteSpline
+
         if len(self.points) < 2:
             return self.points
         steps = np.diff(self.points, axis=0)
@@ -305,5 +305,7 @@ def _leaves(center: np.ndarray, radius: float) -> Callable[[np.ndarray], bool]:
 
 def _distance(a: Valley, b: Valley) -> float:
     """The least distance between two valleys."""
+    from scipy.spatial import cKDTree
+
     distances, _ = cKDTree(a.dense()).query(b.dense())
     return float(np.min(distances))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.linalg import lapack, qr, solve_triangular
-from scipy.sparse import csc_array, issparse, sparray, vstack
-from scipy.sparse.linalg import splu
+
+if TYPE_CHECKING:
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import sparray
 
 __all__ = ["Bordered", "as_dense", "bordered_matrix", "sparse_bordered"]
 
@@ -71,7 +73,7 @@ def _solver(
 ) -> Solver:
     """How systems with the bordered matrix are solved: by the cheapest factorisation
     that holds."""
-    if issparse(jacobian) and is_square:
+    if is_square and not isinstance(jacobian, np.ndarray):
         return sparse_bordered(jacobian, tangent)
     matrix = bordered_matrix(jacobian, tangent)
     by_lu = _lu_solver(matrix) if is_square else None
@@ -86,6 +88,9 @@ def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solv
     to a size far below that of F', columns are ordered by minimum degree of A^T + A,
     and a diagonal entry will do as a pivot from a tenth of the largest.
     """
+    from scipy.sparse import csc_array, vstack
+    from scipy.sparse.linalg import splu
+
     matrix = csc_array(jacobian)
     typical = float(np.median(np.abs(matrix.data))) or 1.0
     weight = BORDER * typical / np.abs(tangent).max()
@@ -107,6 +112,8 @@ def _lu_solver(matrix: np.ndarray) -> Solver | None:
 
     LAPACK is called directly: SciPy's wrappers cost more than a small system.
     """
+    from scipy.linalg import lapack
+
     factors, order, _ = lapack.dgetrf(matrix)
     pivots = np.abs(np.diag(factors))
     is_regular = pivots.min() > RANK * pivots.max()
@@ -123,6 +130,8 @@ def _lu_solver(matrix: np.ndarray) -> Solver | None:
 
 def _qr_solver(matrix: np.ndarray) -> Solver:
     """The solver of a system in the least-squares sense, by QR with column pivoting."""
+    from scipy.linalg import qr, solve_triangular
+
     q, r, order = qr(matrix, mode="economic", pivoting=True, check_finite=False)
     diagonal = np.abs(np.diag(r))
     rank = int(np.count_nonzero(diagonal > RANK * diagonal[0]))

@@ -7,13 +7,17 @@ Singular values and residuals are over the problem's magnitude throughout.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import issparse, sparray
 
 from bifurc.decisions import is_null
 from bifurc.numerics.bordered import Bordered
 from bifurc.problem import Problem
+
+if TYPE_CHECKING:
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import sparray
 
 __all__ = [
     "LARGE",
@@ -44,7 +48,7 @@ def null_vector(
     bordered instead of decomposed.
     """
     jacobian = problem.jacobian(point)
-    if problem.n > LARGE or issparse(jacobian):
+    if problem.n > LARGE or not isinstance(jacobian, np.ndarray):
         return _null_vector_by_borders(jacobian, along)
     _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
     values = _padded(sigma, problem.n)

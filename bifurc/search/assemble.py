@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
 
-import networkx as nx
 import numpy as np
 
 from bifurc.atlas import (
@@ -148,6 +147,8 @@ def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
 def _component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of
     the forms."""
+    import networkx as nx
+
     graph: nx.Graph[Hashable] = nx.Graph()
     graph.add_nodes_from(range(count))
     for point in points:

@@ -12,10 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize.elementwise import find_minimum
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from bifurc.decisions import is_null, is_same_half_branch
 from bifurc.numerics.directions import unit_vectors
@@ -243,6 +239,8 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
     contacts = np.empty(0)
     dips = _dips(function.samples)
     if len(dips):
+        from scipy.optimize.elementwise import find_minimum
+
         at = ANGLES[dips]
         bracket = (at - step, at, at + step)
         bottom = find_minimum(function.times_sign, bracket, args=(signs[dips],))
@@ -304,6 +302,10 @@ def _spread_directions(k: int) -> np.ndarray:
 def _without_duplicates(points: np.ndarray, within: float) -> np.ndarray:
     """One of every cluster of points (k, n) that are joined by gaps below ``within``,
     the first."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     count = len(points)
     pairs = cKDTree(points).query_pairs(within, output_type="ndarray")
     links = np.ones(len(pairs))

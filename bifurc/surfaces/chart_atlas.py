@@ -6,14 +6,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from bifurc import torus
+
+if TYPE_CHECKING:
+    # it takes a quarter of a second to import, and most maps have no surface
+    from scipy.spatial import cKDTree
 
 __all__ = ["ChartAtlas", "Covering"]
 
@@ -145,6 +146,9 @@ class ChartAtlas:
     def part(self) -> np.ndarray:
         """Number (c,) of the connected surface that each chart belongs to; number 0 has
         most charts."""
+        from scipy.sparse import csr_array
+        from scipy.sparse.csgraph import connected_components
+
         links = np.ones(len(self.neighbours))
         size = len(self)
         graph = csr_array((links, tuple(self.neighbours.T)), shape=(size, size))
@@ -238,6 +242,8 @@ class ChartAtlas:
     @cached_property
     def _tree(self) -> cKDTree:
         """The centres of the charts, for the search of the nearest."""
+        from scipy.spatial import cKDTree
+
         box = torus.tree_box(self.periods)
         return cKDTree(self._in_box(self.centers), boxsize=box)
 

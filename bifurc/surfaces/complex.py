@@ -5,9 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from bifurc import torus
 from bifurc.numerics.corrector import correct_normal
@@ -128,6 +125,10 @@ def _merge_corners(
 ) -> np.ndarray:
     """Number (v,) of the vertex that each corner is: corners that nearly coincide, of
     one polygon or of two neighbours, are one."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     points, owner = corners
     if not len(points):
         return np.empty(0, dtype=int)

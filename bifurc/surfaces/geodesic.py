@@ -15,7 +15,6 @@ from collections.abc import Hashable
 
 import networkx as nx
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from bifurc.errors import BifurcError
 from bifurc.numerics.corrector import correct_normal
@@ -312,6 +311,8 @@ def _solve_for_pull(force: np.ndarray, planes: np.ndarray) -> np.ndarray:
     #     [ -C_1^T   2 I   -C_2          ] [ y_2 ] = [ f_2 ]
     #     [         -C_2^T  2 I   -C_3   ] [ y_3 ]   [ f_3 ]
     #     [                  :     :     ] [  :  ]   [  :  ]
+    from scipy.linalg import solveh_banded
+
     count = len(planes)
     across = np.swapaxes(planes[:-1], 1, 2)
     coupling = -across @ planes[1:]
