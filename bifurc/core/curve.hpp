@@ -72,6 +72,8 @@ public:
         return found;
     }
 
+    std::size_t room_for_a_foot() const { return 3 * unknowns(); }
+
     // The foot of a point (n) on the curve, distances modulo the periods; an infinite distance where
     // it is ``within`` or more.
     //
@@ -99,7 +101,7 @@ public:
     // All arclengths at which the curve passes a point (n) at a distance below ``within``, in order;
     // feet no farther apart than ``same`` are one.
     std::vector<double> passes(Vector<const double> point, double within, double same) const {
-        std::vector<double> room(2 * unknowns()), found, distinct;
+        std::vector<double> room(room_for_a_foot()), found, distinct;
         const double reach = 2.5 * spacing_ + within;
         for (Index i = 0; i < static_cast<Index>(arclengths_.size()); ++i) {
             if (squared_distance(samples_.row(i), point) > reach * reach) continue;
@@ -173,18 +175,25 @@ private:
         }
     }
 
-    void value_and_slope(double s, Vector<double> value, Vector<double> slope) const {
+    // u, du/ds and d2u/ds2 at one arclength.
+    struct Jet {
+        Vector<double> value, slope, bend;
+    };
+
+    void fill(double s, const Jet& jet) const {
         const Place place = place_of(s);
         const View<const double> of = piece(place.piece);
+        const double radius = radii[place.piece];
         for (Index j = 0; j < unknowns(); ++j) {
-            double sum = of(order(), j), rate = 0.0;
+            double sum = of(order(), j), first = 0.0, second = 0.0;
             for (Index k = order() - 1; k >= 0; --k) {
-                rate = rate * place.x + sum;
+                second = second * place.x + first;
+                first = first * place.x + sum;
                 sum = sum * place.x + of(k, j);
             }
-            value[j] = sum;
-            slope[j] = rate / radii[place.piece];
-            if (is_closed()) value[j] += place.turns * travel[j];
+            jet.value[j] = is_closed() ? sum + place.turns * travel[j] : sum;
+            jet.slope[j] = first / radius;
+            jet.bend[j] = 2.0 * second / (radius * radius);
         }
     }
 
@@ -242,25 +251,30 @@ private:
         return total;
     }
 
-    // The foot of a point near arclength ``s``: Newton's method with steps of at most ``reach``.
+    // The foot of a point near arclength ``s``: Newton's method on half the squared distance, with
+    // steps of at most ``reach``, downhill.
     Foot foot_from(double s, Vector<const double> point, double reach, std::vector<double>& room) const {
-        const Index n = unknowns();
-        const Vector<double> value{room.data(), static_cast<std::size_t>(n)};
-        const Vector<double> slope{room.data() + n, static_cast<std::size_t>(n)};
-        for (int step_number = 0;; ++step_number) {
-            value_and_slope(s, value, slope);
-            double along = 0.0, speed = 0.0, square = 0.0;
-            for (Index j = 0; j < n; ++j) {
-                const double apart = gap(value[j], point[j], j);
-                along += apart * slope[j];
-                speed += slope[j] * slope[j];
+        const std::size_t n = unknowns();
+        const Jet jet{{room.data(), n}, {room.data() + n, n}, {room.data() + 2 * n, n}};
+        Foot best{std::numeric_limits<double>::infinity(), s};
+        for (int step_number = 0; step_number <= foot_steps; ++step_number) {
+            fill(s, jet);
+            double fall = 0.0, speed = 0.0, curvature = 0.0, square = 0.0;
+            for (Index j = 0; j < unknowns(); ++j) {
+                const double apart = gap(jet.value[j], point[j], j);
+                fall += apart * jet.slope[j];
+                speed += jet.slope[j] * jet.slope[j];
+                curvature += apart * jet.bend[j];
                 square += apart * apart;
             }
-            const double step = std::clamp(along / speed, -reach, reach);
-            const bool is_standing = !(std::abs(step) > standing * total());
-            if (step_number == foot_steps || is_standing) return {std::sqrt(square), s};
+            const double distance = std::sqrt(square);
+            if (distance < best.distance) best = {distance, s};
+            const double rise = speed + curvature > 0.1 * speed ? speed + curvature : speed;
+            const double step = std::clamp(fall / rise, -reach, reach);
+            if (!(std::abs(step) > standing * total())) break;
             s = is_closed() ? remainder_of(s - step) : std::clamp(s - step, 0.0, total());
         }
+        return best;
     }
 
     // An arclength modulo the length.

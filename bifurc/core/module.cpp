@@ -53,7 +53,7 @@ nb::tuple nearest(const Curve& curve, const MatrixIn<double>& points, double wit
     Array<double> distances({at.rows}), s({at.rows});
     {
         nb::gil_scoped_release release;
-        std::vector<double> room(2 * curve.unknowns());
+        std::vector<double> room(curve.room_for_a_foot());
         for (Index i = 0; i < at.rows; ++i) {
             const Foot foot = curve.nearest(at.row(i), within, room);
             distances.data()[i] = foot.distance;

@@ -1,0 +1,232 @@
+"""The compiled core against slower ways to the same numbers."""
+
+import ast
+import inspect
+from pathlib import Path
+
+import mpmath
+import numpy as np
+import pytest
+
+import bifurc
+import linkages
+from bifurc import _core
+from bifurc.branch import Branch, Outcome
+from bifurc.curves.continuation import trace_branch
+from bifurc.function_problem import FunctionProblem
+from linkages import _core as linkages_core
+from linkages.closure.loop_closure import LoopClosure
+from linkages.linkage import load
+
+
+@pytest.fixture(scope="module")
+def branch():
+    """A closed curve that winds: a form of a 6R linkage."""
+    problem = LoopClosure(load("bricard-line-symmetric").loop)
+    points, gaps = problem.project(
+        np.random.default_rng(1).uniform(-np.pi, np.pi, (40, 6))
+    )
+    return trace_branch(problem, points[np.argmin(gaps)])
+
+
+def names_in(stub):
+    """The names that a stub states, those of a class after a dot."""
+    found = set()
+    for node in ast.parse(stub.read_text()).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            found.add(node.name)
+        if isinstance(node, ast.ClassDef):
+            found |= {
+                f"{node.name}.{inner.name}"
+                for inner in node.body
+                if isinstance(inner, ast.FunctionDef) and inner.name != "__init__"
+            }
+    return found
+
+
+def names_of(module):
+    found = {name for name in dir(module) if not name.startswith("_")}
+    for name, value in inspect.getmembers(module, inspect.isclass):
+        found |= {f"{name}.{inner}" for inner in dir(value) if inner[0] != "_"}
+    return found
+
+
+@pytest.mark.parametrize(
+    ("package", "module"), [(bifurc, _core), (linkages, linkages_core)]
+)
+def test_the_stub_states_what_the_module_has(package, module):
+    stub = Path(package.__file__).with_name("_core.pyi")
+    assert names_in(stub) == names_of(module)
+
+
+# --- small matrices -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", [(6, 6), (6, 4), (4, 6), (7, 6), (1, 3), (3, 1)])
+def test_singular_values_are_those_of_lapack(shape):
+    matrices = np.random.default_rng(0).standard_normal((200, *shape))
+    matrices[50:100, :, 0] = matrices[50:100, :, -1]
+    matrices[100:150] *= 1e-200
+    matrices[150] = 0.0
+    expected = np.linalg.svd(matrices, compute_uv=False)
+    largest = expected.max(axis=1, keepdims=True) + 1e-300
+    found = _core.singular_values(matrices)
+    assert np.all(np.abs(found - expected) <= 1e-14 * largest)
+
+
+def test_small_singular_values_are_right_to_all_digits_where_columns_are_scaled():
+    rng = np.random.default_rng(3)
+    matrix = rng.standard_normal((6, 6)) * 10.0 ** np.array([0, -3, -6, -9, -12, -15])
+    with mpmath.workdps(60):
+        exact = mpmath.svd_r(mpmath.matrix(matrix.tolist()), compute_uv=False)
+        expected = np.array([float(value) for value in exact])
+    found = _core.singular_values(matrix[None])[0]
+    assert found == pytest.approx(expected, rel=1e-13)
+
+
+def test_what_is_no_number_has_no_singular_values():
+    assert np.all(np.isnan(_core.singular_values(np.full((1, 3, 3), np.nan))))
+
+
+def test_determinants_and_inverses_are_those_of_lapack():
+    matrices = np.random.default_rng(2).standard_normal((100, 6, 6))
+    matrices[:50, 0, 0] = 0.0  # a pivot has to be looked for
+    determinants, inverses = _core.determinants_and_inverses(matrices)
+    assert determinants == pytest.approx(np.linalg.det(matrices), rel=1e-11)
+    residual = matrices @ inverses - np.eye(6)
+    condition = np.linalg.cond(matrices)
+    assert np.all(np.abs(residual).max(axis=(1, 2)) < 1e-15 * condition * 10)
+
+
+def test_a_singular_matrix_has_determinant_zero():
+    determinants, _ = _core.determinants_and_inverses(np.ones((1, 3, 3)))
+    assert determinants[0] == 0.0
+
+
+def test_matrices_that_are_not_square_have_no_inverse():
+    with pytest.raises(ValueError, match="square"):
+        _core.determinants_and_inverses(np.ones((1, 2, 3)))
+
+
+# --- curves ---------------------------------------------------------------------------
+
+
+def brute_distances(branch, points):
+    """Distances to 20,000 points of the curve."""
+    fine = branch.sample(20_000)
+    gaps = points[:, None] - fine[None]
+    gaps -= 2 * np.pi * np.round(gaps / (2 * np.pi))
+    return np.linalg.norm(gaps, axis=2).min(axis=1)
+
+
+def test_no_point_of_a_curve_is_nearer_than_the_foot(branch):
+    points = np.random.default_rng(4).uniform(-6, 6, (60, 6))
+    distances, s = branch.nearest(points)
+    expected = brute_distances(branch, points)
+    spacing = branch.length / 20_000
+    assert np.all(distances <= expected + 1e-12)
+    assert np.all(distances >= expected - spacing)
+    gaps = branch(s) - points
+    gaps -= 2 * np.pi * np.round(gaps / (2 * np.pi))
+    assert np.linalg.norm(gaps, axis=1) == pytest.approx(distances, abs=1e-12)
+
+
+def test_feet_of_points_on_a_curve_are_exact(branch):
+    s = np.linspace(0.0, branch.length, 500, endpoint=False)
+    distances, found = branch.nearest(branch(s))
+    assert distances.max() < 1e-12
+    assert branch(found) == pytest.approx(branch(s), abs=1e-12)
+
+
+def test_what_is_not_within_reach_is_infinitely_far(branch):
+    points = np.random.default_rng(5).uniform(-3, 3, (50, 6))
+    exact, _ = branch.nearest(points)
+    middle = float(np.median(exact))
+    found, _ = branch.nearest(points, middle)
+    assert np.array_equal(np.isinf(found), exact >= middle)
+    assert found[exact < middle] == pytest.approx(exact[exact < middle])
+
+
+def test_turning_points_are_where_the_derivative_changes_sign(branch):
+    fine = np.linspace(0.0, branch.length, 100_001)
+    for unknown in range(branch.n):
+        turns = branch.turning_points(unknown)
+        slopes = branch(fine, 1)[:, unknown]
+        assert len(turns) == np.count_nonzero(slopes[:-1] * slopes[1:] < 0)
+        assert np.all(np.abs(branch(turns, 1)[:, unknown]) < 1e-12)
+        assert np.all(np.diff(turns) > 0)
+
+
+def test_a_turning_point_between_two_pieces_is_found_once():
+    # a parabola in two pieces that meet at its top
+    pieces = np.array(
+        [
+            [[-0.5, -0.25], [0.5, 0.5], [0.0, -0.25]],
+            [[0.5, -0.25], [0.5, -0.5], [0, -0.25]],
+        ]
+    )
+    parabola = Branch(
+        pieces=pieces,
+        centers=np.array([0.5, 1.5]),
+        radii=np.array([0.5, 0.5]),
+        breaks=np.array([0.0, 1.0, 2.0]),
+        residuals=np.zeros(2),
+        periods=np.full(2, np.inf),
+        outcome=Outcome.LEFT_REGION,
+    )
+    assert parabola.turning_points(1) == pytest.approx([1.0], abs=1e-14)
+    assert not len(parabola.turning_points(0))
+
+
+def test_arrays_that_do_not_fit_each_other_are_no_curve():
+    with pytest.raises(ValueError, match="do not fit"):
+        _core.Curve(
+            breaks=np.zeros(2),
+            centers=np.zeros(1),
+            radii=np.ones(1),
+            pieces=np.zeros((2, 3, 2)),
+            periods=np.ones(2),
+            travel=np.zeros(0),
+        )
+
+
+# --- marching -------------------------------------------------------------------------
+
+
+def test_curves_of_any_length_close_at_their_start():
+    # a search for the end after every 14 pieces, or after all of them: the same curve
+    for count in (1, 3, 7):
+        problem = FunctionProblem(
+            lambda u, k=count: np.array(
+                [u[0] ** 2 + u[1] ** 2 - 1.0, u[2] - np.cos(k * np.arctan2(u[1], u[0]))]
+            ),
+            np.full((3, 2), [-2.0, 2.0]),
+        )
+        branch = trace_branch(problem, np.array([1.0, 0.0, 1.0]))
+        assert branch.closed
+        phi = np.linspace(0.0, 2 * np.pi, 200_001)
+        exact = np.trapezoid(np.sqrt(1 + (count * np.sin(count * phi)) ** 2), phi)
+        assert branch.length == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_march_ends_where_its_curve_closes():
+    from bifurc.problem import Anchor, MarchSettings
+
+    problem = LoopClosure(load("bennett").loop)
+    start, gaps = problem.project(np.random.default_rng(0).uniform(-2, 2, (9, 4)))
+    point = start[np.argmin(gaps)]
+    branch = trace_branch(problem, point)
+    settings = MarchSettings(
+        order=16, tolerance=1e-13, shortest=1e-9, longest=2.0, count=500
+    )
+    place = (branch(0.0), branch(0.0, 1))
+    free = problem.march(*place, settings)
+    assert len(free.pieces) == 500
+    bound = problem.march(
+        *place,
+        MarchSettings(**{**vars(settings), "anchor": Anchor(*place, within=1e-9)}),
+    )
+    reached = bound.steps.sum() + bound.radii[-1]
+    before = reached - 2 * bound.radii[-1]
+    assert before < branch.length < reached
+    assert np.array_equal(bound.pieces, free.pieces[: len(bound.pieces)])
