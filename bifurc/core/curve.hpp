@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bifurc/core/arrays.hpp"
+#include "bifurc/core/periods.hpp"
 
 namespace bifurc {
 
@@ -236,11 +237,7 @@ private:
         return high;
     }
 
-    // a - b of unknown j, within half a period of 0
-    double gap(double a, double b, Index j) const {
-        const double apart = a - b;
-        return std::isfinite(periods[j]) ? apart - periods[j] * std::nearbyint(apart / periods[j]) : apart;
-    }
+    double gap(double a, double b, Index j) const { return periodic_difference(a, b, periods[j]); }
 
     double squared_distance(Vector<const double> a, Vector<const double> b) const {
         double total = 0.0;

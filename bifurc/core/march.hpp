@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "bifurc/core/periods.hpp"
 #include "bifurc/core/system.hpp"
 
 namespace bifurc {
@@ -31,12 +32,45 @@ struct Region {
     double within;
     Vector<const double> periods;
     View<const double> bounds;
+};
 
-    // a - b of unknown j, within half a period of 0
-    double gap(double a, double b, Index j) const {
-        const double apart = a - b;
-        return std::isfinite(periods[j]) ? apart - periods[j] * std::nearbyint(apart / periods[j]) : apart;
+// The thresholds of a march; `bifurc.decisions` gives them names and reasons.
+namespace march {
+constexpr double rounding = 1e-15;     // a residual that nothing brings down
+constexpr double handover = 20.0;      // distance of two pieces where one hands over, over the blur
+constexpr double same_way = 0.9;       // cosine of the angle there, at least
+constexpr double most_blurred = 1e-3;  // the largest distance to which a point may be known
+constexpr double farthest_correction = 1e-2;  // of a new centre, over the radius before it
+constexpr double shrink = 0.85;        // of a radius that is too long
+constexpr int shrinks = 20;
+constexpr int corrections = 6;
+constexpr std::array hops = {0.9, 0.5, 0.2, 0.0};  // of the new centre beyond the radius, over it
+constexpr int places = 8;           // on either side of a centre, from which a foot is looked for
+constexpr int foot_steps = 6;       // of Newton's method from there
+constexpr double standing = 1e-15;  // a step, over the radius, after which none follows
+constexpr std::array samples = {-1.0, -0.5, 0.0, 0.5, 1.0};  // where a piece is held against the bounds
+constexpr std::array probes = {-1.0, -0.8, -0.45, 0.45, 0.8, 1.0};  // where a piece is checked
+}  // namespace march
+
+// Value and slope of a series (order + 1, n) at ``s``.
+inline void evaluate(View<const double> coefficients, double s, Vector<double> value, Vector<double> slope) {
+    const Index order = coefficients.rows - 1;
+    for (Index j = 0; j < coefficients.columns; ++j) {
+        double total = coefficients(order, j), rate = 0.0;
+        for (Index k = order - 1; k >= 0; --k) {
+            rate = rate * s + total;
+            total = total * s + coefficients(k, j);
+        }
+        value[j] = total;
+        slope[j] = rate;
     }
+}
+
+// Where a curve is nearest to a point: the arclength from the centre of a piece, the offset from
+// the point and the slope there.
+struct FootOnPiece {
+    double s;
+    Vector<double> offset, slope;
 };
 
 // One piece: the series of u(s) about a point of the curve that lies ``step`` of arclength
@@ -55,34 +89,35 @@ struct MarchOutcome {
     std::vector<TaylorPiece> pieces;
 };
 
-// The thresholds of a march; `bifurc.decisions` gives them names and reasons.
-namespace march {
-constexpr double rounding = 1e-15;     // a residual that nothing brings down
-constexpr double handover = 20.0;      // distance of two pieces where one hands over, over the blur
-constexpr double same_way = 0.9;       // cosine of the angle there, at least
-constexpr double most_blurred = 1e-3;  // the largest distance to which a point may be known
-constexpr double farthest_correction = 1e-2;  // of a new centre, over the radius before it
-constexpr double shrink = 0.85;        // of a radius that is too long
-constexpr int shrinks = 20;
-constexpr int corrections = 6;
-constexpr std::array hops = {0.9, 0.5, 0.2, 0.0};  // of the new centre beyond the radius, over it
-constexpr int foot_steps = 8;
-constexpr std::array samples = {-1.0, -0.5, 0.0, 0.5, 1.0};  // where a piece is held against the bounds
-constexpr std::array probes = {-1.0, -0.8, -0.45, 0.45, 0.8, 1.0};  // where a piece is checked
-}  // namespace march
-
-// Value and slope of a series (order + 1, n) at ``s``.
-inline void evaluate(View<const double> coefficients, double s, Vector<double> value, Vector<double> slope) {
-    const Index order = coefficients.rows - 1;
-    for (Index j = 0; j < coefficients.columns; ++j) {
-        double total = coefficients(order, j), rate = 0.0;
-        for (Index k = order - 1; k >= 0; --k) {
-            rate = rate * s + total;
-            total = total * s + coefficients(k, j);
+// The foot of a point (n) on the series (order + 1, n) of a piece, distances modulo the periods:
+// from the nearest of some places within its radius by Newton's method. ``offset`` and ``slope`` (n)
+// take what it returns.
+inline FootOnPiece foot_on_piece(View<const double> coefficients, double radius, Vector<const double> point,
+                                 Vector<const double> periods, Vector<double> offset, Vector<double> slope) {
+    const Index n = coefficients.columns;
+    const auto look = [&](double s) {
+        evaluate(coefficients, s, offset, slope);
+        for (Index j = 0; j < n; ++j) offset[j] = periodic_difference(offset[j], point[j], periods[j]);
+        return squared_length(offset);
+    };
+    double s = 0.0, nearest = std::numeric_limits<double>::infinity();
+    for (int place = -march::places; place <= march::places; ++place) {
+        const double there = radius * place / march::places;
+        const double square = look(there);
+        if (square < nearest) {
+            nearest = square;
+            s = there;
         }
-        value[j] = total;
-        slope[j] = rate;
     }
+    for (int iteration = 0;; ++iteration) {
+        look(s);
+        double along = 0.0;
+        for (Index j = 0; j < n; ++j) along += offset[j] * slope[j];
+        const double step = along / squared_length(slope);
+        if (iteration == march::foot_steps || !(std::abs(step) > march::standing * radius)) break;
+        s -= step;
+    }
+    return {s, offset, slope};
 }
 
 // Marches along the curves of one system. A piece is trusted on both sides of its centre, so
@@ -276,30 +311,19 @@ private:
         }
         double square = 0.0;
         for (Index j = 0; j < n_; ++j) {
-            const double apart = region.gap(piece.coefficients(0, j), region.anchor[j], j);
+            const double apart = periodic_difference(piece.coefficients(0, j), region.anchor[j], region.periods[j]);
             square += apart * apart;
         }
         return std::sqrt(square) < 1.1 * piece.radius && passes_anchor(piece, region, after);
     }
 
-    // Newton's method for the foot of the anchor on a piece, from its middle.
     bool passes_anchor(const TaylorPiece& piece, const Region& region, double after) {
-        double s = 0.0, square = 0.0;
-        for (int iteration = 0; iteration < march::foot_steps; ++iteration) {
-            evaluate(piece.coefficients, s, place_, heading_);
-            double along = 0.0;
-            square = 0.0;
-            for (Index j = 0; j < n_; ++j) {
-                const double apart = region.gap(place_[j], region.anchor[j], j);
-                along += apart * heading_[j];
-                square += apart * apart;
-            }
-            s -= along / squared_length(heading_);
-        }
+        const FootOnPiece foot =
+            foot_on_piece(piece.coefficients, piece.radius, region.anchor, region.periods, other_, slope_);
         double cosine = 0.0;
-        for (Index j = 0; j < n_; ++j) cosine += heading_[j] * region.heading[j];
-        return s > after && std::abs(s) <= piece.radius && std::sqrt(square) < region.within &&
-               cosine > march::same_way * length(heading_);
+        for (Index j = 0; j < n_; ++j) cosine += foot.slope[j] * region.heading[j];
+        return foot.s > after && std::abs(foot.s) <= piece.radius && length(foot.offset) < region.within &&
+               cosine > march::same_way * length(foot.slope);
     }
 
     struct Meeting {

@@ -3,6 +3,7 @@
 
 #include "bifurc/core/curve.hpp"
 #include "bifurc/core/inverse.hpp"
+#include "bifurc/core/march.hpp"
 #include "bifurc/core/numpy.hpp"
 #include "bifurc/core/singular_values.hpp"
 
@@ -40,7 +41,7 @@ void check_width(const char* name, std::size_t given, Index needed) {
     }
 }
 
-nb::object evaluate(const Curve& curve, const VectorIn<double>& s, int derivative) {
+nb::object values_on(const Curve& curve, const VectorIn<double>& s, int derivative) {
     if (curve.count() == 0 && s.size() > 0) throw nb::value_error("a curve of no pieces has no points");
     Array<double> out({static_cast<Index>(s.shape(0)), curve.unknowns()});
     curve.evaluate(numpy::view(s), derivative, out.matrix());
@@ -106,6 +107,18 @@ nb::object turning_points(const Curve& curve, Index unknown) {
     return out.release();
 }
 
+// (x, offset (n), slope (n)) of the foot of a point (n) on a piece (order + 1, n) in x from -1 to 1.
+nb::tuple foot_of_point(const MatrixIn<double>& piece, const VectorIn<double>& point,
+                        const VectorIn<double>& periods) {
+    const auto n = static_cast<Index>(piece.shape(1));
+    check_width("point", point.size(), n);
+    check_width("periods", periods.size(), n);
+    Array<double> offset({n}), slope({n});
+    const FootOnPiece foot = foot_on_piece(numpy::view(piece), 1.0, numpy::view(point), numpy::view(periods),
+                                           offset.vector(), slope.vector());
+    return nb::make_tuple(foot.s, offset.release(), slope.release());
+}
+
 }  // namespace
 
 NB_MODULE(_core, module) {
@@ -119,10 +132,11 @@ NB_MODULE(_core, module) {
                 new (place) Curve(curve_of({breaks, centers, radii, pieces, periods, travel}));
             },
             "breaks"_a, "centers"_a, "radii"_a, "pieces"_a, "periods"_a, "travel"_a)
-        .def("evaluate", &evaluate, "s"_a, "derivative"_a)
+        .def("evaluate", &values_on, "s"_a, "derivative"_a)
         .def("nearest", &nearest, "points"_a, "within"_a)
         .def("turning_points", &turning_points, "unknown"_a)
         .def("passes", &passes, "point"_a, "within"_a, "same"_a);
     module.def("determinants_and_inverses", &determinants_and_inverses, "matrices"_a);
+    module.def("foot_on_piece", &foot_of_point, "piece"_a, "point"_a, "periods"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
 }

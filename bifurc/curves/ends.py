@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc._core import foot_on_piece
 from bifurc.branch import Outcome
 from bifurc.curves.track import End, Place, Track
 from bifurc.decisions import is_back
 from bifurc.numerics.blur import same_reach
-from bifurc.pieces import point_and_slope, points_on_piece
+from bifurc.pieces import points_on_piece
 from bifurc.problem import Problem
 
 __all__ = ["end_of_curve", "same_place"]
@@ -18,7 +19,6 @@ __all__ = ["end_of_curve", "same_place"]
 LOOSE = 30  # times the tolerance: the largest residual that pieces may have
 SAME_WAY = 0.9  # cosine of the angle between two passes through one point that are one
 ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
-FOOT_STEPS = 6  # of Newton's method from a sample of a piece to the foot of a point
 
 
 def end_of_curve(
@@ -74,7 +74,7 @@ def _closing(
     place = track.at(anchor.number, anchor.s)
     beyond = anchor.s + 0.5 * track.radii[anchor.number]
     for number in _pieces_near(problem, track, first, place.point):
-        foot = _foot(problem, track.pieces[number], place.point)
+        foot = _Foot(*foot_on_piece(track.pieces[number], place.point, problem.periods))
         s = track.centers[number] + foot.x * track.radii[number]
         if abs(foot.x) > 1.02 or not s > beyond:
             continue
@@ -93,22 +93,6 @@ def _pieces_near(
     is_near = np.linalg.norm(gaps, axis=1) < 1.1 * radii
     numbers: np.ndarray = first + np.flatnonzero(is_near)
     return numbers
-
-
-def _foot(problem: Problem, piece: np.ndarray, point: np.ndarray) -> _Foot:
-    """The foot of ``point`` (n,) on a piece (order + 1, n), by Newton's method."""
-    grid = np.linspace(-1.0, 1.0, 17)
-    offsets = problem.difference(points_on_piece(piece, grid), point)
-    distances = np.linalg.norm(offsets, axis=1)
-    x = grid[np.argmin(distances)]
-    for _ in range(FOOT_STEPS):
-        on_piece, slope = point_and_slope(piece, x)
-        offset = problem.difference(on_piece, point)
-        step = offset @ slope / (slope @ slope)
-        x = x - step
-        if abs(step) < 1e-15:
-            break
-    return _Foot(x, offset, slope)
 
 
 def _is_same_pass(
