@@ -168,6 +168,73 @@ private:
     View<const double> coupling_;
 };
 
+// The screws of four joints, lane by lane.
+struct ScrewLanes {
+    std::array<Lanes, 6> rows;
+
+    Screw<double> lane(Index i) const {
+        return {{rows[0][i], rows[1][i], rows[2][i]}, {rows[3][i], rows[4][i], rows[5][i]}};
+    }
+    void set_lane(Index i, const Screw<double>& screw) {
+        for (Index row = 0; row < 3; ++row) {
+            rows[row][i] = screw.direction[row];
+            rows[row + 3][i] = screw.moment[row];
+        }
+    }
+};
+
+namespace lanes {
+
+inline Packed load(const Lanes& from) {
+    Packed out;
+    std::memcpy(&out, from.data(), sizeof out);
+    return out;
+}
+
+inline void store(const Packed& value, Lanes& to) { std::memcpy(to.data(), &value, sizeof value); }
+
+// Coefficient k of the product of rates and screws from order ``first`` of the screws on; every
+// ``stride``-th entry belongs to a series.
+LINKAGES_VECTORISED inline void multiply(const Lanes* rates, const ScrewLanes* screws, Index k, Index first,
+                                         Index stride, ScrewLanes& product) {
+    Packed total[6] = {};
+    for (Index m = first; m <= k; ++m) {
+        const Packed rate = load(rates[(k - m) * stride]);
+        const ScrewLanes& screw = screws[m * stride];
+        for (int row = 0; row < 6; ++row) total[row] = total[row] + rate * load(screw.rows[row]);
+    }
+    for (int row = 0; row < 6; ++row) store(total[row], product.rows[row]);
+}
+
+// Coefficient k of the Lie bracket of two series, times ``share``.
+LINKAGES_VECTORISED inline void bracket(const ScrewLanes* twists, const ScrewLanes* screws, Index k, Index stride,
+                                        const Lanes& share, ScrewLanes& product) {
+    Packed x{}, y{}, z{}, u{}, v{}, w{};  // of the direction and of the moment
+    for (Index m = 0; m <= k; ++m) {
+        const auto& left = twists[m * stride].rows;
+        const auto& right = screws[(k - m) * stride].rows;
+        const Packed a0 = load(left[0]), a1 = load(left[1]), a2 = load(left[2]);
+        const Packed a3 = load(left[3]), a4 = load(left[4]), a5 = load(left[5]);
+        const Packed b0 = load(right[0]), b1 = load(right[1]), b2 = load(right[2]);
+        const Packed b3 = load(right[3]), b4 = load(right[4]), b5 = load(right[5]);
+        x = x + (a1 * b2 - a2 * b1);
+        y = y + (a2 * b0 - a0 * b2);
+        z = z + (a0 * b1 - a1 * b0);
+        u = u + ((a1 * b5 - a2 * b4) + (a4 * b2 - a5 * b1));
+        v = v + ((a2 * b3 - a0 * b5) + (a5 * b0 - a3 * b2));
+        w = w + ((a0 * b4 - a1 * b3) + (a3 * b1 - a4 * b0));
+    }
+    const Packed factor = load(share);
+    store(factor * x, product.rows[0]);
+    store(factor * y, product.rows[1]);
+    store(factor * z, product.rows[2]);
+    store(factor * u, product.rows[3]);
+    store(factor * v, product.rows[4]);
+    store(factor * w, product.rows[5]);
+}
+
+}  // namespace lanes
+
 // The motion of a closed loop as series in the arclength, one order after the other. With S_i(s)
 // the screw of joint i and V_i(s) the twist of the joints before it, dS_i/ds = [V_i, S_i] and
 // sum_i S_i dtheta_i/ds = 0, |du/ds| = 1: every order takes one product of series and one solve.
@@ -176,67 +243,52 @@ class MotionSeries {
 public:
     MotionSeries(Index joints, Index order)
         : joints_(joints),
-          blocks_((joints + Lanes::width - 1) / Lanes::width),
+          blocks_((joints + lane_count - 1) / lane_count),
           screws_((order + 1) * blocks_),
           twists_((order + 1) * blocks_),
           rates_(order * blocks_) {}
 
-    void set_screw(Index joint, const Screw<double>& screw) { set_lane(screws_[joint / Lanes::width], joint, screw); }
-    double& rate(Index k, Index joint) {
-        return rates_[k * blocks_ + joint / Lanes::width][joint % Lanes::width];
+    void set_screw(Index joint, const Screw<double>& screw) {
+        screws_[joint / lane_count].set_lane(joint % lane_count, screw);
     }
+    double& rate(Index k, Index joint) { return rates_[k * blocks_ + joint / lane_count][joint % lane_count]; }
 
     // What is left of coefficient k of sum_i S_i dtheta_i/ds without the rates of order k.
     Screw<double> known_part(Index k) const {
-        Screw<Lanes> total{};
-        for (Index m = 1; m <= k; ++m) {
-            for (Index b = 0; b < blocks_; ++b) total = total + rates_[(k - m) * blocks_ + b] * screws_[m * blocks_ + b];
+        Screw<double> total{};
+        for (Index block = 0; block < blocks_; ++block) {
+            ScrewLanes product;
+            lanes::multiply(&rates_[block], &screws_[block], k, 1, blocks_, product);
+            for (Index row = 0; row < 3; ++row) {
+                total.direction[row] += sum(product.rows[row]);
+                total.moment[row] += sum(product.rows[row + 3]);
+            }
         }
-        Screw<double> out;
-        for (Index row = 0; row < 3; ++row) {
-            out.direction[row] = sum(total.direction[row]);
-            out.moment[row] = sum(total.moment[row]);
-        }
-        return out;
+        return total;
     }
 
     // Coefficients k + 1 of the screws, once the rates of order k are known.
     void advance(Index k) {
         Screw<double> twist{};
-        for (Index b = 0; b < blocks_; ++b) {
-            Screw<Lanes> gained{};
-            for (Index m = 0; m <= k; ++m) gained = gained + rates_[(k - m) * blocks_ + b] * screws_[m * blocks_ + b];
-            for (Index joint = b * Lanes::width; joint < std::min(joints_, (b + 1) * Lanes::width); ++joint) {
-                set_lane(twists_[k * blocks_ + b], joint, twist);
-                twist = twist + lane(gained, joint);
+        for (Index block = 0; block < blocks_; ++block) {
+            ScrewLanes gained;
+            lanes::multiply(&rates_[block], &screws_[block], k, 0, blocks_, gained);
+            const Index last = std::min<Index>(lane_count, joints_ - block * lane_count);
+            for (Index i = 0; i < last; ++i) {
+                twists_[k * blocks_ + block].set_lane(i, twist);
+                twist = twist + gained.lane(i);
             }
         }
-        const double share = 1.0 / static_cast<double>(k + 1);
-        for (Index b = 0; b < blocks_; ++b) {
-            Screw<Lanes> total{};
-            for (Index m = 0; m <= k; ++m) {
-                total = total + bracket(twists_[m * blocks_ + b], screws_[(k - m) * blocks_ + b]);
-            }
-            screws_[(k + 1) * blocks_ + b] = Lanes{share, share, share, share} * total;
+        Lanes share;
+        share.fill(1.0 / static_cast<double>(k + 1));
+        for (Index block = 0; block < blocks_; ++block) {
+            lanes::bracket(&twists_[block], &screws_[block], k, blocks_, share, screws_[(k + 1) * blocks_ + block]);
         }
     }
 
 private:
-    static Screw<double> lane(const Screw<Lanes>& block, Index joint) {
-        const Index i = joint % Lanes::width;
-        return {{block.direction[0][i], block.direction[1][i], block.direction[2][i]},
-                {block.moment[0][i], block.moment[1][i], block.moment[2][i]}};
-    }
-
-    static void set_lane(Screw<Lanes>& block, Index joint, const Screw<double>& screw) {
-        for (Index row = 0; row < 3; ++row) {
-            block.direction[row][joint % Lanes::width] = screw.direction[row];
-            block.moment[row][joint % Lanes::width] = screw.moment[row];
-        }
-    }
-
     Index joints_, blocks_;
-    std::vector<Screw<Lanes>> screws_, twists_;  // coefficient by coefficient, block by block
+    std::vector<ScrewLanes> screws_, twists_;  // coefficient by coefficient, block by block
     std::vector<Lanes> rates_;
 };
 
