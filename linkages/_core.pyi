@@ -32,3 +32,36 @@ def project_to_sphere(
     geometry: np.ndarray,
     iterations: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+def slice_configurations(
+    geometry: np.ndarray, joint: int, angles: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+def follow_paths(
+    starts: np.ndarray, first: np.ndarray, last: np.ndarray, seconds: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+def smallest_singular_values(
+    configurations: np.ndarray, table: np.ndarray
+) -> np.ndarray: ...
+def quaternion_closure(configurations: np.ndarray, table: np.ndarray) -> np.ndarray: ...
+def follow_sheets(
+    geometry: np.ndarray,
+    joint: int,
+    starts: np.ndarray,
+    ends: np.ndarray,
+    shapes: np.ndarray,
+    limits: np.ndarray,
+    near: np.ndarray,
+    first: np.ndarray,
+    seconds: float,
+) -> tuple[np.ndarray, np.ndarray]: ...
+def find_fold(
+    geometry: np.ndarray, joint: int, configuration: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float, float, float] | None: ...
+def advance_along(
+    geometry: np.ndarray, joint: int, sheet: np.ndarray, end: float
+) -> tuple[bool, np.ndarray]: ...
+def screws_and_error(
+    geometry: np.ndarray, configuration: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]: ...
+def ball_around(
+    geometry: np.ndarray, configuration: np.ndarray, along: np.ndarray
+) -> tuple[np.ndarray, float, float, np.ndarray]: ...

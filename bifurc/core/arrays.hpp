@@ -1,7 +1,9 @@
 // Dense arrays by rows: what the numerical headers work on.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <complex>
 #include <cstddef>
 #include <span>
 #include <type_traits>
@@ -57,6 +59,16 @@ private:
     std::vector<T> values_;
 };
 
+// A matrix of a shape that the compiler knows.
+template <class T, Index row_count, Index column_count>
+struct SmallMatrix {
+    std::array<T, row_count * column_count> values;
+
+    T& operator()(Index row, Index column) { return values[row * column_count + column]; }
+    const T& operator()(Index row, Index column) const { return values[row * column_count + column]; }
+    operator View<T>() { return {values.data(), row_count, column_count}; }
+};
+
 inline double squared_length(Vector<const double> values) {
     double total = 0.0;
     for (double value : values) total += value * value;
@@ -64,5 +76,23 @@ inline double squared_length(Vector<const double> values) {
 }
 
 inline double length(Vector<const double> values) { return std::sqrt(squared_length(values)); }
+
+inline double conjugate_of(double value) { return value; }
+inline std::complex<double> conjugate_of(const std::complex<double>& value) { return std::conj(value); }
+
+// p^* q
+template <class T, std::size_t n>
+T inner_product(const std::array<T, n>& p, const std::array<T, n>& q) {
+    T total{};
+    for (std::size_t i = 0; i < n; ++i) total += conjugate_of(p[i]) * q[i];
+    return total;
+}
+
+template <class T, std::size_t n>
+double squared_size(const std::array<T, n>& vector) {
+    double total = 0.0;
+    for (const T& entry : vector) total += std::norm(entry);
+    return total;
+}
 
 }  // namespace bifurc

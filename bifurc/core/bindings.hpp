@@ -21,6 +21,13 @@ inline void check_unknowns(const char* name, Index given, Index needed) {
     throw nb::value_error(text.c_str());
 }
 
+// Lets Ctrl-C through from a computation that does not hold the lock of the interpreter: for
+// `Deadline`.
+inline void raise_signals() {
+    nb::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
 template <System S>
 nb::object residuals(const S& system, const Table& points) {
     check_unknowns("points", points.shape(1), system.unknowns());

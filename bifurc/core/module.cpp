@@ -2,6 +2,7 @@
 #include <string>
 
 #include "bifurc/core/curve.hpp"
+#include "bifurc/core/eigenvalues.hpp"
 #include "bifurc/core/inverse.hpp"
 #include "bifurc/core/march.hpp"
 #include "bifurc/core/numpy.hpp"
@@ -119,6 +120,17 @@ nb::tuple foot_of_point(const MatrixIn<double>& piece, const VectorIn<double>& p
     return nb::make_tuple(foot.s, offset.release(), slope.release());
 }
 
+// (n) of a complex matrix (n, n).
+nb::object eigenvalues(const MatrixIn<std::complex<double>>& matrix) {
+    const auto n = static_cast<Index>(matrix.shape(0));
+    if (matrix.shape(1) != matrix.shape(0)) throw nb::value_error("matrix: it must be square");
+    Array<std::complex<double>> values({n});
+    Matrix<std::complex<double>> copy(n, n);
+    std::copy_n(matrix.data(), n * n, copy.view().data);
+    if (!find_eigenvalues(copy, values.vector())) throw nb::value_error("matrix: its entries must be finite");
+    return values.release();
+}
+
 }  // namespace
 
 NB_MODULE(_core, module) {
@@ -139,4 +151,5 @@ NB_MODULE(_core, module) {
     module.def("determinants_and_inverses", &determinants_and_inverses, "matrices"_a);
     module.def("foot_on_piece", &foot_of_point, "piece"_a, "point"_a, "periods"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
+    module.def("eigenvalues", &eigenvalues, "matrix"_a);
 }

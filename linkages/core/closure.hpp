@@ -45,24 +45,17 @@ public:
     // every joint on the way.
     template <class Visitor>
     End follow(Vector<const double> theta, Visitor visit) const {
-        Vec3<double> x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0}, p{0.0, 0.0, 0.0};
+        Frame<double> frame;
         std::array<double, 4> q{1.0, 0.0, 0.0, 0.0};
         for (Index i = 0; i < unknowns(); ++i) {
-            visit(i, Screw<double>{z, cross(p, z)});
-            const double length = geometry_(0, i), offset = geometry_(1, i);
-            const double ca = geometry_(2, i), sa = geometry_(3, i);
-            const double c = std::cos(theta[i]), s = std::sin(theta[i]);
-            const Vec3<double> u = c * x + s * y;
-            const Vec3<double> w = c * y - s * x;
-            p = p + offset * z + length * u;
-            x = u;
-            y = ca * w + sa * z;
-            z = ca * z - sa * w;
+            visit(i, frame.joint());
+            const Link<double> link{geometry_(0, i), geometry_(1, i), {geometry_(2, i), geometry_(3, i)}};
+            frame.advance(turn_by(theta[i]), link);
             q = about_z(q, std::cos(0.5 * theta[i]), std::sin(0.5 * theta[i]));
             q = about_x(q, geometry_(4, i), geometry_(5, i));
         }
         if (q[0] < 0.0) q = {-q[0], -q[1], -q[2], -q[3]};
-        return {q, p};
+        return {q, frame.origin};
     }
 
     void residual(Vector<const double> theta, Vector<double> residual) const {

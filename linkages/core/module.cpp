@@ -5,6 +5,7 @@
 
 #include "bifurc/core/bindings.hpp"
 #include "linkages/core/closure.hpp"
+#include "linkages/core/slices_module.hpp"
 
 namespace nb = nanobind;
 namespace python = bifurc::python;
@@ -66,4 +67,5 @@ NB_MODULE(_core, module) {
                nb::arg("iterations"));
     module.def("project_to_sphere", &project_to_sphere, nb::arg("starts"), nb::arg("center"), nb::arg("radius"),
                nb::arg("geometry"), nb::arg("iterations"));
+    linkages::define_slices(module);
 }

@@ -6,9 +6,10 @@ import pytest
 
 from bifurc.curves.monitor import dead_points
 from bifurc.search.explore import explore
+from linkages import _core
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.slices import nonreal_tracking as sheets
+from linkages.loop import GeometryError, Loop
 from linkages.slices.elimination import slice_configurations
 from linkages.slices.nonreal_tracking import find_fold, follow_sheets
 
@@ -24,10 +25,7 @@ FAMILIES = [
 def closure(loop, z, at):
     """The closure at ``z`` by its definition: 2 vec of the product of exponentials of
     the screws at ``at``."""
-    screws = np.zeros((6, loop.n), dtype=complex)
-    sheets._screws_and_error(
-        at, loop.link_geometry[:4], screws, np.zeros(6, dtype=complex)
-    )
+    screws = _core.screws_and_error(loop.link_geometry, at)[0].T
     total = [np.array([1, 0, 0, 0], dtype=complex), np.zeros(4, dtype=complex)]
     for i in range(loop.n):
         c, s = np.cos((z - at)[i] / 2), np.sin((z - at)[i] / 2)
@@ -55,10 +53,7 @@ def non_real(name, joint=1):
 def test_configurations_that_are_not_real_close_and_come_in_conjugate_pairs(name):
     loop, found = non_real(name)
     for z in found:
-        error = np.zeros(6, dtype=complex)
-        sheets._screws_and_error(
-            z, loop.link_geometry[:4], np.zeros((6, loop.n), dtype=complex), error
-        )
+        _, error = _core.screws_and_error(loop.link_geometry, z)
         assert np.abs(error).max() < 1e-12 * np.exp(np.abs(z.imag).sum())
         assert (
             np.abs(np.exp(1j * found.conj()) - np.exp(1j * z)).max(axis=1).min() < 1e-6
@@ -71,14 +66,10 @@ def test_second_derivatives_agree_with_differences_of_the_product_of_exponential
     rng = np.random.default_rng(0)
     real = slice_configurations(loop, 1, np.array([0.7])).configurations.astype(complex)
     for at in np.concatenate([found[:3], real[:1]]):
-        screws = np.zeros((6, loop.n), dtype=complex)
-        inverse = np.eye(loop.n, 7, dtype=complex)
-        inverse[:, :6] = rng.normal(size=(loop.n, 6))
-        sheets._screws_and_error(
-            at, loop.link_geometry[:4], screws, np.zeros(6, dtype=complex)
-        )
-        second = np.zeros((loop.n, loop.n, loop.n), dtype=complex)
-        sheets._second(screws, inverse, second)
+        screws = _core.screws_and_error(loop.link_geometry, at)[0].T
+        along = rng.normal(size=loop.n) + 1j * rng.normal(size=loop.n)
+        inverse = np.linalg.pinv(np.concatenate([screws, along[None]]))
+        second = _core.ball_around(loop.link_geometry, at, along)[-1]
         d, h = rng.normal(size=loop.n), 1e-4
         difference = (
             closure(loop, at + h * d, at)
@@ -105,12 +96,9 @@ def test_nowhere_in_the_ball_does_the_map_stray_from_its_tangent_by_more_than_th
     rng = np.random.default_rng(1)
     for at in found[:6]:
         along = np.eye(loop.n)[1]
-        weight, radius, bound = sheets._ball_around(loop.link_geometry[:4], at, along)
+        weight, radius, bound, _ = _core.ball_around(loop.link_geometry, at, along)
         assert bound * radius <= 0.5
-        screws = np.zeros((6, loop.n), dtype=complex)
-        sheets._screws_and_error(
-            at, loop.link_geometry[:4], screws, np.zeros(6, dtype=complex)
-        )
+        screws = _core.screws_and_error(loop.link_geometry, at)[0].T
         p = np.linalg.pinv(np.concatenate([screws, along[None]]))[:, :6]
         for _ in range(40):
             d = rng.normal(size=loop.n) + 1j * rng.normal(size=loop.n)
@@ -208,11 +196,12 @@ def test_following_stops_when_the_time_is_over():
 
 def test_a_step_along_the_curve_leads_to_where_steps_in_the_angle_do():
     loop, found = non_real("special-double-subtractive-goldberg", joint=3)
-    tracker, joint = sheets.SheetTracker(loop.link_geometry[:4], 3), 3
+    joint = 3
     assert len(found)
     for start in found[:6]:
-        along, end = start.copy(), start[joint].real + 0.3
-        assert tracker.advance_along(along, end)
+        end = start[joint].real + 0.3
+        is_moved, along = _core.advance_along(loop.link_geometry, joint, start, end)
+        assert is_moved
         reached = along[joint].real
         assert start[joint].real < reached <= end
         cleared, last = follow_sheets(
@@ -220,3 +209,15 @@ def test_a_step_along_the_curve_leads_to_where_steps_in_the_angle_do():
         )
         assert cleared[0]
         assert np.abs(last[0] - along).max() < 1e-9
+
+
+def test_a_loop_or_a_joint_that_cannot_be_followed_is_refused():
+    long = Loop((1.0,) * 7, (1.0,) * 7, (0.0,) * 7)
+    with pytest.raises(GeometryError, match="number of joints of a followed loop: 7"):
+        find_fold(long, 0, np.zeros(7))
+    bennett = entry("bennett").build()
+    for joint in (-1, 4):
+        with pytest.raises(GeometryError, match=f"joint: {joint}"):
+            follow_sheets(bennett, joint, np.empty((0, 4)), np.empty(0), [])
+    with pytest.raises(ValueError, match="configuration: 3"):
+        find_fold(bennett, 0, np.zeros(3))
