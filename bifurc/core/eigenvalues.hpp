@@ -15,6 +15,9 @@ namespace detail {
 
 using Complex = std::complex<double>;
 
+// The modulus of a number that is neither huge nor tiny.
+inline double modulus(const Complex& value) { return std::sqrt(std::norm(value)); }
+
 inline Complex times_power(Complex value, int exponent) {
     return {std::ldexp(value.real(), exponent), std::ldexp(value.imag(), exponent)};
 }
@@ -34,7 +37,7 @@ inline void reduce_to_hessenberg(View<Complex> matrix) {
         for (Index i = k + 1; i < n; ++i) square += std::norm(matrix(i, k));
         const double below = square - std::norm(matrix(k + 1, k));
         if (below <= 0.0) continue;
-        const double norm = std::sqrt(square), size = std::abs(matrix(k + 1, k));
+        const double norm = std::sqrt(square), size = modulus(matrix(k + 1, k));
         const Complex phase = size > 0.0 ? matrix(k + 1, k) / size : Complex(1.0);
         for (Index i = k + 1; i < n; ++i) reflector[i] = matrix(i, k);
         reflector[k + 1] += phase * norm;
@@ -68,7 +71,7 @@ inline void qr_step(View<Complex> matrix, Index first, Index last, Complex shift
     for (Index i = first; i <= last; ++i) matrix(i, i) -= shift;
     for (Index k = first; k < last; ++k) {
         const Complex upper = matrix(k, k), lower = matrix(k + 1, k);
-        const double size = std::abs(upper), norm = std::hypot(size, std::abs(lower));
+        const double size = modulus(upper), norm = std::sqrt(std::norm(upper) + std::norm(lower));
         const Complex phase = size > 0.0 ? upper / size : Complex(1.0);
         cosines[k] = norm > 0.0 ? size / norm : 1.0;
         sines[k] = norm > 0.0 ? phase * std::conj(lower) / norm : Complex(0.0);
@@ -114,9 +117,9 @@ inline bool find_eigenvalues(View<std::complex<double>> matrix, Vector<std::comp
     for (Index last = n - 1; last >= 0;) {
         Index first = last;  // of the block without negligible entries below its diagonal
         for (; first > 0; --first) {
-            const double diagonal = std::abs(matrix(first, first)) + std::abs(matrix(first - 1, first - 1));
+            const double diagonal = detail::modulus(matrix(first, first)) + detail::modulus(matrix(first - 1, first - 1));
             const double negligible = rounding * (diagonal > 0.0 ? diagonal : 1.0);
-            if (std::abs(matrix(first, first - 1)) <= negligible) break;
+            if (detail::modulus(matrix(first, first - 1)) <= negligible) break;
         }
         if (first == last) {
             values[last] = detail::times_power(matrix(last, last), exponent);
@@ -127,7 +130,7 @@ inline bool find_eigenvalues(View<std::complex<double>> matrix, Vector<std::comp
         if (++steps > most_steps) return false;
         const std::complex<double> shift = steps % steps_in_vain
                                                ? detail::wilkinson_shift(matrix, last)
-                                               : matrix(last, last) + 0.75 * std::abs(matrix(last, last - 1));
+                                               : matrix(last, last) + 0.75 * detail::modulus(matrix(last, last - 1));
         detail::qr_step(matrix, first, last, shift, cosines, sines);
     }
     return true;

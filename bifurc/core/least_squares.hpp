@@ -4,6 +4,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -184,6 +186,58 @@ inline void damped_step(View<const double> jacobian, Vector<const double> residu
         for (Index k = i + 1; k < n; ++k) step[i] -= normal(k, i) * step[k];
         step[i] /= normal(i, i);
     }
+}
+
+// The x of least |a x - b| for the columns of a small matrix a, real or complex, which are
+// overwritten as b is: Gram-Schmidt with pivots. Directions of which the pivot is at most
+// ``negligible`` of the first get no part.
+template <class T, std::size_t rows, std::size_t n>
+std::array<T, n> least_squares(std::array<std::array<T, rows>, n>& columns, std::array<T, rows>& right,
+                               double negligible) {
+    const auto subtract = [](std::array<T, rows>& from, const T& factor, const std::array<T, rows>& column) {
+        for (std::size_t i = 0; i < rows; ++i) from[i] -= factor * column[i];
+    };
+    std::array<std::size_t, n> order;
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::array<double, n> diagonal;
+    SmallMatrix<T, n, n> upper{};
+    std::array<T, n> x{}, out{};
+    std::size_t rank = n;
+    double first = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+        std::size_t best = k;
+        double largest = -1.0;
+        for (std::size_t j = k; j < n; ++j) {
+            const double square = squared_size(columns[j]);
+            if (square > largest) {
+                best = j;
+                largest = square;
+            }
+        }
+        const double size = std::sqrt(largest);
+        first = std::max(first, size);
+        if (size <= negligible * first) {
+            rank = k;
+            break;
+        }
+        std::swap(columns[k], columns[best]);
+        std::swap(order[k], order[best]);
+        for (std::size_t i = 0; i < k; ++i) std::swap(upper(i, k), upper(i, best));
+        diagonal[k] = size;
+        for (T& entry : columns[k]) entry /= size;
+        x[k] = inner_product(columns[k], right);
+        subtract(right, x[k], columns[k]);
+        for (std::size_t j = k + 1; j < n; ++j) {
+            upper(k, j) = inner_product(columns[k], columns[j]);
+            subtract(columns[j], upper(k, j), columns[k]);
+        }
+    }
+    for (std::size_t k = rank; k-- > 0;) {
+        for (std::size_t j = k + 1; j < rank; ++j) x[k] -= upper(k, j) * x[j];
+        x[k] /= diagonal[k];
+        out[order[k]] = x[k];
+    }
+    return out;
 }
 
 }  // namespace bifurc

@@ -85,30 +85,54 @@ inline double largest_imaginary_part(const PathAngles& angles) {
 // A complex loop of a fixed geometry.
 class ComplexLoop {
 public:
-    explicit ComplexLoop(const ComplexTable& table) : table_(table) {
+    explicit ComplexLoop(const ComplexTable& table) {
         for (std::size_t i = 0; i < path_joints; ++i) {
-            links_[i] = {table.lengths[i], table.offsets[i], turn_by(table.twists[i])};
+            const Turn<Complex> half_twist = turn_by(0.5 * table.twists[i]);
+            links_[i] = {table.lengths[i], table.offsets[i], doubled(half_twist)};
+            quaternions_[i] = link_quaternion(table.lengths[i], table.offsets[i], half_twist);
         }
     }
 
-    // The closure error, its derivatives by the joints (the screws, where the loop is closed), and
-    // its rate as the geometry changes.
+    // The closure error, its derivatives by the joints, and its rate as the geometry changes.
     struct Linearization {
         std::array<Complex, 6> error;
         ComplexScrews derivatives;
         std::array<Complex, 6> rate;
     };
 
-    // The error is the skew part of the rotation and the translation. It vanishes for half turns,
-    // too: no path leads from a closed loop to one.
+    // The error is the skew part of the rotation and the translation, its derivatives, where the
+    // loop is closed, are the screws. It vanishes for half turns, too: no path leads from a closed
+    // loop to one.
     Linearization linearize(const PathAngles& angles, const ComplexTable& change) const {
+        std::array<Turn<Complex>, path_joints> turns;
+        for (std::size_t i = 0; i < path_joints; ++i) turns[i] = turn_by(angles[i]);
+        return follow(turns, change);
+    }
+
+    // Error and derivatives in quaternions: where angles have large imaginary parts, these keep
+    // more digits.
+    Linearization linearize_far_away(const PathAngles& angles, const ComplexTable& change) const {
+        std::array<Turn<Complex>, path_joints> halves, turns;
+        for (std::size_t i = 0; i < path_joints; ++i) {
+            halves[i] = turn_by(0.5 * angles[i]);
+            turns[i] = doubled(halves[i]);
+        }
+        Linearization out = follow(turns, change);
+        const auto closure = close_chain(quaternions_, halves);
+        out.error = closure.error;
+        out.derivatives = closure.derivatives;
+        return out;
+    }
+
+private:
+    Linearization follow(const std::array<Turn<Complex>, path_joints>& turns, const ComplexTable& change) const {
         Linearization out;
         Frame<Complex> frame;
         Screw<Complex> rate{};
         for (std::size_t i = 0; i < path_joints; ++i) {
             const Screw<Complex> joint = frame.joint();
             out.derivatives[i] = entries(joint);
-            frame.advance(turn_by(angles[i]), links_[i]);
+            frame.advance(turns[i], links_[i]);
             const Screw<Complex> normal = frame.normal();  // about which the twist turns
             const Vec3<Complex> slide = change.lengths[i] * normal.direction + change.offsets[i] * joint.direction;
             rate = rate + change.twists[i] * normal;
@@ -119,19 +143,8 @@ public:
         return out;
     }
 
-    // Error and derivatives in quaternions: where angles have large imaginary parts, these keep
-    // more digits.
-    ChainClosure<Complex, path_joints> close_by_quaternions(const PathAngles& angles) const {
-        std::array<DualQuaternion<Complex>, path_joints> quaternions;
-        for (std::size_t i = 0; i < path_joints; ++i) {
-            quaternions[i] = link_quaternion(table_.lengths[i], table_.offsets[i], turn_by(0.5 * table_.twists[i]));
-        }
-        return close_chain(quaternions, angles);
-    }
-
-private:
-    ComplexTable table_;
     std::array<Link<Complex>, path_joints> links_;
+    std::array<DualQuaternion<Complex>, path_joints> quaternions_;
 };
 
 // The path of a configuration while the geometry of its loop moves straight from one table to
@@ -210,12 +223,8 @@ private:
         const bool is_far_away = largest_imaginary_part(point.angles) > paths::far_away;
         double first = infinity, size = infinity;
         for (int i = 0; i < most; ++i) {
-            ComplexLoop::Linearization at = loop.linearize(point.angles, change_);
-            if (is_far_away) {
-                const auto closure = loop.close_by_quaternions(point.angles);
-                at.error = closure.error;
-                at.derivatives = closure.derivatives;
-            }
+            const auto at = is_far_away ? loop.linearize_far_away(point.angles, change_)
+                                        : loop.linearize(point.angles, change_);
             PathAngles step;
             if (!solve(at, step, point.velocity)) return infinity;
             const double former = size;

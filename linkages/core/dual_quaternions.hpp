@@ -81,19 +81,16 @@ struct ChainClosure {
     std::array<std::array<T, 6>, n> derivatives;
 };
 
-// ``links`` follow the joints.
+// From half the angles as turns; ``links`` follow the joints.
 template <class T, class L, std::size_t n>
-ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links, const std::array<T, n>& angles) {
-    std::array<Turn<T>, n> halves;
-    std::array<DualQuaternion<T>, n> after;  // joint i and all that follows it
-    DualQuaternion<T> total{T(1.0)};
-    for (std::size_t i = n; i-- > 0;) {
-        halves[i] = turn_by(0.5 * angles[i]);
-        after[i] = total = turned(halves[i], links[i] * total);
-    }
-    const double sign = std::real(total[0]) >= 0.0 ? 1.0 : -1.0;  // both are the same displacement
+ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links, const std::array<Turn<T>, n>& halves) {
+    std::array<DualQuaternion<T>, n> steps, after;  // a joint and its link; joint i and all that follows it
+    for (std::size_t i = 0; i < n; ++i) steps[i] = turned(halves[i], links[i]);
+    after[n - 1] = steps[n - 1];
+    for (std::size_t i = n - 1; i-- > 0;) after[i] = steps[i] * after[i + 1];
+    const double sign = std::real(after[0][0]) >= 0.0 ? 1.0 : -1.0;  // both are the same displacement
     ChainClosure<T, n> out;
-    out.error = vector_parts(total);
+    out.error = vector_parts(after[0]);
     for (T& entry : out.error) entry *= sign;
     DualQuaternion<T> before{T(sign)};
     for (std::size_t i = 0; i < n; ++i) {
@@ -102,9 +99,16 @@ ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links, co
             out.derivatives[i][r] = derivative[r + 1];
             out.derivatives[i][r + 3] = derivative[r + 5];
         }
-        before = before * turned(halves[i], links[i]);
+        if (i + 1 < n) before = before * steps[i];
     }
     return out;
+}
+
+template <class T, class L, std::size_t n>
+ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links, const std::array<T, n>& angles) {
+    std::array<Turn<T>, n> halves;
+    for (std::size_t i = 0; i < n; ++i) halves[i] = turn_by(0.5 * angles[i]);
+    return close_chain(links, halves);
 }
 
 }  // namespace linkages

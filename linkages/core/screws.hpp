@@ -113,6 +113,11 @@ struct Turn {
     T sine;
 };
 
+template <class T>
+Turn<T> doubled(const Turn<T>& turn) {
+    return {turn.cosine * turn.cosine - turn.sine * turn.sine, 2.0 * (turn.cosine * turn.sine)};
+}
+
 inline Turn<double> turn_by(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
 inline Turn<Complex> turn_by(const Complex& angle) {

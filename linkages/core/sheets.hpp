@@ -13,6 +13,7 @@
 
 #include "bifurc/core/arrays.hpp"
 #include "bifurc/core/deadline.hpp"
+#include "bifurc/core/least_squares.hpp"
 #include "bifurc/core/null_vector.hpp"
 #include "linkages/core/screws.hpp"
 
@@ -37,6 +38,18 @@ constexpr double first_circle = 1e-3, last_circle = 0.5;  // over the reach of t
 
 }  // namespace sheets
 
+// Columns of joint screws over a row that singles out one solution.
+template <std::size_t n>
+std::array<std::array<Complex, 7>, n> border(const std::array<Screw<Complex>, n>& screws,
+                                             const std::array<Complex, n>& along) {
+    std::array<std::array<Complex, 7>, n> columns;
+    for (std::size_t j = 0; j < n; ++j) {
+        const auto& [w, v] = screws[j];
+        columns[j] = {w[0], w[1], w[2], v[0], v[1], v[2], along[j]};
+    }
+    return columns;
+}
+
 // The pseudo-inverse of joint screws over a row that singles out one solution.
 template <std::size_t n>
 class BorderedScrews {
@@ -44,10 +57,10 @@ public:
     using Configuration = std::array<Complex, n>;
 
     // Gram-Schmidt, twice.
-    BorderedScrews(const std::array<Screw<Complex>, n>& screws, const Configuration& along) {
+    BorderedScrews(const std::array<Screw<Complex>, n>& screws, const Configuration& along)
+        : orthonormal_(border(screws, along)) {
         for (std::size_t j = 0; j < n; ++j) {
-            const auto& [w, v] = screws[j];
-            std::array<Complex, 7>& column = orthonormal_[j] = {w[0], w[1], w[2], v[0], v[1], v[2], along[j]};
+            std::array<Complex, 7>& column = orthonormal_[j];
             for (std::size_t i = 0; i < j; ++i) upper_(i, j) = 0.0;
             for (int time = 0; time < 2; ++time) {
                 for (std::size_t i = 0; i < j; ++i) {
@@ -60,19 +73,6 @@ public:
             for (Complex& entry : column) entry /= size;
             inverse_diagonal_[j] = 1.0 / size;
         }
-    }
-
-    // The change that a twist asks for, nothing along the row.
-    Configuration solve(const Screw<Complex>& twist) const {
-        const auto& [w, v] = twist;
-        const std::array<Complex, 7> right{w[0], w[1], w[2], v[0], v[1], v[2], 0.0};
-        Configuration out;
-        for (std::size_t i = n; i-- > 0;) {
-            Complex value = bifurc::inner_product(orthonormal_[i], right);
-            for (std::size_t j = i + 1; j < n; ++j) value -= upper_(i, j) * out[j];
-            out[i] = value * inverse_diagonal_[i];
-        }
-        return out;
     }
 
     // All columns: the first six for a twist, the last one for the row.
@@ -166,7 +166,7 @@ struct SecondDerivatives {
             for (std::size_t b = 0; b <= a; ++b) {
                 Complex entry = 0.0;
                 for (std::size_t k = 0; k < pairs; ++k) entry += scaled[k][a] * std::conj(scaled[k][b]);
-                const double size = 2.0 * (a == b ? entry.real() : std::abs(entry));
+                const double size = 2.0 * (a == b ? entry.real() : std::sqrt(std::norm(entry)));
                 rows[a] += size;
                 if (a == b) trace += size;
                 else rows[b] += size;
@@ -371,7 +371,11 @@ private:
     bool correct(Configuration& z, const Configuration& along) const {
         for (int i = 0; i < sheets::corrections; ++i) {
             const Linearization at = linearize(z);
-            const Configuration step = BorderedScrews<n>(at.screws, along).solve(at.error);
+            auto columns = border(at.screws, along);
+            const auto& [rotation, translation] = at.error;
+            std::array<Complex, 7> error{rotation[0],    rotation[1],    rotation[2], translation[0],
+                                         translation[1], translation[2], 0.0};
+            const Configuration step = bifurc::least_squares(columns, error, 0.0);
             double largest = 0.0;
             for (std::size_t j = 0; j < n; ++j) {
                 const double square = std::norm(step[j]);

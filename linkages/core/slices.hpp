@@ -9,11 +9,10 @@
 #include <numbers>
 #include <vector>
 
+#include "bifurc/core/least_squares.hpp"
 #include "linkages/core/elimination.hpp"
 
 namespace linkages {
-
-using bifurc::inner_product;
 
 namespace slices {
 
@@ -70,60 +69,6 @@ double angle_distance(const std::array<T, n>& p, const std::array<S, n>& q) {
     return largest;
 }
 
-namespace detail {
-
-// x of least |a x - b| for the columns of a, which are overwritten as b is: Gram-Schmidt with
-// pivots; directions that are negligible get no part.
-template <class T, std::size_t n>
-std::array<T, n> least_squares(std::array<std::array<T, 6>, n>& columns, std::array<T, 6>& right) {
-    std::array<Index, n> order;
-    std::array<double, n> diagonal;
-    SmallMatrix<T, n, n> upper{};
-    std::array<T, n> x{}, out{};
-    const auto subtract = [](std::array<T, 6>& from, const T& factor, const std::array<T, 6>& column) {
-        for (int i = 0; i < 6; ++i) from[i] -= factor * column[i];
-    };
-    for (std::size_t k = 0; k < n; ++k) order[k] = k;
-    std::size_t rank = n;
-    double first = 0.0;
-    for (std::size_t k = 0; k < n; ++k) {
-        std::size_t best = k;
-        double largest = -1.0;
-        for (std::size_t j = k; j < n; ++j) {
-            const double square = squared_size(columns[j]);
-            if (square > largest) {
-                best = j;
-                largest = square;
-            }
-        }
-        const double size = std::sqrt(largest);
-        first = std::max(first, size);
-        if (size <= slices::negligible * first) {
-            rank = k;
-            break;
-        }
-        std::swap(columns[k], columns[best]);
-        std::swap(order[k], order[best]);
-        for (std::size_t i = 0; i < k; ++i) std::swap(upper(i, k), upper(i, best));
-        diagonal[k] = size;
-        for (T& entry : columns[k]) entry /= size;
-        x[k] = inner_product(columns[k], right);
-        subtract(right, x[k], columns[k]);
-        for (std::size_t j = k + 1; j < n; ++j) {
-            upper(k, j) = inner_product(columns[k], columns[j]);
-            subtract(columns[j], upper(k, j), columns[k]);
-        }
-    }
-    for (std::size_t k = rank; k-- > 0;) {
-        for (std::size_t j = k + 1; j < rank; ++j) x[k] -= upper(k, j) * x[j];
-        x[k] /= diagonal[k];
-        out[order[k]] = x[k];
-    }
-    return out;
-}
-
-}  // namespace detail
-
 // The closure error after Gauss-Newton on the angles of a chain, in place.
 template <class T, std::size_t m>
 double polish(const Links<m>& links, std::array<T, m>& angles) {
@@ -134,7 +79,7 @@ double polish(const Links<m>& links, std::array<T, m>& angles) {
         if (size < slices::exact || (size < slices::closed && size > 0.5 * previous)) return size;
         if (i > slices::steps_in_hope && (size > 1e-3 || size > 0.9 * previous)) return size;
         previous = size;
-        const auto step = detail::least_squares(closure.derivatives, closure.error);
+        const auto step = bifurc::least_squares(closure.derivatives, closure.error, slices::negligible);
         const double factor = std::min(1.0, slices::longest_step / (largest_size(step) + 1e-300));
         for (std::size_t j = 0; j < m; ++j) angles[j] -= factor * step[j];
     }

@@ -148,7 +148,7 @@ nb::object quaternion_closure(const ComplexTableIn& configurations, const Comple
     std::vector<std::array<Complex, 6>> errors;
     for (std::size_t k = 0; k < configurations.shape(0); ++k) {
         const auto angles = array_from<path_joints>(configurations.data() + k * path_joints);
-        errors.push_back(loop.close_by_quaternions(angles).error);
+        errors.push_back(loop.linearize_far_away(angles, {}).error);
     }
     return array_of(errors);
 }
