@@ -11,7 +11,8 @@ namespace bifurc {
 // which somebody asks, ``pause`` is called: it may throw, for Ctrl-C.
 class Deadline {
 public:
-    explicit Deadline(double seconds, std::function<void()> pause = [] {})
+    explicit Deadline(
+        double seconds, std::function<void()> pause = [] {})
         : seconds_(seconds), pause_(std::move(pause)), began_(Clock::now()), last_pause_(began_) {}
 
     bool has_passed() {

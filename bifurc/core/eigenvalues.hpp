@@ -117,7 +117,8 @@ inline bool find_eigenvalues(View<std::complex<double>> matrix, Vector<std::comp
     for (Index last = n - 1; last >= 0;) {
         Index first = last;  // of the block without negligible entries below its diagonal
         for (; first > 0; --first) {
-            const double diagonal = detail::modulus(matrix(first, first)) + detail::modulus(matrix(first - 1, first - 1));
+            const double diagonal =
+                detail::modulus(matrix(first, first)) + detail::modulus(matrix(first - 1, first - 1));
             const double negligible = rounding * (diagonal > 0.0 ? diagonal : 1.0);
             if (detail::modulus(matrix(first, first - 1)) <= negligible) break;
         }
@@ -128,9 +129,9 @@ inline bool find_eigenvalues(View<std::complex<double>> matrix, Vector<std::comp
             continue;
         }
         if (++steps > most_steps) return false;
-        const std::complex<double> shift = steps % steps_in_vain
-                                               ? detail::wilkinson_shift(matrix, last)
-                                               : matrix(last, last) + 0.75 * detail::modulus(matrix(last, last - 1));
+        const std::complex<double> shift =
+            steps % steps_in_vain ? detail::wilkinson_shift(matrix, last)
+                                  : matrix(last, last) + 0.75 * detail::modulus(matrix(last, last - 1));
         detail::qr_step(matrix, first, last, shift, cosines, sines);
     }
     return true;

@@ -29,15 +29,15 @@ constexpr double shorter = 0.4;  // by which a step that failed is shortened
 // comes to its end in ever shorter steps. Two configurations of which each has the singular value
 // s meet about s^2 behind the end.
 constexpr double last_stretch = 1e-12;
-constexpr double trusted = 1e-2;      // rad: the largest first correction of an accepted step
-constexpr double aim = 1e-3;          // rad: the first correction that the length of a step aims at
-constexpr double contraction = 0.1;   // of a correction to the next, on an accepted step
-constexpr double rounding = 1e-7;     // rad: a correction that may be one of rounding
-constexpr double exact = 1e-11;       // rad: a correction after which no other is made
-constexpr double corrected = 1e-5;    // rad: the largest last correction of an accepted step
+constexpr double trusted = 1e-2;     // rad: the largest first correction of an accepted step
+constexpr double aim = 1e-3;         // rad: the first correction that the length of a step aims at
+constexpr double contraction = 0.1;  // of a correction to the next, on an accepted step
+constexpr double rounding = 1e-7;    // rad: a correction that may be one of rounding
+constexpr double exact = 1e-11;      // rad: a correction after which no other is made
+constexpr double corrected = 1e-5;   // rad: the largest last correction of an accepted step
 constexpr int corrections = 2, last_corrections = 5;  // of a step, and of the last step of a path
-constexpr double far_away = 2.0;      // imaginary part beyond which dual quaternions save digits
-constexpr double infinite = 12.0;     // imaginary part of an angle beyond which a path runs to infinity
+constexpr double far_away = 2.0;   // imaginary part beyond which dual quaternions save digits
+constexpr double infinite = 12.0;  // imaginary part of an angle beyond which a path runs to infinity
 constexpr int most_steps = 2000;
 
 }  // namespace paths
@@ -125,7 +125,8 @@ public:
     }
 
 private:
-    Linearization follow(const std::array<Turn<Complex>, path_joints>& turns, const ComplexTable& change) const {
+    Linearization follow(const std::array<Turn<Complex>, path_joints>& turns,
+                         const ComplexTable& change) const {
         Linearization out;
         Frame<Complex> frame;
         Screw<Complex> rate{};
@@ -134,7 +135,8 @@ private:
             out.derivatives[i] = entries(joint);
             frame.advance(turns[i], links_[i]);
             const Screw<Complex> normal = frame.normal();  // about which the twist turns
-            const Vec3<Complex> slide = change.lengths[i] * normal.direction + change.offsets[i] * joint.direction;
+            const Vec3<Complex> slide =
+                change.lengths[i] * normal.direction + change.offsets[i] * joint.direction;
             rate = rate + change.twists[i] * normal;
             rate.moment = rate.moment + slide;
         }
@@ -153,7 +155,8 @@ private:
 // was made, is the parameter: near the end it keeps all its digits.
 class PathTracker {
 public:
-    PathTracker(const ComplexTable& first, const ComplexTable& last) : last_(last), change_(first.plus(-1.0, last)) {}
+    PathTracker(const ComplexTable& first, const ComplexTable& last)
+        : last_(last), change_(first.plus(-1.0, last)) {}
 
     struct Outcome {
         PathAngles angles;
@@ -163,7 +166,8 @@ public:
 
     Outcome follow(const PathAngles& start) const {
         Point here{start, {}}, before{};
-        if (!(correct(here, 1.0, paths::corrections) <= paths::trusted)) return {start, 1.0, PathEnd::stopped};
+        if (!(correct(here, 1.0, paths::corrections) <= paths::trusted))
+            return {start, 1.0, PathEnd::stopped};
         double rest = 1.0, step = paths::first_step, last_step = 0.0;
         double whole_below = 1.0;  // the rest below which a step of all of it is tried
         for (int i = 0; i < paths::most_steps; ++i) {
@@ -176,7 +180,8 @@ public:
             if (!(correction <= paths::trusted)) {
                 if (is_to_the_end) whole_below = paths::whole_again * rest;
                 step *= paths::shorter;
-                const double share = rest > paths::stiff ? paths::shortest_share : paths::shortest_stiff_share;
+                const double share =
+                    rest > paths::stiff ? paths::shortest_share : paths::shortest_stiff_share;
                 if (is_last_stretch || step < share * rest) break;
                 continue;
             }
@@ -185,7 +190,8 @@ public:
             last_step = step;
             rest -= step;
             if (is_to_the_end) return {here.angles, 0.0, PathEnd::arrived};
-            if (largest_imaginary_part(here.angles) > paths::infinite) return {here.angles, rest, PathEnd::at_infinity};
+            if (largest_imaginary_part(here.angles) > paths::infinite)
+                return {here.angles, rest, PathEnd::at_infinity};
             const double growth = std::sqrt(std::sqrt(paths::aim / (correction + 1e-14)));
             step = std::min(paths::longest_step, step * std::clamp(growth, 0.5, 2.0));
         }
@@ -207,7 +213,8 @@ private:
             if (last_step == 0.0) continue;
             const Complex slope = (here.angles[i] - before.angles[i]) / last_step;
             const Complex bend = (2.0 * here.velocity[i] + before.velocity[i] - 3.0 * slope) / last_step;
-            const Complex twist = (here.velocity[i] + before.velocity[i] - 2.0 * slope) / (last_step * last_step);
+            const Complex twist =
+                (here.velocity[i] + before.velocity[i] - 2.0 * slope) / (last_step * last_step);
             out[i] += step * step * (bend + step * twist);
         }
         return out;
@@ -229,7 +236,8 @@ private:
             if (!solve(at, step, point.velocity)) return infinity;
             const double former = size;
             size = 0.0;
-            for (const Complex& entry : step) size = std::max(size, std::abs(entry.real()) + std::abs(entry.imag()));
+            for (const Complex& entry : step)
+                size = std::max(size, std::abs(entry.real()) + std::abs(entry.imag()));
             if (i == 0) first = size;
             if (!(size <= paths::trusted)) return infinity;
             if (i > 0 && size > std::max(paths::contraction * former, paths::rounding)) return infinity;
@@ -261,7 +269,8 @@ private:
                 }
             }
             if (!(largest > 0.0 && largest < std::numeric_limits<double>::infinity())) return false;
-            for (bifurc::Index j = k; j < columns && pivot != k; ++j) std::swap(matrix(k, j), matrix(pivot, j));
+            for (bifurc::Index j = k; j < columns && pivot != k; ++j)
+                std::swap(matrix(k, j), matrix(pivot, j));
             inverse[k] = 1.0 / matrix(k, k);
             for (bifurc::Index i = k + 1; i < n; ++i) {
                 const Complex factor = matrix(i, k) * inverse[k];

@@ -62,7 +62,14 @@ DualQuaternion<T> turned(const Turn<T>& half, const DualQuaternion<Q>& q) {
 template <class T>
 DualQuaternion<T> link_quaternion(const T& length, const T& offset, const Turn<T>& half_twist) {
     const T &c = half_twist.cosine, &s = half_twist.sine;
-    return {c, s, T(0.0), T(0.0), -0.5 * (length * s), 0.5 * (length * c), 0.5 * (offset * s), 0.5 * (offset * c)};
+    return {c,
+            s,
+            T(0.0),
+            T(0.0),
+            -0.5 * (length * s),
+            0.5 * (length * c),
+            0.5 * (offset * s),
+            0.5 * (offset * c)};
 }
 
 // Twice the vector parts, of rotation and translation.
@@ -83,7 +90,8 @@ struct ChainClosure {
 
 // From half the angles as turns; ``links`` follow the joints.
 template <class T, class L, std::size_t n>
-ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links, const std::array<Turn<T>, n>& halves) {
+ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links,
+                               const std::array<Turn<T>, n>& halves) {
     std::array<DualQuaternion<T>, n> steps, after;  // a joint and its link; joint i and all that follows it
     for (std::size_t i = 0; i < n; ++i) steps[i] = turned(halves[i], links[i]);
     after[n - 1] = steps[n - 1];
@@ -105,7 +113,8 @@ ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links, co
 }
 
 template <class T, class L, std::size_t n>
-ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links, const std::array<T, n>& angles) {
+ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links,
+                               const std::array<T, n>& angles) {
     std::array<Turn<T>, n> halves;
     for (std::size_t i = 0; i < n; ++i) halves[i] = turn_by(0.5 * angles[i]);
     return close_chain(links, halves);

@@ -21,15 +21,15 @@ namespace elimination {
 
 // exp(i theta) below this, or above its inverse: a complex solution at infinity
 constexpr double infinite = 1e-4;
-constexpr double regular = 1e-10;      // below this an elimination is singular
-constexpr double one_line = 1e-12;     // norm of a part of a link: the two axes are one line
-constexpr double nearly_null = 1e-3;   // what is left of a matrix whose null space may be larger
-constexpr double null = 1e-6;          // what is left of one whose null space is larger
-constexpr double in_quadric = 1e-6;    // defect of the moduli: the point satisfies them
-constexpr double nearly_real = 1e-3;   // of the modulus of exp(i theta)
-constexpr double no_pivot = 1e-14;     // of a matrix that has no inverse
-constexpr double zero_square = 1e-300; // of an entry that counts as 0
-constexpr int samples = 8;             // of a continuum
+constexpr double regular = 1e-10;            // below this an elimination is singular
+constexpr double one_line = 1e-12;           // norm of a part of a link: the two axes are one line
+constexpr double nearly_null = 1e-3;         // what is left of a matrix whose null space may be larger
+constexpr double null = 1e-6;                // what is left of one whose null space is larger
+constexpr double in_quadric = 1e-6;          // defect of the moduli: the point satisfies them
+constexpr double nearly_real = 1e-3;         // of the modulus of exp(i theta)
+constexpr double no_pivot = 1e-14;           // of a matrix that has no inverse
+constexpr double zero_square = 1e-300;       // of an entry that counts as 0
+constexpr int samples = 8;                   // of a continuum
 constexpr std::size_t most_candidates = 64;  // twelve, more only where a continuum is sampled
 constexpr std::array origins = {0.3, 0.3 + std::numbers::pi / 3, 0.3 + 2 * std::numbers::pi / 3};
 
@@ -76,7 +76,8 @@ struct PairSpace {
         const Complex x_minus = norms[1] * Complex(p[0].real() + p[1].imag(), p[0].imag() - p[1].real());
         const Complex y_plus = norms[0] * Complex(p[2].real() - p[3].imag(), p[2].imag() + p[3].real());
         const Complex y_minus = norms[0] * Complex(p[2].real() + p[3].imag(), p[2].imag() - p[3].real());
-        const std::array squares = {std::norm(x_plus), std::norm(x_minus), std::norm(y_plus), std::norm(y_minus)};
+        const std::array squares = {std::norm(x_plus), std::norm(x_minus), std::norm(y_plus),
+                                    std::norm(y_minus)};
         const double total = squares[0] + squares[1] + squares[2] + squares[3];
         const double least = *std::min_element(squares.begin(), squares.end());
         if (least <= elimination::infinite * elimination::infinite * total) return {};
@@ -106,7 +107,8 @@ using Rows = std::array<DualQuaternion<T>, q>;
 
 // s P + t Q of two real matrices or sets of rows.
 template <std::size_t q>
-Rows<Complex, q> mix(const Complex& s, const Rows<double, q>& p, const Complex& t, const Rows<double, q>& other) {
+Rows<Complex, q> mix(const Complex& s, const Rows<double, q>& p, const Complex& t,
+                     const Rows<double, q>& other) {
     Rows<Complex, q> out;
     for (Index j = 0; j < q; ++j) {
         for (int k = 0; k < 8; ++k) out[j][k] = s * p[j][k] + t * other[j][k];
@@ -318,7 +320,8 @@ private:
     }
 
     // Coefficients of the modulus defect of s p + t q in s s, s t, t t.
-    static std::array<Complex, 3> line_form(const PairSpace& pair, const Coordinates<4>& p, const Coordinates<4>& q_) {
+    static std::array<Complex, 3> line_form(const PairSpace& pair, const Coordinates<4>& p,
+                                            const Coordinates<4>& q_) {
         return {pair.modulus_defect(p, p), 2.0 * pair.modulus_defect(p, q_), pair.modulus_defect(q_, q_)};
     }
 
@@ -338,7 +341,8 @@ private:
         return std::sqrt(squared_size(form));
     }
 
-    void record_point(const Complex& s, const Coordinates<q>& p, const Complex& t, const Coordinates<q>& other) {
+    void record_point(const Complex& s, const Coordinates<q>& p, const Complex& t,
+                      const Coordinates<q>& other) {
         const double size = std::sqrt(std::norm(s) + std::norm(t));
         if (size > elimination::one_line) record(combine(s / size, p, t / size, other));
     }
@@ -407,9 +411,8 @@ inline Candidates find_candidates(const Links<4>& links) {
         const auto outcome = search.search(projections(left.complement, rows));
         out.sampled = outcome.sampled;
         out.is_crowded = outcome.is_crowded;
-        if (out.is_crowded) continue;
         reorder<4>(out.list, a);
-        break;
+        if (!out.is_crowded) break;
     }
     return out;
 }
@@ -514,7 +517,8 @@ public:
             for (Index j = 0; j < 4; ++j) {
                 double total = 0.0;
                 for (Index k = 0; k < 4; ++k) {
-                    total += inverse_.matrix(i, k) * (c0 * pencil_.sine_part(k, j) - s0 * pencil_.cosine_part(k, j));
+                    total += inverse_.matrix(i, k) *
+                             (c0 * pencil_.sine_part(k, j) - s0 * pencil_.cosine_part(k, j));
                 }
                 standard(i, j) = total;
             }
@@ -563,7 +567,9 @@ private:
 inline Candidates find_candidates(const Links<5>& links) {
     std::vector<KeptJoint> eliminations;
     for (Index joint = 0; joint < 5; ++joint) eliminations.emplace_back(links, joint);
-    const auto is_more_regular = [](const KeptJoint& a, const KeptJoint& b) { return a.regularity() > b.regularity(); };
+    const auto is_more_regular = [](const KeptJoint& a, const KeptJoint& b) {
+        return a.regularity() > b.regularity();
+    };
     std::stable_sort(eliminations.begin(), eliminations.end(), is_more_regular);
     for (const KeptJoint& each : eliminations) {
         if (each.regularity() < elimination::regular) break;

@@ -32,8 +32,8 @@ constexpr double arrived = 1e-12;   // rad: distance to the end
 constexpr double smallest = 1e-9;
 constexpr double corrected = 1e-9;  // rad: a correction after which the error is of rounding
 constexpr int corrections = 8;
-constexpr int coefficients = 32;  // of the angle as a power series about a fold
-constexpr int circles = 60;       // on which the terms of that series are compared
+constexpr int coefficients = 32;                          // of the angle as a power series about a fold
+constexpr int circles = 60;                               // on which the terms of that series are compared
 constexpr double first_circle = 1e-3, last_circle = 0.5;  // over the reach of the series
 
 }  // namespace sheets
@@ -124,7 +124,8 @@ struct SecondDerivatives {
 
     std::array<std::array<Complex, n>, pairs> of_pair;
 
-    SecondDerivatives(const std::array<Screw<Complex>, n>& screws, const std::array<std::array<Complex, n>, 7>& inverse) {
+    SecondDerivatives(const std::array<Screw<Complex>, n>& screws,
+                      const std::array<std::array<Complex, n>, 7>& inverse) {
         std::size_t number = 0;
         for (std::size_t i = 0; i < n; ++i) {
             for (std::size_t j = i + 1; j < n; ++j, ++number) {
@@ -168,8 +169,10 @@ struct SecondDerivatives {
                 for (std::size_t k = 0; k < pairs; ++k) entry += scaled[k][a] * std::conj(scaled[k][b]);
                 const double size = 2.0 * (a == b ? entry.real() : std::sqrt(std::norm(entry)));
                 rows[a] += size;
-                if (a == b) trace += size;
-                else rows[b] += size;
+                if (a == b)
+                    trace += size;
+                else
+                    rows[b] += size;
             }
         }
         return std::sqrt(std::min(trace, *std::max_element(rows.begin(), rows.end())));
@@ -178,8 +181,8 @@ struct SecondDerivatives {
 
 // The ball around a configuration with these screws.
 template <std::size_t n>
-Ball<n> find_ball(const std::array<Screw<Complex>, n>& screws, const std::array<std::array<Complex, n>, 7>& inverse,
-                  const SecondDerivatives<n>& second) {
+Ball<n> find_ball(const std::array<Screw<Complex>, n>& screws,
+                  const std::array<std::array<Complex, n>, 7>& inverse, const SecondDerivatives<n>& second) {
     const auto size_of = [](const Vec3<Complex>& part) {
         double real = 0.0, imaginary = 0.0;
         for (const Complex& entry : part) {
@@ -257,11 +260,13 @@ struct SheetCurve {
     // Whether the imaginary part of some joint keeps its sign where the coordinate is at most t.
     bool stays_nonreal(double t) const {
         double speed = 0.0;
-        for (std::size_t i = 0; i < n; ++i) speed += std::norm(tangent[i]) / (ball.weight[i] * ball.weight[i]);
+        for (std::size_t i = 0; i < n; ++i)
+            speed += std::norm(tangent[i]) / (ball.weight[i] * ball.weight[i]);
         const double step = 4.0 / 3.0 * t * std::sqrt(speed);
         const double strayed = 0.5 * ball.bound * step * step;
         for (std::size_t i = 0; i < n; ++i) {
-            if (std::abs(at[i].imag()) - std::abs(tangent[i]) * t - ball.weight[i] * strayed > 0.0) return true;
+            if (std::abs(at[i].imag()) - std::abs(tangent[i]) * t - ball.weight[i] * strayed > 0.0)
+                return true;
         }
         return false;
     }
@@ -437,8 +442,8 @@ private:
     }
 
     // Whether the imaginary part of some joint keeps its sign on a step of this ``speed``.
-    static bool stays_nonreal(const Configuration& z, const Configuration& slope, const Ball<n>& ball, double step,
-                              double speed) {
+    static bool stays_nonreal(const Configuration& z, const Configuration& slope, const Ball<n>& ball,
+                              double step, double speed) {
         const double length = 4.0 / 3.0 * speed * step;
         const double strayed = 0.5 * ball.bound * length * length;  // from the tangent
         for (std::size_t i = 0; i < n; ++i) {
@@ -471,7 +476,9 @@ private:
         std::array<std::array<Complex, 6>, n> columns;
         for (std::size_t j = 0; j < n; ++j) columns[j] = entries(screws[j]);
         Configuration out = bifurc::smallest_singular_value(columns).vector;
-        const auto is_smaller = [](const Complex& p, const Complex& q) { return std::norm(p) < std::norm(q); };
+        const auto is_smaller = [](const Complex& p, const Complex& q) {
+            return std::norm(p) < std::norm(q);
+        };
         const Complex largest = *std::max_element(out.begin(), out.end(), is_smaller);
         for (Complex& entry : out) entry *= std::conj(largest) / std::abs(largest);
         return out;

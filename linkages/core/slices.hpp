@@ -18,20 +18,20 @@ namespace slices {
 
 // a configuration closes: error, lengths in characteristic lengths
 constexpr double closed = 1e-13;
-constexpr double exact = 5e-16;        // an error that no step brings down
+constexpr double exact = 5e-16;           // an error that no step brings down
 constexpr double closed_between = 1e-14;  // error half way between two points of one configuration
-constexpr double equal = 1e-6;         // rad: two configurations that agree to this are one
-constexpr double neighbours = 1e-2;    // rad: two that may be one singular configuration
-constexpr double real = 1e-7;          // rad: imaginary parts that are rounding
-constexpr double maybe_real = 0.1;     // of the modulus of exp(i theta)
-constexpr double unmoved = 1e-3;       // rad: a candidate that closes where it is
-constexpr double largest_defect = 0.02;  // of the moduli of a candidate
-constexpr double negligible = 1e-9;    // of a pivot to the first: a direction without a step
-constexpr double longest_step = 0.5;   // rad
+constexpr double equal = 1e-6;            // rad: two configurations that agree to this are one
+constexpr double neighbours = 1e-2;       // rad: two that may be one singular configuration
+constexpr double real = 1e-7;             // rad: imaginary parts that are rounding
+constexpr double maybe_real = 0.1;        // of the modulus of exp(i theta)
+constexpr double unmoved = 1e-3;          // rad: a candidate that closes where it is
+constexpr double largest_defect = 0.02;   // of the moduli of a candidate
+constexpr double negligible = 1e-9;       // of a pivot to the first: a direction without a step
+constexpr double longest_step = 0.5;      // rad
 constexpr int most_steps = 60;
-constexpr int steps_in_hope = 10;      // that need not bring the error down
+constexpr int steps_in_hope = 10;                // that need not bring the error down
 constexpr std::size_t most_configurations = 40;  // more than four only where a continuum is sampled
-constexpr int starts = 48;  // of Gauss-Newton in a slice that the elimination cannot decide
+constexpr int starts = 48;      // of Gauss-Newton in a slice that the elimination cannot decide
 constexpr Index most_held = 4;  // candidates that close where they are, without a continuum
 
 }  // namespace slices
@@ -59,7 +59,9 @@ inline double wrapped(double angle) {
 inline Complex wrapped(const Complex& angle) { return {wrapped(angle.real()), angle.imag()}; }
 
 inline double angle_size(double gap) { return std::abs(wrapped(gap)); }
-inline double angle_size(const Complex& gap) { return std::max(angle_size(gap.real()), std::abs(gap.imag())); }
+inline double angle_size(const Complex& gap) {
+    return std::max(angle_size(gap.real()), std::abs(gap.imag()));
+}
 
 // The largest difference of angles, real and imaginary part, modulo the period.
 template <class T, class S, std::size_t n>
@@ -90,7 +92,8 @@ double polish(const Links<m>& links, std::array<T, m>& angles) {
 // Gauss-Newton stops at different points that all close: two points whose middle closes too are
 // one.
 template <class T, std::size_t m>
-bool contains(const std::vector<std::array<T, m>>& list, const std::array<T, m>& angles, const Links<m>& links) {
+bool contains(const std::vector<std::array<T, m>>& list, const std::array<T, m>& angles,
+              const Links<m>& links) {
     for (const auto& known : list) {
         const double distance = angle_distance(angles, known);
         if (distance < slices::equal) return true;

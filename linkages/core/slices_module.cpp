@@ -30,8 +30,8 @@ using Integers = bifurc::numpy::VectorIn<std::int64_t>;
 
 void check_extent(const char* name, Index given, Index needed) {
     if (given == needed) return;
-    const std::string text = std::string(name) + ": " + std::to_string(given) + " is not allowed; there must be " +
-                             std::to_string(needed);
+    const std::string text = std::string(name) + ": " + std::to_string(given) +
+                             " is not allowed; there must be " + std::to_string(needed);
     throw nb::value_error(text.c_str());
 }
 
@@ -52,7 +52,8 @@ auto with_joints(const Table& geometry, Index joint, Run run) {
 template <class T, std::size_t n>
 nb::object array_of(const std::vector<std::array<T, n>>& rows) {
     Array<T> out({static_cast<Index>(rows.size()), static_cast<Index>(n)});
-    for (std::size_t i = 0; i < rows.size(); ++i) std::copy(rows[i].begin(), rows[i].end(), &out.data()[i * n]);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        std::copy(rows[i].begin(), rows[i].end(), &out.data()[i * n]);
     return out.release();
 }
 
@@ -165,8 +166,8 @@ std::vector<Fold<n>> folds_of(const bifurc::numpy::CubeIn<double>& shapes, const
     for (std::size_t f = 0; f < shapes.shape(0); ++f) {
         const double* const shape = shapes.data() + 3 * f * n;
         const double* const limit = limits.data() + 3 * f;
-        folds.push_back({array_from<n>(shape), array_from<n>(shape + n), array_from<n>(shape + 2 * n), limit[0],
-                         limit[1], limit[2]});
+        folds.push_back({array_from<n>(shape), array_from<n>(shape + n), array_from<n>(shape + 2 * n),
+                         limit[0], limit[1], limit[2]});
     }
     return folds;
 }
@@ -174,8 +175,8 @@ std::vector<Fold<n>> folds_of(const bifurc::numpy::CubeIn<double>& shapes, const
 // (cleared (k), where each one stopped (k, n)) of sheets from ``starts`` (k, n) to ``ends`` (k);
 // sheet k may join those of the folds that have the numbers near[first[k]] to near[first[k + 1]].
 nb::tuple follow_sheets(const Table& geometry, Index joint, const ComplexTableIn& starts, const Doubles& ends,
-                        const bifurc::numpy::CubeIn<double>& shapes, const Table& limits, const Integers& near,
-                        const Integers& first, double seconds) {
+                        const bifurc::numpy::CubeIn<double>& shapes, const Table& limits,
+                        const Integers& near, const Integers& first, double seconds) {
     return with_joints(geometry, joint, [&]<std::size_t n>() {
         const auto count = static_cast<Index>(starts.shape(0));
         check_extent("starts", starts.shape(1), n);
@@ -244,7 +245,8 @@ nb::tuple ball_around(const Table& geometry, const Complexes& configuration, con
         check_extent("configuration", configuration.shape(0), n);
         check_extent("along", along.shape(0), n);
         const auto row = array_from<n>(along.data());
-        const auto screws = SheetTracker<n>(view(geometry), 0).linearize(array_from<n>(configuration.data())).screws;
+        const auto screws =
+            SheetTracker<n>(view(geometry), 0).linearize(array_from<n>(configuration.data())).screws;
         const auto inverse = BorderedScrews<n>(screws, row).inverse();
         const SecondDerivatives<n> second(screws, inverse);
         const Ball<n> ball = find_ball(screws, inverse, second);
@@ -271,7 +273,8 @@ void define_slices(nb::module_& module) {
                nb::arg("angles"));
     module.def("follow_paths", &follow_paths, nb::arg("starts"), nb::arg("first"), nb::arg("last"),
                nb::arg("seconds"));
-    module.def("smallest_singular_values", &smallest_singular_values, nb::arg("configurations"), nb::arg("table"));
+    module.def("smallest_singular_values", &smallest_singular_values, nb::arg("configurations"),
+               nb::arg("table"));
     module.def("quaternion_closure", &quaternion_closure, nb::arg("configurations"), nb::arg("table"));
     module.def("follow_sheets", &follow_sheets, nb::arg("geometry"), nb::arg("joint"), nb::arg("starts"),
                nb::arg("ends"), nb::arg("shapes"), nb::arg("limits"), nb::arg("near"), nb::arg("first"),

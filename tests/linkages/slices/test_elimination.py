@@ -1,6 +1,9 @@
 """Slices against starts at random, closed forms, and the properties that any complete
 list must have."""
 
+import _thread
+import threading
+
 import numpy as np
 import pytest
 
@@ -300,3 +303,11 @@ def test_no_angles_give_no_configurations():
     result = slice_configurations(DSG, 1, [])
     assert result.configurations.shape == (0, 6)
     assert result.is_complete
+
+
+def test_ctrl_c_gets_through_many_slices():
+    timer = threading.Timer(0.1, _thread.interrupt_main)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        slice_configurations(DSG, 1, np.linspace(-3, 3, 500_000))
+    timer.join()
