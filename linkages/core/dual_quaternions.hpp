@@ -38,6 +38,15 @@ auto operator*(const DualQuaternion<P>& p, const DualQuaternion<Q>& q) {
     return out;
 }
 
+// The vector parts of a product, of rotation and translation.
+template <class T>
+std::array<T, 6> product_vectors(const DualQuaternion<T>& p, const DualQuaternion<T>& q) {
+    const auto real = detail::quaternion_product(p, 0, q, 0);
+    const auto first = detail::quaternion_product(p, 0, q, 4);
+    const auto second = detail::quaternion_product(p, 4, q, 0);
+    return {real[1], real[2], real[3], first[1] + second[1], first[2] + second[2], first[3] + second[3]};
+}
+
 template <class T>
 DualQuaternion<T> conjugate(const DualQuaternion<T>& q) {
     return {q[0], -q[1], -q[2], -q[3], q[4], -q[5], -q[6], -q[7]};
@@ -102,11 +111,7 @@ ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links,
     for (T& entry : out.error) entry *= sign;
     DualQuaternion<T> before{T(sign)};
     for (std::size_t i = 0; i < n; ++i) {
-        const auto derivative = before * half_turned(after[i]);
-        for (int r = 0; r < 3; ++r) {
-            out.derivatives[i][r] = derivative[r + 1];
-            out.derivatives[i][r + 3] = derivative[r + 5];
-        }
+        out.derivatives[i] = product_vectors(before, half_turned(after[i]));
         if (i + 1 < n) before = before * steps[i];
     }
     return out;
