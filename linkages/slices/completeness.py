@@ -28,6 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -114,10 +115,16 @@ class SliceAudit:
     def _passes(self, branches: Sequence[Branch]) -> list[Passes]:
         """How the motions pass the angles of every joint."""
         dead = [dead_points(branch) for branch in branches]
+        extents = [np.ptp(branch.sample(SAMPLES), axis=0) for branch in branches]
         passes = []
         for joint in range(self.loop.n):
-            turning = [of_branch[joint] for of_branch in dead]
-            passes.append(Passes.of_motions(self.loop.n, joint, branches, turning))
+            turning = []
+            moved_by = []
+            for branch, of_branch, extent in zip(branches, dead, extents, strict=True):
+                if not is_same_dead_point(float(extent[joint])):
+                    moved_by.append(branch)
+                    turning.append(of_branch[joint])
+            passes.append(Passes.of_motions(self.loop.n, joint, moved_by, turning))
         return passes
 
     def _differing_joints(self, passes: Sequence[Passes]) -> list[int]:
@@ -248,14 +255,12 @@ class Passes:
         branches: Sequence[Branch],
         turning: Sequence[np.ndarray],
     ) -> Passes:
-        """From the motions of a loop of ``n`` joints and the arclengths ``turning`` of
-        their dead points in the joint."""
+        """From the motions of a loop of ``n`` joints that turn the joint, and the
+        arclengths ``turning`` of their dead points in it."""
         low = [np.empty(0)]
         high = [np.empty(0)]
         folds = [np.empty((0, n))]
         for branch, dead in zip(branches, turning, strict=True):
-            if is_same_dead_point(float(np.ptp(branch.sample(SAMPLES)[:, joint]))):
-                continue
             angles = branch(_ends_of_stretches(branch, dead))[:, joint]
             low.append(np.minimum(angles[1:], angles[:-1]))
             high.append(np.maximum(angles[1:], angles[:-1]))
@@ -272,7 +277,7 @@ class Passes:
         times: np.ndarray = (last - first + 1).sum(axis=1).astype(int)
         return times
 
-    @property
+    @cached_property
     def critical(self) -> np.ndarray:
         """Angles in [0, 2 pi) between which the number is constant, in order."""
         angles = np.sort(np.concatenate([self.low, self.high]) % TURN)
