@@ -137,6 +137,17 @@ def test_paths_far_from_real_configurations_are_followed_by_quaternions():
     assert np.abs(errors).max() < 1e-9
 
 
+def test_smallest_singular_values_of_complex_configurations_are_those_of_lapack():
+    rng = np.random.default_rng(0)
+    angles = rng.normal(size=(20, 6)) + 1j * rng.normal(size=(20, 6))
+    table = assemblies._with_six_joints(SIXTEEN).table.astype(complex)
+    values = _core.smallest_singular_values(angles, table)
+    for configuration, value in zip(angles, values, strict=True):
+        screws, _ = _core.screws_and_error(SIXTEEN.link_geometry, configuration)
+        expected = np.linalg.svd(screws, compute_uv=False)
+        assert abs(value - expected[-1]) < 1e-14 * expected[0]
+
+
 def test_a_path_that_goes_over_to_another_one_is_noticed():
     one, other = 0.3 + 0.1j, 0.5 - 0.2j
     pair = np.array([[one] * 6, [np.conj(one)] * 6])
