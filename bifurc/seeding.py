@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -57,11 +58,18 @@ def missed_probability(hits: Sequence[int]) -> float:
     among N starts; n1 is close to Poisson, and its upper limit (Garwood 1936) is used
     in its place: 3 / N where nothing was hit just once.
     """
-    from scipy.special import gammaincinv
-
     starts = int(sum(hits))
     if starts == 0:
         return 1.0
     singles = sum(1 for count in hits if count == 1)
-    most_singles = gammaincinv(singles + 1, CONFIDENCE)
-    return float(min(1.0, most_singles / starts))
+    return min(1.0, _poisson_limit(singles) / starts)
+
+
+def _poisson_limit(count: int) -> float:
+    """The upper limit of the mean of a Poisson variable that was seen to be ``count``
+    (Garwood 1936)."""
+    if count == 0:
+        return -math.log(1.0 - CONFIDENCE)
+    from scipy.special import gammaincinv
+
+    return float(gammaincinv(count + 1, CONFIDENCE))

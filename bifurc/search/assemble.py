@@ -147,21 +147,20 @@ def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
 def _component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of
     the forms."""
-    import networkx as nx
-
-    graph: nx.Graph[Hashable] = nx.Graph()
-    graph.add_nodes_from(range(count))
+    # networkx, which could do this, takes longer to import than the search
+    components: list[set[Hashable]] = [{form} for form in range(count)]
     for point in points:
-        forms = [form for form, _ in point.passes]
-        surfaces = [("surface", k) for k in point.surfaces]
-        nx.add_path(graph, [*forms, *surfaces])
-    parts = []
-    for members in nx.connected_components(graph):
-        forms = sorted(member for member in members if isinstance(member, int))
-        if forms:
-            parts.append(forms)
+        meeting: set[Hashable] = {form for form, _ in point.passes}
+        meeting |= {("surface", k) for k in point.surfaces}
+        apart = [component for component in components if not component & meeting]
+        joined = [component for component in components if component & meeting]
+        components = [*apart, meeting.union(*joined)]
+    parts = [
+        sorted(member for member in component if isinstance(member, int))
+        for component in components
+    ]
     numbers = [0] * count
-    for number, forms in enumerate(sorted(parts)):
+    for number, forms in enumerate(sorted(filter(None, parts))):
         for form in forms:
             numbers[form] = number
     return numbers

@@ -12,8 +12,8 @@ round before. The number of rounds does not grow with that of the points.
 from __future__ import annotations
 
 from collections.abc import Hashable
+from typing import TYPE_CHECKING
 
-import networkx as nx
 import numpy as np
 
 from bifurc.errors import BifurcError
@@ -21,6 +21,10 @@ from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import tangent_planes
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas
+
+if TYPE_CHECKING:
+    # a map without surfaces needs no graph of charts
+    import networkx as nx
 
 __all__ = [
     "SurfacePathError",
@@ -110,6 +114,8 @@ def path_length(path: np.ndarray) -> float:
 def chart_graph(charts: ChartAtlas) -> nx.Graph:
     """The charts by their numbers, neighbours joined by edges that have the distance of
     their centres as ``weight``."""
+    import networkx as nx
+
     i, j = charts.neighbours.T
     gaps = charts.difference(charts.centers[i], charts.centers[j])
     distances = np.linalg.norm(gaps, axis=1)
@@ -152,6 +158,8 @@ def _chart_chains(
 
     Then those on the shortest way that keeps off them, where it is not much longer.
     """
+    import networkx as nx
+
     graph = chart_graph(charts)
     _add_end(graph, problem, charts, START, start)
     _add_end(graph, problem, charts, GOAL, goal)

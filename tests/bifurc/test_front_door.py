@@ -11,7 +11,7 @@ import pytest
 import bifurc
 
 STUB = Path(bifurc.__file__).with_suffix(".pyi")
-HEAVY = ("matplotlib", "networkx", "numba", "scipy", "sympy", "xarray")
+HEAVY = ("matplotlib", "networkx", "scipy", "sympy", "xarray")
 
 
 def public_names():

@@ -40,8 +40,19 @@ def test_the_public_names_are_those_that_are_declared():
 
 
 def test_the_import_alone_is_light():
-    heavy = {"numba", "networkx", "xarray", "matplotlib", "scipy", "sympy", "numpy"}
+    heavy = {"networkx", "xarray", "matplotlib", "scipy", "sympy", "numpy"}
     assert not modules_imported_by("import linkages") & heavy
+
+
+def test_a_map_as_json_needs_neither_scipy_nor_graphs_figures_symbols_or_datasets():
+    statement = """
+from click.testing import CliRunner
+from linkages.app.cli import main
+result = CliRunner().invoke(main, ["map", "special-double-subtractive-goldberg", "--json"])
+assert result.exit_code == 0, result.output
+"""
+    heavy = {"scipy", "networkx", "xarray", "matplotlib", "sympy"}
+    assert not modules_imported_by(statement) & heavy
 
 
 def test_loading_a_linkage_needs_no_symbols_figures_or_datasets():
