@@ -5,7 +5,8 @@ import pytest
 
 from linkages.catalogue import entry
 from linkages.forms import identify_form, name_forms
-from linkages.loop import GeometryError
+from linkages.loop import GeometryError, Loop
+from linkages.mapping import map_linkage
 
 
 def _loop_and_patterns(case):
@@ -143,3 +144,32 @@ def test_samples_of_another_number_of_joints_are_refused(reference_cases):
     loop, _ = _loop_and_patterns(_case(reference_cases, "bricard-line-symmetric"))
     with pytest.raises(GeometryError, match="shape of the samples"):
         identify_form(np.zeros((3, 5)), loop)
+
+
+def circle_about(mean: np.ndarray) -> np.ndarray:
+    """Samples (m, n) of a closed form whose cosines have about these means (n,)."""
+    around = np.linspace(0.0, 2 * np.pi, 60, endpoint=False)
+    phases = np.arange(len(mean))
+    return np.arccos(mean) + 0.1 * np.sin(around[:, None] + phases)
+
+
+def test_the_order_of_forms_does_not_hang_on_the_last_bits():
+    loop = entry("bennett").build()
+    # the first means differ by rounding, at whatever digit one might cut them off
+    for cut in np.arange(0.30000, 0.30020, 0.00001):
+        low, high = (
+            circle_about(np.array([cut + error, second, 0.1, 0.2]))
+            for error, second in ((1e-12, 0.2), (-1e-12, 0.4))
+        )
+        names = [identity.name for identity in name_forms([low, high], loop)]
+        assert names == ["Form 2", "Form 1"]
+
+
+@pytest.mark.parametrize("error", [0.0, 4e-16, -4e-16])
+def test_equal_links_are_equal_but_for_rounding(error):
+    # both lengths lie where nine decimals would be cut off
+    lengths = (1.2499999995, 0.7500000005, 0.7500000005 + error, 1.2499999995 - error)
+    zeros = (0.0,) * 4
+    atlas = map_linkage(Loop(lengths, zeros, zeros))
+    names = {form.name for form in atlas.forms}
+    assert names == {"kite form", "folded form (joints 1,3 inactive)"}
