@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from bifurc.checks import check_type
-from bifurc.decisions import is_solution
+from bifurc.decisions import is_start_solved
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
 from bifurc.seeding import random_seeds
@@ -172,7 +172,7 @@ class LoopClosure(NumericalProblem):
         nonreal = np.concatenate([cut.nonreal for cut in slices])
         largest = np.abs(nonreal.imag).max(axis=1, initial=0.0)
         points, gaps = self.project(nonreal[largest < NEARLY_REAL].real)
-        return points[is_solution(gaps)]
+        return points[is_start_solved(gaps)]
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
