@@ -7,6 +7,7 @@ import pytest
 
 import bifurc.decisions
 import linkages.decisions
+from bifurc.curves.certificate import HANDOVER
 from bifurc.decisions import Decision, Role, record_margins, unit_over_rounding
 
 
@@ -71,3 +72,7 @@ def test_a_third_answer_is_that_of_a_verdict(decision: Decision) -> None:
     if decision.third_answer:
         assert decision.role is Role.VERDICT
         assert not decision.third_answer.endswith(".")
+
+
+def test_a_point_is_passed_within_half_of_where_arcs_are_handed_over() -> None:
+    assert bifurc.decisions.is_passed.threshold == HANDOVER / 2
