@@ -1,9 +1,10 @@
 """Every comparison on which a count, a kind, a level or a word hangs, in one table.
 
-A decision compares a quantity without units with a threshold. A threshold is meant to
-stand in a gap: what is true gives quantities decades below it, what is false decades
-above. `record_margins` notes the quantities that were decided on, so that a study can
-show the gaps; see docs/decisions.md.
+A decision compares a quantity without units with a threshold. The threshold of a
+verdict stands in a gap: what is true gives quantities decades below it, what is false
+decades above. Where the truth itself has no gap, as when a linkage misses a condition
+by any amount, there is a third answer. `record_margins` notes the quantities that were
+decided on, so that a study can show the gaps; see docs/decisions.md.
 
 Singular values and residuals are over the problem's ``magnitude``, lengths over its
 ``scale``.
@@ -29,6 +30,7 @@ __all__ = [
     "Role",
     "decisions_in",
     "record_margins",
+    "unit_over_rounding",
 ]
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -58,7 +60,7 @@ class Role(Enum):
     VERDICT = "verdict"
     # Whether something is looked at more closely; both sides end in the same answer.
     LOOK = "look"
-    # Nothing but what is listed: a convention.
+    # What is listed, or in which order: either side is as good, and one was chosen.
     CONVENTION = "convention"
 
 
@@ -67,7 +69,8 @@ class Decision:
     """Whether a ``quantity`` is below a ``threshold``.
 
     ``claim`` is what is taken for true where it is, ``reason`` why the threshold stands
-    where it does, ``role`` what hangs on it.
+    where it does, ``role`` what hangs on it. ``third_answer`` is what is said where the
+    quantity is neither plainly small nor plainly large, empty where that is not met.
     """
 
     name: str
@@ -76,6 +79,7 @@ class Decision:
     threshold: float
     reason: str
     role: Role = Role.VERDICT
+    third_answer: str = ""
 
     @overload
     def __call__(self, value: float, unit: float = 1.0) -> bool: ...
@@ -91,7 +95,8 @@ class Decision:
         in ``unit``."""
         margins = _recorded.get()
         if margins is not None:
-            quantities = np.asarray(value, dtype=float) / unit
+            with np.errstate(divide="ignore", invalid="ignore"):
+                quantities = np.asarray(value, dtype=float) / unit
             margins[self.name].append(np.ravel(quantities))
         if isinstance(value, np.ndarray):
             return np.less(value, self.threshold * unit)
@@ -104,6 +109,12 @@ def decisions_in(names: Mapping[str, object]) -> dict[str, Decision]:
     return {decision.name: decision for decision in decisions}
 
 
+def unit_over_rounding(decision: Decision, by_rounding: float) -> float:
+    """The unit in which a quantity is smaller than the threshold that rounding may have
+    made: 1 where what comes ``by_rounding`` is below that."""
+    return max(1.0, by_rounding / decision.threshold)
+
+
 # --- solutions ------------------------------------------------------------------------
 
 is_solution = Decision(
@@ -113,20 +124,42 @@ is_solution = Decision(
     1e-12,
     "the closing tolerance: a thousand times rounding, which geometry in doubles has, "
     "too; doubles still measure it to three digits",
+    third_answer="what misses by more than rounding moves within the closing "
+    "tolerance, and by how much is said",
+)
+is_start_solved = Decision(
+    "start that closes",
+    "the iteration from a random start has reached a solution",
+    "residual",
+    is_solution.threshold,
+    "next to singular points it converges slowly; what stops on the way counts as "
+    "missed, and other starts reach what it would have reached",
+    Role.LOOK,
 )
 closes_to_rounding = Decision(
     "closing to rounding",
     "what is left of a residual is rounding, and no misclosure of the system",
     "least residual across a curve",
     1e-14,
-    "rounding leaves 1e-15 to 5e-15; above, the misclosure is measured in more digits",
+    "rounding leaves 1e-15 to 5e-15",
+    third_answer="from here to the closing tolerance the misclosure is measured in more "
+    "digits, and said",
+)
+is_plainly_closed = Decision(
+    "plainly closed",
+    "there is no misclosure to look for",
+    "residual",
+    closes_to_rounding.threshold,
+    "the misclosure is no larger than the residual, and is taken where this is larger",
+    Role.LOOK,
 )
 nearly_closes = Decision(
     "near motion",
     "the system is nearly solved all along a curve, which is a near motion",
     "the largest of the least residuals across the curve",
     1e-2,
-    "a convention: larger errors are none of making or of rounding",
+    "larger errors are none of making or of rounding",
+    Role.CONVENTION,
 )
 is_blurred = Decision(
     "blurred assembly",
@@ -141,39 +174,56 @@ may_nearly_move = Decision(
     "an isolated solution may lie on a near motion, which is then looked for",
     "smallest of all n singular values",
     0.02,
-    "half the shortest stretch from a stiffer one the residual is 1e-2 and larger; "
-    "assemblies of random loops have 0.03 and more",
+    "half the shortest stretch from a stiffer one the residual is 1e-2 and larger, so "
+    "that no near motion is found",
+    Role.LOOK,
 )
 is_stretch_short = Decision(
     "stretch of a near motion",
     "a curve along which the system is nearly solved is no near motion",
     "length over the scale, where it does not close",
     2.0,
-    "a convention: beside any solution the residual is small along some stretch",
+    "beside any solution the residual is small along some stretch",
+    Role.CONVENTION,
 )
 is_solution_at_probe = Decision(
     "solution at a probe",
     "the end of a probe along the null space is a solution",
     "residual",
     1e-10,
-    "at places of low rank Newton's method is slow and leaves more than rounding",
+    "at places of low rank Newton's method is slow; a surface is told by what it misses "
+    "above its null space, whether its probes arrive or not",
+    Role.LOOK,
 )
 
 # --- rank -----------------------------------------------------------------------------
 
 is_null = Decision(
     "null direction",
-    "a direction belongs to the null space of F'",
+    "a direction belongs to the null space of F', at a chart of a surface or a solution "
+    "beside a singular point",
     "singular value",
     1e-7,
-    "at a point of higher order the place, and with it F', is known to half the digits",
+    "it is rounding there",
+)
+may_be_null = Decision(
+    "direction to probe",
+    "solutions may lie in a direction, which is then probed",
+    "singular value",
+    1e-7,
+    "on a surface it is rounding; beside a singular point it is anything, and the "
+    "probes tell what there is",
+    Role.LOOK,
 )
 is_null_at_probe = Decision(
-    "null direction at a probe",
-    "a direction belongs to the null space of F' at the end of a probe",
-    "singular value",
+    "direction to probe again",
+    "solutions at the end of a probe may lie in a direction, which is then probed",
+    "singular value; over that at which a double solution with this residual is hidden, "
+    "where that is more",
     1e-6,
-    "the ends of probes are known less well than the points they leave from",
+    "beside singular points it is anything; a surface is told by what it misses above "
+    "its null space",
+    Role.LOOK,
 )
 is_zero_along = Decision(
     "rank along a curve",
@@ -181,6 +231,8 @@ is_zero_along = Decision(
     "median of the singular value along the curve",
     1e-11,
     "a curve is known to rounding, and so is F' on it; beside a surface it is larger",
+    third_answer="a curve with a value from this to 1e-9 may be a part of a surface, and "
+    "that is said",
 )
 is_shaky = Decision(
     "lower rank at a seed",
@@ -189,12 +241,30 @@ is_shaky = Decision(
     1e-5,
     "seeds reach a double curve to half the digits, 1e-8, and with few more steps less",
 )
-is_mobile = Decision(
-    "rigid or mobile",
-    "a seed lies on a curve or a surface, and is no isolated solution",
+may_be_scaled_down = Decision(
+    "weak equation",
+    "an equation may be small because somebody scaled it, and its rounding is measured",
+    "smallest regular singular value",
+    1e-3,
+    "for larger ones rounding is 1e-15 over it, as it is for smaller ones as a rule",
+    Role.LOOK,
+)
+is_without_equation = Decision(
+    "direction without equation",
+    "nothing is said of a direction by F, and how well a place is known along it is not asked",
+    "smallest regular singular value",
+    1e-11,
+    "rounding over it is 1e-4: the rank is lower there, and that is looked at",
+    Role.LOOK,
+)
+may_be_mobile = Decision(
+    "seed that may move",
+    "a seed may lie on a curve, which is then traced",
     "smallest of all n singular values",
-    1e-6,
-    "on a curve it is rounding; for a smaller one than this a curve is traced",
+    1e-4,
+    "on a curve it is rounding over the next singular value, 1e-6 and less; at an "
+    "isolated solution there is nothing but a stub to trace",
+    Role.LOOK,
 )
 may_be_singular = Decision(
     "seed of low rank",
@@ -220,6 +290,16 @@ may_be_crossed = Decision(
     "the place of a minimum is exact to 1e-5 and better; location decides",
     Role.LOOK,
 )
+is_deep_place = Decision(
+    "deep place",
+    "a place where the singular value is far smaller than on both sides may be a "
+    "singular point, which is then looked for",
+    "the value over the smaller one of the largest on the two sides",
+    0.1,
+    "beside a surface the slope is lost in rounding, by which minima are found; "
+    "location decides",
+    Role.LOOK,
+)
 
 # --- surfaces -------------------------------------------------------------------------
 
@@ -229,13 +309,16 @@ is_closed_on_surface = Decision(
     "residual above the null space, up to a twentieth of the scale away",
     is_solution.threshold,
     "on a surface it is rounding, 1e-15; curves beside one leave their distance from it",
+    third_answer="a surface that misses by more than rounding may be curves, and that "
+    "is said",
 )
 misses_by_rounding = Decision(
     "exact but for rounding",
     "what a surface or a singular point misses is rounding",
     "largest residual on the surface, or at the point",
     5e-15,
-    "rounding of F is 1e-15 or less; what is between this and 1e-12 is in doubt",
+    "rounding of F is 1e-15 or less",
+    third_answer="what is more, up to the closing tolerance, is in doubt",
 )
 is_known_curve = Decision(
     "curve without doubt",
@@ -243,38 +326,49 @@ is_known_curve = Decision(
     "rounding over the median of its smallest regular singular value, over the scale",
     1e-6,
     "at this distance two points count as one; points of ordinary curves: 1e-13",
+    third_answer="what is more is in doubt",
 )
 
 # --- singular points ------------------------------------------------------------------
 
-solves_at_point = Decision(
-    "solution at a singular point",
-    "a located singular point solves the system",
-    "residual",
-    1e-13,
-    "rounding is some 1e-15; the residual beside a near miss is its square or more",
-)
-vanishes = Decision(
-    "zero at a singular point",
-    "a direction belongs to the null space of F' at a located singular point",
-    "singular value, over one and ten times the doubt of the place where that is more",
-    1e-12,
-    "at a simple singular point it is rounding, some 1e-16; doubles resolve a near miss "
-    "down to 1e-12, and the closing tolerance is no finer",
+is_singular_point = Decision(
+    "singular point",
+    "a point solves the system, and F' has the null space that was looked for",
+    "ten times the residual, over a hundred times the misclosure of the curves where "
+    "that is more; or the largest singular value in the null space, over ten times the "
+    "doubt of the place",
+    is_solution.threshold,
+    "both are rounding, 1e-15; beside a near miss one of them is of the order of what "
+    "doubles resolve of it, 1e-10, or more",
+    third_answer="a point that misses by more than rounding may be a near miss, and "
+    "that is said",
 )
 is_located = Decision(
     "located",
-    "the iteration for a singular point has converged",
+    "the iteration for a singular point has settled, and what it came to is looked at",
     "last step over the scale",
     1e-4,
-    "at points of high order it stagnates where rounding hides the rest",
+    "at singular points it is 1e-9 and less, at points of high order, too",
+    Role.LOOK,
+)
+is_simple = Decision(
+    "simple singular point",
+    "the iteration comes back to a point at once, which is known to rounding",
+    "second step over the first, in hundredths; or the distance from the point over "
+    "what is allowed",
+    1.0,
+    "at a point of higher order the second step is half as long as the first",
+    third_answer="of any other point the stretch is measured that rounding hides, which "
+    "is its error",
 )
 has_no_form = Decision(
     "no quadratic form",
     "second order says nothing about the tangents",
     "size of the forms W^T F''(V x, V x)",
     1e-7,
-    "they are exact to rounding times the error of the point",
+    "they are exact to rounding times the error of the point; a section decides, and "
+    "the forms give the tangents where they agree with it",
+    Role.LOOK,
 )
 is_zero_form = Decision(
     "value of a quadratic form",
@@ -283,12 +377,30 @@ is_zero_form = Decision(
     1e-6,
     "the coefficients are exact to rounding times the error of the point",
 )
-is_surface_probe = Decision(
-    "surface or curve",
-    "a probe along the null space stays what it was when it is projected",
+may_fill_null_space = Decision(
+    "probe that stays",
+    "the solutions may fill the null space, and are looked at above it",
     "share that projection takes from a probe",
     0.05,
-    "curvature takes a share of the order of the probe's length, 0.005",
+    "curvature takes a share of the order of the probe's length, 0.005; where it takes "
+    "more the ends of the probes tell the dimension, and are looked at as well",
+    Role.LOOK,
+)
+fills_null_space = Decision(
+    "surface or curve",
+    "the solutions at the end of a probe fill the null space there",
+    "share that projection takes from probes a hundred times shorter",
+    1e-2,
+    "curvature takes a share of the order of their length, 5e-5; on a curve all of one "
+    "is taken",
+)
+is_across_span = Decision(
+    "direction of a span",
+    "the ends of probes do not spread in a direction, but for curvature",
+    "spread over the length of the probes",
+    0.05,
+    "curvature spreads them by a share of the order of that length, 0.005",
+    third_answer="where they seem to fill the null space they are looked at above it",
 )
 is_same_half_branch = Decision(
     "same half-branch",
@@ -297,12 +409,58 @@ is_same_half_branch = Decision(
     1e-4,
     "they are exact to rounding over the radius",
 )
+fills_circle = Decision(
+    "full circle",
+    "all of a small circle in the null space solves the reduced equations",
+    "largest value on the circle, over rounding there",
+    1.0,
+    "on a surface it is rounding, a tenth of this",
+    third_answer="a surface that misses by more than rounding may be curves, and that "
+    "is said",
+)
+is_on_circle = Decision(
+    "zero on a circle",
+    "a zero of one combination of the reduced equations is one of all",
+    "what the others leave there, over what rounding makes of a zero",
+    1.0,
+    "at a zero of all of them it is rounding; at others of the order of the largest "
+    "value on the circle, 1e10",
+    third_answer="where sections of two radii disagree, or other half-branches are traced "
+    "than seen, the point is undecided or the disagreement is said",
+)
+is_on_sphere = Decision(
+    "solution on a sphere",
+    "the iteration from a start on a small sphere has reached a solution",
+    "residual over 1e-8 of the square of the radius, or last step over 1e-4 of it",
+    1.0,
+    "next to the point F is of the order of the square, whatever the direction",
+    Role.LOOK,
+)
 
 # --- identity of points and curves ----------------------------------------------------
 
+may_be_weak = Decision(
+    "weak direction",
+    "rounding may hide more of a direction than the distance at which two points are "
+    "one, and what it hides is looked at",
+    "smallest regular singular value",
+    1e-5,
+    "twenty times rounding over it is 2e-9",
+    Role.LOOK,
+)
+may_be_known = Decision(
+    "known place",
+    "a seed or a start lies on a known curve, or a minimum at a known point, and nothing "
+    "is traced or located from it",
+    "distance over the scale; over what rounding leaves of it where that is more",
+    1e-6,
+    "seeds are exact to 1e-13, near singular points to half the digits; what is traced "
+    "or located in vain turns out to be the known one",
+    Role.LOOK,
+)
 is_same_point = Decision(
     "same point",
-    "two points are one, or a point lies on a curve",
+    "two points are one, or two curves",
     "distance over the scale",
     1e-6,
     "points are exact to 1e-13, near singular points to half the digits",
@@ -310,9 +468,35 @@ is_same_point = Decision(
 is_back = Decision(
     "closed",
     "a curve has come back to its start",
-    "distance over the scale",
-    1e-6,
-    "the start is exact to rounding over the singular value there",
+    "distance from the start over 1e-9 of the scale; or, if that is less, over what is "
+    "known of the place, or F' times it over thirty times the tolerance of the pieces",
+    1.0,
+    "it is a hundredth of this; other turns of a curve are farther away",
+)
+is_nearly_back = Decision(
+    "closed near motion",
+    "a curve along which the system is nearly solved has come back to its start",
+    "as for an exact curve",
+    1.0,
+    "such a curve comes back beside itself, and its pieces are as exact as that",
+    Role.CONVENTION,
+)
+is_other_way = Decision(
+    "other way",
+    "a curve passes its start in another direction, and goes on",
+    "cosine of the angle between the two passes",
+    0.9,
+    "where it closes it is 1 to rounding over what is known of the curve",
+)
+is_passed = Decision(
+    "pass of a singular point",
+    "a curve passes a singular point, and not only beside it",
+    "distance over the scale, less the error of the point",
+    5e-4,
+    "half of the distance up to which arcs are certified; a minimum that leads to a "
+    "point farther away lies beside another arc",
+    third_answer="an arc that is not handed over there is looked at like any other, and "
+    "in the end said to be not certified",
 )
 is_stub = Decision(
     "form or stub",
@@ -324,16 +508,28 @@ is_stub = Decision(
 stands_still = Decision(
     "stands still",
     "an unknown keeps its value along a form",
-    "its largest rate",
+    "its largest rate; over a hundred times what is known of the form where that is "
+    "more",
+    1e-8,
+    "rates are exact to 1e-11",
+    third_answer="an unknown with a larger rate that rounding may have made is in doubt",
+)
+rests = Decision(
+    "rests",
+    "an unknown stands still on a stretch of a curve",
+    "its largest rate there",
     1e-8,
     "rates are exact to 1e-12",
+    third_answer="of what neither rests nor moves nothing is said: a curve has jumped "
+    "where what rests moves on the next stretch",
 )
 is_slow = Decision(
     "slow",
-    "an unknown may stand still on another stretch of the same branch",
+    "an unknown may stand still on another stretch of the same curve",
     "its largest rate on this stretch",
     1e-4,
     "what moves does so at a rate of about 1 somewhere, but for a moment",
+    third_answer="as for what rests",
 )
 is_same_line = Decision(
     "same line",
@@ -347,7 +543,8 @@ is_tied = Decision(
     "two features of forms or points are equal, and the next one decides their order",
     "difference over the scale",
     1e-6,
-    "features of mirror images differ by rounding, about 1e-13",
+    "features of mirror images differ by rounding, about 1e-13; either order is one",
+    Role.CONVENTION,
 )
 is_unclear_start = Decision(
     "start of a form",
@@ -374,7 +571,9 @@ is_level = Decision(
     "a singular value does not change along a curve",
     "its slope over magnitude and scale",
     1e-8,
-    "the slope comes from a central difference of F', exact to 1e-10",
+    "the slope comes from a central difference of F', exact to 1e-10; it is as small "
+    "beside every minimum, which is told from the slopes on its two sides",
+    Role.LOOK,
 )
 stands_out = Decision(
     "near miss",
@@ -393,6 +592,8 @@ is_unique = Decision(
     "its omega |G| in the theorem of Newton and Kantorovich",
     0.25,
     "the theorem asks for 1/2; on a regular arc it is 1e-8 and less",
+    third_answer="what is refused is divided and looked at again, and in the end said to "
+    "be not certified",
 )
 is_closed_to_rounding = Decision(
     "solution to rounding",
@@ -400,6 +601,7 @@ is_closed_to_rounding = Decision(
     "residual along a refused arc",
     2e-14,
     "rounding is some 1e-15; over a jump between sheets the residual is what they differ",
+    third_answer="on either side the arc is said to be not certified, and where",
 )
 
 TABLE = decisions_in(globals())

@@ -64,8 +64,8 @@ class MarchSettings:
     ``shortest`` and ``longest`` trusted radius, the largest number, ``count``, of
     pieces in one march. ``closing``: there is no curve where the least relative residual
     across it is larger; ``misclosure``: how large it is known to be elsewhere on the
-    curve. With an ``anchor`` the march may end early where the curve is there again, or
-    leaves the bounds.
+    curve. With an ``anchor`` the march may end early: where the curve is there again,
+    leaves the bounds, or is longer than ``length``.
     """
 
     order: int
@@ -76,6 +76,7 @@ class MarchSettings:
     closing: float = is_solution.threshold
     misclosure: float = 0.0
     anchor: Anchor | None = None
+    length: float = np.inf
 
 
 @dataclass(frozen=True)

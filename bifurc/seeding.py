@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bifurc.decisions import is_solution
+from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
@@ -27,7 +27,7 @@ def random_seeds(problem: Problem, rng: np.random.Generator, count: int) -> Seed
     points, gaps = problem.project(starts)
     lowest, highest = problem.bounds.T
     is_inside = np.all((points >= lowest) & (points <= highest), axis=1)
-    is_taken = is_solution(gaps) & is_inside
+    is_taken = is_start_solved(gaps) & is_inside
     solutions = points[is_taken]
     return Seeds(
         points=solutions,

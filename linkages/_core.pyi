@@ -20,6 +20,7 @@ def march(
     within: float,
     periods: np.ndarray,
     bounds: np.ndarray,
+    length: float,
     coupling: np.ndarray | None = None,
 ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
 def project(

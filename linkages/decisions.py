@@ -11,15 +11,25 @@ matches_pattern = Decision(
     "form of a source",
     "a form satisfies the equations by which a source tells it",
     "largest residual of the equations along the form",
-    1e-8,
-    "a form is exact to 1e-12, and another form misses them by 1e-2 and more",
+    1e-4,
+    "a form is exact to 1e-12, beside a surface to 1e-6, and another form misses them by "
+    "1e-1",
+)
+has_symmetry = Decision(
+    "symmetry of a form",
+    "the angles of joints some places apart are equal or opposite along a form",
+    "largest sine of half their difference",
+    1e-4,
+    "a form is exact to 1e-12, beside a surface to 1e-6; others differ by 1e-1",
 )
 keeps_angle = Decision(
     "inactive joint",
-    "a joint keeps its angle along a form, or two joints have the same angle",
-    "largest difference of angles along the form, rad",
-    1e-7,
+    "a joint keeps its angle along a form",
+    "largest difference of angles along the form, rad; over what rounding may make of it "
+    "where that is more",
+    1e-8,
     "a form is exact to 1e-12",
+    third_answer="a joint whose angle may change by rounding alone is in doubt",
 )
 is_alike_in_geometry = Decision(
     "kind of a four-bar",
@@ -28,12 +38,21 @@ is_alike_in_geometry = Decision(
     1e-7,
     "the geometry of a smaller linkage comes from that of the larger one, with rounding",
 )
+is_same_length = Decision(
+    "equal links",
+    "two links of a planar four-bar have the same length",
+    "difference of their lengths over the mean length",
+    1e-12,
+    "the closing tolerance: forms that need them equal miss closure by the difference",
+)
 is_same_dead_point = Decision(
     "same dead point",
     "two dead points lie at one angle of a joint, or a joint does not turn",
     "difference of the angles, rad",
     1e-7,
     "dead points are exact to half the digits",
+    third_answer="a joint whose angle may change by rounding alone is in doubt, and "
+    "nothing is proved then",
 )
 is_singular_end = Decision(
     "regular end of a path",
@@ -69,6 +88,7 @@ is_in_reach = Decision(
     "largest imaginary part of an angle, rad",
     6.0,
     "paths are followed up to 12; of isolated configurations 9 is the largest one seen",
+    third_answer="a lost path is counted in the statement, and nothing is proved then",
 )
 
 TABLE = decisions_in(globals())

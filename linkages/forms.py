@@ -14,8 +14,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bifurc import torus
+from bifurc.decisions import unit_over_rounding
+from bifurc.search.canonical_order import order_rows
 from linkages.axes import loop_from_axes
-from linkages.decisions import is_alike_in_geometry, keeps_angle, matches_pattern
+from linkages.decisions import (
+    has_symmetry,
+    is_alike_in_geometry,
+    is_same_length,
+    keeps_angle,
+    matches_pattern,
+)
 from linkages.entry import FormPattern
 from linkages.families.four_bar import form_patterns
 from linkages.labels import FormLabels, Symmetry
@@ -23,7 +31,7 @@ from linkages.loop import GeometryError, Loop
 
 __all__ = ["FormIdentity", "identify_form", "name_forms"]
 
-RATIO_DECIMALS = 9  # of the lengths of a planar four-bar, over their mean
+OF_SAMPLES = 1e-4  # what the choice of samples makes of a mean along a form
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
@@ -53,19 +61,23 @@ class FourBarKind:
 
 
 def identify_form(
-    samples: np.ndarray, loop: Loop, patterns: Sequence[FormPattern] = ()
+    samples: np.ndarray,
+    loop: Loop,
+    patterns: Sequence[FormPattern] = (),
+    by_rounding: float = 0.0,
 ) -> FormIdentity:
     """The identity of the form that passes through ``samples`` (m, n), rad.
 
     ``patterns`` are those of the catalogue entry, in order of preference; one matches
-    when its residual stays below 1e-8 at every sample. Raises `GeometryError` for
-    samples of another shape.
+    when its residual stays below 1e-4 at every sample. A joint stands still if its
+    angle changes by less than 1e-8, or than what may come ``by_rounding`` where that is
+    more. Raises `GeometryError` for samples of another shape.
     """
     theta = np.asarray(samples, dtype=float)
     if theta.ndim != 2 or theta.shape[1] != loop.n or not len(theta):
         allowed = f"(m, {loop.n}) with m >= 1"
         raise GeometryError("shape of the samples", theta.shape, allowed)
-    labels = _labels(theta)
+    labels = _labels(theta, by_rounding)
     name = _name_by_pattern(theta, (*patterns, *_planar_patterns(loop)))
     if not name:
         name = _name_by_inactive_joints(theta, loop, labels.inactive_joints)
@@ -73,18 +85,26 @@ def identify_form(
 
 
 def name_forms(
-    forms: Sequence[np.ndarray], loop: Loop, patterns: Sequence[FormPattern] = ()
+    forms: Sequence[np.ndarray],
+    loop: Loop,
+    patterns: Sequence[FormPattern] = (),
+    by_rounding: Sequence[float] = (),
 ) -> list[FormIdentity]:
     """The identities of several forms (each (m, n), rad), in their order, with names
     that are all different.
 
     Forms that share a name get letters, "Form I a (original)" and so on, forms without
     a name "Form 1", "Form 2"; letters and numbers follow the mean directions of the
-    joint angles along the form.
+    joint angles along the form, and between forms that these do not tell apart the
+    order in which they stand. ``by_rounding`` are the changes of an angle along the
+    forms that rounding may make, none if they are not given.
     """
-    identities = [identify_form(samples, loop, patterns) for samples in forms]
-    signatures = [_signature(np.asarray(samples, dtype=float)) for samples in forms]
-    in_order = sorted(range(len(forms)), key=lambda i: signatures[i])
+    changes = by_rounding or [0.0] * len(forms)
+    identities = [
+        identify_form(samples, loop, patterns, change)
+        for samples, change in zip(forms, changes, strict=True)
+    ]
+    in_order = _in_order(forms)
     names = [identity.name for identity in identities]
     distinct = list(identities)
     for name in set(names):
@@ -110,13 +130,14 @@ def _distinct_name(name: str, rank: int, count: int) -> str:
 # --- labels ---------------------------------------------------------------------------
 
 
-def _labels(theta: np.ndarray) -> FormLabels:
+def _labels(theta: np.ndarray, by_rounding: float) -> FormLabels:
     """The joints that keep their angle modulo 2 pi, these angles in (-pi, pi], and the
     symmetry."""
     full_turns = _full_turns(theta)
     mean = np.angle(np.exp(1j * theta).mean(axis=0))
     deviation = np.abs(torus.difference(theta, mean, full_turns))
-    is_still = keeps_angle(deviation.max(axis=0))
+    unit = unit_over_rounding(keeps_angle, by_rounding)
+    is_still = keeps_angle(deviation.max(axis=0), unit)
     still = np.flatnonzero(is_still)
     angles = torus.wrap(mean, full_turns)[still]
     return FormLabels(
@@ -141,7 +162,7 @@ def _symmetry(theta: np.ndarray) -> Symmetry:
         for sign in (1, -1):
             further = np.roll(theta, -step, axis=1)
             difference = np.sin((theta - sign * further) / 2)
-            if keeps_angle(float(np.abs(difference).max())):
+            if has_symmetry(float(np.abs(difference).max())):
                 return Symmetry.of_step(step, sign)
     return Symmetry.NONE
 
@@ -162,9 +183,18 @@ def _planar_patterns(loop: Loop) -> tuple[FormPattern, ...]:
     lengths, twists, offsets = loop.arrays
     if loop.n != 4 or np.any(twists != 0) or np.any(offsets != 0):
         return ()
-    ratios = np.round(lengths / lengths.mean(), RATIO_DECIMALS)
-    a, b, c, d = (float(ratio) for ratio in ratios)
+    a, b, c, d = _with_equals(lengths / lengths.mean())
     return form_patterns(a, b, c, d)
+
+
+def _with_equals(ratios: np.ndarray) -> list[float]:
+    """Ratios (k,), each that is equal to an earlier one but for rounding replaced by
+    it."""
+    values: list[float] = []
+    for ratio in ratios:
+        alike = [one for one in values if is_same_length(abs(one - float(ratio)))]
+        values.append(alike[0] if alike else float(ratio))
+    return values
 
 
 def _name_by_inactive_joints(
@@ -217,9 +247,17 @@ def _four_bar_kind(
     return FourBarKind()
 
 
-def _signature(theta: np.ndarray) -> tuple[float, ...]:
-    """Means of cosines and sines along the closed form, weighted by arc length, to four
-    decimals."""
+def _in_order(forms: Sequence[np.ndarray]) -> list[int]:
+    """Numbers of the forms, the one with the largest means first."""
+    if not len(forms):
+        return []
+    means = [_means(np.asarray(samples, dtype=float)) for samples in forms]
+    return [int(k) for k in order_rows(-np.array(means), OF_SAMPLES)]
+
+
+def _means(theta: np.ndarray) -> np.ndarray:
+    """Means (2 n,) of cosines and sines along the closed form, weighted by arc
+    length."""
     following = np.roll(theta, -1, axis=0)
     step = np.linalg.norm(
         torus.difference(following, theta, _full_turns(theta)), axis=1
@@ -227,6 +265,4 @@ def _signature(theta: np.ndarray) -> tuple[float, ...]:
     weight = step + np.roll(step, 1)
     total = weight.sum()
     share = weight / total if total > 0 else np.full(len(theta), 1 / len(theta))
-    means = np.concatenate([share @ np.cos(theta), share @ np.sin(theta)])
-    rounded = np.round(means, 4)
-    return tuple(float(-mean) + 0.0 for mean in rounded)
+    return np.concatenate([share @ np.cos(theta), share @ np.sin(theta)])

@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
+from bifurc.numerics.blur import change_by_rounding
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
@@ -75,8 +76,10 @@ def _as_linkage(linkage: Linkage | Loop) -> Linkage:
 
 def _recognise(atlas: Atlas, linkage: Linkage) -> list[FormIdentity]:
     """What every form is, from samples along it."""
+    problem = LoopClosure(linkage.loop)
     samples = [form.branch.sample(NAMING) for form in atlas.forms]
-    return name_forms(samples, linkage.loop, linkage.patterns)
+    changes = [change_by_rounding(problem, form.branch) for form in atlas.forms]
+    return name_forms(samples, linkage.loop, linkage.patterns, changes)
 
 
 def _label(atlas: Atlas, identities: list[FormIdentity], problem: LoopClosure) -> Atlas:

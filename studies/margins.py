@@ -1,13 +1,14 @@
 """How clear is every decision that the search takes?
 
-    python -m studies.margins [--members 2] [--near 60] [--page docs/decisions.md]
+    python -m studies.margins [--members 2] [--near 60] [--page] [--nearest NAME]
 
 The quantities on which `bifurc.decisions` and `linkages.decisions` decide are noted over
-the catalogue and random members of its linkages, linkages that nearly bifurcate, curves
-on which other methods fail, and random plane curves. For every decision the study
-prints how many quantities fell into which decade, where the threshold stands, and how
-wide the empty gap around it is. With --page the table and the histogram are written as
-a page of the docs.
+the catalogue and random members of its linkages, linkages that nearly bifurcate or end
+in something larger, surfaces, curves on which other methods fail, and random plane
+curves. For every decision the study prints how many quantities fell into which decade,
+where the threshold stands, and how wide the empty gap around it is. With --page the
+table and the histogram are written as a page of the docs; with --nearest the study says
+in which cases the quantities of one decision lie nearest to its threshold.
 """
 
 from __future__ import annotations
@@ -25,14 +26,16 @@ from numpy.typing import NDArray
 
 import bifurc.decisions
 import linkages.decisions
-from bifurc.decisions import Decision, Margins, record_margins
+from bifurc.decisions import Decision, Margins, Role, record_margins
 from bifurc.function_problem import FunctionProblem
+from bifurc.problem import Problem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
 from linkages.catalogue import catalogue
+from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
-from linkages.loop import GeometryError
+from linkages.loop import GeometryError, Loop
 from linkages.mapping import map_linkage
 from studies.hard_cases import crossings
 from studies.near_misses import near_misses
@@ -40,16 +43,22 @@ from studies.near_something_larger import FAMILIES
 
 __all__ = [
     "DECISIONS",
+    "GAP",
     "PAGE",
     "Margin",
     "heading",
     "histogram",
+    "is_clear",
     "margin_of",
+    "nearest",
     "page",
     "random_curve",
 ]
 
 Floats: TypeAlias = NDArray[np.float64]
+
+# The quantities of every decision, by its name and the name of the case.
+Quantities: TypeAlias = dict[str, dict[str, Floats]]
 
 DECISIONS = (*bifurc.decisions.TABLE.values(), *linkages.decisions.TABLE.values())
 SETTINGS = SearchSettings(budget=30.0)  # no case may hold up the study
@@ -60,6 +69,9 @@ LOWEST, HIGHEST = (
 CURVES = 40
 DECADES = (2.0, 5.0, 8.0)  # of the members of families that end in something larger
 DEGREE = 4  # of the random plane curves
+BOX = [(-1.0, 1.0)] * 3  # in which surfaces in space lie
+GAP = 3.0  # decades in which nothing lies on which a clear verdict was taken
+NEAREST = 5  # cases on either side of a threshold that are named
 PAGE = Path("docs/decisions.md")
 WIDTH = 118  # of the lines of the page
 
@@ -83,9 +95,9 @@ class Margin(NamedTuple):
 
 @dataclass(frozen=True)
 class Case:
-    """Something to search, and the group that it belongs to."""
+    """Something to search, and what it is called."""
 
-    group: str
+    name: str
     search: Callable[[], object]
 
 
@@ -99,6 +111,31 @@ def margin_of(decision: Decision, quantities: Floats) -> Margin:
         count_below=len(below),
         count_above=len(above),
     )
+
+
+def is_clear(decision: Decision, margin: Margin) -> bool:
+    """Whether a decision stands in a gap of three decades, has a third answer, or is no
+    verdict."""
+    is_verdict = decision.role is Role.VERDICT
+    return not is_verdict or bool(decision.third_answer) or margin.decades >= GAP
+
+
+def nearest(decision: Decision, cases: dict[str, Floats]) -> str:
+    """The cases with the quantities nearest to a threshold, in lines."""
+    below: list[tuple[float, str]] = []
+    above: list[tuple[float, str]] = []
+    for name, quantities in cases.items():
+        margin = margin_of(decision, quantities)
+        if margin.count_below:
+            below.append((margin.below, name))
+        if margin.count_above:
+            above.append((margin.above, name))
+    lines = [heading(decision)]
+    for number, name in sorted(below, reverse=True)[:NEAREST]:
+        lines.append(f"  below, {number:.2e}: {name}")
+    for number, name in sorted(above)[:NEAREST]:
+        lines.append(f"  above, {number:.2e}: {name}")
+    return "\n".join(lines)
 
 
 def histogram(decision: Decision, quantities: Floats) -> str:
@@ -119,32 +156,34 @@ def _catalogue_cases(members: int) -> Iterator[Case]:
     """The linkages of the catalogue, as listed and as drawn at random."""
     rng = np.random.default_rng(0)
     for name, entry in catalogue().items():
-        yield Case("catalogue", partial(map_linkage, load(name), settings=SETTINGS))
-        for _ in range(members):
+        yield Case(name, partial(map_linkage, load(name), settings=SETTINGS))
+        for number in range(members):
             values = entry.draw(rng)
             try:
                 loop = entry.build(**values)
             except GeometryError:
                 continue
-            yield Case("members", partial(map_linkage, loop, settings=SETTINGS))
+            search = partial(map_linkage, loop, settings=SETTINGS)
+            yield Case(f"{name}, member {number}", search)
 
 
 def _near_bifurcations(count: int) -> Iterator[Case]:
     """Linkages off a bifurcating one by 1e-8 to 1e-2."""
-    for miss in near_misses(count, np.random.default_rng(0)):
+    for number, miss in enumerate(near_misses(count, np.random.default_rng(0))):
         search = partial(explore, miss.problem, settings=SETTINGS)
-        yield Case("near bifurcations", search)
+        yield Case(f"near bifurcation {number}", search)
 
 
 def _hard_curves() -> Iterator[Case]:
     """The curves of the stability study, each from its own start."""
-    for crossing in crossings():
+    for number, crossing in enumerate(crossings()):
         problem = crossing.problem
         nothing = np.empty((0, problem.n))
         seeds = Seeds(
             crossing.start[None], np.ones(1, dtype=bool), np.empty(0), nothing
         )
-        yield Case("hard curves", partial(explore, problem, seeds=seeds))
+        search = partial(explore, problem, seeds=seeds)
+        yield Case(f"hard curve {number}", search)
 
 
 def random_curve(rng: np.random.Generator) -> FunctionProblem:
@@ -162,38 +201,66 @@ def random_curve(rng: np.random.Generator) -> FunctionProblem:
 
 
 def _near_something_larger() -> Iterator[Case]:
-    """Members of families that end in a surface, or in more motions."""
+    """Members of families that end in a surface, or in more motions, and these."""
     for family in FAMILIES:
         for decades in DECADES:
             member = family.member(10.0**-decades)
             search = partial(map_linkage, member, settings=SETTINGS)
-            yield Case("near something larger", search)
+            yield Case(f"{family.name}, 1e-{decades:g}", search)
+        try:
+            limit = family.member(0.0)
+        except GeometryError:
+            continue
+        search = partial(map_linkage, limit, settings=SETTINGS)
+        yield Case(f"{family.name}, 0", search)
+
+
+def _surfaces() -> Iterator[Case]:
+    """Surfaces, regular and singular ones, and curves along which F' has a lower
+    rank."""
+    zeros = (0.0,) * 5
+    lengths, twists = (1.0, 1.0, 1.2, 0.9, 1.1), (1.0, 1.1, 1.2, 0.9, 0.8)
+    problems: dict[str, Problem] = {
+        "planar loop of five": LoopClosure(Loop(lengths, zeros, zeros)),
+        "spherical loop of five": LoopClosure(Loop(zeros, twists, zeros)),
+        "sphere": FunctionProblem(lambda u: [u @ u - 0.5], BOX),
+        "cone": FunctionProblem(lambda u: [u[2] ** 2 - u[0] ** 2 - u[1] ** 2], BOX),
+        "two planes": FunctionProblem(lambda u: [u[0] * u[1]], BOX),
+        "plane and line": FunctionProblem(lambda u: [u[2] * u[0], u[2] * u[1]], BOX),
+        "umbrella": FunctionProblem(lambda u: [u[0] ** 2 - u[1] ** 2 * u[2]], BOX),
+        "double circle": FunctionProblem(lambda u: [(u @ u - 0.5) ** 2], BOX[:2]),
+    }
+    for name, problem in problems.items():
+        yield Case(name, partial(explore, problem, settings=SETTINGS))
 
 
 def _plane_curves(count: int) -> Iterator[Case]:
     """Random plane curves."""
     rng = np.random.default_rng(0)
-    for _ in range(count):
+    for number in range(count):
         problem = random_curve(rng)
-        yield Case("plane curves", partial(explore, problem))
+        yield Case(f"plane curve {number}", partial(explore, problem))
 
 
 # --- the page -------------------------------------------------------------------------
 
 
-def _gather(cases: Iterator[Case]) -> dict[str, Floats]:
-    """The quantities of every decision over the cases."""
-    gathered: dict[str, list[Floats]] = {one.name: [] for one in DECISIONS}
+def _gather(cases: Iterator[Case]) -> Quantities:
+    """The quantities of every decision in every case."""
+    gathered: Quantities = {one.name: {} for one in DECISIONS}
     for case in cases:
         margins: Margins
         with record_margins() as margins:
             case.search()
         for name, quantities in margins.items():
-            gathered[name] += quantities
-    joined = {
-        name: np.concatenate([np.empty(0), *own]) for name, own in gathered.items()
-    }
-    return {name: own[~np.isnan(own)] for name, own in joined.items()}
+            joined = np.concatenate([np.empty(0), *quantities])
+            gathered[name][case.name] = joined[~np.isnan(joined)]
+    return gathered
+
+
+def _joined(cases: dict[str, Floats]) -> Floats:
+    """The quantities of all cases."""
+    return np.concatenate([np.empty(0), *cases.values()])
 
 
 HEAD = """# Decisions, and how clear they are
@@ -203,17 +270,20 @@ What *proved*, *certified*, *estimated*, *in doubt* and *undecided* mean stands 
 Every comparison on which a count, a kind, a level or a word hangs compares one quantity with one threshold. They stand
 in `bifurc/decisions.py` and `linkages/decisions.py`; singular values and residuals are over the problem's magnitude,
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
-over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, hard
-cases and random plane curves.
+over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, surfaces,
+hard cases and random plane curves. `python -m studies.margins --nearest "same point"` says in which cases the
+quantities of a decision lie nearest to its threshold.
 
-A *verdict* decides a count, a kind, a level or a word. A *look* decides only whether something is looked at more
-closely, and a *convention* only what is listed: neither needs a gap.
+A *verdict* decides a count, a kind, a level or a word. Its threshold stands in an empty gap of three decades or more.
+Where the truth itself has no gap (a linkage may miss a condition by any amount), it has a *third answer*: what is said
+where the quantity is neither plainly small nor plainly large. A *look* decides only whether something is looked at more
+closely, and a *convention* only what is listed or in which order: neither needs a gap.
 """
 
 
 def page(quantities: dict[str, Floats]) -> str:
     """The page of the docs, as Markdown."""
-    parts = [HEAD, "## The table\n"]
+    parts = [HEAD, _unclear(quantities), "## The table\n"]
     for decision in DECISIONS:
         parts.append(_entry(decision, quantities[decision.name]))
     parts.append("## The histogram\n")
@@ -230,6 +300,17 @@ def page(quantities: dict[str, Floats]) -> str:
     return "\n".join(parts)
 
 
+def _unclear(quantities: dict[str, Floats]) -> str:
+    """Which verdicts are not clear, in a sentence."""
+    names = [
+        f"*{one.name}*"
+        for one in DECISIONS
+        if not is_clear(one, margin_of(one, quantities[one.name]))
+    ]
+    text = f"Verdicts with neither: {', '.join(names) or 'none'}."
+    return textwrap.fill(text, WIDTH) + "\n"
+
+
 def _entry(decision: Decision, quantities: Floats) -> str:
     """What a decision says, and its margin, as an item of a list."""
     margin = margin_of(decision, quantities)
@@ -237,6 +318,8 @@ def _entry(decision: Decision, quantities: Floats) -> str:
         f"{heading(decision)} {decision.claim}. Quantity: {decision.quantity}; "
         f"{decision.reason}. {_margin_text(margin)}"
     )
+    if decision.third_answer:
+        text += f" Third answer: {decision.third_answer}."
     return textwrap.fill(text, WIDTH) + "\n"
 
 
@@ -265,17 +348,29 @@ def _margin_text(margin: Margin) -> str:
 @click.option("--members", default=2, help="random members of each linkage")
 @click.option("--near", default=60, help="linkages that nearly bifurcate")
 @click.option("--page", "target", is_flag=True, help=f"write {PAGE}")
-def main(members: int, near: int, target: bool) -> None:
+@click.option(
+    "--nearest",
+    "name",
+    type=click.Choice([one.name for one in DECISIONS]),
+    help="name the cases nearest to the threshold of this decision",
+)
+def main(members: int, near: int, target: bool, name: str | None) -> None:
     """Print how clear every decision is."""
 
     def cases() -> Iterator[Case]:
         yield from _catalogue_cases(members)
         yield from _near_bifurcations(near)
         yield from _near_something_larger()
+        yield from _surfaces()
         yield from _hard_curves()
         yield from _plane_curves(CURVES)
 
-    text = page(_gather(cases()))
+    gathered = _gather(cases())
+    if name is not None:
+        (decision,) = (one for one in DECISIONS if one.name == name)
+        click.echo(nearest(decision, gathered[name]))
+        return
+    text = page({one: _joined(own) for one, own in gathered.items()})
     if target:
         PAGE.write_text(text, encoding="utf-8")
     else:

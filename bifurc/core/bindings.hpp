@@ -75,10 +75,10 @@ inline nb::tuple arrays_of(const MarchOutcome& outcome, Index order, Index n) {
 // Where a march may stop early, as Python has it: an anchor (2, n) of a point and a direction, empty
 // where there is none.
 inline std::optional<Region> region_of(const Table& anchor, double within, const Doubles& periods,
-                                       const Table& bounds) {
+                                       const Table& bounds, double length) {
     if (anchor.shape(0) == 0) return {};
     const View<const double> place = numpy::view(anchor);
-    return Region{place.row(0), place.row(1), within, numpy::view(periods), numpy::view(bounds)};
+    return Region{place.row(0), place.row(1), within, numpy::view(periods), numpy::view(bounds), length};
 }
 
 template <System S>

@@ -25,13 +25,15 @@ struct MarchSettings {
 };
 
 // Where a march may stop early: it passes ``anchor`` (n), modulo the ``periods`` (n), at a distance
-// below ``within`` in the direction ``heading`` (n), or leaves the ``bounds`` (n, 2).
+// below ``within`` in the direction ``heading`` (n), leaves the ``bounds`` (n, 2), or reaches
+// ``length`` of arclength.
 struct Region {
     Vector<const double> anchor;
     Vector<const double> heading;
     double within;
     Vector<const double> periods;
     View<const double> bounds;
+    double length;
 };
 
 // The thresholds of a march; `bifurc.decisions` gives them names and reasons.
@@ -165,7 +167,10 @@ public:
                 break;
             }
             center += outcome.pieces.back().step;
-            if (region && is_at_an_end(outcome.pieces.back(), *region, 0.5 * outcome.pieces[0].radius - center)) break;
+            const TaylorPiece& last = outcome.pieces.back();
+            if (!region) continue;
+            if (center + last.radius > region->length) break;
+            if (is_at_an_end(last, *region, 0.5 * outcome.pieces[0].radius - center)) break;
         }
         return outcome;
     }

@@ -129,6 +129,7 @@ def _march(
         longest=settings.longest * problem.scale,
         count=AT_A_BEND if track.is_at_a_bend else max(AT_ONCE, len(track)),
         closing=closing,
+        length=settings.max_length * problem.scale - track.reached,
         anchor=Anchor(*track.begin, same_place(settings.tolerance) * problem.scale),
     )
     if closing > is_solution.threshold and len(

@@ -9,15 +9,16 @@ import numpy as np
 from bifurc._core import foot_on_piece
 from bifurc.branch import Outcome
 from bifurc.curves.track import End, Place, Track
-from bifurc.decisions import is_back
+from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
 from bifurc.pieces import points_on_piece
 from bifurc.problem import Problem
 
 __all__ = ["end_of_curve", "same_place"]
 
-LOOSE = 30  # times the tolerance: the largest residual that pieces may have
-SAME_WAY = 0.9  # cosine of the angle between two passes through one point that are one
+LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
+NEAR = 1e-9  # distance, over the scale, within which a curve is back in any case
+PLAIN = 1e-3  # share of that: nothing else is asked
 ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
 
 
@@ -47,7 +48,7 @@ def end_of_curve(
 def same_place(tolerance: float) -> float:
     """The distance, over the scale, within which a curve traced to a ``tolerance`` is
     where it was before."""
-    return max(1e-9, 30 * tolerance)
+    return max(NEAR, LOOSE * tolerance)
 
 
 class _Anchor(NamedTuple):
@@ -100,21 +101,20 @@ def _is_same_pass(
 ) -> bool:
     """Whether the curve at the foot of a place is at that place again, and runs in the
     same direction."""
-    speed = np.linalg.norm(foot.slope)
-    if not foot.slope @ place.tangent > SAME_WAY * speed:
+    speed = float(np.linalg.norm(foot.slope))
+    if is_other_way(float(foot.slope @ place.tangent), speed):
         return False
-    distance = float(np.linalg.norm(foot.offset))
-    if distance < same_place(tolerance) * problem.scale:
-        return True
-    # where a singular value is small a point is known no better than rounding over it
-    residual = problem.jacobian(place.point) @ foot.offset
-    apart = float(np.linalg.norm(residual)) / (problem.magnitude * problem.scale)
-    if apart < max(1e-14, 0.1 * tolerance) and is_back(distance, problem.scale):
-        return True
-    if not apart < LOOSE * tolerance:
-        return False
-    reach = float(same_reach(problem, place.point[None])[0])
-    return distance < reach * problem.scale
+    distance = float(np.linalg.norm(foot.offset)) / problem.scale
+    loose = LOOSE * tolerance
+    nearness = distance / same_place(tolerance)
+    if nearness > PLAIN:
+        # where a singular value is small a point is known no better than rounding over it
+        known = max(float(same_reach(problem, place.point[None])[0]), NEAR)
+        residual = problem.jacobian(place.point) @ foot.offset
+        apart = float(np.linalg.norm(residual)) / (problem.magnitude * problem.scale)
+        nearness = min(nearness, max(distance / known, apart / loose))
+    is_exact = tolerance < is_solution.threshold
+    return is_back(nearness) if is_exact else is_nearly_back(nearness)
 
 
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:

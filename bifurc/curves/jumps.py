@@ -22,7 +22,7 @@ from bifurc.decisions import (
     is_same_point,
     is_slow,
     is_zero_along,
-    stands_still,
+    rests,
 )
 from bifurc.problem import Problem
 
@@ -47,17 +47,19 @@ def repeats_itself(problem: Problem, branch: Branch) -> bool:
     return repeated >= SEVERAL
 
 
-def kinks(branch: Branch) -> np.ndarray:
-    """Arclengths (k,) at which a curve goes on in another direction."""
+def kinks(branch: Branch, from_ends: float = 0.0) -> np.ndarray:
+    """Arclengths (k,) at which a curve goes on in another direction, farther
+    ``from_ends`` than that."""
     begins = _directions(branch, branch.breaks[:-1])
     ends = _directions(branch, branch.breaks[1:])
     arclengths = branch.breaks[1:]
     after = np.roll(begins, -1, axis=0)
     if not branch.closed:
         arclengths, ends, after = arclengths[:-1], ends[:-1], after[:-1]
-    cosines = np.sum(ends * after, axis=1)
+    is_inside = np.minimum(arclengths, branch.length - arclengths) >= from_ends
+    cosines = np.sum(ends[is_inside] * after[is_inside], axis=1)
     goes_on = is_same_line(1.0 - cosines)
-    places: np.ndarray = arclengths[~goes_on]
+    places: np.ndarray = arclengths[is_inside][~goes_on]
     return places
 
 
@@ -98,10 +100,10 @@ def changes_of_course(branch: Branch, profile: Profile, cuts: np.ndarray) -> np.
 
 @dataclass(frozen=True)
 class _Course:
-    """What is the same all along a branch: which unknowns stand still (n,), which move
-    (n,), and the rank of F'."""
+    """What is the same all along a branch: which unknowns rest (n,), which move (n,), and
+    the rank of F'."""
 
-    stands: np.ndarray
+    rests: np.ndarray
     moves: np.ndarray
     rank: int
 
@@ -112,13 +114,13 @@ class _Course:
         largest = rates.max(axis=0)
         typical = np.median(values, axis=0)
         return _Course(
-            stands=stands_still(largest),
+            rests=rests(largest),
             moves=~is_slow(largest),
             rank=int(np.count_nonzero(~is_zero_along(typical))),
         )
 
     def differs_from(self, other: _Course) -> bool:
         """Whether one branch cannot have both."""
-        sets_out = np.any(self.stands & other.moves)
-        comes_to_rest = np.any(self.moves & other.stands)
+        sets_out = np.any(self.rests & other.moves)
+        comes_to_rest = np.any(self.moves & other.rests)
         return bool(sets_out or comes_to_rest or self.rank != other.rank)

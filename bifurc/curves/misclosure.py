@@ -17,7 +17,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.monitor import NODES
-from bifurc.decisions import closes_to_rounding
+from bifurc.decisions import closes_to_rounding, is_plainly_closed
 from bifurc.numerics.null_spaces import Decomposition, decompose
 from bifurc.problem import PreciseResidual, Problem
 
@@ -53,7 +53,7 @@ def misclosures(problem: Problem, points: np.ndarray) -> np.ndarray:
 def visible_misclosure(problem: Problem, points: np.ndarray) -> float:
     """The largest misclosure that doubles see at points (k, n) of a curve, 0 where it
     is rounding."""
-    if not len(points) or closes_to_rounding(float(problem.gaps(points).max())):
+    if not len(points) or is_plainly_closed(float(problem.gaps(points).max())):
         return 0.0
     largest = float(misclosures(problem, points).max())
     return 0.0 if closes_to_rounding(largest) else largest
@@ -67,7 +67,7 @@ def largest_misclosure(problem: Problem, branch: Branch) -> float:
     """
     centres = branch.pieces[:, 0]
     largest = float(problem.gaps(centres).max(initial=0.0))
-    if closes_to_rounding(largest):
+    if is_plainly_closed(largest):
         return largest
     points = branch(branch.places(NODES).ravel())
     highest = np.argsort(-problem.gaps(points), kind="stable")[:HIGHEST]

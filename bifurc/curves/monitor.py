@@ -13,7 +13,7 @@ import numpy as np
 
 from bifurc import _core
 from bifurc.branch import Branch
-from bifurc.decisions import is_zero_along, stands_still
+from bifurc.decisions import is_zero_along, stands_still, unit_over_rounding
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
 
@@ -21,12 +21,14 @@ __all__ = [
     "NODES",
     "Profile",
     "dead_points",
+    "largest_rates",
     "profile_branch",
     "roots_along",
     "singular_values",
 ]
 
 COUNT = 16
+SAMPLES = 64  # of a curve at which rates are seen
 # Chebyshev nodes of a piece, from 0 where it begins to 1 where it ends.
 NODES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(COUNT) + 0.5) / COUNT)
 
@@ -94,11 +96,19 @@ def roots_along(
     return [roots[which == q] for q in range(values.shape[1])]
 
 
-def dead_points(branch: Branch) -> list[np.ndarray]:
+def largest_rates(branch: Branch) -> np.ndarray:
+    """The largest rate |du_i/ds| (n,) of every unknown, as seen at places all along a
+    curve."""
+    rates = np.abs(branch(branch.arclengths(SAMPLES), 1))
+    largest: np.ndarray = rates.max(axis=0)
+    return largest
+
+
+def dead_points(branch: Branch, by_rounding: float = 0.0) -> list[np.ndarray]:
     """For each unknown the arclengths of its dead points: du_i/ds changes sign. None
-    for one that stays constant."""
-    slopes = np.abs(branch(branch.arclengths(64), 1)).max(axis=0)
-    is_constant = stands_still(slopes)
+    for one that stays constant, as far as rates ``by_rounding`` tell."""
+    unit = unit_over_rounding(stands_still, by_rounding)
+    is_constant = stands_still(largest_rates(branch), unit)
     return [
         np.empty(0) if is_constant[i] else branch.turning_points(i)
         for i in range(branch.n)

@@ -11,11 +11,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.branch import Branch
+from bifurc.decisions import is_without_equation, may_be_scaled_down
 from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.problem import Problem
 
 __all__ = [
     "ROUNDING",
+    "blur_along",
+    "change_by_rounding",
     "distance_to_singular",
     "known_to",
     "rounding_unit",
@@ -28,10 +32,13 @@ ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
 PROBE, BESIDE = 1e-12, 1e-4
 PROBES = 8  # such steps: rounding is the largest difference
 SAFETY = 2.0  # times that
-# Singular values below which a direction is weak, and below which F says nothing of it.
-WEAK, NOTHING = 1e-3, 1e-11
 # Times the blur: two points of one curve are no farther apart.
 ALIKE = 20.0
+# Times the blur: what an unknown changes by along a curve of the length of the scale for
+# rounding alone is no more.
+MADE = 100.0
+# Shares of the length of a curve at which it is seen how well it is known.
+PLACES = (np.arange(15) + 0.5) / 15
 TINY = 1e-300  # keeps a rate of zero from being divided by
 
 
@@ -51,9 +58,9 @@ def known_to(
     if values is None:
         values, _ = null_spaces(problem, points)
     sigma = values[:, problem.n - 2]
-    is_clear = sigma >= WEAK
+    is_clear = ~may_be_scaled_down(sigma)
     distances[is_clear] = ROUNDING / sigma[is_clear]
-    weak = np.flatnonzero(~is_clear & (sigma > NOTHING))
+    weak = np.flatnonzero(~is_clear & ~is_without_equation(sigma))
     if len(weak):
         rounding = _rounding_of_weakest(problem, points[weak])
         distances[weak] = SAFETY * rounding / sigma[weak]
@@ -75,6 +82,19 @@ def same_reach(
     """How far, over the scale, from where a curve was found its points (k, n) may be
     found for rounding alone; ``values`` as in `known_to`."""
     return ALIKE * known_to(problem, points, values)
+
+
+def blur_along(problem: Problem, branch: Branch) -> float:
+    """The distance, over the scale, to which the points of a curve are known, as a
+    rule."""
+    points = branch(branch.length * PLACES)
+    return float(np.median(known_to(problem, points)))
+
+
+def change_by_rounding(problem: Problem, branch: Branch) -> float:
+    """The largest change of an unknown along a curve, over the scale, that rounding may
+    make; the largest rate as well."""
+    return MADE * blur_along(problem, branch)
 
 
 def rounding_unit(problem: Problem, points: np.ndarray) -> float:

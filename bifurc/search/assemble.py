@@ -21,6 +21,7 @@ from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points, singular_values
 from bifurc.curves.near_miss import near_miss_value
 from bifurc.decisions import closes_to_rounding
+from bifurc.numerics.blur import change_by_rounding
 from bifurc.problem import Problem
 from bifurc.search.canonical_course import wrapped_periods
 from bifurc.search.canonical_order import (
@@ -240,7 +241,8 @@ def _dead_points(
     """The dead points, form by form and unknown by unknown."""
     events = []
     for form, branch in enumerate(traced):
-        roots = dead_points(branch.branch)
+        by_rounding = change_by_rounding(problem, branch.branch)
+        roots = dead_points(branch.branch, by_rounding)
         unknowns = np.repeat(np.arange(problem.n), [len(each) for each in roots])
         arclengths = np.concatenate(roots)
         places = wrap(branch.branch(arclengths), periods)

@@ -13,7 +13,13 @@ from bifurc.decisions import is_tied
 from bifurc.problem import Problem
 from bifurc.torus import wrap
 
-__all__ = ["order_branches", "order_points", "order_surfaces", "order_values"]
+__all__ = [
+    "order_branches",
+    "order_points",
+    "order_rows",
+    "order_surfaces",
+    "order_values",
+]
 
 OF_CHARTS = 0.1  # what the layout of charts makes of a mean, and a share of the area
 COARSEST = 0.1  # what a large error adds to it at most
@@ -32,7 +38,7 @@ def order_branches(problem: Problem, branches: Sequence[Branch]) -> np.ndarray:
     if len(branches) < 2:
         return np.arange(len(branches))
     features = [_branch_features(branch, problem.scale) for branch in branches]
-    return _order(-np.array(features), is_tied.threshold)
+    return order_rows(-np.array(features), is_tied.threshold)
 
 
 def order_surfaces(problem: Problem, surfaces: Sequence[Surface]) -> np.ndarray:
@@ -46,7 +52,7 @@ def order_surfaces(problem: Problem, surfaces: Sequence[Surface]) -> np.ndarray:
     if len(surfaces) < 2:
         return np.arange(len(surfaces))
     features = [_surface_features(surface, problem.scale) for surface in surfaces]
-    return _order(np.array(features), OF_CHARTS)
+    return order_rows(np.array(features), OF_CHARTS)
 
 
 def order_points(
@@ -67,20 +73,24 @@ def order_points(
     # of two rows that differ by less in one column the next one decides
     tolerance = is_tied.threshold + min(2 * error / scale, COARSEST)
     places = wrap(points, periods, within=tolerance) / scale
-    return _order(places, tolerance, groups)
+    return order_rows(places, tolerance, groups)
 
 
 def order_values(values: np.ndarray, tolerance: float) -> np.ndarray:
     """Numbers (k,) of values (k,), smallest first. Those between which no step is
     larger than ``tolerance`` keep their order."""
-    return _order(values[:, None], tolerance)
+    return order_rows(values[:, None], tolerance)
 
 
-def _order(
+def order_rows(
     features: np.ndarray, tolerance: float, groups: np.ndarray | None = None
 ) -> np.ndarray:
     """Numbers (k,) of rows (k, q) in lexicographic order, smallest first, one group
-    after another. Rows alike in all columns keep their order."""
+    after another.
+
+    Of rows that differ in a column by no step larger than ``tolerance`` the next column
+    decides; rows alike in all columns keep their order.
+    """
     count = len(features)
     ranks = np.zeros(count, dtype=int) if groups is None else groups
     if not count:

@@ -68,11 +68,13 @@ def _jumps(
         jumps = cuts
     else:
         changes = changes_of_course(branch, profile, cuts)
-        jumps = np.union1d(changes, kinks(branch))
+        from_ends = 0.0
         if branch.outcome is Outcome.STALLED:
             # a curve that stalls at a cusp ends in what rounding leaves
-            from_end = np.minimum(jumps, branch.length - jumps)
-            jumps = jumps[from_end > CUSP_REACH * problem.scale]
+            from_ends = CUSP_REACH * problem.scale
+            to_end = np.minimum(changes, branch.length - changes)
+            changes = changes[to_end > from_ends]
+        jumps = np.union1d(changes, kinks(branch, from_ends))
     handover = HANDOVER * problem.scale
     return np.column_stack([jumps - handover, jumps + handover])
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bifurc.atlas import Surface
-from bifurc.decisions import is_null
+from bifurc.decisions import is_same_point, may_be_null
 from bifurc.limits import Deadline
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
@@ -44,7 +44,9 @@ BLURRED = 0.1
 # Along such a curve there is nothing to locate, and that is all that the error says:
 # the error across it, over the scale, is at most this.
 ACROSS = 1e-6
-APART = 1e-5  # distance, over the scale, below which two points are one
+# Distance, over the scale, and over the error of a point, below which two singular points
+# of surfaces are one.
+APART, ERRORS = 1e-5, 10
 
 
 @dataclass
@@ -158,7 +160,7 @@ def components_of_seeds(
     components = Components()
     if problem.n < 2:
         return components
-    doubtful = np.flatnonzero(is_null(values[:, problem.n - 2]))
+    doubtful = np.flatnonzero(may_be_null(values[:, problem.n - 2]))
     local = local_dimensions(problem, points[doubtful], deadline)
     for dimension in np.unique(local.dimension[local.dimension >= 2]):
         is_regular = (local.nullity == dimension) | (dimension > 2)
@@ -229,9 +231,9 @@ def _is_listed(
     problem: Problem, points: list[LocatedPoint], point: LocatedPoint
 ) -> bool:
     """Whether a point is one of those in a list."""
-    within = APART * problem.scale + 10 * point.error
+    unit = (APART * problem.scale + ERRORS * point.error) / is_same_point.threshold
     gaps = [problem.difference(other.u, point.u) for other in points]
-    return any(np.linalg.norm(gap) <= within for gap in gaps)
+    return any(is_same_point(float(np.linalg.norm(gap)), unit) for gap in gaps)
 
 
 def surfaces_through(

@@ -7,11 +7,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.atlas import Form, MeetingPoint, Surface
-from bifurc.branch import Outcome
+from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.misclosure import misclosure_at
-from bifurc.decisions import is_known_curve, is_same_point, misses_by_rounding
-from bifurc.numerics.blur import known_to, rounding_unit
+from bifurc.curves.monitor import largest_rates
+from bifurc.decisions import (
+    is_known_curve,
+    is_same_point,
+    misses_by_rounding,
+    stands_still,
+    unit_over_rounding,
+)
+from bifurc.numerics.blur import blur_along, change_by_rounding, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
@@ -20,8 +27,6 @@ from bifurc.singular.point import Kind
 
 __all__ = ["doubts_of"]
 
-# Shares of the length of a form at which it is seen how well it is known.
-PLACES = (np.arange(15) + 0.5) / 15
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
 
@@ -91,11 +96,18 @@ def _doubts_of_form(
     branch, profile = traced.branch, traced.profile
     doubts = []
     is_regular = profile.rank == branch.n - 1
-    distance = float(np.median(known_to(problem, branch(branch.length * PLACES))))
+    distance = blur_along(problem, branch)
     if is_regular and not is_known_curve(distance):
         doubts.append(
             f"form {index + 1} may be a curve or a part of a surface: its place is "
             f"known to {distance:.1e} of the scale"
+        )
+    hidden = _hidden_by_rounding(problem, branch)
+    if len(hidden):
+        numbers = ", ".join(str(k + 1) for k in hidden)
+        doubts.append(
+            f"on form {index + 1} rounding hides whether these unknowns stand still: "
+            f"{numbers}"
         )
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}
@@ -109,6 +121,16 @@ def _doubts_of_form(
                 "or go on"
             )
     return doubts
+
+
+def _hidden_by_rounding(problem: Problem, branch: Branch) -> np.ndarray:
+    """Indices (k,) of the unknowns whose rates along a branch are no larger than what
+    rounding may make, and no rounding of an ordinary curve."""
+    rates = largest_rates(branch)
+    by_rounding = change_by_rounding(problem, branch)
+    stands = stands_still(rates, unit_over_rounding(stands_still, by_rounding))
+    hidden: np.ndarray = np.flatnonzero(stands & (rates >= stands_still.threshold))
+    return hidden
 
 
 def _is_at_bounds(problem: Problem, point: np.ndarray) -> bool:

@@ -13,7 +13,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile, singular_values
 from bifurc.curves.near_motion import NearMotionTrace
-from bifurc.decisions import is_same_point
+from bifurc.decisions import Decision, is_same_point, may_be_known, may_be_weak
 from bifurc.numerics.blur import same_reach
 from bifurc.problem import Problem
 from bifurc.search.components import Components
@@ -25,11 +25,6 @@ __all__ = ["NO_DOUBT", "Doubt", "Findings", "PointSighting", "TracedBranch"]
 
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
-
-
-# Singular value below which rounding may hide more than the distance at which two points
-# are one.
-WEAK = 1e-5
 
 
 class Doubt(NamedTuple):
@@ -152,7 +147,7 @@ class Findings:
         within = self.seed_reach[list(numbers)]
         reach = float(within.max())
         distance, _ = self.traced[branch].branch.nearest(points, within=reach)
-        is_on = is_same_point(distance, within / is_same_point.threshold)
+        is_on = may_be_known(distance, within / may_be_known.threshold)
         matching = list(compress(numbers, is_on))
         self._settle(matching, SeedFate(Fate.ON_FORM, branch))
         return list(compress(numbers, ~is_on))
@@ -176,7 +171,8 @@ class Findings:
         reach = max(known_to, within * self.problem.scale)
         for number, branch in enumerate(self.branches):
             distance, _ = branch.nearest(point, within=reach)
-            if distance[0] < reach:
+            unit = reach / may_be_known.threshold
+            if may_be_known(float(distance[0]), unit):
                 return number
         return None
 
@@ -198,7 +194,7 @@ class Findings:
         if values is None:
             values = singular_values(self.problem, points)
         reach = np.full(len(points), is_same_point.threshold)
-        weak = np.flatnonzero(values[:, max(self.problem.n - 2, 0)] < WEAK)
+        weak = np.flatnonzero(may_be_weak(values[:, max(self.problem.n - 2, 0)]))
         own = same_reach(self.problem, points[weak], values[weak])
         reach[weak] = np.maximum(reach[weak], own)
         within: np.ndarray = reach * self.problem.scale
@@ -251,11 +247,22 @@ class Findings:
     def point_at(self, u: np.ndarray, error: float) -> PointSighting | None:
         """The known singular point that one located at ``u`` (n,) to within ``error``
         is."""
+        return self._point_within(u, error, is_same_point)
+
+    def point_seen_from(self, u: np.ndarray) -> PointSighting | None:
+        """The known singular point at a place ``u`` (n,) of a curve, as far as its error
+        tells: what is farther away may be the same one."""
+        return self._point_within(u, 0.0, may_be_known)
+
+    def _point_within(
+        self, u: np.ndarray, error: float, decision: Decision
+    ) -> PointSighting | None:
+        """The first known singular point that is at ``u`` (n,) by a ``decision`` on the
+        distance, the error of the point or another one allowed for twice."""
         for number, point in enumerate(self.points):
-            within = is_same_point.threshold * self.problem.scale + 2 * max(
-                error, point.error
-            )
-            if self._distance(point.u, u) < within:
+            within = 2 * max(error, point.error)
+            unit = self.problem.scale + within / decision.threshold
+            if decision(self._distance(point.u, u), unit):
                 return PointSighting(point, number, is_new=False)
         return None
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from bifurc.atlas import MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
-from bifurc.decisions import is_same_point
+from bifurc.decisions import is_same_line, is_same_point
 from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_points
 from bifurc.search.components import surfaces_through
@@ -86,20 +86,40 @@ def _meeting_point(
         kind=kind,
         point=point,
         passes=(*through, *ending),
-        tangents=_tangents(branches, [*through, *ending], problem.n),
+        tangents=_tangents(branches, [*through, *ending], point),
         note=note,
         surfaces=met,
     )
 
 
 def _tangents(
-    branches: Sequence[Branch], passes: Sequence[tuple[int, float]], n: int
+    branches: Sequence[Branch],
+    passes: Sequence[tuple[int, float]],
+    point: SingularPoint,
 ) -> np.ndarray:
-    """Unit tangents (p, n) of the branches at the passes."""
-    tangents = np.empty((len(passes), n))
+    """Unit tangents (p, n) of the branches at the passes of a point.
+
+    The derivative of a piece is known to rounding over the length of the piece, which
+    is short beside a singular point: a tangent of second order, known to the error of
+    the point, is taken where the branch runs along one.
+    """
+    tangents = np.empty((len(passes), len(point.u)))
     for row, (index, s) in enumerate(passes):
-        tangents[row] = branches[index](s, 1)
+        tangents[row] = _exact_tangent(branches[index](s, 1), point)
     return tangents
+
+
+def _exact_tangent(along: np.ndarray, point: SingularPoint) -> np.ndarray:
+    """The tangent (n,) of second order at a point, if one has the direction ``along``
+    (n,) of a branch there; else that direction."""
+    if not len(point.tangents):
+        return along
+    cosines = point.tangents @ along / np.linalg.norm(along)
+    nearest = int(np.argmax(np.abs(cosines)))
+    if not is_same_line(1.0 - float(np.abs(cosines[nearest]))):
+        return along
+    tangent: np.ndarray = np.sign(cosines[nearest]) * point.tangents[nearest]
+    return tangent
 
 
 def _kind_in_doubt(point: SingularPoint, half_branches: int) -> Kind:

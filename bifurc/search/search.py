@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.certificate import HANDOVER
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.minima import singular_value_minima
@@ -20,10 +19,13 @@ from bifurc.curves.near_motion import trace_near_motion
 from bifurc.decisions import (
     closes_to_rounding,
     is_beside_singular,
-    is_mobile,
+    is_deep_place,
+    is_passed,
     is_solution,
+    is_start_solved,
     is_stub,
     may_be_crossed,
+    may_be_mobile,
     may_be_singular,
     may_nearly_move,
     nearly_closes,
@@ -59,8 +61,7 @@ NEAR_STARTS = 20  # random starts from which near motions are looked for
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
-# Times the singular values within some nodes: low enough for a place to be looked at.
-DEEP, BESIDE = 0.1, 16
+BESIDE = 16  # nodes before and after a deep place that are higher
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
 CUSP_REACH = 0.2  # how far from there the cusp may lie
 
@@ -196,7 +197,7 @@ class Search:
         """What a seed lies on; the curves there are traced."""
         point = self.findings.seeds.points[number]
         values = self.findings.seed_values[number]
-        if not is_mobile(float(values[self.problem.n - 1])):
+        if not may_be_mobile(float(values[self.problem.n - 1])):
             return self._fate_of_assembly(point)
         near = self.findings.near_motion_through(point)
         if near is not None:
@@ -415,8 +416,8 @@ class Search:
         """Whether a branch passes a singular point at arclength ``s``, and not only
         near it."""
         gap = self.problem.difference(branch(s), point.u)
-        within = 0.5 * HANDOVER * self.problem.scale + point.error
-        return bool(np.linalg.norm(gap) < within)
+        beside = float(np.linalg.norm(gap)) - point.error
+        return is_passed(beside, self.problem.scale)
 
     def _candidate_ends(self, branch: Branch, profile: Profile) -> list[_Candidate]:
         """The ends of an open branch where a singular point may lie."""
@@ -446,7 +447,7 @@ class Search:
         ``misclosure``."""
         for arclength in candidate.looks:
             near = branch(arclength)
-            known = self.findings.point_at(near, 0.0)
+            known = self.findings.point_seen_from(near)
             if known is not None and known.point.dimension == 1:
                 return known
             values = self._singular_values(near[None])[0]
@@ -525,7 +526,7 @@ class Search:
             findings.set_audit(audit)
             self.limits.interrupt.check()
             solutions, gaps = self.problem.project(audit.starts)
-            solutions = solutions[is_solution(gaps)]
+            solutions = solutions[is_start_solved(gaps)]
             known = len(findings.seeds.points)
             self._add_seeds(findings.seeds.with_constructed(solutions), known)
             self.trace_seeds()
@@ -547,7 +548,7 @@ def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
     values = profile.smallest.ravel()
     arclengths = profile.arclength.ravel()
     before, after = _highest_beside(values)
-    is_deep = may_be_crossed(values) & (values < DEEP * np.minimum(before, after))
+    is_deep = may_be_crossed(values) & is_deep_place(values, np.minimum(before, after))
     walled = np.concatenate([[np.inf], values, [np.inf]])
     is_lowest = (values <= walled[:-2]) & (values < walled[2:])
     candidates = []

@@ -14,8 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.curves.monitor import singular_values
-from bifurc.decisions import is_solution, may_be_crossed
-from bifurc.numerics.blur import NOTHING, ROUNDING
+from bifurc.decisions import (
+    is_start_solved,
+    is_without_equation,
+    may_be_crossed,
+)
+from bifurc.numerics.blur import ROUNDING
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
@@ -70,7 +74,7 @@ def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
     points = _after_newton_steps(problem, seeds.missed[weak], LONG_STEPS, longest)
     low, high = problem.bounds.T
     is_inside = np.all((points >= low) & (points <= high), axis=1)
-    is_reached = is_inside & is_solution(problem.gaps(points))
+    is_reached = is_inside & is_start_solved(problem.gaps(points))
     reached = points[is_reached]
     is_left = np.ones(len(seeds.missed), dtype=bool)
     is_left[weak[is_reached]] = False
@@ -100,5 +104,5 @@ def _weak(problem: Problem, values: np.ndarray) -> np.ndarray:
     if problem.n < 2:
         return np.empty(0, dtype=int)
     sigma = values[:, problem.n - 2]
-    is_weak = may_be_crossed(sigma) & (sigma > NOTHING)
+    is_weak = may_be_crossed(sigma) & ~is_without_equation(sigma)
     return np.flatnonzero(is_weak)

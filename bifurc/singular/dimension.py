@@ -15,11 +15,13 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import (
+    fills_null_space,
+    is_across_span,
     is_closed_on_surface,
-    is_null,
     is_null_at_probe,
     is_solution_at_probe,
-    is_surface_probe,
+    may_be_null,
+    may_fill_null_space,
 )
 from bifurc.limits import Deadline
 from bifurc.numerics.blur import rounding_unit
@@ -39,6 +41,9 @@ REACHES, LOW = (5e-2, 2e-2, RADIUS), 0.2
 AT_END = 0.01
 # Share of its length that a probe must keep for its end to be beside the point.
 AWAY = 0.1
+# Times the root of the residual: the singular value at a solution that is known no
+# better because F is a square.
+HIDDEN = 10.0
 # Points probed between two looks at the clock.
 CHUNK = 256
 
@@ -81,7 +86,7 @@ def local_dimensions(
             break
         part = slice(begin, begin + CHUNK)
         sigma, right = null_spaces(problem, points[part])
-        nullity[part] = np.count_nonzero(is_null(sigma), axis=1)
+        nullity[part] = np.count_nonzero(may_be_null(sigma), axis=1)
         for k in np.unique(nullity[part]):
             rows = begin + np.flatnonzero(nullity[part] == k)
             basis = right[rows - begin, problem.n - k :]
@@ -99,7 +104,7 @@ def _dimensions_of_nullity(
     if k == 0:
         return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
     probes = _probe(problem, points, basis, RADIUS)
-    regular = is_surface_probe(probes.loss.max(axis=1))
+    regular = may_fill_null_space(probes.loss.max(axis=1))
     dimension = np.where(regular, k, -1)
     for i in np.flatnonzero(~regular):
         arrived = np.isfinite(probes.loss[i])
@@ -201,7 +206,9 @@ def _dimension_from_ends(
         return 0
     ends, coordinates = ends[is_away], coordinates[is_away]
     sigma, right = null_spaces(problem, ends)
-    nullity = np.count_nonzero(is_null_at_probe(sigma), axis=1)
+    hidden = HIDDEN * np.sqrt(problem.gaps(ends))  # where F is a square
+    unit = np.maximum(1.0, hidden / is_null_at_probe.threshold)
+    nullity = np.count_nonzero(is_null_at_probe(sigma, unit[:, None]), axis=1)
     of_higher_rank = np.flatnonzero(nullity < coordinates.shape[1])
     if not len(of_higher_rank):
         return _dimension_of_span(coordinates)
@@ -212,7 +219,7 @@ def _dimension_from_ends(
             continue
         basis = right[i, problem.n - nullity[i] :][None]
         probes = _probe(problem, ends[i][None], basis, AT_END * RADIUS)
-        if is_surface_probe(float(probes.loss.max())):
+        if fills_null_space(float(probes.loss.max())):
             largest = int(nullity[i])
     return largest if largest else -1
 
@@ -221,4 +228,4 @@ def _dimension_of_span(coordinates: np.ndarray) -> int:
     """Dimension of the space that vectors (p, k) span, but for curvature."""
     sigma = np.linalg.svd(coordinates, compute_uv=False)
     spread = sigma / np.sqrt(len(coordinates))
-    return int(np.count_nonzero(~is_surface_probe(spread)))
+    return int(np.count_nonzero(~is_across_span(spread)))

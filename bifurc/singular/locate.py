@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.decisions import Decision, is_located, is_null, solves_at_point, vanishes
+from bifurc.decisions import is_located, is_simple, is_singular_point
 from bifurc.problem import Problem
 
 __all__ = ["LocatedPoint", "block_slice", "locate_singular_point"]
@@ -26,10 +26,14 @@ ASIDE, AT_ONCE = 0.1, 1e-2
 # Error, over the condition of the matrix, to which that point and the curves through it
 # are known.
 KNOWN_TO = 2e-14
-# Times the misclosure of the curves through it: what may be missed at a singular point.
-MISSED = 10.0
+# Times the misclosure of the curves through it, or the doubt of its place: what may be
+# missed at a singular point; but of that doubt no more than this counts.
+MISSED, MOST_DOUBT = 10.0, 1e-8
+# Times the residual counts: beside a near miss it is less than the singular value.
+SHARP = 10.0
 # |F| and singular value, over the magnitude, below which rounding hides the point.
 HIDDEN = 1e-12
+TINY = 1e-300  # keeps a step of zero from being divided by
 
 
 class LocatedPoint(NamedTuple):
@@ -63,19 +67,20 @@ def locate_singular_point(
         return None
     u = _solve_regular_equations(problem, run.u, nullity)
     gap = float(problem.gaps(u[None])[0])
+    missed = SHARP * gap / _unit(SHARP * misclosure)
     largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
-    is_solution = solves_at_point(gap, _unit(misclosure, solves_at_point))
-    if not is_solution or not is_null(largest_null):
-        return None
-    located = _with_error(problem, run, u, reach)
-    doubt = misclosure + located.error / problem.scale
-    return located if vanishes(largest_null, _unit(doubt, vanishes)) else None
+    located = None
+    if missed < is_singular_point.threshold:  # or else it is none, wherever it lies
+        located = _with_error(problem, run, u, reach)
+        doubt = min(misclosure + located.error / problem.scale, MOST_DOUBT)
+        largest_null /= _unit(doubt)
+    return located if is_singular_point(max(missed, largest_null)) else None
 
 
-def _unit(doubt: float, decision: Decision) -> float:
-    """What a decision on a point is measured in where F is in doubt by so much, over
-    the magnitude."""
-    return max(1.0, MISSED * doubt / decision.threshold)
+def _unit(doubt: float) -> float:
+    """What is missed at a singular point is measured in this where it is in ``doubt``
+    by so much."""
+    return max(1.0, MISSED * doubt / is_singular_point.threshold)
 
 
 # --- the iteration --------------------------------------------------------------------
@@ -215,7 +220,8 @@ def _is_simple(problem: Problem, run: _Run, u: np.ndarray, reach: float) -> bool
         return False
     apart = np.linalg.norm(problem.difference(again.u, u))
     allowed = AT_ONCE * away + KNOWN_TO * run.condition * problem.scale
-    return bool(again.moves[1] < AT_ONCE * again.moves[0] and apart < allowed)
+    slowness = again.moves[1] / (AT_ONCE * max(again.moves[0], TINY))
+    return is_simple(max(slowness, float(apart) / allowed))
 
 
 def _with_error(

@@ -8,12 +8,18 @@ which their tangents or curvatures separate.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.decisions import is_null, is_same_half_branch
+from bifurc.decisions import (
+    fills_circle,
+    is_null,
+    is_on_circle,
+    is_on_sphere,
+    is_same_half_branch,
+)
 from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.roots import bracketed_roots
@@ -34,9 +40,9 @@ TOUCHES, ROOT, TOUCH = 1e-9, 1e-10, 1e-6
 ROOT_TOLERANCE = 1e-12
 # Rounds of the chord iteration, and the step over the scale at which it ends.
 ROUNDS, LAST_STEP = 10, 1e-15
-# Of a point on a sphere, over the radius: last step of the iteration, and distance from
-# another one that is the same.
+# Of a point on a sphere, over the radius: last step of the iteration.
 SETTLED = 1e-4
+BESIDE = 1e3  # times the gap of points that are one: those are looked at as well
 # Residual of a point on a sphere, over the radius squared, and rounding.
 SOLVED, SOLVED_ROUNDING = 1e-8, 5e-15
 # Solutions of higher nullity on a sphere whose local dimension is looked at.
@@ -151,7 +157,7 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     sizes = np.linalg.norm(values, axis=1)
     size = float(sizes.max())
     noise = MARGIN * equations.noise
-    if size < noise:
+    if fills_circle(size, noise):
         return Section(no_points, 2)
     _, _, right = np.linalg.svd(values, full_matrices=False)
     leading = _FourierSeries(values @ right[0])
@@ -167,7 +173,7 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     if np.any(in_doubt):
         condition = _conditions(values, leading, angles[in_doubt])
         limit[in_doubt] += noise * condition
-    is_solution = left_over < limit
+    is_solution = is_on_circle(left_over, limit)
     points = equations.points(unit_vectors(angles[is_solution]))
     is_doubtful = bool(np.any(is_solution & ~is_crossing))
     return Section(points, 1 if len(points) else 0, is_doubtful)
@@ -281,13 +287,12 @@ def _sphere_section(
     # next to the point F is of order radius^2 whatever the direction: the residual must
     # be far below that
     limit = SOLVED * (radius / problem.scale) ** 2 + SOLVED_ROUNDING
-    is_solution = (gaps < limit) & (last_steps < SETTLED * radius)
+    missed = np.maximum(gaps / limit, last_steps / (SETTLED * radius))
+    is_solution = is_on_sphere(missed)
     if not np.any(is_solution):
         return Section(np.empty((0, problem.n)), 0)
-    points = _without_duplicates(
-        ends[is_solution], is_same_half_branch.threshold * radius
-    )
-    return _separate_surfaces(problem, points)
+    cut = _separate_surfaces(problem, ends[is_solution])
+    return replace(cut, points=_without_duplicates(cut.points, radius))
 
 
 def _spread_directions(k: int) -> np.ndarray:
@@ -299,15 +304,20 @@ def _spread_directions(k: int) -> np.ndarray:
     return np.concatenate([half, -half])
 
 
-def _without_duplicates(points: np.ndarray, within: float) -> np.ndarray:
-    """One of every cluster of points (k, n) that are joined by gaps below ``within``,
-    the first."""
+def _without_duplicates(points: np.ndarray, radius: float) -> np.ndarray:
+    """One of every cluster of points (k, n) on a sphere of ``radius`` that are joined by
+    small gaps, the first."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     count = len(points)
+    if not count:
+        return points
+    within = BESIDE * is_same_half_branch.threshold * radius
     pairs = cKDTree(points).query_pairs(within, output_type="ndarray")
+    gaps = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
+    pairs = pairs[is_same_half_branch(gaps, radius)]
     links = np.ones(len(pairs))
     graph = csr_array((links, tuple(pairs.T)), shape=(count, count))
     _, cluster = connected_components(graph, directed=False)

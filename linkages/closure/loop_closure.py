@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from bifurc.checks import check_type
-from bifurc.decisions import is_solution
+from bifurc.decisions import is_start_solved
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import (
     March,
@@ -164,7 +164,7 @@ class LoopClosure(NumericalProblem):
         nonreal = np.concatenate([cut.nonreal for cut in slices])
         largest = np.abs(nonreal.imag).max(axis=1, initial=0.0)
         points, gaps = self.project(nonreal[largest < NEARLY_REAL].real)
-        return points[is_solution(gaps)]
+        return points[is_start_solved(gaps)]
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
@@ -211,6 +211,7 @@ def march(
         within=within,
         periods=problem.periods,
         bounds=problem.bounds,
+        length=settings.length,
         coupling=coupling,
     )
     return March(MarchStatus(status), pieces, steps, radii, residuals)

@@ -7,7 +7,8 @@ import pytest
 
 import bifurc.decisions
 import linkages.decisions
-from bifurc.decisions import Decision, record_margins
+from bifurc.curves.certificate import HANDOVER
+from bifurc.decisions import Decision, Role, record_margins, unit_over_rounding
 
 
 def test_a_decision_compares_with_its_threshold_in_the_unit_given() -> None:
@@ -57,3 +58,21 @@ def test_a_decision_says_what_it_compares_and_why(decision: Decision) -> None:
         assert text
         assert text[0].islower() or text[0] in "WNV"
         assert not text.endswith(".")
+
+
+def test_what_rounding_may_have_made_is_below_a_threshold() -> None:
+    decision = Decision("test", "it is small", "size", 1e-3, "a round number")
+    assert unit_over_rounding(decision, 1e-6) == 1.0
+    assert unit_over_rounding(decision, 1e-2) == 10.0
+    assert decision(5e-3, unit_over_rounding(decision, 1e-2))
+
+
+@pytest.mark.parametrize("decision", [one for m in MODULES for one in m.TABLE.values()])
+def test_a_third_answer_is_that_of_a_verdict(decision: Decision) -> None:
+    if decision.third_answer:
+        assert decision.role is Role.VERDICT
+        assert not decision.third_answer.endswith(".")
+
+
+def test_a_point_is_passed_within_half_of_where_arcs_are_handed_over() -> None:
+    assert bifurc.decisions.is_passed.threshold == HANDOVER / 2

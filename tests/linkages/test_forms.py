@@ -5,7 +5,8 @@ import pytest
 
 from linkages.catalogue import entry
 from linkages.forms import identify_form, name_forms
-from linkages.loop import GeometryError
+from linkages.loop import GeometryError, Loop
+from linkages.mapping import map_linkage
 
 
 def _loop_and_patterns(case):
@@ -143,3 +144,32 @@ def test_samples_of_another_number_of_joints_are_refused(reference_cases):
     loop, _ = _loop_and_patterns(_case(reference_cases, "bricard-line-symmetric"))
     with pytest.raises(GeometryError, match="shape of the samples"):
         identify_form(np.zeros((3, 5)), loop)
+
+
+def form_beside(first: float, second: float) -> np.ndarray:
+    """Samples (m, 4) of a closed form on which the cosine of joint 1 stays what it is,
+    and that of joint 2 has about a given mean."""
+    around = np.linspace(0.0, 2 * np.pi, 60, endpoint=False)
+    angles = np.arccos([first, second, 0.1, 0.2])
+    turning = 0.1 * np.sin(around[:, None] + np.arange(4))
+    turning[:, 0] = 0.0
+    return angles + turning
+
+
+@pytest.mark.parametrize("error", [1e-12, -1e-12])
+def test_the_order_of_forms_does_not_hang_on_the_last_bits(error):
+    # the cosines lie on the two sides of where four decimals are rounded up
+    low, high = form_beside(0.30005 + error, 0.2), form_beside(0.30005 - error, 0.4)
+    identities = name_forms([low, high], entry("bennett").build())
+    letters = [identity.name.split(" (")[0][-1] for identity in identities]
+    assert letters == ["b", "a"]
+
+
+@pytest.mark.parametrize("error", [0.0, 4e-16, -4e-16])
+def test_equal_links_are_equal_but_for_rounding(error):
+    # both lengths lie where nine decimals would be cut off
+    lengths = (1.2499999995, 0.7500000005, 0.7500000005 + error, 1.2499999995 - error)
+    zeros = (0.0,) * 4
+    atlas = map_linkage(Loop(lengths, zeros, zeros))
+    names = {form.name for form in atlas.forms}
+    assert names == {"kite form", "folded form (joints 1,3 inactive)"}

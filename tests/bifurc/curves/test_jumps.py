@@ -100,3 +100,10 @@ def test_forms_through_bifurcations_keep_their_course():
         assert len(cuts) == 2
         changes = changes_of_course(form.branch, form.profile, np.sort(cuts))
         assert not len(changes) and not len(kinks(form.branch))
+
+
+def test_kinks_near_the_ends_may_be_left_out():
+    branch = polyline([(-1, 0), (0, 0), (0, 1)])
+    assert kinks(branch).tolist() == [1.0]
+    assert kinks(branch, from_ends=0.5).tolist() == [1.0]
+    assert not len(kinks(branch, from_ends=1.5))

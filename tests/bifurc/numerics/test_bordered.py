@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.sparse import csc_array, diags_array, hstack
+from scipy.sparse.linalg import splu
 
 from bifurc.numerics.bordered import Bordered, sparse_bordered
 
@@ -43,10 +44,7 @@ def test_the_border_does_not_fill_a_sparse_factorisation(monkeypatch):
         made.append(splu(*arguments, **options))
         return made[-1]
 
-    from bifurc.numerics import bordered
-
-    splu = bordered.splu
-    monkeypatch.setattr(bordered, "splu", factorise)
+    monkeypatch.setattr("scipy.sparse.linalg.splu", factorise)
     matrix = chain(500)
     right = np.ones((501, 2))
     solved = sparse_bordered(matrix, np.linspace(0.1, 1.0, 501))(right)

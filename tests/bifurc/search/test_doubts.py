@@ -18,7 +18,8 @@ from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Audit, Level
 from bifurc.singular.point import Kind
 from linkages.closure.loop_closure import LoopClosure
-from linkages.families.four_bar import four_bar
+from linkages.families.four_bar import four_bar, kite
+from linkages.mapping import map_linkage
 from tests.bifurc.known_surfaces import SPHERE
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
@@ -98,3 +99,12 @@ def test_a_point_is_in_doubt_for_what_it_misses_in_many_digits():
         atlas = explore(LoopClosure(loop), settings=FEW)
         statement = atlas.completeness.statement
         assert (IN_DOUBT in statement) is is_doubtful
+
+
+def test_an_unknown_that_rounding_may_move_is_in_doubt():
+    atlas = map_linkage(kite(1.0, 1e-7))
+    statement = atlas.completeness.statement
+    assert statement.startswith(IN_DOUBT)
+    assert "rounding hides whether these unknowns stand still" in statement
+    plain = map_linkage(kite(1.0, 1e-2))
+    assert IN_DOUBT not in plain.completeness.statement

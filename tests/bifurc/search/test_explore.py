@@ -369,3 +369,12 @@ def test_nothing_is_proved_of_an_atlas_with_a_form_that_was_cut_off():
     assert atlas.forms[0].branch.outcome is Outcome.STEP_LIMIT
     assert atlas.completeness.level == "estimated"
     assert "longer than they were traced" in atlas.completeness.statement
+
+
+@pytest.mark.parametrize("stiffness", [1e-7, 1e-5, 1e-3])
+def test_an_assembly_is_rigid_however_little_stiff_it_is(stiffness):
+    box = [(-1.0, 1.0)] * 2
+    problem = FunctionProblem(lambda u: [u[1] - u[0] ** 2, stiffness * u[0]], box)
+    atlas = explore(problem, settings=SearchSettings(starts=20))
+    assert not atlas.forms and not atlas.points
+    assert atlas.rigid == pytest.approx(np.zeros((1, 2)), abs=1e-6)

@@ -58,6 +58,7 @@ def march(start, tangent, geometry, order, tolerance, shortest, longest, count):
         within=0.0,
         periods=np.full(len(start), np.inf),
         bounds=np.full((len(start), 2), [-np.inf, np.inf]),
+        length=np.inf,
     )
 
 
