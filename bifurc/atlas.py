@@ -141,17 +141,19 @@ class Surface:
 
 @dataclass(frozen=True)
 class NearMotion:
-    """A curve along which the system is nearly solved.
+    """A curve along which the system is nearly solved, or a surface.
 
     Across it no correction makes the relative residual smaller than ``misclosure``
     everywhere. Its ``length``, and whether it ``is_closed``; ``sample`` (n,) is a point
-    of it.
+    of it. Its ``mobility`` is 1 for a curve; of a surface, with a mobility of 2 or
+    more, the length is 0.
     """
 
     misclosure: float
     length: float
     is_closed: bool
     sample: np.ndarray
+    mobility: int = 1
 
 
 @dataclass(frozen=True)

@@ -161,6 +161,50 @@ nearly_closes = Decision(
     "larger errors are none of making or of rounding",
     Role.CONVENTION,
 )
+is_faint = Decision(
+    "faint near motion",
+    "a near motion misses so little that doubles may not follow it through a crossing",
+    "misclosure",
+    1e-9,
+    "a crossing opens by the root of it, where points are known to rounding over that: "
+    "traces were seen to go over to the other arc at 1e-11, and none at 1e-9",
+    third_answer="the statement says so of each",
+)
+has_valley = Decision(
+    "valley",
+    "across a near motion the least residual is at one place",
+    "residual over the square of the smallest regular singular value",
+    300.0,
+    "where forms crossed it is 6 to 28, whatever the error, if the crossing has opened, "
+    "and 1e6 and more where it has not, or the rank drops",
+    third_answer="the statement says that the near motion may be interrupted there",
+)
+is_beside_drop = Decision(
+    "beside a rank drop",
+    "a place on a near motion is so near to a rank drop that the valley may split",
+    "square of the smallest regular singular value over the residual",
+    3.0,
+    "within the root of the residual the two equations there have no common solution",
+    Role.LOOK,
+)
+is_flat = Decision(
+    "flat direction",
+    "the system is nearly solved all over a surface, and not along single curves on it",
+    "square of a singular value over the residual",
+    0.05,
+    "both are of the order of the error on such a surface: 1e-3 and less for errors of "
+    "1e-3 and less; a fifth of the scale beside a rank drop it is 0.4 and more",
+    third_answer="the level is estimated",
+)
+has_one_form = Decision(
+    "one form on the null space",
+    "the equations of second order on the two weakest directions are one equation, so "
+    "that forms crossed here",
+    "second over first singular value of their coefficients",
+    0.045,
+    "at a crossing it is the square of the distance or less, at a rank drop 0.08 to 0.4",
+    third_answer="the statement says that the near motion may be interrupted there",
+)
 is_blurred = Decision(
     "blurred assembly",
     "an isolated solution on a near motion is not told from its neighbours by Newton's "

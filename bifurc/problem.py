@@ -215,6 +215,31 @@ class Problem(ABC):
         sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
         return sizes / self.magnitude
 
+    @property
+    def has_rim(self) -> bool:
+        """Whether curves may leave the region in which they are followed."""
+        return bool(np.any(np.isfinite(self.bounds)))
+
+    def excess(self, points: np.ndarray) -> np.ndarray:
+        """How far points (k, n) lie outside the bounds (k,), in the unknown that is
+        farthest; negative inside."""
+        low, high = self.bounds.T
+        excess = np.maximum(low - points, points - high)
+        farthest: np.ndarray = excess.max(axis=1)
+        return farthest
+
+    def missed(self, points: np.ndarray) -> np.ndarray:
+        """What points (k, n) of a curve may miss (k,), over the magnitude, where its
+        place is not defined: nothing, as a rule."""
+        return np.zeros(len(points))
+
+    def bridge(
+        self, start: np.ndarray, heading: np.ndarray, width: float, order: int
+    ) -> Piece | None:
+        """A piece of about ``width`` from ``start`` (n,) along ``heading`` (n,), across
+        points that are `missed`; None where there is none."""
+        return None
+
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, n of them in and m out, right to whatever precision
         is set when it is called; None where F is known in doubles only."""

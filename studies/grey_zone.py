@@ -6,7 +6,8 @@ length, twist or offset of each of twenty overconstrained linkages is changed by
 1e-16 (of the characteristic length, or rad) in half decades. With an error e the loop
 misses closure along its former motion by a multiple of e, so that the answers have to
 come in one order: the linkage nearly moves, moves within the closing tolerance, moves.
-The study writes a table of the answers and a figure.
+The study writes a table of the answers and a figure. With ``--seeds`` it asks besides
+whether the near motions hang on the random seed.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, NearMotion
 from bifurc.decisions import closes_to_rounding, is_solution
 from linkages.app.texts import table
 from linkages.catalogue import entry
@@ -37,12 +38,14 @@ __all__ = [
     "answer",
     "draw",
     "faults",
+    "hangs_on_seed",
     "off_condition",
 ]
 
 # Powers of ten of the errors, in half decades.
 ERRORS = 10.0 ** -np.arange(3.0, 16.25, 0.5)
 COLUMNS = ("lengths", "twists", "offsets")
+SAME = 1e-5  # share by which lengths and misclosures of the same near motion differ
 MOST_ASSEMBLIES = 16  # of a 6R loop that does not move
 
 
@@ -140,6 +143,27 @@ def answer(change: Change, error: float) -> Answer:
         bifurcations=len(atlas.bifurcations),
         assemblies=len(atlas.rigid),
     )
+
+
+def hangs_on_seed(change: Change, error: float, seeds: int) -> bool:
+    """Whether maps of a changed linkage with different random seeds list different near
+    motions: in number, closed or not, by length, by what they miss."""
+    loop = off_condition(change, error)
+    maps = [map_linkage(loop, seed=seed).near_motions for seed in range(seeds)]
+    return not all(_are_alike(maps[0], near_motions) for near_motions in maps)
+
+
+def _are_alike(one: Sequence[NearMotion], other: Sequence[NearMotion]) -> bool:
+    """Whether two lists of near motions are the same."""
+    if len(one) != len(other):
+        return False
+    for a, b in zip(one, other, strict=True):
+        is_same = a.is_closed == b.is_closed and a.mobility == b.mobility
+        lengths = np.isclose(a.length, b.length, rtol=SAME, atol=0.0)
+        misclosures = np.isclose(a.misclosure, b.misclosure, rtol=SAME, atol=1e-15)
+        if not (is_same and lengths and misclosures):
+            return False
+    return True
 
 
 def _verdict(atlas: Atlas) -> Verdict:
@@ -263,12 +287,25 @@ def _draw_verdicts(axes: Axes, groups: Sequence[Sequence[Answer]]) -> None:
     required=True,
     help="Folder for the table and the figure.",
 )
-def main(out: Path) -> None:
+@click.option(
+    "--seeds", default=1, help="Random seeds with which near motions are compared."
+)
+@click.option("--only", multiple=True, help="Linkages to look at; all without it.")
+def main(out: Path, seeds: int, only: Sequence[str]) -> None:
     """Run the study."""
     groups = []
     for change in CHANGES:
+        if only and change.linkage not in only:
+            continue
         answers = [answer(change, error) for error in ERRORS]
         groups.append(answers)
+        hanging = [
+            f"{error:.1e}"
+            for error in ERRORS
+            if seeds > 1 and hangs_on_seed(change, error, seeds)
+        ]
+        if hanging:
+            click.echo(f"{change.linkage}: hangs on the seed at {', '.join(hanging)}")
         click.echo(f"{change.linkage}: {'; '.join(faults(answers)) or 'in order'}")
     out.mkdir(parents=True, exist_ok=True)
     text = describe(groups)

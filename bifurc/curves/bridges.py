@@ -16,9 +16,12 @@ from bifurc.singular.locate import locate_singular_point
 
 __all__ = ["bridge_from"]
 
-REACHES = (0.1, 0.2, 0.05, 0.4, 0.02)  # half widths of bridges, in scales
+REACHES = (0.1, 0.2, 0.05, 0.4, 0.02)  # half widths of bridges, in scales,
+BLURRED_REACHES = (0.1, 0.2, 0.4, 0.8)  # and across points that are missed
 SLACKS = (10.0, 100.0)  # times the tolerance: how good the nodes of a bridge must be
 MISSED = 10.0  # times the misclosure of the curve: what a bridge may miss, too
+AHEAD = np.linspace(0.0, 1.0, 9)  # shares of the next piece
+BEYOND = 1.5  # times as far as points are missed
 RESIDUAL = 10.0  # times the tolerance: the residual that a bridge may have
 
 
@@ -34,6 +37,9 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     misclosure = visible_misclosure(problem, track.pieces[:, 0])
     if not is_solution(misclosure):
         misclosure = 0.0  # a near motion: where forms crossed, it turns
+    blurred = _blurred_ahead(problem, track)
+    if blurred is not None:
+        return _bridge_of_problem(problem, track, blurred)
     only_singular = track.caution.bridges is BridgeRule.AT_SINGULAR_POINTS
     if only_singular and not _is_near_singular(problem, track.front.point, misclosure):
         return None
@@ -45,6 +51,31 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
         place = track.at(last, begin)
         width = 2 * reach * problem.scale
         piece = _piece_across(problem, place, width, track.order, tolerance, misclosure)
+        if piece is not None:
+            return Bridge(last, begin, piece)
+    return None
+
+
+def _blurred_ahead(problem: Problem, track: Track) -> float | None:
+    """How far ahead the last point lies that the problem misses where the next piece
+    would be; None where there is none."""
+    point, tangent = track.front
+    steps = 2.0 * float(track.radii[-1]) * AHEAD
+    missed = np.flatnonzero(problem.missed(point + steps[:, None] * tangent))
+    return float(steps[missed[-1]]) if len(missed) else None
+
+
+def _bridge_of_problem(problem: Problem, track: Track, blurred: float) -> Bridge | None:
+    """A bridge that the problem itself lays across points that it misses, which reach
+    as far ahead as ``blurred``."""
+    for reach in BLURRED_REACHES:
+        begin = track.reached - reach * problem.scale
+        if begin < track.centers[0] or reach * problem.scale < BEYOND * blurred:
+            continue
+        last = track.piece_at(begin)
+        place = track.at(last, begin)
+        width = 2 * reach * problem.scale
+        piece = problem.bridge(place.point, place.tangent, width, track.order)
         if piece is not None:
             return Bridge(last, begin, piece)
     return None

@@ -19,6 +19,7 @@ __all__ = ["end_of_curve", "same_place"]
 LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
 NEAR = 1e-9  # distance, over the scale, within which a curve is back in any case
 PLAIN = 1e-3  # share of that: nothing else is asked
+EXACT = 30.0  # times the tolerance: residual of a piece on which it may close
 ANCHORS = 60  # first pieces, of which the clearest is where the curve may also close
 
 
@@ -35,7 +36,8 @@ def end_of_curve(
     begin = 0.0
     closing = _closing(problem, track, first, _Anchor(0, begin), tolerance)
     if closing is None:
-        clearest = int(np.argmax(track.radii[:ANCHORS]))
+        is_exact = track.residuals[:ANCHORS] <= EXACT * tolerance  # and no bridge
+        clearest = int(np.argmax(track.radii[:ANCHORS] * is_exact))
         begin = float(track.centers[clearest])
         anchor = _Anchor(clearest, begin)
         closing = _closing(problem, track, clearest, anchor, tolerance)
@@ -120,7 +122,7 @@ def _is_same_pass(
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:
     """Arclength at which the curve, from piece ``first`` on, first leaves the
     bounds."""
-    if not np.any(np.isfinite(problem.bounds)):
+    if not problem.has_rim:
         return None
     breaks = track.breaks(track.reached)
     for number in range(first, len(track)):
@@ -153,10 +155,5 @@ def _exit(problem: Problem, piece: np.ndarray, grid: np.ndarray) -> float | None
 
 
 def _excess(problem: Problem, piece: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """How far a piece lies outside the bounds (k,) at x (k,), in the unknown that is
-    farthest; negative inside."""
-    points = points_on_piece(piece, x)
-    low, high = problem.bounds.T
-    excess = np.maximum(low - points, points - high)
-    farthest: np.ndarray = excess.max(axis=1)
-    return farthest
+    """How far a piece lies outside the region (k,) at x (k,); negative inside."""
+    return problem.excess(points_on_piece(piece, x))

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.curves.precise_near_miss import precise_near_miss
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
 from bifurc.problem import Problem
 
@@ -16,6 +17,10 @@ __all__ = ["NearMissValue", "near_miss_value"]
 RESIDUAL_ROUNDING, VALUE_ROUNDING = 2e-15, 4e-15
 # Step, over the scale, that is longer than anything rounding explains.
 LONGEST_STEP = 1e-3
+# A value that doubles know to no better than this share is found in many digits, but
+# for those below the root of rounding: geometry in doubles makes redundant equations
+# disagree by that, and with them such values.
+PRECISE, SMALLEST = 1e-9, 2e-8
 
 
 class NearMissValue(NamedTuple):
@@ -47,7 +52,25 @@ def near_miss_value(
     gradient = bend @ across[-1]
     shifts = np.abs(across @ gradient) * RESIDUAL_ROUNDING / np.maximum(sigma, TINY)
     error = VALUE_ROUNDING + float(shifts.sum())
-    return NearMissValue(float(sigma[-1]), min(error, float(sigma[0])))
+    rough = NearMissValue(float(sigma[-1]), min(error, float(sigma[0])))
+    if rank < problem.n - 1 or not _is_to_be_refined(rough):
+        return rough
+    return _refined(problem, branch, s, rough)
+
+
+def _is_to_be_refined(rough: NearMissValue) -> bool:
+    """Whether a value of doubles is worse than it can be made."""
+    return rough.error > PRECISE * rough.value and rough.value > SMALLEST
+
+
+def _refined(
+    problem: Problem, branch: Branch, s: float, rough: NearMissValue
+) -> NearMissValue:
+    """The value in many digits, where it is within the error of that of doubles."""
+    precise = precise_near_miss(problem, branch, problem.n - 1, s)
+    if precise is None or abs(precise.value - rough.value) > rough.error:
+        return rough
+    return NearMissValue(precise.value, precise.error)
 
 
 def _visible_step(decomposition: Decomposition, rank: int) -> np.ndarray:

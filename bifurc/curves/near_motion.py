@@ -1,11 +1,12 @@
 """Near motions: curves along which a system is nearly solved, but not quite.
 
 A linkage that misses the condition of its motion narrowly has a curve of least
-misclosure instead of a motion, see `bifurc.curves.valley`. It is traced like a motion,
-with all the misclosure that a near motion may have. Where the misclosure passes zero the
-linkage closes: these are its rigid assemblies there. All other points at which it
-closes to rounding are places of the near motion where doubles see no more of the
-misclosure.
+misclosure instead of a motion: the valley of |F|, see `bifurc.curves.valley_problem`.
+It is traced like a motion, until it closes or misses too much. So where it ends, how
+long it is and by how much it misses do not depend on where the trace began. Where the
+misclosure passes zero the linkage closes: these are its rigid assemblies there. All
+other points at which it closes to rounding are places of the near motion where doubles
+see no more of the misclosure.
 """
 
 from __future__ import annotations
@@ -14,141 +15,284 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bifurc.branch import Branch
+from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.misclosure import largest_of, misclosures
 from bifurc.curves.monitor import NODES, singular_values
 from bifurc.curves.valley import correct_to_valley
+from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import (
     closes_to_rounding,
     is_same_point,
     is_stretch_short,
     nearly_closes,
 )
+from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import decompose, null_spaces
+from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
 
 __all__ = ["NearMotionTrace", "trace_near_motion"]
 
-LONGEST = 60.0  # scales along which a near motion is followed
-PRECISION = 1e-2  # of the misclosure: tolerance of the pieces
-SHORTEST = 1e-3  # of the root of the misclosure: the shortest of them, in scales
-BESIDE = 0.1  # of the scale: from there it is followed,
-CORRECTIONS = 5  # after so many steps onto it
-# It comes back to its start but for a drift of this many times the misclosure.
-DRIFT = 30.0
-SPREAD = 100.0  # times the misclosure: how far beside it a start may end
-SAME_WAY = 0.9  # cosine of the angle between two passes that are one
-SAMPLE_CORRECTIONS = 2  # of the points at which its misclosure is looked at
+LONGEST = 200.0  # scales along which a near motion is followed
+# Of the misclosure: tolerance of the pieces, within these bounds.
+PRECISION, FINEST, COARSEST = 1e-2, 1e-11, 1e-10
+# How far beside a start it is followed from where the valley is not single at the
+# start, in scales, after so many steps onto it.
+BESIDE, CORRECTIONS = 0.1, 5
+CLEAR = 30.0  # square of the smallest regular singular value over the misclosure
+SPREAD = 4.0  # times the root of the residual: how far a point may lie beside it there
+# Times the tolerance over the smallest regular singular value: how far elsewhere. Times
+# the tolerance: residuals of pieces that are no bridges.
+KNOWN, EXACT = 20.0, 30.0
 # How far from a sample a solution may lie: times the distance of its neighbours, or over
 # the scale.
 REACH, NEARBY = 2.0, 1e-3
 BLUR = 1e-14  # over the smallest singular value: how well a solution is known
 TINY = 1e-300
 ROUNDS = 30  # of Newton's method for a place where the misclosure passes zero
-FINE = 33  # samples among which the foot of the start is looked for
+# Rounds in which the place on a bridge is looked for where most is singular, and the
+# places that are looked at in each.
+NARROWINGS, LOOKS = 5, 33
+LOCATED = 1e-9  # over the scale: error of the places where the misclosure is extreme
 
 
 @dataclass(frozen=True)
 class NearMotionTrace:
     """A curve along which a system is nearly solved.
 
-    ``branch``, up to the arclength ``length``: as far as it is known, or until it comes
-    back to its start, if it ``is_closed``. The least residuals across it go up to
-    ``misclosure``, over the magnitude. At the ``assemblies`` (k, n) on it the system is
-    solved.
+    ``branch``: as far as it nearly closes, or all round if it ``is_closed``; where it
+    ``is_short`` it counts as none. The least residuals across it go up to
+    ``misclosure``, over the magnitude; where it passes a place at which the rank drops
+    it ``is_blurred`` there, and what it misses is looked for before and beyond. At the
+    ``assemblies`` (k, n) on it the system is solved. ``tolerance``: how closely it was
+    followed.
     """
 
     branch: Branch
-    length: float
-    is_closed: bool
     misclosure: float
+    is_short: bool
+    is_blurred: bool
     assemblies: np.ndarray
+    tolerance: float
 
     @property
-    def reach(self) -> float:
-        """How far from the branch, over the scale, a point of the near motion may
-        lie."""
-        return is_same_point.threshold + SPREAD * self.misclosure
+    def length(self) -> float:
+        """Its arclength."""
+        return self.branch.length
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it comes back to its start."""
+        return self.branch.closed
+
+    @property
+    def has_loose_end(self) -> bool:
+        """Whether it stops where it neither closes nor misses too much."""
+        return self.branch.outcome in (Outcome.STALLED, Outcome.STEP_LIMIT)
+
+    def runs_through(self, problem: Problem, points: np.ndarray) -> np.ndarray:
+        """Which of the points (k, n) lie on it, as far as it is known there."""
+        within = SPREAD * np.sqrt(self.misclosure * problem.scale)
+        distance, s = self.branch.nearest(points, within=max(within, problem.scale))
+        number = np.searchsorted(self.branch.breaks, s, side="right") - 1
+        number = np.clip(number, 0, len(self.branch.pieces) - 1)
+        misses = self.branch.residuals[number]
+        is_bridge = bridges_of(self.branch, self.tolerance)[number]
+        weakest = singular_values(problem, points)[:, max(problem.n - 2, 0)]
+        known = KNOWN * self.tolerance / np.maximum(weakest, TINY)
+        reach = np.where(is_bridge, SPREAD * np.sqrt(misses * problem.scale), known)
+        reach = np.clip(reach, is_same_point.threshold * problem.scale, within)
+        is_on: np.ndarray = distance < reach
+        return is_on
+
+
+def bridges_of(branch: Branch, tolerance: float) -> np.ndarray:
+    """Which pieces (p,) of a near motion followed to a ``tolerance`` lead straight on
+    where the valley is not single."""
+    is_bridge: np.ndarray = branch.residuals > EXACT * tolerance
+    return is_bridge
 
 
 def trace_near_motion(
     problem: Problem, start: np.ndarray, settings: TraceSettings
 ) -> NearMotionTrace | None:
     """The near motion through a point (n,) at which the system is nearly solved; None
-    where it is short."""
-    beside = _beside(problem, start)
-    settings = _coarser(settings, float(misclosures(problem, beside[None])[0]))
-    branch = trace_branch(problem, beside, None, settings, nearly_closes.threshold)
+    where no curve is followed."""
+    valley = ValleyProblem(problem)
+    places = np.array([start, *_beside(problem, start)])
+    # where the system happens to be solved the residual does not show what is missed
+    missed = float(misclosures(problem, places).max())
+    tolerance = min(max(PRECISION * missed, FINEST), COARSEST)
+    settings = replace(
+        settings,
+        tolerance=tolerance,
+        max_length=min(settings.max_length, LONGEST),
+    )
+    place = _clearest(valley, places, missed)
+    branch = trace_branch(valley, place, None, settings)
     if not len(branch.pieces):
         return None
-    length, is_closed = _length(problem, branch, float(branch.residuals.max()))
-    if not is_closed and is_stretch_short(length, problem.scale):
-        return None
-    arclengths = branch.places(NODES).ravel()
-    arclengths = arclengths[arclengths <= length]
-    points, _ = correct_to_valley(problem, branch(arclengths), SAMPLE_CORRECTIONS)
-    heights = misclosures(problem, points)
+    course = _course(valley, branch, settings.tolerance)
+    points, heights = course.extremes()
     return NearMotionTrace(
         branch=branch,
-        length=length,
-        is_closed=is_closed,
         misclosure=largest_of(problem, points, heights),
-        assemblies=_assemblies(problem, points, heights, is_closed),
-    )
-
-
-def _coarser(settings: TraceSettings, misclosure: float) -> TraceSettings:
-    """How a curve is followed that is known to no more than its ``misclosure``: where it
-    passes another, it turns within the root of that."""
-    return replace(
-        settings,
-        tolerance=max(settings.tolerance, PRECISION * misclosure),
-        shortest=max(settings.shortest, SHORTEST * misclosure**0.5),
-        max_length=min(settings.max_length, LONGEST),
+        is_short=not branch.closed and is_stretch_short(branch.length, problem.scale),
+        is_blurred=bool(len(course.bridges)),
+        assemblies=_assemblies(problem, course),
+        tolerance=settings.tolerance,
     )
 
 
 def _beside(problem: Problem, start: np.ndarray) -> np.ndarray:
-    """A point (n,) of the curve of least residuals a little away from ``start``.
-
-    Where the system happens to be solved the residual does not show what the curve
-    misses.
-    """
+    """Points (2, n) of the valley a little away from ``start`` (n,), to both sides."""
     _, right = null_spaces(problem, start[None])
-    ahead = start + BESIDE * problem.scale * right[0, -1]
-    corrected, _ = correct_to_valley(problem, ahead[None], CORRECTIONS)
-    point: np.ndarray = corrected[0]
-    return point
+    step = BESIDE * problem.scale * right[0, -1]
+    ahead = np.array([start - step, start + step])
+    corrected: np.ndarray = correct_to_valley(problem, ahead, CORRECTIONS)[0]
+    return corrected
 
 
-def _length(problem: Problem, branch: Branch, misclosure: float) -> tuple[float, bool]:
-    """The arclength at which a branch comes back to its start, but for the drift that
-    its misclosure brings, and whether it does."""
+def _clearest(valley: ValleyProblem, places: np.ndarray, missed: float) -> np.ndarray:
+    """The first of the places (k, n), if nothing is singular there beside what is
+    ``missed``, else the one that is least singular."""
+    weakest = singular_values(valley.of, places)[:, valley.rank - 1]
+    if weakest[0] ** 2 > CLEAR * missed:
+        clear: np.ndarray = places[0]
+        return clear
+    is_near = nearly_closes(valley.of.gaps(places))
+    clearest: np.ndarray = places[np.argmax(weakest * is_near)]
+    return clearest
+
+
+# --- what a near motion misses along its way ------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Course:
+    """A near motion at ``arclengths`` (k,): ``points`` (k, n), what is missed there,
+    ``heights`` (k,), whether that falls or grows, ``slopes`` (k,), and whether it
+    ``is_blurred`` (k,), which makes all that no fact: it is so on the pieces whose
+    numbers are ``bridges``."""
+
+    valley: ValleyProblem
+    branch: Branch
+    arclengths: np.ndarray
+    points: np.ndarray
+    heights: np.ndarray
+    slopes: np.ndarray
+    is_blurred: np.ndarray
+    bridges: np.ndarray
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it comes back to its start."""
+        return self.branch.closed
+
+    def extremes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points (k, n) at which most is missed, and how much (k,): between ends of the
+        curve and of the places where the valley is blurred."""
+        tops = self.roots_of_slope(-1.0)
+        ends = self._ends()
+        highest = np.array([self._corrected(s) for s in tops])
+        points = np.concatenate([highest.reshape(-1, self.valley.n), ends])
+        heights = misclosures(self.valley.of, points)
+        clear = ~self.is_blurred
+        return (
+            np.concatenate([points, self.points[clear]]),
+            np.concatenate([heights, self.heights[clear]]),
+        )
+
+    def roots_of_slope(self, sign: float) -> np.ndarray:
+        """Arclengths (k,) at which the misclosure is least (``sign`` 1) or largest
+        (-1), next to nothing else."""
+        s, slopes, blurred = self.arclengths, sign * self.slopes, self.is_blurred
+        if self.is_closed:
+            s = np.append(s, s[0] + self.branch.length)
+            slopes = np.append(slopes, slopes[0])
+            blurred = np.append(blurred, blurred[0])
+        turns = (slopes[:-1] < 0) & (slopes[1:] >= 0) & ~blurred[:-1] & ~blurred[1:]
+        low, high = s[:-1][turns], s[1:][turns]
+        if not len(low):
+            return np.empty(0)
+
+        def slopes_at(s: np.ndarray) -> np.ndarray:
+            return _slopes_at(self.valley.of, self.branch(s), self.branch(s, 1))
+
+        return bracketed_roots(slopes_at, low, high, LOCATED * self.valley.scale)
+
+    def _ends(self) -> np.ndarray:
+        """The ends (k, n) of the curve, if it is open, and of all places where the
+        valley is blurred."""
+        ends = []
+        if not self.is_closed:
+            ends += list(self.branch(np.array([0.0, self.branch.length])))
+        for number in self.bridges:
+            ends += self._edges(*self.branch.breaks[number : number + 2])
+        return np.array(ends).reshape(-1, self.valley.n)
+
+    def _edges(self, begin: float, end: float) -> list[np.ndarray]:
+        """The two points (n,) of the valley between two arclengths at which it ceases
+        to be single and is so again."""
+
+        def clearness(s: np.ndarray) -> np.ndarray:
+            return np.array([self.valley.clearness(self._corrected(x)) for x in s])
+
+        middle = self._most_singular(begin, end)
+        low, high = np.array([begin, middle]), np.array([middle, end])
+        if np.any(clearness(low) * clearness(high) >= 0):
+            return []
+        roots = bracketed_roots(clearness, low, high, LOCATED * self.valley.scale)
+        return [self._corrected(float(root)) for root in roots]
+
+    def _most_singular(self, begin: float, end: float) -> float:
+        """The arclength between two others at which the smallest regular singular value
+        is least."""
+        rank = self.valley.rank
+        low, high = begin, end
+        for _ in range(NARROWINGS):
+            s = np.linspace(low, high, LOOKS)
+            values = singular_values(self.valley.of, self.branch(s))[:, rank - 1]
+            lowest = int(np.argmin(values))
+            low, high = s[max(lowest - 1, 0)], s[min(lowest + 1, LOOKS - 1)]
+        return float(0.5 * (low + high))
+
+    def _corrected(self, s: float) -> np.ndarray:
+        """The point (n,) of the valley next to an arclength."""
+        tangent = self.branch(s, 1)
+        return correct_across(self.valley, self.branch(s), tangent, FINEST).point
+
+
+def _course(valley: ValleyProblem, branch: Branch, tolerance: float) -> _Course:
+    """The near motion at nodes of every piece."""
+    is_bridge = bridges_of(branch, tolerance)
     arclengths = branch.places(NODES).ravel()
-    distances = _distances(problem, branch, arclengths)
-    far = np.flatnonzero(distances > 0.5 * problem.scale)
-    if not len(far):
-        return branch.length, branch.closed
-    within = (is_same_point.threshold + DRIFT * misclosure) * problem.scale
-    nearest = _minima_in_row(distances, closed=False)
-    for k in nearest[nearest > far[0]]:
-        low, high = arclengths[k - 1], arclengths[min(k + 1, len(arclengths) - 1)]
-        fine = np.linspace(low, high, FINE)
-        distance = _distances(problem, branch, fine)
-        foot = int(np.argmin(distance))
-        is_near = distance[foot] < within + (high - low) / FINE
-        is_same_way = branch(fine[foot], 1) @ branch(0.0, 1) > SAME_WAY
-        if is_near and is_same_way:
-            return float(fine[foot]), True
-    return branch.length, branch.closed
+    points = branch(arclengths)
+    return _Course(
+        valley=valley,
+        branch=branch,
+        arclengths=arclengths,
+        points=points,
+        heights=misclosures(valley.of, points),
+        slopes=_slopes_at(valley.of, points, branch(arclengths, 1)),
+        is_blurred=np.repeat(is_bridge, len(NODES)),
+        bridges=np.flatnonzero(is_bridge),
+    )
 
 
-def _distances(problem: Problem, branch: Branch, s: np.ndarray) -> np.ndarray:
-    """Distances (k,) of points of a branch from its start."""
-    offsets = problem.difference(branch(s), branch(0.0))
-    distances: np.ndarray = np.linalg.norm(offsets, axis=1)
-    return distances
+def _slopes_at(
+    problem: Problem, points: np.ndarray, tangents: np.ndarray
+) -> np.ndarray:
+    """Half the slope (k,) of the squared misclosure along a curve with unit
+    ``tangents`` (k, n) at points (k, n)."""
+    at = decompose(problem, points)
+    weak = at.left[:, :, problem.n - 1 :]
+    missed = np.einsum("kmi,km->ki", weak, at.residuals)
+    moves = problem.relative_jacobians(points) @ tangents[:, :, None]
+    changes = np.einsum("kmi,km->ki", weak, moves[:, :, 0])
+    slopes: np.ndarray = np.einsum("ki,ki->k", missed, changes)
+    return slopes
 
 
 # --- where the misclosure passes zero -------------------------------------------------
@@ -164,21 +308,17 @@ class _Zeros:
     blur: np.ndarray
 
 
-def _assemblies(
-    problem: Problem, points: np.ndarray, heights: np.ndarray, is_closed: bool
-) -> np.ndarray:
-    """Solutions (k, n) on a near motion with misclosures ``heights`` (j,) at ``points``
-    (j, n) along it.
-
-    Between two of them the misclosure is more than rounding.
-    """
-    zeros = _zeros(problem, points, heights, is_closed)
+def _assemblies(problem: Problem, course: _Course) -> np.ndarray:
+    """Solutions (k, n) on a near motion. Between two of them the misclosure is more
+    than rounding."""
+    zeros = _zeros(problem, course)
+    heights = course.heights
     kept: list[int] = []
     for k in range(len(zeros.numbers)):
         if not kept or _are_apart(problem, heights, zeros, kept[-1], k):
             kept.append(k)
     if (
-        is_closed
+        course.is_closed
         and len(kept) > 1
         and not _are_apart(
             problem, np.append(heights, heights), zeros, kept[-1], kept[0]
@@ -189,22 +329,22 @@ def _assemblies(
     return separate
 
 
-def _zeros(
-    problem: Problem, points: np.ndarray, heights: np.ndarray, is_closed: bool
-) -> _Zeros:
-    """Solutions next to the lowest of the misclosures ``heights`` (j,)."""
-    lowest = _minima_in_row(heights, is_closed)
+def _zeros(problem: Problem, course: _Course) -> _Zeros:
+    """Solutions next to where the misclosure is least."""
+    lowest = np.sort(course.roots_of_slope(1.0) % course.branch.length)
     if not len(lowest):
-        return _Zeros(lowest, points[:0], np.empty(0))
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    widest = np.maximum(np.append(steps, 0.0), np.append(0.0, steps))[lowest]
-    reach = np.maximum(REACH * widest, NEARBY * problem.scale)
-    solutions = _solve(problem, points[lowest], reach)
-    moves = np.linalg.norm(solutions - points[lowest], axis=1)
+        return _Zeros(np.empty(0, dtype=int), course.points[:0], np.empty(0))
+    numbers = np.searchsorted(course.arclengths, lowest)
+    numbers = np.minimum(numbers, len(course.arclengths) - 1)
+    spacing = np.gradient(course.arclengths)[numbers]
+    reach = np.maximum(REACH * spacing, NEARBY * problem.scale)
+    points = course.branch(lowest)
+    solutions = _solve(problem, points, reach)
+    moves = np.linalg.norm(solutions - points, axis=1)
     stiffness = singular_values(problem, solutions)[:, -1]
     blur = BLUR / np.maximum(stiffness, TINY)
     is_zero = closes_to_rounding(problem.gaps(solutions)) & (moves <= reach)
-    return _Zeros(lowest[is_zero], solutions[is_zero], blur[is_zero])
+    return _Zeros(numbers[is_zero], solutions[is_zero], blur[is_zero])
 
 
 def _are_apart(
@@ -220,15 +360,6 @@ def _are_apart(
     distance = float(np.linalg.norm(offset))
     is_one_place = distance <= zeros.blur[one] + zeros.blur[other]
     return not is_one_place and not closes_to_rounding(wall)
-
-
-def _minima_in_row(values: np.ndarray, closed: bool) -> np.ndarray:
-    """Numbers (k,) of the local minima in a row of values, whose ends meet if
-    closed."""
-    before, after = (values[-1], values[0]) if closed else (np.inf, np.inf)
-    left = np.concatenate([[before], values[:-1]])
-    right = np.concatenate([values[1:], [after]])
-    return np.flatnonzero((values <= left) & (values < right))
 
 
 def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndarray:

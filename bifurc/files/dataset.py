@@ -48,7 +48,7 @@ from bifurc.seeds import Completeness, Level
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
 FORMAT = "bifurc atlas"
-FORMAT_VERSION = 4
+FORMAT_VERSION = 5
 CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 

@@ -25,6 +25,12 @@ NEAR_MOTIONS: Table[NearMotion] = Table(
             dtype=bool,
         ),
         Column(
+            "near_motion_mobility",
+            lambda m: m.mobility,
+            "1 for a curve, 2 or more for a surface",
+            dtype=int,
+        ),
+        Column(
             "near_motion_configuration",
             lambda m: m.sample,
             "a point of it",
@@ -42,4 +48,5 @@ def read_near_motion(row: Row) -> NearMotion:
         length=float(row["near_motion_length"]),
         is_closed=bool(row["near_motion_closed"]),
         sample=row["near_motion_configuration"],
+        mobility=int(row["near_motion_mobility"]),
     )

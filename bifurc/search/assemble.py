@@ -20,7 +20,7 @@ from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points, singular_values
 from bifurc.curves.near_miss import near_miss_value
-from bifurc.decisions import closes_to_rounding
+from bifurc.decisions import closes_to_rounding, is_faint
 from bifurc.numerics.blur import change_by_rounding
 from bifurc.problem import Problem
 from bifurc.search.canonical_course import wrapped_periods
@@ -28,6 +28,7 @@ from bifurc.search.canonical_order import (
     order_branches,
     order_points,
     order_surfaces,
+    order_values,
 )
 from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
@@ -40,6 +41,8 @@ from bifurc.torus import wrap
 
 __all__ = ["assemble_atlas"]
 
+# Decades by which the misclosures of two near motions differ that are not alike.
+SAME_MISCLOSURE = 1e-3
 NEAR_ASSEMBLIES = (
     "on near motions there may be more isolated solutions than are listed, where the "
     "misclosure passes zero"
@@ -69,9 +72,9 @@ def assemble_atlas(
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)
     doubts = doubts_of(problem, traced, forms, points, surfaces)
-    near_motions = _near_motions(findings, periods)
+    near_motions = _near_motions(problem, findings, periods)
     if near_motions:
-        doubts = (*doubts, NEAR_ASSEMBLIES)
+        doubts = (*doubts, *_doubts_of_near_motions(findings), NEAR_ASSEMBLIES)
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
@@ -180,15 +183,56 @@ def _surfaces(
     return tuple(named)
 
 
-def _near_motions(findings: Findings, periods: np.ndarray) -> tuple[NearMotion, ...]:
-    """The near motions, the one that misses least first."""
-    near_motions = []
-    for trace in sorted(findings.near_motions, key=lambda trace: trace.misclosure):
+def _near_motions(
+    problem: Problem, findings: Findings, periods: np.ndarray
+) -> tuple[NearMotion, ...]:
+    """The near motions: surfaces, the largest mobility first, and then curves, the one
+    that misses least first; those that miss as much in the order of branches."""
+    traces = findings.near_motions
+    order = order_branches(problem, [trace.branch for trace in traces])
+    decades = np.array([np.log10(traces[k].misclosure) for k in order])
+    surfaces = sorted(findings.near_surfaces, key=lambda one: -one.dimension)
+    near_motions = [
+        NearMotion(
+            misclosure=surface.misclosure,
+            length=0.0,
+            is_closed=False,
+            sample=wrap(surface.sample, periods),
+            mobility=surface.dimension,
+        )
+        for surface in surfaces
+    ]
+    for k in order[order_values(decades, SAME_MISCLOSURE)]:
+        trace = traces[k]
         sample = wrap(trace.branch(0.0), periods)
         near_motions.append(
             NearMotion(trace.misclosure, trace.length, trace.is_closed, sample)
         )
     return tuple(near_motions)
+
+
+def _doubts_of_near_motions(findings: Findings) -> list[str]:
+    """What is open about near motions, a sentence for each."""
+    loose = sum(trace.has_loose_end for trace in findings.near_motions)
+    blurred = sum(trace.is_blurred for trace in findings.near_motions)
+    faint = sum(is_faint(trace.misclosure) for trace in findings.near_motions)
+    doubts = []
+    if faint:
+        doubts.append(
+            f"{faint} of the near motions miss by less than {is_faint.threshold:.0e}: "
+            "where forms crossed, doubles may not tell which of them are one"
+        )
+    if loose:
+        doubts.append(
+            f"{loose} of the near motions end where they cannot be followed, and may go "
+            "on"
+        )
+    if blurred:
+        doubts.append(
+            f"{blurred} of the near motions pass where the rank drops but for the "
+            "misclosure; there they may be interrupted"
+        )
+    return doubts
 
 
 def _with_misclosure(

@@ -13,6 +13,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile, singular_values
 from bifurc.curves.near_motion import NearMotionTrace
+from bifurc.curves.near_surface import NearSurface
 from bifurc.decisions import Decision, is_same_point, may_be_known, may_be_weak
 from bifurc.numerics.blur import same_reach
 from bifurc.problem import Problem
@@ -102,6 +103,8 @@ class Findings:
         self.points: list[SingularPoint] = []
         self.rigid: list[np.ndarray] = []
         self.near_motions: list[NearMotionTrace] = []
+        self.short_stretches: list[NearMotionTrace] = []
+        self.near_surfaces: list[NearSurface] = []
         self.components = Components()
         self.gaps: list[float] = []
         self.audit: Audit | None = None
@@ -202,22 +205,29 @@ class Findings:
 
     def near_motion_through(self, point: np.ndarray) -> int | None:
         """The number of the first near motion on which a point (n,) lies, as far as
-        what it misses tells."""
+        that is known."""
         for number, near in enumerate(self.near_motions):
-            reach = near.reach * self.problem.scale
-            distance, _ = near.branch.nearest(point, within=reach)
-            if distance[0] < reach:
+            if near.runs_through(self.problem, point[None])[0]:
                 return number
         return None
 
-    def add_near_motion(self, near: NearMotionTrace) -> int:
-        """The number of a near motion, which is recorded, with its assemblies, if it
-        is new."""
+    def is_on_short_stretch(self, point: np.ndarray) -> bool:
+        """Whether a point (n,) lies on a curve that is too short for a near motion."""
+        place = point[None]
+        return any(
+            near.runs_through(self.problem, place)[0] for near in self.short_stretches
+        )
+
+    def add_near_motion(self, near: NearMotionTrace) -> int | None:
+        """The number of a near motion, which is recorded, with its assemblies, if it is
+        new: if it does not run along a known one for the most part. None for a short
+        one."""
+        if near.is_short:
+            self.short_stretches.append(near)
+            return None
         points = near.branch(near.length * PLACES)
         for number, known in enumerate(self.near_motions):
-            distance, _ = known.branch.nearest(points)
-            reach = max(known.reach, near.reach)
-            if np.all(distance < reach * self.problem.scale):
+            if np.median(known.runs_through(self.problem, points)) > 0.5:
                 return number
         self.near_motions.append(near)
         for assembly in near.assemblies:

@@ -16,11 +16,13 @@ from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.misclosure import largest_misclosure
 from bifurc.curves.monitor import Profile, profile_branch, singular_values
 from bifurc.curves.near_motion import trace_near_motion
+from bifurc.curves.near_surface import near_surfaces
 from bifurc.decisions import (
     closes_to_rounding,
     is_beside_singular,
     is_deep_place,
     is_passed,
+    is_same_point,
     is_solution,
     is_start_solved,
     is_stub,
@@ -42,6 +44,7 @@ from bifurc.search.findings import NO_DOUBT, Findings, PointSighting, TracedBran
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.search.settings import SearchSettings
 from bifurc.search.weak_seeds import sharpened, with_weak_solutions
+from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
@@ -57,7 +60,8 @@ CLOSED_STUB = 20  # times shorter: a branch that does not stall and is none
 # A curve is traced at a misclosure a little above what it may have: the largest one
 # along it, measured afterwards, decides.
 LENIENT = 4.0 * is_solution.threshold
-NEAR_STARTS = 20  # random starts from which near motions are looked for
+SAME_STARTS = 200  # from which every search looks for near motions
+FRUITLESS = 4  # of those on no known near motion that in a row led to nothing new
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
@@ -244,27 +248,73 @@ class Search:
         number = self.findings.near_motion_through(point)
         if number is not None:
             return number
-        near = trace_near_motion(self.problem, point, self.settings.tracing)
-        if near is None or not nearly_closes(near.misclosure):
+        if self.findings.is_on_short_stretch(point):
             return None
-        if closes_to_rounding(near.misclosure):
-            return None  # a form runs there
+        near = trace_near_motion(self.problem, point, self.settings.tracing)
+        if near is None or closes_to_rounding(near.misclosure):
+            return None  # nothing, or a form runs there
+        near = replace(near, branch=canonical_course(self.problem, near.branch))
         return self.findings.add_near_motion(near)
 
     def look_for_near_motions(self) -> None:
-        """Trace the near motions from the random starts that missed, where nothing
-        moves."""
+        """Trace the near motions next to where starts end that miss, where nothing
+        moves.
+
+        Besides the random starts of the search there are always the same ones, so that
+        what they reach does not depend on its seed.
+        """
         findings = self.findings
         is_mobile = bool(findings.traced) or bool(findings.components.seeds)
         if is_mobile or not len(findings.seeds.missed):
             return
-        points = valley_points(self.problem, findings.seeds.missed)
-        is_near = nearly_closes(self.problem.gaps(points))
-        for point in points[is_near][:NEAR_STARTS]:
-            if self.is_over:
-                break
-            self._near_motion_through(point)
+        points = self._nearly_closed(findings.seeds.missed)
+        if not len(points):
+            return
+        same = random_seeds(self.problem, np.random.default_rng(0), SAME_STARTS)
+        always = self._nearly_closed(np.concatenate([same.points, same.missed]))
+        surfaces, is_left = near_surfaces(self.problem, always)
+        findings.near_surfaces += surfaces
+        if surfaces:
+            _, is_open = near_surfaces(self.problem, points)
+            points = points[is_open]
+        self._trace_near_motions(always[is_left])
+        self._trace_near_motions(points)
+
+    def _trace_near_motions(self, waiting: np.ndarray) -> None:
+        """Trace the near motions through points (k, n), first those through points that
+        are far from singular."""
+        values = self._singular_values(waiting)[:, max(self.problem.n - 2, 0)]
+        waiting = waiting[np.argsort(-values, kind="stable")]
+        waiting = self._not_on_near_motions(waiting)
+        findings = self.findings
+        fruitless = 0
+        while len(waiting) and fruitless < FRUITLESS and not self.is_over:
+            first = waiting[0]
+            known = len(findings.near_motions) + len(findings.short_stretches)
+            self._near_motion_through(first)
+            found = len(findings.near_motions) + len(findings.short_stretches)
+            fruitless = fruitless + 1 if found == known else 0
+            offsets = self.problem.difference(waiting, first)
+            apart = np.linalg.norm(offsets, axis=1)
+            waiting = waiting[~is_same_point(apart, self.problem.scale)]
+            waiting = self._not_on_near_motions(waiting)
             self.limits.interrupt.check()
+
+    def _not_on_near_motions(self, points: np.ndarray) -> np.ndarray:
+        """Those of the points (k, n) that lie on no known near motion or short
+        stretch."""
+        findings = self.findings
+        for near in findings.near_motions + findings.short_stretches:
+            if len(points):
+                points = points[~near.runs_through(self.problem, points)]
+        return points
+
+    def _nearly_closed(self, points: np.ndarray) -> np.ndarray:
+        """Points (k, n) in the valleys below points (j, n), where the system is nearly
+        solved."""
+        lowest = valley_points(self.problem, points)
+        is_near = nearly_closes(self.problem.gaps(lowest))
+        return lowest[is_near]
 
     def _fate_at_low_rank(
         self, point: np.ndarray, values: np.ndarray

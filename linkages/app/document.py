@@ -87,6 +87,7 @@ class NearMotionDocument(TypedDict):
     misclosure: float
     length: float
     closed: bool
+    mobility: int
     sample: list[float]
 
 
@@ -242,6 +243,7 @@ def _near_motion(atlas: Atlas, near: NearMotion) -> NearMotionDocument:
         "misclosure": near.misclosure,
         "length": near.length,
         "closed": near.is_closed,
+        "mobility": near.mobility,
         "sample": _angles(atlas, near.sample),
     }
 

@@ -169,8 +169,11 @@ def _near_motions(atlas: Atlas) -> str:
         angles = show_configuration(atlas, near.sample)
         closed = "yes" if near.is_closed else "no"
         length = f"{np.degrees(near.length):.4g}"
-        rows.append((angles, closed, length, f"{near.misclosure:.3g}"))
-    heads = ("joint angles (deg)", "closed", "length (deg)", "misclosure")
+        if near.mobility > 1:
+            closed, length = "-", "-"
+        mobility = str(near.mobility)
+        rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
+    heads = ("joint angles (deg)", "mobility", "closed", "length (deg)", "misclosure")
     return _beginning("Near motions (the loop nearly closes)", heads, rows)
 
 

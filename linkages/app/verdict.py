@@ -99,7 +99,7 @@ def _immobile(atlas: Atlas) -> str:
     assemblies = len(atlas.rigid) + shaky
     gap = f"{atlas.closure_gap:.3g} of the characteristic length"
     if atlas.near_motions:
-        sentence = f"The linkage nearly moves: {_near_motion(atlas.near_motions[0])}."
+        sentence = f"The linkage nearly moves{_near_motion(atlas.near_motions[0])}."
     elif assemblies:
         sentence = "The linkage is rigid."
     else:
@@ -112,9 +112,11 @@ def _immobile(atlas: Atlas) -> str:
 def _near_motion(motion: NearMotion) -> str:
     """How far a near motion goes, and by how much it is none."""
     degrees = f"{math.degrees(motion.length):.4g} degrees of joint-space length"
-    stretch = f"all along a closed path of {degrees}"
-    if not motion.is_closed:
-        stretch = f"along {degrees}"
+    stretch = f": all along a closed path of {degrees}"
+    if motion.mobility > 1:
+        stretch = f" with mobility {motion.mobility}: all over a surface"
+    elif not motion.is_closed:
+        stretch = f": along {degrees}"
     return (
         f"{stretch} its loop misses closure by {motion.misclosure:.3g} of the "
         "characteristic length at most"

@@ -80,6 +80,28 @@ def test_a_form_is_no_near_motion():
         assert distances.min() > 1e-3
 
 
+def test_near_motions_do_not_depend_on_the_seed():
+    exact = entry("special-wohlhart-double-goldberg").build()
+    twists = (exact.twists[0] + 2e-5, *exact.twists[1:])
+    loop = Loop(exact.lengths, twists, exact.offsets)
+    maps = [map_linkage(loop, seed=seed) for seed in (0, 3)]
+    for atlas in maps:
+        assert [near.is_closed for near in atlas.near_motions] == [True, True]
+        for near, same in zip(atlas.near_motions, maps[0].near_motions, strict=True):
+            assert near.length == pytest.approx(same.length, rel=1e-9)
+            assert near.misclosure == pytest.approx(same.misclosure, rel=1e-7)
+            assert near.sample == pytest.approx(same.sample, abs=1e-6)
+
+
+@pytest.mark.parametrize("error", [1e-3, 1e-6])
+def test_a_loop_beside_one_of_mobility_two_nearly_moves_over_a_surface(error):
+    twists = (error, 0.0, 0.0, 0.0, 0.0)
+    atlas = map_linkage(Loop((1.0, 1.3, 0.9, 1.1, 1.2), twists, (0.0,) * 5))
+    (near,) = atlas.near_motions
+    assert near.mobility == 2
+    assert near.misclosure == pytest.approx(error, rel=1e-5)
+
+
 def test_where_a_loop_nearly_moves_more_assemblies_are_not_ruled_out():
     twists = np.radians([100, 40, 100, 40])
     atlas = map_linkage(Loop((1.0, 0.65, 1.0, 0.65), tuple(twists), (0.0,) * 4))

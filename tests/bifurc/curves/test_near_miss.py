@@ -42,6 +42,19 @@ def test_a_near_miss_that_doubles_resolve_is_no_rank_drop(power):
     assert ratios == pytest.approx(expected, abs=bound + 1e-8)
 
 
+def test_small_near_misses_are_found_in_many_digits():
+    base = entry("bricard-line-symmetric-zero-offset").build()
+    ratios = []
+    for offset in (1e-4, 1e-5, 1e-6):
+        loop = Loop(base.lengths, base.twists, (offset, 0.0, 0.0, offset, 0.0, 0.0))
+        near_misses = map_linkage(loop).near_misses
+        assert all(event.error < 1e-9 * event.value for event in near_misses)
+        ratios.append(np.sort([event.value / offset for event in near_misses]))
+    # the ratios change in proportion to the offset; doubles miss the last by 2e-9
+    expected = ratios[1] + 0.1 * (ratios[1] - ratios[0])
+    assert ratios[2] == pytest.approx(expected, rel=5e-10)
+
+
 def test_where_the_singular_value_is_zero_the_value_is_bounded():
     axes = FunctionProblem(lambda u: np.array([u[0] * u[1]]), [[-2, 2], [-2, 2]])
     branch = trace_branch(axes, [1.0, 0.0])

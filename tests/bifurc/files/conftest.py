@@ -81,6 +81,7 @@ def atlas() -> Atlas:
         near_motions=(
             NearMotion(1e-9, 1 / 3, True, np.array([0.1, 0.2])),
             NearMotion(2e-3, 7.0, False, np.array([-0.0, 0.2])),
+            NearMotion(1e-5, 0.0, False, np.array([0.3, 0.2]), mobility=2),
         ),
         subject=linkage,
         near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5, error=1e-20),),

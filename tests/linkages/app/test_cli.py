@@ -43,7 +43,7 @@ KEYS = {
     "near_misses": {"theta", "singular_value", "error", "form"},
     "dead_points": {"theta", "joint", "form"},
     "rigid_assemblies": None,
-    "near_motions": {"misclosure", "length", "closed", "sample"},
+    "near_motions": {"misclosure", "length", "closed", "mobility", "sample"},
     "completeness": {"level", "certainty", "statement", "missed_probability"},
     "seconds": None,
     "version": None,
