@@ -19,6 +19,7 @@ from linkages.app.commands.show_command import show_command
 from linkages.app.commands.sweep_command import sweep_command
 from linkages.app.commands.tolerance_command import tolerance_command
 from linkages.app.commands.verify_command import verify_command
+from linkages.app.commands.view_command import view_command
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.status import library_messages
 
@@ -122,6 +123,7 @@ for command in (
     show_command,
     identify_command,
     map_command,
+    view_command,
     route_command,
     sweep_command,
     tolerance_command,

@@ -131,6 +131,7 @@ BAD = {
     "an option without its value": (("map", "kite", "--seed"), "requires an argument"),
     # names
     "a name with a typo": (("map", "benett"), "the nearest names are bennett"),
+    "a name with a typo to view": (("view", "benet"), "bennett"),
     "a name with a typo to show": (("show", "benet"), "bennett"),
     "a name with a typo to identify": (("identify", "benet"), "bennett"),
     "a name with a typo to verify": (("verify", "benet"), "bennett"),
@@ -241,6 +242,18 @@ BAD = {
     "an atlas of no linkage": (("route", "circle.nc", "Form 1", "Form 1"), "circle.nc"),
     "an unknown form": (("route", "kite.nc", "kite", "nothing"), "it must be one of"),
     "a form with a typo": (("route", "kite.nc", "kit form", "folded"), "'kite form'"),
+    "a missing atlas to view": (("view", "nowhere.nc"), "there is no such file"),
+    "a damaged atlas to view": (("view", "damaged.nc"), "damaged.nc"),
+    "an atlas of no linkage to view": (("view", "circle.nc"), "not of a linkage"),
+    "parameters for an atlas to view": (
+        ("view", "kite.nc", "--param", "a=1"),
+        "--param",
+    ),
+    # pages
+    "a page in no folder": (("view", "kite", "--out", "nowhere/a.html"), "no such"),
+    "a folder for a page": (("view", "kite", "--out", "folder"), "is a directory"),
+    "a page where none can be": (("view", "kite", "--out", "/proc/a.html"), "/proc/a"),
+    "a device for a page": (("view", "kite", "--out", "/dev/full"), "/dev/full"),
     # folders
     "a file for the folder of a map": (("map", "kite", "--out", "empty"), "empty"),
     "a full device for a folder": (("map", "kite", "--out", "/dev/full"), "/dev/full"),
@@ -400,7 +413,8 @@ STEPS = {
     ("identify", "bennett"): "linkages.identification.identify.identify",
     ("verify", "bennett"): "linkages.app.verify.verify",
     ("map", "bennett"): "linkages.app.exploration.explore_linkage",
-    ("route", "bennett", "a", "b"): "linkages.app.exploration.explore_linkage",
+    ("route", "bennett", "a", "b"): "linkages.app.atlas_source.explore_linkage",
+    ("view", "kite"): "linkages.app.atlas_source.explore_linkage",
     ("tolerance", "kite"): "linkages.app.tolerance.measure",
     ("sweep", "bennett", *GRID): "linkages.app.sweep.run.prepare_sweep",
 }
@@ -418,7 +432,7 @@ def test_ctrl_c_ends_every_command_with_one_line(arguments, folder, monkeypatch)
 
 
 @pytest.mark.parametrize(
-    "command", [("route", "kite", "a", "b"), ("tolerance", "kite")]
+    "command", [("route", "kite", "a", "b"), ("view", "kite"), ("tolerance", "kite")]
 )
 def test_half_a_map_is_no_map_for_other_commands(command, monkeypatch):
     monkeypatch.setattr("bifurc.search.search.trace_branch", interrupt)
