@@ -23,6 +23,7 @@ export function listenToKeys(node, actions) {
     const action = actionOf(event, actions);
     if (!action) return;
     event.preventDefault();
+    event.stopPropagation();
     action();
   });
 }

@@ -6,6 +6,7 @@ import { Viewer } from "./viewer.js";
 
 const DOCUMENT = "bifurc-document"; // the id of the element that holds the document of a page
 const ROOT = "bifurc-viewer";
+const TELLING = 60; // ms between two messages to a notebook
 
 function addStyles(node) {
   node.append(element("style", {}, styles));
@@ -22,28 +23,60 @@ function showPage(holder) {
 const holder = globalThis.document?.getElementById(DOCUMENT);
 if (holder) showPage(holder);
 
-/** What anywidget calls for every view of a widget. */
+/** What anywidget calls for every view of a widget; what it returns is called when the view goes. */
 function render({ model, el }) {
   addStyles(el);
-  const root = element("div", { class: "bv-in-notebook" });
+  const root = element("div", { class: "bv-in-notebook", "data-lm-suppress-shortcuts": "true" });
+  const theme = notebookTheme();
+  if (theme) root.dataset.theme = theme;
   el.append(root);
-  const viewer = new Viewer(root, model.get("document"));
-  let isOwn = false;
-  const follow = () => {
-    if (isOwn) return;
-    viewer.goByName(model.get("form") || 1, model.get("position"));
-  };
-  model.on("change:form", follow);
-  model.on("change:position", follow);
-  if (model.get("form")) follow();
-  root.addEventListener("bifurc-position", ({ detail }) => {
-    isOwn = true;
-    model.set("form", detail.form);
-    model.set("position", detail.s);
-    model.save_changes();
-    isOwn = false;
+  let viewer;
+  whenConnected(root, () => {
+    viewer = new Viewer(root, model.get("document"));
+    keepTogether(model, root, viewer);
   });
-  return () => viewer.view?.dispose();
+  return () => viewer?.dispose();
+}
+
+/** Let the traits of a widget and the viewer's position follow each other. */
+function keepTogether(model, root, viewer) {
+  let isFollowing = false;
+  let timer;
+  const follow = () => {
+    const state = viewer.state();
+    if (state.form === model.get("form") && state.s === model.get("position")) return;
+    isFollowing = true;
+    viewer.goByName(model.get("form"), model.get("position"));
+    isFollowing = false;
+  };
+  const tell = () => {
+    timer = undefined;
+    const { form, s } = viewer.state();
+    model.off("change:form change:position", follow);
+    model.set("form", form);
+    model.set("position", s);
+    model.on("change:form change:position", follow);
+    model.save_changes();
+  };
+  root.addEventListener("bifurc-position", () => {
+    if (!isFollowing) timer ??= setTimeout(tell, TELLING);
+  });
+  model.on("change:form change:position", follow);
+  follow();
+}
+
+/** "dark" or "light" as JupyterLab and Visual Studio Code say it; undefined elsewhere. */
+function notebookTheme() {
+  const { body } = document;
+  if (body.dataset.jpThemeLight) return body.dataset.jpThemeLight === "true" ? "light" : "dark";
+  if (body.classList.contains("vscode-dark")) return "dark";
+  return body.classList.contains("vscode-light") ? "light" : undefined;
+}
+
+/** Start once a node is in the page: before that it has no size and no style. */
+function whenConnected(node, start) {
+  if (node.isConnected) start();
+  else requestAnimationFrame(() => whenConnected(node, start));
 }
 
 export default { render };

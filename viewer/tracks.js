@@ -65,10 +65,10 @@ function pointTrack(points) {
   return track;
 }
 
-/** The tracks as they are listed and numbered: forms by their names, then the others. */
+/** The tracks as they are listed and numbered: forms by their names, as in the summary, then the others. */
 export function inOrder(tracks) {
   const forms = tracks.filter(isCurve);
-  forms.sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  forms.sort((a, b) => (a.name < b.name ? -1 : 1));
   return [...forms, ...tracks.filter((track) => !isCurve(track))];
 }
 

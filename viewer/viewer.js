@@ -411,6 +411,11 @@ export class Viewer {
     this.view?.resetView(this.scene, this.position.track);
   }
 
+  dispose() {
+    this.player.stop();
+    this.view?.dispose();
+  }
+
   // --- for scripts -------------------------------------------------------------------
 
   /** What `window.bifurc` offers. */
