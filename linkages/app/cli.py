@@ -11,6 +11,8 @@ import difflib
 import click
 
 from bifurc.errors import BifurcError
+from linkages.app.commands.clearance_command import clearance_command
+from linkages.app.commands.export_command import export_command
 from linkages.app.commands.identify_command import identify_command
 from linkages.app.commands.list_command import list_command
 from linkages.app.commands.map_command import map_command
@@ -125,6 +127,8 @@ for command in (
     map_command,
     view_command,
     route_command,
+    export_command,
+    clearance_command,
     sweep_command,
     tolerance_command,
     verify_command,

@@ -249,6 +249,42 @@ BAD = {
         ("view", "kite.nc", "--param", "a=1"),
         "--param",
     ),
+    # models, tables, clearances
+    "a name with a typo to export": (("export", "benet", "--to", "a.glb"), "bennett"),
+    "an export to nowhere": (("export", "kite"), "Missing option '--to'"),
+    "an export of an unknown kind": (
+        ("export", "kite", "--to", "a.obj"),
+        "it must end with .glb or .csv",
+    ),
+    "an export in no folder": (("export", "kite", "--to", "no/a.glb"), "no such"),
+    "an export of an unknown form": (
+        ("export", "kite.nc", "--to", "a.glb", "--form", "nothing"),
+        "it must be one of",
+    ),
+    "an export of a form beyond the last": (
+        ("export", "kite.nc", "--to", "a.glb", "--form", "7"),
+        "a number from 1 to 2",
+    ),
+    "an export of one configuration": (
+        ("export", "kite.nc", "--to", "a.glb", "--count", "1"),
+        "not in the range",
+    ),
+    "an export of an atlas of no linkage": (
+        ("export", "circle.nc", "--to", "a.glb"),
+        "not of a linkage",
+    ),
+    "a clearance of links of no number": (
+        ("clearance", "kite", "--diameter", "nan"),
+        "nan",
+    ),
+    "a clearance of links of less than nothing": (
+        ("clearance", "kite", "--diameter", -1),
+        "not in the range",
+    ),
+    "a clearance of an unknown form": (
+        ("clearance", "kite.nc", "--form", "nothing"),
+        "it must be one of",
+    ),
     # pages
     "a page in no folder": (("view", "kite", "--out", "nowhere/a.html"), "no such"),
     "a folder for a page": (("view", "kite", "--out", "folder"), "is a directory"),
@@ -370,6 +406,24 @@ ENDINGS = {
         ExitCode.DOES_NOT_MOVE,
         "is rigid",
     ),
+    "the clearance of a linkage that does not move": (
+        ("clearance", "rigid.toml"),
+        ExitCode.DOES_NOT_MOVE,
+        "is rigid",
+    ),
+    "the model of a linkage that does not move": (
+        ("export", "rigid.toml", "--to", "a.glb"),
+        ExitCode.DOES_NOT_MOVE,
+        "is rigid",
+    ),
+    "a model of a route that there is not": (
+        (
+            *("export", "bricard-line-symmetric", "--to", "a.glb"),
+            *("--route", "Form I (", "Form II ("),
+        ),
+        ExitCode.NO_ROUTE,
+        "no route",
+    ),
     "the tolerance of a linkage that does not move": (
         ("tolerance", "rigid.toml"),
         ExitCode.DOES_NOT_MOVE,
@@ -415,6 +469,8 @@ STEPS = {
     ("map", "bennett"): "linkages.app.exploration.explore_linkage",
     ("route", "bennett", "a", "b"): "linkages.app.atlas_source.explore_linkage",
     ("view", "kite"): "linkages.app.atlas_source.explore_linkage",
+    ("export", "kite", "--to", "a.glb"): "linkages.app.atlas_source.explore_linkage",
+    ("clearance", "kite"): "linkages.app.atlas_source.explore_linkage",
     ("tolerance", "kite"): "linkages.app.tolerance.measure",
     ("sweep", "bennett", *GRID): "linkages.app.sweep.run.prepare_sweep",
 }
