@@ -13,6 +13,7 @@ import { DistanceBar, Numbers } from "./numbers.js";
 import { jointPlane, principalPlane } from "./planes.js";
 import { Player } from "./player.js";
 import { Position } from "./position.js";
+import { drawnParts, seatHeights } from "./rods.js";
 import { arcsOf, lengthOf, middleOf, placeAlong, shortestRoute } from "./route.js";
 import { singularValues } from "./singular_values.js";
 import { Strip } from "./strip.js";
@@ -427,6 +428,7 @@ export class Viewer {
       points: this.scene.points.map(({ name, kind }) => ({ name, kind })),
       go: (form, s) => viewer.goByName(form, s),
       state: () => viewer.state(),
+      rods: () => viewer.rods(),
       play: () => viewer.player.play(),
       stop: () => viewer.stop(),
       route: (form) => viewer.routeTo(form),
@@ -435,6 +437,14 @@ export class Viewer {
         return viewer.view?.drawCalls ?? 0;
       },
     };
+  }
+
+  /** The rods that are drawn, as [[from, to], ...] in the unit and the frame of the axes. */
+  rods() {
+    const { size } = this.scene.loop;
+    const frames = jointFrames(this.unitTable, this.position.angles);
+    const { rods } = drawnParts(this.unitTable, frames, seatHeights(this.unitTable));
+    return rods.map(({ from, to }) => [from, to].map((end) => end.map((x) => size * x)));
   }
 
   goByName(form, s) {
