@@ -3,7 +3,7 @@
 import { drawing } from "./elements.js";
 
 const INCH = 88; // pixels
-const LEAST = 0.62; // of that, before the drawing scrolls instead
+const GAP = 40; // pixels between boxes, for the name of an edge
 const NAME_WIDTH = 18; // letters of a line in a box
 const LINE = 14; // pixels
 
@@ -29,18 +29,12 @@ export class FormGraph {
     if (!this.colorOf || !names.length || room < 80) return;
     const boxes = names.map((name) => boxOf(name));
     const points = [...places, ...edges.flatMap((edge) => edge.line)];
-    const low = [0, 1].map((k) => Math.min(...points.map((p) => p[k])));
-    const high = [0, 1].map((k) => Math.max(...points.map((p) => p[k])));
-    const across = Math.max(...boxes.map((box) => box.w)) + 12;
-    const down = Math.max(...boxes.map((box) => box.h)) + 12;
-    const fitting = (room - across) / Math.max(high[0] - low[0], 1e-9);
-    const scale = Math.max(Math.min(INCH, fitting), LEAST * INCH);
-    const width = Math.max((high[0] - low[0]) * scale + across, room);
-    const height = (high[1] - low[1]) * scale + down;
-    const shift = (width - (high[0] - low[0]) * scale) / 2;
-    this.place = ([x, y]) => [shift + (x - low[0]) * scale, down / 2 + (high[1] - y) * scale];
-    this.svg.setAttribute("width", width);
-    this.svg.setAttribute("height", height);
+    const upright = layOut(points, places, boxes, room, INCH, ([x, y]) => [x, -y]);
+    const turned = layOut(points, places, boxes, room, 0, ([x, y]) => [-y, x]);
+    const layout = upright.width > room && turned.width < upright.width ? turned : upright;
+    this.place = layout.place;
+    this.svg.setAttribute("width", layout.width);
+    this.svg.setAttribute("height", layout.height);
     this.boxes = new Map();
     const lines = edges.flatMap((edge) => this.edge(edge));
     this.svg.replaceChildren(...lines, ...names.map((name, k) => this.box(name, boxes[k], places[k])));
@@ -88,6 +82,39 @@ export class FormGraph {
     this.position = position;
     for (const [track, box] of this.boxes ?? []) box.classList.toggle("bv-current", track === position.track);
   }
+}
+
+/** Where places (inches) come to stand, turned, in a drawing as wide as the room, or wider where boxes would overlap.
+ *
+ * An inch takes up to `inch` pixels, and more only where boxes would overlap. */
+function layOut(points, places, boxes, room, inch, turn) {
+  const turned = points.map(turn);
+  const low = [0, 1].map((k) => Math.min(...turned.map((p) => p[k])));
+  const span = [0, 1].map((k) => Math.max(...turned.map((p) => p[k])) - low[k]);
+  const across = Math.max(...boxes.map((box) => box.w)) + 12;
+  const down = Math.max(...boxes.map((box) => box.h)) + 12;
+  const fitting = Math.min(inch, (room - across) / Math.max(span[0], 1e-9));
+  const scale = Math.max(fitting, scaleWithoutOverlap(places.map(turn), boxes));
+  const width = Math.max(span[0] * scale + across, room);
+  const shift = (width - span[0] * scale) / 2;
+  const place = (point) => {
+    const [x, y] = turn(point);
+    return [shift + (x - low[0]) * scale, down / 2 + (y - low[1]) * scale];
+  };
+  return { place, width, height: span[1] * scale + down };
+}
+
+/** The least scale at which every two boxes are apart, sideways or in height. */
+function scaleWithoutOverlap(places, boxes) {
+  let scale = 0;
+  for (let i = 0; i < places.length; i += 1) {
+    for (let j = 0; j < i; j += 1) {
+      const sideways = ((boxes[i].w + boxes[j].w) / 2 + GAP) / Math.abs(places[i][0] - places[j][0]);
+      const inHeight = ((boxes[i].h + boxes[j].h) / 2 + GAP) / Math.abs(places[i][1] - places[j][1]);
+      scale = Math.max(scale, Math.min(sideways, inHeight, 2 * INCH));
+    }
+  }
+  return scale;
 }
 
 function boxOf(name) {

@@ -1,6 +1,7 @@
 // The entry: a page with a document in it shows that; a notebook calls `render`.
 
 import styles from "./style.css";
+import { makeApi } from "./api.js";
 import { element } from "./elements.js";
 import { Viewer } from "./viewer.js";
 
@@ -16,7 +17,7 @@ function showPage(holder) {
   const root = document.getElementById(ROOT);
   addStyles(document.head);
   const viewer = new Viewer(root, JSON.parse(holder.textContent), document);
-  window.bifurc = viewer.api;
+  window.bifurc = makeApi(viewer);
   requestAnimationFrame(() => requestAnimationFrame(() => (document.body.dataset.ready = "true")));
 }
 
@@ -43,17 +44,17 @@ function keepTogether(model, root, viewer) {
   let isFollowing = false;
   let timer;
   const follow = () => {
-    const state = viewer.state();
-    if (state.form === model.get("form") && state.s === model.get("position")) return;
+    const { track, s } = viewer.position;
+    if (track.name === model.get("form") && s === model.get("position")) return;
     isFollowing = true;
     viewer.goByName(model.get("form"), model.get("position"));
     isFollowing = false;
   };
   const tell = () => {
     timer = undefined;
-    const { form, s } = viewer.state();
+    const { track, s } = viewer.position;
     model.off("change:form change:position", follow);
-    model.set("form", form);
+    model.set("form", track.name);
     model.set("position", s);
     model.on("change:form change:position", follow);
     model.save_changes();

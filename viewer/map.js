@@ -189,8 +189,9 @@ export class TransitionMap {
     if (box.x < this.left || box.x + box.w > this.left + this.side) cost += 40;
     if (box.y < MARGIN.top || box.y + box.h > MARGIN.top + this.side) cost += 40;
     for (const other of taken) if (overlaps(box, other)) cost += 30;
-    for (const [x, y] of this.curvePlaces) if (contains(box, x, y)) cost += 1;
-    return cost;
+    let covered = 0;
+    for (const [x, y] of this.curvePlaces) covered += contains(box, x, y);
+    return cost + Math.min(covered, 15);
   }
 
   /** Say so where there is no form. */

@@ -1,26 +1,31 @@
 // The viewer: the linkage beside its map, kept together by one position.
 
-import { angleName, linkName } from "./angles.js";
 import { BranchChoice, FormList, RouteBar } from "./choices.js";
 import { leavingBranches, nextPass, passAt, passesOf } from "./crossings.js";
 import { element } from "./elements.js";
 import { FormGraph } from "./graph.js";
-import { KEYS_IN_WORDS, listenToKeys } from "./keyboard.js";
-import { jointAxes, jointFrames, jointScrews, linkTable } from "./kinematics.js";
+import { listenToKeys } from "./keyboard.js";
+import { jointFrames, jointScrews, linkTable } from "./kinematics.js";
 import { LinkageView } from "./linkage.js";
 import { TransitionMap } from "./map.js";
 import { DistanceBar, Numbers } from "./numbers.js";
 import { jointPlane, principalPlane } from "./planes.js";
 import { Player } from "./player.js";
 import { Position } from "./position.js";
-import { drawnParts, seatHeights } from "./rods.js";
 import { arcsOf, lengthOf, middleOf, placeAlong, shortestRoute } from "./route.js";
 import { singularValues } from "./singular_values.js";
 import { Strip } from "./strip.js";
+import { header, legend, MapTools, MotionTools, SpaceTools } from "./tools.js";
 import { findTrack, inOrder, isCurve, tracksOf } from "./tracks.js";
 
 const GHOST_SPACING = 1 / 30; // of a form, between ghosts
 const CHART_POINTS = 360;
+
+function offersWebGL() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  context?.getExtension("WEBGL_lose_context")?.loseContext(); // browsers allow but a few of them
+  return Boolean(context);
+}
 
 export class Viewer {
   /** Show a document of linkages/viewing/document.py in `root`; keys are listened to at `keys`. */
@@ -71,10 +76,21 @@ export class Viewer {
     });
     this.root.classList.add("bifurc-viewer");
     this.root.setAttribute("tabindex", "0");
+    this.spaceTools = new SpaceTools(scene, this);
+    this.mapTools = new MapTools(scene, () => this.choosePlane());
+    this.motionTools = new MotionTools(scene, this);
+    const controls = [
+      this.formList.node,
+      this.strip.node,
+      this.motionTools.node,
+      this.distanceBar.node,
+      this.routeBar.node,
+      this.numbers.node,
+    ];
     this.root.append(
-      this.header(),
-      element("section", { class: "bv-left" }, this.spaceTools(), this.space, this.controls()),
-      element("section", { class: "bv-right" }, this.mapTools(), this.mapBox, this.legend(), this.graphBox),
+      header(scene, () => this.toggleTheme()),
+      element("section", { class: "bv-left" }, this.spaceTools.node, this.space, element("div", { class: "bv-controls" }, ...controls)),
+      element("section", { class: "bv-right" }, this.mapTools.node, this.mapBox, legend(scene), this.graphBox),
     );
     this.map = new TransitionMap(this.mapBox, scene, tracks, actions);
     this.graph = new FormGraph(this.graphBox, scene, tracks, actions);
@@ -84,100 +100,18 @@ export class Viewer {
     this.map.setPlane(jointPlane(...scene.plane));
   }
 
-  header() {
-    const help = element("details", { class: "bv-help" }, element("summary", { title: "keys" }, "?"));
-    const rows = KEYS_IN_WORDS.map(([keys, words]) => element("tr", {}, element("th", {}, keys), element("td", {}, words)));
-    help.append(element("table", {}, ...rows));
-    const theme = element("button", { class: "bv-theme", title: "dark or light (D)", onclick: () => this.toggleTheme() }, "◐");
-    const words = [this.scene.verdict, this.scene.completeness].filter(Boolean).join(" ");
-    return element("header", {}, element("h1", {}, this.scene.title), element("p", { title: words }, words), theme, help);
-  }
-
   makeSpace() {
-    try {
+    if (offersWebGL()) {
       this.view = new LinkageView(this.space, this.scene);
-    } catch (error) {
-      const words = "The linkage cannot be drawn: this browser offers no WebGL 2. Map and numbers work without it.";
-      this.space.append(element("p", { class: "bv-no-webgl" }, words));
       return;
     }
-    this.view.show(this.position.angles);
-  }
-
-  spaceTools() {
-    const n = this.scene.loop.lengths.length;
-    this.linkSelect = element("select", { "aria-label": "link that is held still", onchange: () => this.holdLink(Number(this.linkSelect.value)) });
-    for (let frame = 0; frame < n; frame += 1) {
-      const joint = frame === 0 ? n : frame;
-      this.linkSelect.append(element("option", { value: frame }, linkName(joint, n)));
-    }
-    this.ghostButton = element("button", { title: "ghosts of earlier positions (G)", "aria-pressed": "false", onclick: () => this.toggleGhosts() }, "Ghosts");
-    const all = element("button", { title: "see all again (R)", onclick: () => this.resetView() }, "See all");
-    return element("div", { class: "bv-space-tools" }, element("label", {}, "fixed link ", this.linkSelect), this.ghostButton, all);
-  }
-
-  controls() {
-    this.playButton = element("button", { class: "bv-play", title: "play and pause (Space)", onclick: () => this.togglePlay() }, "▶");
-    this.backButton = element("button", { class: "bv-back", title: "play backwards", onclick: () => this.playBackwards() }, "◀");
-    const speed = element("select", { "aria-label": "speed" });
-    for (const factor of [0.25, 0.5, 1, 2, 4]) speed.append(element("option", { value: factor, selected: factor === 1 }, `${factor}×`));
-    speed.addEventListener("change", () => (this.player.speed = Number(speed.value)));
-    const pause = element("input", { type: "checkbox", checked: true });
-    pause.addEventListener("change", () => (this.player.pausesAtBifurcations = pause.checked));
-    const pauses = element("label", { class: "bv-pauses" }, pause, " pause at bifurcations");
-    const hasBifurcations = this.scene.points.some((point) => point.leaving > 2);
-    if (!hasBifurcations) pauses.classList.add("bv-hidden");
-    this.placeText = element("span", { class: "bv-place" });
-    return element(
-      "div",
-      { class: "bv-controls" },
-      this.formList.node,
-      this.strip.node,
-      element("div", { class: "bv-row" }, this.backButton, this.playButton, speed, pauses, this.placeText),
-      this.distanceBar.node,
-      this.routeBar.node,
-      this.numbers.node,
-    );
-  }
-
-  mapTools() {
-    const n = this.scene.loop.lengths.length;
-    const options = (chosen) => {
-      const select = element("select", { onchange: () => this.choosePlane() });
-      for (let i = 0; i < n; i += 1) select.append(element("option", { value: i, selected: i === chosen }, angleName(i + 1)));
-      return select;
-    };
-    [this.across, this.up] = this.scene.plane.map(options);
-    this.across.setAttribute("aria-label", "horizontal axis of the map");
-    this.up.setAttribute("aria-label", "vertical axis of the map");
-    this.principal = element("input", { type: "checkbox", onchange: () => this.choosePlane() });
-    return element(
-      "div",
-      { class: "bv-row bv-map-tools" },
-      element("label", {}, "map: ", this.across),
-      element("label", {}, " against ", this.up),
-      element("label", {}, this.principal, " principal plane"),
-    );
+    const words = "The linkage cannot be drawn: this browser offers no WebGL 2. Map and numbers work without it.";
+    this.space.append(element("p", { class: "bv-no-webgl" }, words));
   }
 
   choosePlane() {
-    const [i, j] = [Number(this.across.value), Number(this.up.value)];
-    this.across.disabled = this.up.disabled = this.principal.checked;
-    this.map.setPlane(this.principal.checked ? principalPlane(this.scene.principal, this.tracks) : jointPlane(i, j));
-  }
-
-  /** What the marks of the map mean, as far as there are any. */
-  legend() {
-    const kinds = new Set(this.scene.points.map((point) => point.kind));
-    const entries = [];
-    if (kinds.delete("bifurcation")) entries.push("○ bifurcation");
-    if (kinds.delete("rank drop")) entries.push("◇ rank drop");
-    for (const kind of kinds) entries.push(`□ ${kind}`);
-    if (this.scene.near_misses.length) entries.push("▾ near miss");
-    if (this.scene.assemblies.length) entries.push("× rigid assembly");
-    if (this.scene.near_motions.length) entries.push("× near motion");
-    if (this.scene.surfaces.length) entries.push("∴ mobility 2 or more");
-    return element("div", { class: "bv-legend" }, ...entries.map((entry) => element("span", {}, entry)));
+    const { isPrincipal, joints } = this.mapTools;
+    this.map.setPlane(isPrincipal ? principalPlane(this.scene.principal, this.tracks) : jointPlane(...joints));
   }
 
   // --- colours -----------------------------------------------------------------------
@@ -236,9 +170,7 @@ export class Viewer {
     this.numbers.show(angles, this.singularValuesAt(angles));
     this.distanceBar.show(position);
     this.showPoint();
-    this.placeText.textContent = isCurve(track)
-      ? `${((s * 180) / Math.PI).toFixed(1)}° of ${((track.length * 180) / Math.PI).toFixed(1)}° along ${track.name}`
-      : `${track.name}: ${s + 1} of ${track.samples.length}`;
+    this.motionTools.show(position);
     this.root.dispatchEvent(new CustomEvent("bifurc-position", { detail: { form: track.name, s } }));
   }
 
@@ -323,6 +255,14 @@ export class Viewer {
     if (next) this.goTo(track, next.s);
   }
 
+  /** Go to a track by its name or number, to the middle of its longest arc where `s` is left out. */
+  goByName(name, s) {
+    const track = findTrack(this.listed, name);
+    if (!track) throw new RangeError(`form ${name}: it must be one of ${this.listed.map((one) => one.name).join(", ")}`);
+    if (s !== undefined && !Number.isFinite(s)) throw new RangeError(`s = ${s}: it must be a finite number`);
+    this.goTo(track, s ?? (isCurve(track) ? middleOf(this.arcs, track) : 0));
+  }
+
   /** Leave a singular point along a branch that it offers. */
   leave({ track, s, direction }) {
     this.player.stop();
@@ -351,10 +291,7 @@ export class Viewer {
   }
 
   showPlaying() {
-    const { isPlaying } = this.player;
-    this.playButton.textContent = isPlaying ? "❚❚" : "▶";
-    this.backButton.disabled = isPlaying;
-    this.root.classList.toggle("bv-playing", isPlaying);
+    this.motionTools.showPlaying(this.player.isPlaying);
   }
 
   /** The legs of the shortest route from here to the middle of a form's longest arc; undefined where there is none. */
@@ -393,7 +330,7 @@ export class Viewer {
 
   toggleGhosts() {
     this.ghostsAreOn = !this.ghostsAreOn;
-    this.ghostButton.setAttribute("aria-pressed", String(this.ghostsAreOn));
+    this.spaceTools.showGhosts(this.ghostsAreOn);
     if (this.ghostsAreOn) this.leaveGhost();
     else this.view?.clearGhosts();
   }
@@ -403,9 +340,7 @@ export class Viewer {
   }
 
   holdNextLink() {
-    const next = (Number(this.linkSelect.value) + 1) % this.scene.loop.lengths.length;
-    this.linkSelect.value = next;
-    this.holdLink(next);
+    this.holdLink(this.spaceTools.chooseNextLink());
   }
 
   resetView() {
@@ -415,58 +350,5 @@ export class Viewer {
   dispose() {
     this.player.stop();
     this.view?.dispose();
-  }
-
-  // --- for scripts -------------------------------------------------------------------
-
-  /** What `window.bifurc` offers. */
-  get api() {
-    const viewer = this;
-    return {
-      forms: this.listed.filter(isCurve).map(({ name, length, closed }) => ({ name, length, closed })),
-      lists: this.tracks.filter((track) => !isCurve(track)).map(({ name, samples }) => ({ name, count: samples.length })),
-      points: this.scene.points.map(({ name, kind }) => ({ name, kind })),
-      go: (form, s) => viewer.goByName(form, s),
-      state: () => viewer.state(),
-      rods: () => viewer.rods(),
-      play: () => viewer.player.play(),
-      stop: () => viewer.stop(),
-      route: (form) => viewer.routeTo(form),
-      playRoute: (form, seconds) => viewer.playRoute(form, seconds),
-      get drawCalls() {
-        return viewer.view?.drawCalls ?? 0;
-      },
-    };
-  }
-
-  /** The rods that are drawn, as [[from, to], ...] in the unit and the frame of the axes. */
-  rods() {
-    const { size } = this.scene.loop;
-    const frames = jointFrames(this.unitTable, this.position.angles);
-    const { rods } = drawnParts(this.unitTable, frames, seatHeights(this.unitTable));
-    return rods.map(({ from, to }) => [from, to].map((end) => end.map((x) => size * x)));
-  }
-
-  goByName(form, s) {
-    const track = findTrack(this.listed, form);
-    if (!track) throw new RangeError(`form ${form}: it must be one of ${this.tracks.map(({ name }) => name).join(", ")}`);
-    if (s !== undefined && !Number.isFinite(s)) throw new RangeError(`s = ${s}: it must be a finite number`);
-    this.goTo(track, s ?? (isCurve(track) ? middleOf(this.arcs, track) : 0));
-    return this.state();
-  }
-
-  state() {
-    const { track, s } = this.position;
-    const angles = this.position.angles;
-    const frames = jointFrames(this.table, angles);
-    return {
-      form: track.name,
-      s,
-      angles: Array.from(angles),
-      axes: jointAxes(frames),
-      end: Array.from(frames.slice(-12)),
-      singular_values: this.singularValuesAt(angles),
-      playing: this.player.isPlaying,
-    };
   }
 }
