@@ -47,7 +47,9 @@ viewer:  ## the script of the pages of `bifurc view`, built anew from viewer/ (n
 
 # Tests of the viewer drive a browser; where there is none, and none can be installed, they are skipped and say so.
 chromium:  ## a browser without a window, from Debian's packages, where that is possible
-	@command -v chromium-headless-shell chromium google-chrome >/dev/null && exit 0; \
+	@for name in chromium-headless-shell chromium google-chrome; do \
+	  command -v $$name >/dev/null && exit 0; \
+	done; \
 	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
 	  apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium-headless-shell fonts-dejavu-core \
 	    >/dev/null || echo "no chromium could be installed: tests of the viewer are skipped"; \
