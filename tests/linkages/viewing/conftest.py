@@ -121,28 +121,55 @@ def browser():
         chromium.close()
 
 
+def open_page(browser, name, folder, window=WINDOW, before="", **options):
+    """The page of a linkage, opened from disk and ready to be used."""
+    atlas = mapped(name)
+    path = folder / "page.html"
+    write_page(make_view_document(atlas, judge(atlas).sentence), path)
+    context = browser.new_context(viewport=window, **options)
+    if before:
+        context.add_init_script(before)
+    page = context.new_page()
+    shown = OpenPage(page, atlas, [], [])
+    page.on("console", lambda message: shown.messages.append(message.text))
+    page.on("pageerror", lambda error: shown.messages.append(str(error)))
+    page.on("request", lambda request: shown.requests.append(request.url))
+    page.goto(path.as_uri())
+    page.wait_for_selector("body[data-ready=true]", timeout=20_000)
+    return shown
+
+
 @pytest.fixture
 def show(browser, tmp_path):
-    """A function that opens the page of a linkage from disk, ready to be used."""
-    contexts = []
+    """A function that opens the page of a linkage, as nobody has used it yet."""
+    opened = []
 
-    def open_page(name, window=WINDOW, before="", **options):
-        atlas = mapped(name)
-        path = tmp_path / "page.html"
-        write_page(make_view_document(atlas, judge(atlas).sentence), path)
-        context = browser.new_context(viewport=window, **options)
-        contexts.append(context)
-        if before:
-            context.add_init_script(before)
-        page = context.new_page()
-        shown = OpenPage(page, atlas, [], [])
-        page.on("console", lambda message: shown.messages.append(message.text))
-        page.on("pageerror", lambda error: shown.messages.append(str(error)))
-        page.on("request", lambda request: shown.requests.append(request.url))
-        page.goto(path.as_uri())
-        page.wait_for_selector("body[data-ready=true]", timeout=20_000)
+    def show_page(name, **options):
+        opened.append(open_page(browser, name, tmp_path, **options))
+        return opened[-1]
+
+    yield show_page
+    for shown in opened:
+        shown.page.context.close()
+
+
+@pytest.fixture(scope="session")
+def open_pages():
+    """The pages that tests share, by the names of their linkages."""
+    return {}
+
+
+@pytest.fixture
+def show_shared(browser, open_pages, tmp_path):
+    """A function that shows a linkage on a page that other tests use as well, at the
+    middle of its first form."""
+
+    def show_page(name):
+        if name not in open_pages:
+            open_pages[name] = open_page(browser, name, tmp_path)
+        shown = open_pages[name]
+        shown.bifurc("stop()")
+        shown.bifurc("go(1)")
         return shown
 
-    yield open_page
-    for context in contexts:
-        context.close()
+    return show_page

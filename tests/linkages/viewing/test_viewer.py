@@ -53,8 +53,8 @@ def test_a_page_opens_from_disk_without_a_word_and_draws_the_linkage(show, name)
 @pytest.mark.parametrize(
     "name", [DSG, "generic 7R", "spherical-four-bar", "huge", "tiny"]
 )
-def test_the_axes_in_the_browser_are_those_of_python_everywhere(show, name):
-    shown = show(name)
+def test_the_axes_in_the_browser_are_those_of_python_everywhere(show_shared, name):
+    shown = show_shared(name)
     loop, problem = loop_of(shown.atlas), LoopClosure(loop_of(shown.atlas))
     size = loop.characteristic_length
     for form in shown.atlas.forms:
@@ -80,8 +80,8 @@ def test_the_axes_in_the_browser_are_those_of_python_everywhere(show, name):
 
 
 @pytest.mark.parametrize("name", [DSG, "spherical-four-bar", "folded Sarrus"])
-def test_the_rods_that_are_drawn_are_those_of_python(show, name):
-    shown = show(name)
+def test_the_rods_that_are_drawn_are_those_of_python(show_shared, name):
+    shown = show_shared(name)
     loop, form = loop_of(shown.atlas), shown.atlas.forms[0]
     call = "f => { bifurc.go(f, 1.0); return bifurc.rods(); }"
     rods = np.array(shown.page.evaluate(call, form.name))
@@ -103,8 +103,8 @@ def test_the_slider_moves_the_rods(show):
     assert picture_of(shown) != picture
 
 
-def test_a_click_on_a_bifurcation_offers_the_branches_that_leave_it(show):
-    shown = show(DSG)
+def test_a_click_on_a_bifurcation_offers_the_branches_that_leave_it(show_shared):
+    shown = show_shared(DSG)
     point = shown.atlas.bifurcations[1]
     shown.click(f".bv-map [data-point={point.name}]")
     names = {shown.atlas.forms[form].name for form, _ in point.passes}
@@ -122,8 +122,8 @@ def test_a_click_on_a_bifurcation_offers_the_branches_that_leave_it(show):
     assert shown.bifurc("state().playing")
 
 
-def test_a_click_on_a_curve_takes_the_linkage_there(show):
-    shown = show("bennett")
+def test_a_click_on_a_curve_takes_the_linkage_there(show_shared):
+    shown = show_shared("bennett")
     plane = make_view_document(shown.atlas)["plane"]
     goal = shown.atlas.forms[0].branch(1.0)[list(plane)]
     frame = shown.page.locator(".bv-frame rect").bounding_box()
@@ -134,15 +134,15 @@ def test_a_click_on_a_curve_takes_the_linkage_there(show):
     assert shown.bifurc("state().s") == pytest.approx(1.0, abs=0.05)
 
 
-def test_a_click_on_the_graph_goes_to_the_form(show):
-    shown = show(DSG)
+def test_a_click_on_the_graph_goes_to_the_form(show_shared):
+    shown = show_shared(DSG)
     for form in shown.atlas.forms:
         shown.page.locator(f'.bv-graph [data-node="{form.name}"]').click()
         assert shown.bifurc("state().form") == form.name
 
 
-def test_a_route_plays_to_its_end_and_is_the_one_that_python_finds(show):
-    shown = show(DSG)
+def test_a_route_plays_to_its_end_and_is_the_one_that_python_finds(show_shared):
+    shown = show_shared(DSG)
     shown.bifurc("go('Form I')")
     start = shown.bifurc("state().angles")
     route = shown.bifurc("route('Form II')")
@@ -160,8 +160,8 @@ def test_a_route_plays_to_its_end_and_is_the_one_that_python_finds(show):
 
 
 @pytest.mark.parametrize("name", [DSG, "altmann"])
-def test_every_route_between_two_forms_is_as_long_as_that_of_python(show, name):
-    shown = show(name)
+def test_every_route_between_two_forms_is_as_long_as_that_of_python(show_shared, name):
+    shown = show_shared(name)
     names = [form.name for form in shown.atlas.forms]
     pairs = [(start, goal) for start in names for goal in names if start != goal]
     lengths = shown.page.evaluate(
@@ -191,8 +191,8 @@ def test_playing_pauses_at_a_bifurcation(show):
     assert shown.page.locator(".bv-choice button").count() == 4
 
 
-def test_keys_move_the_linkage(show):
-    shown = show(DSG)
+def test_keys_move_the_linkage(show_shared):
+    shown = show_shared(DSG)
     s = shown.bifurc("state().s")
     shown.page.keyboard.press("ArrowRight")
     assert shown.bifurc("state().s") > s
@@ -247,8 +247,10 @@ def test_forms_have_the_colours_of_the_figures(show, theme):
     ("name", "track", "count"),
     [("rigid", "rigid assemblies", 8), ("nearly Bennett", "near motions", 1)],
 )
-def test_configurations_that_do_not_move_are_shown_one_by_one(show, name, track, count):
-    shown = show(name)
+def test_configurations_that_do_not_move_are_shown_one_by_one(
+    show_shared, name, track, count
+):
+    shown = show_shared(name)
     assert {"name": track, "count": count} in shown.bifurc("lists")
     angles = [shown.bifurc(f"go('{track}', {k}).angles") for k in range(count)]
     assert len({tuple(one) for one in angles}) == count
@@ -257,8 +259,8 @@ def test_configurations_that_do_not_move_are_shown_one_by_one(show, name, track,
     assert loop.closure_error(np.array(angles)).max() < allowed
 
 
-def test_a_surface_is_shown_by_closed_configurations(show):
-    shown = show("folded Sarrus")
+def test_a_surface_is_shown_by_closed_configurations(show_shared):
+    shown = show_shared("folded Sarrus")
     (surface,) = shown.bifurc("lists")
     states = [
         shown.bifurc(f"go('surface 1', {k})") for k in range(0, surface["count"], 50)
@@ -268,8 +270,8 @@ def test_a_surface_is_shown_by_closed_configurations(show):
     assert loop.closure_error(angles).max() < 1e-9
 
 
-def test_where_a_surface_is_met_it_is_offered(show):
-    shown = show("folded Sarrus")
+def test_where_a_surface_is_met_it_is_offered(show_shared):
+    shown = show_shared("folded Sarrus")
     point = next(point for point in shown.atlas.points if point.surfaces)
     form, s = point.passes[0]
     name = shown.atlas.forms[form].name
@@ -278,15 +280,15 @@ def test_where_a_surface_is_met_it_is_offered(show):
     assert any("surface 1" in text for text in offered)
 
 
-def test_a_linkage_that_cannot_be_assembled_is_drawn_open(show):
-    shown = show("too long")
+def test_a_linkage_that_cannot_be_assembled_is_drawn_open(show_shared):
+    shown = show_shared("too long")
     assert shown.bifurc("state().form") == "open chain"
     assert "no form" in shown.page.locator(".bv-note").text_content()
     assert drawn_share(shown) > 0.002
 
 
-def test_wrong_calls_of_scripts_are_refused_by_name(show):
-    shown = show(DSG)
+def test_wrong_calls_of_scripts_are_refused_by_name(show_shared):
+    shown = show_shared(DSG)
     for call, words in (("go('Form X')", "form Form X"), ("go(1, NaN)", "s = NaN")):
         caught = f"() => {{ try {{ bifurc.{call} }} catch (e) {{ return `${{e}}` }} }}"
         assert words in shown.page.evaluate(caught)
