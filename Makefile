@@ -6,7 +6,7 @@ LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
   zero_offset_line_symmetric_bricard first_reconfigurable_bricard
 
-.PHONY: map test test-fragile test-processors lint studies bench dist clean
+.PHONY: map test test-fragile test-processors lint studies bench dist viewer chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -45,6 +45,19 @@ bench: .venv/ready  ## a short, fixed set of benchmarks, with versions and machi
 dist: .venv/ready  ## sdist and wheel into dist/
 	$(BIN)/python -m pip install --quiet build
 	$(BIN)/python -m build
+
+viewer:  ## the script of the pages of `bifurc view`, built anew from viewer/ (needs node and npm)
+	cd viewer && npm install --no-audit --no-fund --silent && node build.js
+
+# Tests of the viewer drive a browser; where there is none, and none can be installed, they are skipped and say so.
+chromium:  ## a browser without a window, from Debian's packages, where that is possible
+	@for name in chromium-headless-shell chromium google-chrome; do \
+	  command -v $$name >/dev/null && exit 0; \
+	done; \
+	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	  apt-get update -qq && apt-get install -y -qq --no-install-recommends chromium-headless-shell fonts-dejavu-core \
+	    >/dev/null || echo "no chromium could be installed: tests of the viewer are skipped"; \
+	else echo "no chromium here: tests of the viewer are skipped"; fi
 
 clean:
 	rm -rf .venv build dist out

@@ -14,3 +14,4 @@ from .loop import Loop as Loop
 from .mapping import map_linkage as map_linkage
 from .slices.assemblies import Assemblies as Assemblies
 from .slices.assemblies import isolated_assemblies as isolated_assemblies
+from .viewing.notebook import view as view

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from dataclasses import dataclass
 
-import networkx as nx
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
@@ -13,33 +11,14 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
 from bifurc.figures.drawing import note_emptiness
+from bifurc.figures.graph_layout import GraphEdge, lay_out_graph
 from bifurc.figures.style import RC, Style, form_style
-from bifurc.graphs import transition_graph
 
 __all__ = ["plot_form_graph"]
 
 SURFACE = Style("0.6", "-")
 MARGIN = 0.9  # around the forms, in inches
-REACH = 1.9  # distance between neighbouring forms, in inches
-BOW = 0.34  # between neighbouring edges of the same two forms, in inches
 NAME_WIDTH = 16  # letters of a line in a box
-EDGE_POINTS = 41
-LABEL_PLACES = (20, 16, 24, 13, 27)  # along the points of an edge, the best first
-CLEARANCE = 0.35  # between a name of an edge and other names, in inches
-
-
-@dataclass(frozen=True)
-class _Layout:
-    """What is drawn: the ``graph``, the ``names`` of its nodes in their order, and the
-    places (k, 2) where they stand, in inches."""
-
-    graph: nx.MultiGraph
-    names: list[str]
-    places: np.ndarray
-
-    def place(self, name: str) -> np.ndarray:
-        """Where a form or surface stands."""
-        return np.asarray(self.places[self.names.index(name)])
 
 
 def plot_form_graph(atlas: Atlas, figure: Figure | None = None) -> Figure:
@@ -48,7 +27,7 @@ def plot_form_graph(atlas: Atlas, figure: Figure | None = None) -> Figure:
 
     Surfaces that meet a form or another surface are grey boxes.
     """
-    layout = _layout(atlas)
+    layout = lay_out_graph(atlas)
     low = np.zeros(2)
     high = np.full(2, 2.0)
     if layout.names:
@@ -59,7 +38,8 @@ def plot_form_graph(atlas: Atlas, figure: Figure | None = None) -> Figure:
         axes = figure.add_axes((0, 0, 1, 1))
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         axes.set_axis_off()
-        _draw_edges(axes, layout)
+        for edge in layout.edges:
+            _draw_edge(axes, edge)
         for i, name in enumerate(layout.names):
             style = form_style(i) if i < len(atlas.forms) else SURFACE
             _draw_box(axes, name, layout.places[i], style)
@@ -87,114 +67,9 @@ def _draw_box(axes: Axes, name: str, place: np.ndarray, style: Style) -> None:
     )
 
 
-# --- where forms stand ----------------------------------------------------------------
-
-
-def _layout(atlas: Atlas) -> _Layout:
-    """All forms, then the surfaces that meet something; every component is laid out by
-    itself, side by side."""
-    everything = transition_graph(atlas)
-    names = [form.name for form in atlas.forms]
-    for surface in atlas.surfaces:
-        if everything.degree(surface.name):
-            names.append(surface.name)
-    graph = everything.subgraph(names)
-    places = np.zeros((len(names), 2))
-    left = 0.0
-    for indices in _components(graph, names):
-        members = [names[i] for i in indices]
-        spots = _component_places(nx.Graph(graph.subgraph(members)), members)
-        spots[:, 0] += left - spots[:, 0].min()
-        left = spots[:, 0].max() + REACH
-        places[indices] = spots
-    return _Layout(graph, names, places)
-
-
-def _components(graph: nx.MultiGraph, names: list[str]) -> list[list[int]]:
-    """Indices of the ``names`` of each connected component, all in their order."""
-    components = []
-    for members in nx.connected_components(graph):
-        components.append(sorted(names.index(name) for name in members))
-    return sorted(components)
-
-
-def _component_places(graph: nx.Graph, names: list[str]) -> np.ndarray:
-    """Places (k, 2) of the forms of one component about the origin, neighbours `REACH`
-    apart on average."""
-    k = len(names)
-    if k <= 2:
-        return np.stack([REACH * np.arange(k), np.zeros(k)], axis=1)
-    places = nx.kamada_kawai_layout(graph, pos=_circle(graph, names[0]))
-    spots = np.array([places[name] for name in names])
-    spots = _laid_flat(spots - spots.mean(axis=0))
-    lengths = []
-    for a, b in graph.edges:
-        if a != b:
-            lengths.append(
-                np.linalg.norm(spots[names.index(a)] - spots[names.index(b)])
-            )
-    return np.asarray(spots * (REACH / np.mean(lengths)))
-
-
-def _circle(graph: nx.Graph, first: str) -> dict[str, tuple[float, float]]:
-    """Places on a circle, neighbours side by side, so that a cycle becomes a circle."""
-    ring = list(nx.dfs_preorder_nodes(graph, first))
-    k = len(ring)
-    top = np.pi / 2 + (np.pi / k if k % 2 == 0 else 0.0)
-    angles = top - 2 * np.pi * np.arange(k) / k
-    places = zip(np.cos(angles), np.sin(angles), strict=True)
-    return dict(zip(ring, places, strict=True))
-
-
-def _laid_flat(spots: np.ndarray) -> np.ndarray:
-    """Places (k, 2) about the origin turned so that the long way, if there is one, lies
-    flat, with the first form at its left or upper end."""
-    _, extent, axes = np.linalg.svd(spots, full_matrices=False)
-    if extent[0] <= 1.2 * extent[1]:
-        return spots
-    turned = spots @ axes.T
-    turned *= np.where(turned[0] * [1, -1] > 0, -1.0, 1.0)
-    turned[:, 1] *= extent[1] > 0.05 * extent[0]  # a chain is drawn straight
-    return np.asarray(turned)
-
-
-# --- edges ----------------------------------------------------------------------------
-
-
-def _draw_edges(axes: Axes, layout: _Layout) -> None:
-    """Edges between the same two forms bow apart; each carries its name where no other
-    name is near."""
-    labels = layout.places  # where names stand, those of forms and then of edges too
-    for (first, last), keys in _edges_between(layout).items():
-        start = layout.place(first)
-        end = layout.place(last)
-        for number, key in enumerate(keys):
-            line = _edge(start, end, number, len(keys))
-            axes.plot(line[:, 0], line[:, 1], color="0.35", linewidth=1.2, zorder=1)
-            label = _label_place(line, labels)
-            labels = np.vstack([labels, label])
-            _draw_name(axes, key, label)
-
-
-def _edges_between(layout: _Layout) -> dict[tuple[str, str], list[str]]:
-    """The names of the edges between each two forms that have any, B2 before B10."""
-    order = layout.names.index
-    between: dict[tuple[str, str], list[str]] = {}
-    for a, b, key in layout.graph.edges(keys=True):
-        first, last = sorted((a, b), key=order)
-        between.setdefault((first, last), []).append(key)
-    for keys in between.values():
-        keys.sort(key=lambda name: (len(name), name))
-    return between
-
-
-def _label_place(line: np.ndarray, labels: np.ndarray) -> np.ndarray:
-    """The point (2,) of a line at which a name stands, away from other ``labels`` (k,
-    2) if there is one."""
-    for i in LABEL_PLACES:
-        if np.linalg.norm(labels - line[i], axis=1).min() > CLEARANCE:
-            return np.asarray(line[i])
-    return np.asarray(line[LABEL_PLACES[0]])
+def _draw_edge(axes: Axes, edge: GraphEdge) -> None:
+    axes.plot(edge.line[:, 0], edge.line[:, 1], color="0.35", linewidth=1.2, zorder=1)
+    _draw_name(axes, edge.name, edge.label)
 
 
 def _draw_name(axes: Axes, name: str, place: np.ndarray) -> None:
@@ -208,24 +83,3 @@ def _draw_name(axes: Axes, name: str, place: np.ndarray) -> None:
         zorder=2,
         bbox={"boxstyle": "square,pad=0.15", "facecolor": "white", "linewidth": 0},
     )
-
-
-def _edge(start: np.ndarray, end: np.ndarray, number: int, count: int) -> np.ndarray:
-    """Points (41, 2) of one of ``count`` edges between two places, a loop above where
-    these are the same."""
-    t = np.linspace(0.0, 1.0, EDGE_POINTS)[:, None]
-    if np.array_equal(start, end):
-        return _loop(start, 0.4 + 0.15 * number, t)
-    step = end - start
-    normal = np.array([step[1], -step[0]]) / np.linalg.norm(step)
-    upward = np.sign(-normal[1] or -normal[0])
-    bow = 2 * BOW * (number - (count - 1) / 2)
-    bulge = 4 * t * (1 - t) * bow * upward * normal
-    return np.asarray(start + t * step + bulge)
-
-
-def _loop(place: np.ndarray, size: float, t: np.ndarray) -> np.ndarray:
-    """Points (k, 2) at fractions ``t`` (k, 1) of a loop that stands on a place."""
-    angle = 2 * np.pi * t - np.pi / 2
-    ellipse = size * np.hstack([0.8 * np.cos(angle), np.sin(angle)])
-    return np.asarray(place + np.array([0.0, size]) + ellipse)

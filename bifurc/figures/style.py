@@ -6,7 +6,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 from bifurc.singular.point import Kind
 
-__all__ = ["RC", "Dashes", "Mark", "Style", "form_style", "mark_of"]
+__all__ = ["RC", "Dashes", "Mark", "Style", "color_on_dark", "form_style", "mark_of"]
 
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
@@ -50,6 +50,8 @@ COLORS = (
     "#000000",
     "#7F3C8D",
 )
+# what stands for the colours that cannot be seen on a dark page
+ON_DARK = {"#000000": "#FFFFFF", "#7F3C8D": "#B98BC9"}
 DASHES: tuple[Dashes, ...] = (
     "-",
     (0, (6, 2)),
@@ -82,6 +84,12 @@ def form_style(index: int) -> Style:
     """Style of form number ``index``: colours and dashes repeat, but not together
     before 24 forms."""
     return Style(COLORS[index % len(COLORS)], DASHES[index % len(DASHES)])
+
+
+def color_on_dark(color: str) -> str:
+    """The colour that stands for ``color`` on a dark page: the same where it can be
+    seen there."""
+    return ON_DARK.get(color, color)
 
 
 def mark_of(kind: Kind) -> Mark:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["replace_file", "replace_files"]
+__all__ = ["replace_file", "replace_files", "require_replaceable"]
 
 HIDDEN = ".writing-"  # how the names of the temporary folders begin
 Writer = Callable[[Path], object]
@@ -31,6 +31,16 @@ def replace_file(path: str | os.PathLike[str], write: Writer) -> Path:
         _flush(part)
         os.replace(part, target)
     return target
+
+
+def require_replaceable(path: str | os.PathLike[str]) -> None:
+    """Make sure that `replace_file` can make ``path``, which is left alone; raises
+    `OSError` that names it."""
+    target = Path(path)
+    _check_folder(target.parent)
+    _check_target(target)
+    with _errors_about(target), _hidden_folder(target.parent):
+        pass
 
 
 def replace_files(folder: str | os.PathLike[str], write: Writer) -> list[Path]:

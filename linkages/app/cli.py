@@ -11,6 +11,8 @@ import difflib
 import click
 
 from bifurc.errors import BifurcError
+from linkages.app.commands.clearance_command import clearance_command
+from linkages.app.commands.export_command import export_command
 from linkages.app.commands.identify_command import identify_command
 from linkages.app.commands.list_command import list_command
 from linkages.app.commands.map_command import map_command
@@ -19,6 +21,7 @@ from linkages.app.commands.show_command import show_command
 from linkages.app.commands.sweep_command import sweep_command
 from linkages.app.commands.tolerance_command import tolerance_command
 from linkages.app.commands.verify_command import verify_command
+from linkages.app.commands.view_command import view_command
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.status import library_messages
 
@@ -122,7 +125,10 @@ for command in (
     show_command,
     identify_command,
     map_command,
+    view_command,
     route_command,
+    export_command,
+    clearance_command,
     sweep_command,
     tolerance_command,
     verify_command,

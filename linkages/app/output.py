@@ -13,7 +13,7 @@ import click
 
 from linkages.app.exit_codes import CommandError
 
-__all__ = ["require_folder", "say", "say_json", "writing_to"]
+__all__ = ["require_folder", "require_writable", "say", "say_json", "writing_to"]
 
 
 def say(text: str) -> None:
@@ -52,6 +52,15 @@ def require_folder(out: Path) -> None:
 
     with writing_to(out):
         prepare_folder(out)
+
+
+def require_writable(out: Path) -> None:
+    """Make sure, before anything is computed, that the file ``out`` can be written;
+    raises `CommandError`."""
+    from bifurc.files.atomic import require_replaceable
+
+    with writing_to(out):
+        require_replaceable(out)
 
 
 @contextmanager

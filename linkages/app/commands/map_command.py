@@ -27,7 +27,7 @@ __all__ = ["map_command"]
 
 @click.command("map", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
-@out_option("dataset, graph, summary and figures")
+@out_option("dataset, graph, summary, figures and the page map.html")
 @json_option("; angles in radians")
 @click.option(
     "--no-certify",
@@ -93,6 +93,7 @@ def map_command(
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
         paths += draw_figures(atlas, out)
+        paths.append(write_map_page(atlas, out))
         names = ", ".join(path.name for path in paths)
         click.echo(f"wrote {names} to {out}", err=True)
     verdict = judge(atlas)
@@ -124,6 +125,18 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
 
     with writing_to(out):
         return write_data(atlas, out, make_summary(atlas))
+
+
+def write_map_page(atlas: Atlas, out: Path) -> Path:
+    """The path of the page that `bifurc view` makes, just written to ``out``."""
+    from linkages.app.output import writing_to
+    from linkages.app.verdict import judge
+    from linkages.viewing.document import make_view_document
+    from linkages.viewing.page import write_page
+
+    document = make_view_document(atlas, judge(atlas).sentence)
+    with writing_to(out):
+        return write_page(document, out / "map.html")
 
 
 def draw_figures(atlas: Atlas, out: Path) -> list[Path]:

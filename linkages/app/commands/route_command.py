@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = ["route_command"]
 
-ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
-
 
 @click.command("route", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
@@ -49,38 +47,22 @@ def route_command(
       bifurc route special-double-subtractive-goldberg "Form I" "Bennett 4R"
       bifurc route out/atlas.nc "Form III" "Form IV"
     """
+    from linkages.app.atlas_source import atlas_of
     from linkages.app.output import say
     from linkages.app.route_text import describe_route
     from linkages.app.status import say_more
+    from linkages.app.verdict import judge
 
     if verbose:
         say_more()
-    atlas = _atlas_of(source, parameters, search)
+    atlas = atlas_of(source, parameters, search)
+    if not atlas.forms and not atlas.surfaces:
+        verdict = judge(atlas)
+        raise CommandError(verdict.sentence, verdict.code)
     start_name = atlas.full_name(start)
     goal_name = atlas.full_name(goal)
     route = _route_between(atlas, start_name, goal_name)
     say(describe_route(atlas, route, start_name, goal_name))
-
-
-def _atlas_of(source: str, parameters: tuple[str, ...], search: SearchOptions) -> Atlas:
-    """The saved atlas, or that of the linkage, called ``source``. Raises `CommandError`
-    where it has nothing that a route could lead along."""
-    from linkages.app.atlas_file import open_linkage_atlas
-    from linkages.app.choice import choose_linkage
-    from linkages.app.exploration import explore_linkage, require_uninterrupted
-    from linkages.app.verdict import judge
-
-    if source.endswith(ATLAS_FILE):
-        if parameters:
-            raise CommandError("--param: it has no effect on a saved atlas")
-        atlas = open_linkage_atlas(source)
-    else:
-        atlas = explore_linkage(choose_linkage(source, parameters), search)
-        require_uninterrupted(atlas)
-    if not atlas.forms and not atlas.surfaces:
-        verdict = judge(atlas)
-        raise CommandError(verdict.sentence, verdict.code)
-    return atlas
 
 
 def _route_between(atlas: Atlas, start: str, goal: str) -> Route:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from bifurc.files.atomic import replace_file, replace_files
+from bifurc.files.atomic import replace_file, replace_files, require_replaceable
 
 
 def names(folder: Path) -> list[str]:
@@ -133,3 +133,16 @@ def test_no_file_of_a_folder_is_replaced_where_one_cannot_be(tmp_path) -> None:
     with pytest.raises(IsADirectoryError, match=r"b\.txt"):
         replace_files(tmp_path, write)
     assert (tmp_path / "a.txt").read_text() == "old"
+
+
+def test_whether_a_file_can_be_replaced_is_found_out_without_touching_it(tmp_path):
+    path = tmp_path / "file"
+    require_replaceable(path)
+    assert list(tmp_path.iterdir()) == []
+    path.write_text("older")
+    require_replaceable(path)
+    assert path.read_text() == "older"
+    for wrong in (tmp_path, tmp_path / "nowhere" / "file", Path("/dev/full")):
+        with pytest.raises(OSError) as caught:
+            require_replaceable(wrong)
+        assert str(caught.value.filename) in str(wrong)

@@ -130,6 +130,7 @@ BAD = {
     "an option without its value": (("map", "kite", "--seed"), "requires an argument"),
     # names
     "a name with a typo": (("map", "benett"), "the nearest names are bennett"),
+    "a name with a typo to view": (("view", "benet"), "bennett"),
     "a name with a typo to show": (("show", "benet"), "bennett"),
     "a name with a typo to identify": (("identify", "benet"), "bennett"),
     "a name with a typo to verify": (("verify", "benet"), "bennett"),
@@ -240,6 +241,54 @@ BAD = {
     "an atlas of no linkage": (("route", "circle.nc", "Form 1", "Form 1"), "circle.nc"),
     "an unknown form": (("route", "kite.nc", "kite", "nothing"), "it must be one of"),
     "a form with a typo": (("route", "kite.nc", "kit form", "folded"), "'kite form'"),
+    "a missing atlas to view": (("view", "nowhere.nc"), "there is no such file"),
+    "a damaged atlas to view": (("view", "damaged.nc"), "damaged.nc"),
+    "an atlas of no linkage to view": (("view", "circle.nc"), "not of a linkage"),
+    "parameters for an atlas to view": (
+        ("view", "kite.nc", "--param", "a=1"),
+        "--param",
+    ),
+    # models, tables, clearances
+    "a name with a typo to export": (("export", "benet", "--to", "a.glb"), "bennett"),
+    "an export to nowhere": (("export", "kite"), "Missing option '--to'"),
+    "an export of an unknown kind": (
+        ("export", "kite", "--to", "a.obj"),
+        "it must end with .glb or .csv",
+    ),
+    "an export in no folder": (("export", "kite", "--to", "no/a.glb"), "no such"),
+    "an export of an unknown form": (
+        ("export", "kite.nc", "--to", "a.glb", "--form", "nothing"),
+        "it must be one of",
+    ),
+    "an export of a form beyond the last": (
+        ("export", "kite.nc", "--to", "a.glb", "--form", "7"),
+        "a number from 1 to 2",
+    ),
+    "an export of one configuration": (
+        ("export", "kite.nc", "--to", "a.glb", "--count", "1"),
+        "not in the range",
+    ),
+    "an export of an atlas of no linkage": (
+        ("export", "circle.nc", "--to", "a.glb"),
+        "not of a linkage",
+    ),
+    "a clearance of links of no number": (
+        ("clearance", "kite", "--diameter", "nan"),
+        "nan",
+    ),
+    "a clearance of links of less than nothing": (
+        ("clearance", "kite", "--diameter", -1),
+        "not in the range",
+    ),
+    "a clearance of an unknown form": (
+        ("clearance", "kite.nc", "--form", "nothing"),
+        "it must be one of",
+    ),
+    # pages
+    "a page in no folder": (("view", "kite", "--out", "nowhere/a.html"), "no such"),
+    "a folder for a page": (("view", "kite", "--out", "folder"), "is a directory"),
+    "a page where none can be": (("view", "kite", "--out", "/proc/a.html"), "/proc/a"),
+    "a device for a page": (("view", "kite", "--out", "/dev/full"), "/dev/full"),
     # folders
     "a file for the folder of a map": (("map", "kite", "--out", "empty"), "empty"),
     "a full device for a folder": (("map", "kite", "--out", "/dev/full"), "/dev/full"),
@@ -356,6 +405,24 @@ ENDINGS = {
         ExitCode.DOES_NOT_MOVE,
         "is rigid",
     ),
+    "the clearance of a linkage that does not move": (
+        ("clearance", "rigid.toml"),
+        ExitCode.DOES_NOT_MOVE,
+        "is rigid",
+    ),
+    "the model of a linkage that does not move": (
+        ("export", "rigid.toml", "--to", "a.glb"),
+        ExitCode.DOES_NOT_MOVE,
+        "is rigid",
+    ),
+    "a model of a route that there is not": (
+        (
+            *("export", "bricard-line-symmetric", "--to", "a.glb"),
+            *("--route", "Form I (", "Form II ("),
+        ),
+        ExitCode.NO_ROUTE,
+        "no route",
+    ),
     "the tolerance of a linkage that does not move": (
         ("tolerance", "rigid.toml"),
         ExitCode.DOES_NOT_MOVE,
@@ -399,7 +466,10 @@ STEPS = {
     ("identify", "bennett"): "linkages.identification.identify.identify",
     ("verify", "bennett"): "linkages.app.verify.verify",
     ("map", "bennett"): "linkages.app.exploration.explore_linkage",
-    ("route", "bennett", "a", "b"): "linkages.app.exploration.explore_linkage",
+    ("route", "bennett", "a", "b"): "linkages.app.atlas_source.explore_linkage",
+    ("view", "kite"): "linkages.app.atlas_source.explore_linkage",
+    ("export", "kite", "--to", "a.glb"): "linkages.app.atlas_source.explore_linkage",
+    ("clearance", "kite"): "linkages.app.atlas_source.explore_linkage",
     ("tolerance", "kite"): "linkages.app.tolerance.measure",
     ("sweep", "bennett", *GRID): "linkages.app.sweep.run.prepare_sweep",
 }
@@ -417,7 +487,7 @@ def test_ctrl_c_ends_every_command_with_one_line(arguments, folder, monkeypatch)
 
 
 @pytest.mark.parametrize(
-    "command", [("route", "kite", "a", "b"), ("tolerance", "kite")]
+    "command", [("route", "kite", "a", "b"), ("view", "kite"), ("tolerance", "kite")]
 )
 def test_half_a_map_is_no_map_for_other_commands(command, monkeypatch):
     monkeypatch.setattr("bifurc.search.search.trace_branch", interrupt)

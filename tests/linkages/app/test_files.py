@@ -40,8 +40,8 @@ def test_out_holds_dataset_graph_summary_and_figures_and_nothing_else(tmp_path):
     result = run("map", "parallelogram", "--out", folder)
     assert result.exit_code == 0
     found = names(folder)
-    assert {"atlas.nc", "graph.graphml", "summary.txt"} <= set(found)
-    figures = set(found) - {"atlas.nc", "graph.graphml", "summary.txt"}
+    assert {"atlas.nc", "graph.graphml", "summary.txt", "map.html"} <= set(found)
+    figures = set(found) - {"atlas.nc", "graph.graphml", "summary.txt", "map.html"}
     stems = {name.rsplit(".", 1)[0] for name in figures}
     assert len(stems) >= 4
     assert figures == {

@@ -1,0 +1,36 @@
+"""The atlas that a command line names: a saved one, or that of a linkage."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bifurc.atlas import Atlas
+from linkages.app.atlas_file import open_linkage_atlas
+from linkages.app.choice import choose_linkage
+from linkages.app.exit_codes import CommandError
+from linkages.app.exploration import explore_linkage, require_uninterrupted
+from linkages.app.options import SearchOptions
+
+__all__ = ["atlas_of", "is_atlas_file"]
+
+ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
+
+
+def is_atlas_file(source: str) -> bool:
+    """Whether ``source`` names a saved atlas."""
+    return source.endswith(ATLAS_FILE)
+
+
+def atlas_of(source: str, parameters: Sequence[str], search: SearchOptions) -> Atlas:
+    """The saved atlas, or that of the linkage, called ``source``.
+
+    Raises `CommandError` for parameters of a saved atlas, and where Ctrl-C ended the
+    search.
+    """
+    if is_atlas_file(source):
+        if parameters:
+            raise CommandError("--param: it has no effect on a saved atlas")
+        return open_linkage_atlas(source)
+    atlas = explore_linkage(choose_linkage(source, parameters), search)
+    require_uninterrupted(atlas)
+    return atlas

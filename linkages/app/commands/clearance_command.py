@@ -1,0 +1,75 @@
+"""The command `bifurc clearance`: how near links come to each other."""
+
+from __future__ import annotations
+
+import click
+
+from linkages.app.exit_codes import exit_code_table
+from linkages.app.options import (
+    NumberRange,
+    SearchOptions,
+    json_option,
+    param_option,
+    search_options,
+    verbose_option,
+)
+
+__all__ = ["clearance_command"]
+
+
+@click.command("clearance", epilog=exit_code_table())
+@click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
+@click.option(
+    "--form",
+    "forms",
+    multiple=True,
+    metavar="FORM",
+    help="A form, by its name or its number in the summary.  [default: every form]",
+)
+@click.option(
+    "--diameter",
+    type=NumberRange(min=0),
+    default=0.0,
+    show_default=True,
+    help="Diameter of the links, in the unit of the linkage.",
+)
+@json_option("; angles in radians")
+@param_option
+@search_options
+@verbose_option
+def clearance_command(
+    source: str,
+    forms: tuple[str, ...],
+    diameter: float,
+    as_json: bool,
+    parameters: tuple[str, ...],
+    verbose: bool,
+    search: SearchOptions,
+) -> None:
+    """Show how near links come to each other along forms, and where.
+
+    Links are rods along offsets and common normals; two that share a joint are left
+    out.
+
+    \b
+    Examples:
+      bifurc clearance bricard-trihedral
+      bifurc clearance out/atlas.nc --form "Form I" --diameter 0.05
+    """
+    from linkages.app.atlas_source import atlas_of
+    from linkages.app.clearance import clearance_document, clearance_of
+    from linkages.app.clearance_text import describe_clearance
+    from linkages.app.forms import choose_form, listed_forms, require_forms
+    from linkages.app.output import say, say_json
+    from linkages.app.status import say_more
+
+    if verbose:
+        say_more()
+    atlas = atlas_of(source, parameters, search)
+    require_forms(atlas)
+    chosen = [choose_form(atlas, form) for form in forms] or listed_forms(atlas)
+    clearances = [clearance_of(atlas, form, diameter) for form in chosen]
+    if as_json:
+        say_json(clearance_document(atlas, clearances))
+    else:
+        say(describe_clearance(atlas, clearances))

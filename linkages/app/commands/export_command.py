@@ -1,0 +1,153 @@
+"""The command `bifurc export`: forms and routes for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.options import (
+    SearchOptions,
+    param_option,
+    search_options,
+    verbose_option,
+)
+
+if TYPE_CHECKING:
+    from bifurc.atlas import Atlas
+    from linkages.export.motion import Motion
+
+__all__ = ["export_command"]
+
+MODEL, TABLE = ".glb", ".csv"
+FEWEST, MOST = 2, 100_000
+
+
+@click.command("export", epilog=exit_code_table())
+@click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
+@click.option(
+    "--to",
+    "out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    required=True,
+    metavar="FILE",
+    help="The file: .glb is an animated model, .csv a table of joint angles (rad).",
+)
+@click.option(
+    "--form",
+    "forms",
+    multiple=True,
+    metavar="FORM",
+    help="A form, by its name or its number in the summary.  [default: every form]",
+)
+@click.option(
+    "--route",
+    "routes",
+    type=(str, str),
+    multiple=True,
+    metavar="FROM TO",
+    help="A route between two forms; may be given several times.",
+)
+@click.option(
+    "--count",
+    type=click.IntRange(FEWEST, MOST),
+    default=361,
+    show_default=True,
+    help="Configurations along each form or route.",
+)
+@param_option
+@search_options
+@verbose_option
+def export_command(
+    source: str,
+    out: Path,
+    forms: tuple[str, ...],
+    routes: tuple[tuple[str, str], ...],
+    count: int,
+    parameters: tuple[str, ...],
+    verbose: bool,
+    search: SearchOptions,
+) -> None:
+    """Write forms and routes of a linkage for other programs.
+
+    \b
+    Examples:
+      bifurc export bennett --to bennett.glb
+      bifurc export altmann --form 1 --to altmann.csv --count 100
+      bifurc export out/atlas.nc --route "Form I" "Bennett 4R" --to route.glb
+    """
+    from bifurc.files.atomic import replace_file
+    from linkages.app.atlas_source import atlas_of
+    from linkages.app.forms import require_forms
+    from linkages.app.output import require_writable, writing_to
+    from linkages.app.status import say_more
+
+    if verbose:
+        say_more()
+    _require_ending(out)
+    require_writable(out)
+    atlas = atlas_of(source, parameters, search)
+    require_forms(atlas)
+    motions = choose_motions(atlas, forms, routes, count)
+    content = make_content(atlas, motions, out)
+    with writing_to(out):
+        replace_file(out, lambda part: part.write_bytes(content))
+    names = ", ".join(motion.name for motion in motions)
+    click.echo(f"wrote {out}: {names}", err=True)
+
+
+def _require_ending(out: Path) -> None:
+    if out.suffix.lower() not in (MODEL, TABLE):
+        raise CommandError(f"--to {out}: it must end with {MODEL} or {TABLE}")
+
+
+def choose_motions(
+    atlas: Atlas,
+    forms: tuple[str, ...],
+    routes: tuple[tuple[str, str], ...],
+    count: int,
+) -> list[Motion]:
+    """The motions along forms and routes, all forms where neither is named."""
+    from bifurc.errors import RouteError
+    from bifurc.routes.route import find_route
+    from linkages.app.forms import choose_form, listed_forms
+    from linkages.closure.loop_closure import LoopClosure
+    from linkages.export.motion import motion_of_form, motion_of_route
+    from linkages.labels import loop_of
+
+    chosen = [choose_form(atlas, form) for form in forms]
+    if not forms and not routes:
+        chosen = listed_forms(atlas)
+    motions = [motion_of_form(form, count) for form in chosen]
+    for start, goal in routes:
+        first, last = atlas.full_name(start), atlas.full_name(goal)
+        problem = LoopClosure(loop_of(atlas))
+        try:
+            route = find_route(atlas, first, last, count=count, problem=problem)
+        except RouteError as error:
+            raise CommandError(str(error), ExitCode.NO_ROUTE) from None
+        motions.append(motion_of_route(atlas, route, first, last))
+    return motions
+
+
+def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
+    """What the file of that ending holds."""
+    from linkages.labels import loop_of
+
+    if out.suffix.lower() == TABLE:
+        from linkages.export.angle_table import make_angle_table
+
+        if len(motions) != 1:
+            raise CommandError(
+                f"--to {out}: a table holds one form or route, and there are "
+                f"{len(motions)}; name one with --form or --route"
+            )
+        return make_angle_table(motions[0], atlas.names).encode("utf-8")
+    from importlib.metadata import version
+
+    from linkages.export.glb import make_glb
+
+    generator = f"bifurc {version('bifurc')}"
+    return make_glb(loop_of(atlas), motions, generator)

@@ -1,0 +1,78 @@
+"""The command `bifurc view`: the moving linkage beside its map, as a page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from linkages.app.exit_codes import exit_code_table
+from linkages.app.options import (
+    SearchOptions,
+    param_option,
+    search_options,
+    verbose_option,
+)
+
+__all__ = ["view_command"]
+
+PAGE = ".html"
+
+
+@click.command("view", epilog=exit_code_table())
+@click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE.html",
+    help="The page.  [default: NAME.html in this folder]",
+)
+@click.option("--no-open", is_flag=True, help="Write the page, but do not open it.")
+@param_option
+@search_options
+@verbose_option
+def view_command(
+    source: str,
+    parameters: tuple[str, ...],
+    out: Path | None,
+    no_open: bool,
+    verbose: bool,
+    search: SearchOptions,
+) -> None:
+    """Show a linkage in motion beside its transition map: one page, which a browser
+    opens without a network.
+
+    \b
+    Examples:
+      bifurc view special-double-subtractive-goldberg
+      bifurc view my_linkage.toml --out my_linkage.html --no-open
+      bifurc view out/atlas.nc
+    """
+    from linkages.app.atlas_source import atlas_of
+    from linkages.app.output import require_writable, writing_to
+    from linkages.app.status import say_more
+    from linkages.app.verdict import judge
+    from linkages.viewing.document import make_view_document
+    from linkages.viewing.page import write_page
+
+    if verbose:
+        say_more()
+    path = out or Path(Path(source).stem + PAGE)
+    require_writable(path)
+    atlas = atlas_of(source, parameters, search)
+    verdict = judge(atlas)
+    document = make_view_document(atlas, verdict.sentence)
+    with writing_to(path):
+        write_page(document, path)
+    click.echo(f"wrote {path}", err=True)
+    if not no_open:
+        open_page(path)
+    click.get_current_context().exit(verdict.code)
+
+
+def open_page(path: Path) -> None:
+    """Show a page in the browser; where there is none, say so."""
+    import webbrowser
+
+    if not webbrowser.open(path.resolve().as_uri()):
+        click.echo(f"no browser was found; open {path} in one", err=True)

@@ -1,0 +1,1 @@
+"""Forms and routes for other programs: animated models, tables of joint angles."""

@@ -1,0 +1,68 @@
+"""Motions of a linkage at given moments: forms and routes by configurations, and the
+poses of its links along them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.atlas import Atlas, Form
+from bifurc.routes.route import Route
+from linkages.loop import Loop
+
+__all__ = ["Motion", "Poses", "link_poses", "motion_of_form", "motion_of_route"]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A motion by its ``name``: configurations (k, n), rad, without jumps, evenly
+    spaced in ``arclength`` (k,), rad."""
+
+    name: str
+    configurations: np.ndarray
+    arclength: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Poses of the links along a motion of k moments: ``translations`` (n, k, 3) and
+    unit quaternions ``rotations`` (n, k, 4), x, y, z, w, each near the one before.
+
+    Link i stands before joint i + 1, as in `linkages.links.rods.link_corners`; the last
+    one is the frame of all.
+    """
+
+    translations: np.ndarray
+    rotations: np.ndarray
+
+
+def motion_of_form(form: Form, count: int) -> Motion:
+    """A form at ``count`` places, its begin and its end among them."""
+    arclength = np.linspace(0.0, form.branch.length, count)
+    configurations = form.branch(arclength)
+    return Motion(form.name, configurations, arclength)
+
+
+def motion_of_route(atlas: Atlas, route: Route, start: str, goal: str) -> Motion:
+    """A route between the forms of two names."""
+    steps = np.linalg.norm(np.diff(route.path, axis=0), axis=1)
+    arclength = np.concatenate([[0.0], np.cumsum(steps)])
+    name = f"{atlas.full_name(start)} to {atlas.full_name(goal)}"
+    return Motion(name, route.path, arclength)
+
+
+def link_poses(loop: Loop, motion: Motion) -> Poses:
+    """The poses of all links along a motion, in the frame of the link that joins the
+    last joint to the first."""
+    from scipy.spatial.transform import Rotation
+
+    frames = np.moveaxis(loop.frames(motion.configurations)[:, 1:], 1, 0)
+    count, moments = frames.shape[:2]
+    matrices = frames[..., :3, :3].reshape(-1, 3, 3)
+    quaternions = Rotation.from_matrix(matrices).as_quat()
+    rotations = quaternions.reshape(count, moments, 4)
+    turns = (rotations[:, 1:] * rotations[:, :-1]).sum(axis=-1)
+    signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=1)
+    rotations[:, 1:] *= signs[..., None]
+    return Poses(frames[..., :3, 3], rotations)

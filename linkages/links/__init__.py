@@ -1,0 +1,1 @@
+"""Links as bodies: the rods that they are made of, and how near they come."""

@@ -1,0 +1,311 @@
+"""An atlas of a linkage as the viewer reads it: plain values that JSON can hold.
+
+Curves come as the Taylor pieces of their branches, all digits kept: the viewer
+evaluates them, and never solves. Angles are in radians, indices of forms and unknowns
+count from 0.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from typing import TypedDict
+
+import numpy as np
+
+from bifurc.atlas import Atlas, Form, MeetingPoint, NearMotion, Surface
+from bifurc.figures.graph_layout import lay_out_graph
+from bifurc.figures.planes import choose_plane
+from bifurc.figures.style import color_on_dark, form_style
+from bifurc.torus import difference
+from linkages.labels import FormLabels, loop_of
+from linkages.loop import Loop
+from linkages.scene import best_view, make_scene
+
+__all__ = ["ViewDocument", "make_view_document"]
+
+SAMPLES = 72  # places on each form by which the principal plane is found
+MOST_SAMPLES = 600  # configurations shown of a surface
+DIGITS = 6  # after the point, of places in the graph (inches)
+
+
+class PackedArray(TypedDict):
+    """Floats of 64 bits, the lowest byte first, in base64."""
+
+    shape: list[int]
+    float64: str
+
+
+class LoopDocument(TypedDict):
+    """The Denavit-Hartenberg table, and the characteristic length as ``size``."""
+
+    lengths: list[float]
+    twists: list[float]
+    offsets: list[float]
+    size: float
+
+
+class FormDocument(TypedDict):
+    """A form: its branch as in `bifurc.branch.Branch`, and how it is drawn."""
+
+    name: str
+    length: float
+    closed: bool
+    pieces: PackedArray
+    centers: list[float]
+    radii: list[float]
+    breaks: list[float]
+    travel: list[float]
+    rank: int
+    inactive_joints: list[int]
+    color: str
+    dark_color: str
+    dashes: list[float]
+
+
+class PointDocument(TypedDict):
+    """A singular point; ``passes`` are [index of the form, arclength]."""
+
+    name: str
+    kind: str
+    rank: int
+    angles: list[float]
+    passes: list[tuple[int, float]]
+    surfaces: list[int]
+
+
+class MissDocument(TypedDict):
+    """A near miss on a form."""
+
+    form: int
+    s: float
+    value: float
+
+
+class SurfaceDocument(TypedDict):
+    """Configurations of a surface, each near the one before."""
+
+    name: str
+    dimension: int
+    samples: PackedArray
+
+
+class NearMotionDocument(TypedDict):
+    """One configuration of a near motion, and by how much it is none."""
+
+    sample: list[float]
+    misclosure: float
+
+
+class EdgeDocument(TypedDict):
+    """A line of the graph of forms, in inches."""
+
+    name: str
+    line: list[list[float]]
+    label: list[float]
+
+
+class GraphDocument(TypedDict):
+    """The graph of forms, laid out in inches."""
+
+    names: list[str]
+    places: list[list[float]]
+    edges: list[EdgeDocument]
+
+
+class PrincipalDocument(TypedDict):
+    """The plane in which (cos theta, sin theta), 2 n numbers, spread most: their
+    ``mean``, and two unit ``axes``."""
+
+    mean: list[float]
+    axes: list[list[float]]
+
+
+class ViewDirection(TypedDict):
+    """Where to look from at first, in degrees."""
+
+    elevation: float
+    azimuth: float
+
+
+class ViewDocument(TypedDict):
+    """All that the viewer shows; ``note`` stands on the map where there is no form."""
+
+    title: str
+    verdict: str
+    completeness: str
+    note: str
+    loop: LoopDocument
+    forms: list[FormDocument]
+    points: list[PointDocument]
+    near_misses: list[MissDocument]
+    assemblies: list[list[float]]
+    surfaces: list[SurfaceDocument]
+    near_motions: list[NearMotionDocument]
+    graph: GraphDocument
+    plane: tuple[int, int]
+    principal: PrincipalDocument
+    view: ViewDirection
+
+
+def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
+    """The document of an atlas; ``verdict`` is a sentence on what the linkage is.
+
+    Raises `linkages.NoLinkageError` where the atlas is not of a linkage.
+    """
+    loop = loop_of(atlas)
+    completeness = atlas.completeness
+    return {
+        "title": loop.name or "linkage",
+        "verdict": verdict,
+        "completeness": f"Completeness ({completeness.level}): "
+        f"{completeness.statement}.",
+        "note": _note(atlas),
+        "loop": _loop(loop),
+        "forms": [_form(form, index) for index, form in enumerate(atlas.forms)],
+        "points": [_point(point) for point in atlas.points],
+        "near_misses": [
+            {"form": miss.form, "s": miss.s, "value": miss.value}
+            for miss in atlas.near_misses
+        ],
+        "assemblies": atlas.rigid.tolist(),
+        "surfaces": [_surface(surface, atlas.periods) for surface in atlas.surfaces],
+        "near_motions": [_near_motion(motion) for motion in atlas.near_motions],
+        "graph": _graph(atlas),
+        "plane": choose_plane(atlas),
+        "principal": _principal(atlas),
+        "view": _view(atlas, loop),
+    }
+
+
+def _note(atlas: Atlas) -> str:
+    """What the map says where there is no curve on it."""
+    if atlas.forms or atlas.surfaces:
+        return ""
+    if 0 < atlas.closure_gap < np.inf:
+        return f"no form; closure gap {atlas.closure_gap:.1e}"
+    return "no form"
+
+
+def _loop(loop: Loop) -> LoopDocument:
+    table = loop.arrays
+    return {
+        "lengths": table.lengths.tolist(),
+        "twists": table.twists.tolist(),
+        "offsets": table.offsets.tolist(),
+        "size": loop.characteristic_length,
+    }
+
+
+def _form(form: Form, index: int) -> FormDocument:
+    branch = form.branch
+    style = form_style(index)
+    dashes = [] if style.dashes == "-" else list(style.dashes[1])
+    return {
+        "name": form.name,
+        "length": branch.length,
+        "closed": branch.closed,
+        "pieces": _packed(branch.pieces),
+        "centers": branch.centers.tolist(),
+        "radii": branch.radii.tolist(),
+        "breaks": branch.breaks.tolist(),
+        "travel": branch.travel.tolist(),
+        "rank": form.rank,
+        "inactive_joints": list(FormLabels.of(form).inactive_joints),
+        "color": style.color,
+        "dark_color": color_on_dark(style.color),
+        "dashes": dashes,
+    }
+
+
+def _point(point: MeetingPoint) -> PointDocument:
+    return {
+        "name": point.name,
+        "kind": point.kind.value,
+        "rank": point.point.rank,
+        "angles": point.point.u.tolist(),
+        "passes": [(form, float(s)) for form, s in point.passes],
+        "surfaces": list(point.surfaces),
+    }
+
+
+def _near_motion(motion: NearMotion) -> NearMotionDocument:
+    return {"sample": motion.sample.tolist(), "misclosure": motion.misclosure}
+
+
+def _packed(array: np.ndarray) -> PackedArray:
+    content = np.ascontiguousarray(array, dtype="<f8").tobytes()
+    text = base64.b64encode(content).decode("ascii")
+    return {"shape": list(array.shape), "float64": text}
+
+
+# --- surfaces -------------------------------------------------------------------------
+
+
+def _surface(surface: Surface, periods: np.ndarray) -> SurfaceDocument:
+    every = max(1, -(-len(surface.samples) // MOST_SAMPLES))
+    samples = _walk(surface.samples[::every], periods)
+    return {
+        "name": surface.name,
+        "dimension": surface.dimension,
+        "samples": _packed(samples),
+    }
+
+
+def _walk(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """The points (k, n) in an order in which each is the nearest to the one before that
+    is left."""
+    left = np.ones(len(points), dtype=bool)
+    order = [0]
+    left[0] = False
+    for _ in range(len(points) - 1):
+        gaps = difference(points, points[order[-1]], periods)
+        distances = np.where(left, np.linalg.norm(gaps, axis=1), np.inf)
+        nearest = int(np.argmin(distances))
+        left[nearest] = False
+        order.append(nearest)
+    return points[order]
+
+
+# --- the graph and the planes ---------------------------------------------------------
+
+
+def _graph(atlas: Atlas) -> GraphDocument:
+    layout = lay_out_graph(atlas)
+    edges: list[EdgeDocument] = []
+    for edge in layout.edges:
+        label = np.round(edge.label, DIGITS).tolist()
+        line = np.round(edge.line, DIGITS).tolist()
+        edges.append({"name": edge.name, "line": line, "label": label})
+    places = np.round(layout.places, DIGITS).tolist()
+    return {"names": list(layout.names), "places": places, "edges": edges}
+
+
+def _principal(atlas: Atlas) -> PrincipalDocument:
+    """The first principal plane of all that is on the map."""
+    theta = np.concatenate(_configurations(atlas))
+    features = np.concatenate([np.cos(theta), np.sin(theta)], axis=1)
+    mean = features.mean(axis=0)
+    _, _, directions = np.linalg.svd(features - mean, full_matrices=True)
+    axes = directions[:2]
+    largest = np.abs(axes).argmax(axis=1)
+    signs = np.sign(axes[[0, 1], largest])
+    return {"mean": mean.tolist(), "axes": (signs[:, None] * axes).tolist()}
+
+
+def _configurations(atlas: Atlas) -> Sequence[np.ndarray]:
+    """Configurations (k, n) of everything that is on the map, zeros where that is
+    nothing."""
+    parts = [form.branch.sample(SAMPLES) for form in atlas.forms]
+    parts += [surface.samples for surface in atlas.surfaces]
+    parts += [motion.sample[None] for motion in atlas.near_motions]
+    if len(atlas.rigid):
+        parts.append(atlas.rigid)
+    return parts or [np.zeros((1, len(atlas.names)))]
+
+
+def _view(atlas: Atlas, loop: Loop) -> ViewDirection:
+    """From where the first configuration on the map is seen best."""
+    first = _configurations(atlas)[0]
+    view = best_view(make_scene(loop, first[len(first) // 2]))
+    return {"elevation": view.elevation, "azimuth": view.azimuth}

@@ -1,0 +1,68 @@
+"""The viewer as one page of HTML that holds all it needs."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+from html import escape
+from importlib import resources
+from pathlib import Path
+
+from bifurc.files.atomic import replace_file
+from linkages.viewing.document import ViewDocument
+
+__all__ = ["make_page", "viewer_script", "write_page"]
+
+log = logging.getLogger(__name__)
+
+LARGEST = 1_500_000  # bytes; a page beyond it is slow to open
+
+# The policy lets the page run what it holds, and fetch nothing.
+PAGE = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; \
+script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:">
+<title>{title}</title>
+<style>body {{ margin: 0 }}</style>
+</head>
+<body>
+<main id="bifurc-viewer"></main>
+<script id="bifurc-document" type="application/json">{document}</script>
+<script type="module">{script}</script>
+</body>
+</html>
+"""
+
+
+def make_page(document: ViewDocument) -> str:
+    """The page that shows a document, with the viewer's script inside.
+
+    It opens from disk, and fetches nothing.
+    """
+    # a text in it must not end the script element that holds it
+    content = json.dumps(document, allow_nan=False).replace("<", "\\u003c")
+    return PAGE.format(
+        title=escape(document["title"]), document=content, script=viewer_script()
+    )
+
+
+def viewer_script() -> str:
+    """The viewer: an ES module, built from the folder viewer/ of the sources."""
+    script = resources.files("linkages.viewing") / "static" / "viewer.js"
+    return script.read_text(encoding="utf-8")
+
+
+def write_page(document: ViewDocument, path: str | os.PathLike[str]) -> Path:
+    """The path of the page just written, whole or not at all.
+
+    Raises `OSError` that names ``path``.
+    """
+    page = make_page(document)
+    size = len(page.encode("utf-8"))
+    if size > LARGEST:
+        log.warning("%s: the page has %.1f MB", path, size / 1e6)
+    return replace_file(path, lambda part: part.write_text(page, encoding="utf-8"))

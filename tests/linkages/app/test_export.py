@@ -1,0 +1,77 @@
+"""The commands `export` and `clearance`."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from linkages.app.cli import main
+from linkages.app.exit_codes import ExitCode
+
+DSG = "special-double-subtractive-goldberg"
+
+
+def bifurc(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+@pytest.fixture(scope="module")
+def atlas_file(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("map")
+    assert bifurc("map", DSG, "--out", folder).exit_code == ExitCode.DONE
+    return folder / "atlas.nc"
+
+
+def animations(path):
+    """Names of the animations of a binary glTF file."""
+    content = path.read_bytes()
+    assert content[:4] == b"glTF"
+    assert int.from_bytes(content[8:12], "little") == len(content)
+    length = int.from_bytes(content[12:16], "little")
+    document = json.loads(content[20 : 20 + length])
+    return [animation["name"] for animation in document["animations"]]
+
+
+def test_a_model_holds_all_forms_or_those_that_are_named(atlas_file, tmp_path):
+    out = tmp_path / "dsg.glb"
+    result = bifurc("export", atlas_file, "--to", out)
+    assert result.exit_code == ExitCode.DONE
+    assert len(animations(out)) == 4
+    assert f"wrote {out}: Form I (constructive 6R), Form II" in result.stderr
+    bifurc("export", atlas_file, "--to", out, "--form", "Form II", "--form", 4)
+    assert animations(out) == ["Form II (Bennett 4R)", "Form IV (non-constructive 6R)"]
+    route = ("--route", "Form I", "Bennett 4R")
+    bifurc("export", atlas_file, "--to", out, *route, "--count", 60)
+    (name,) = animations(out)
+    assert name == "Form I (constructive 6R) to Form II (Bennett 4R)"
+
+
+def test_a_table_holds_one_form(atlas_file, tmp_path):
+    out = tmp_path / "dsg.csv"
+    result = bifurc("export", atlas_file, "--to", out, "--form", 1, "--count", 11)
+    assert result.exit_code == ExitCode.DONE
+    assert len(out.read_text().splitlines()) == 12
+    result = bifurc("export", atlas_file, "--to", out)
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert "a table holds one form or route, and there are 4" in result.stderr
+
+
+def test_the_clearance_names_links_and_where_they_are_nearest(tmp_path):
+    result = bifurc("clearance", "bricard-trihedral", "--diameter", 0.05)
+    assert result.exit_code == ExitCode.DONE
+    assert "Form 1: the least clearance is 0.4715" in result.stdout
+    assert len(result.stdout.splitlines()) == 13
+    assert "Links overlap where the clearance is below 0." in result.stdout
+
+
+def test_the_clearance_as_json_is_in_radians():
+    result = bifurc("clearance", "bennett", "--json")
+    (form,) = json.loads(result.stdout)
+    first, second = form["approaches"]
+    assert first["links"] == ["12", "34"]
+    assert first["clearance"] == pytest.approx(0, abs=1e-9)
+    assert second["clearance"] > 0.3
+    assert np.abs(second["theta"]).max() <= np.pi
+    shown = bifurc("clearance", "bennett").stdout
+    assert "Bennett form: the least clearance is 0 (links 12 and 34)" in shown

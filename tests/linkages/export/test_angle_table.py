@@ -1,0 +1,23 @@
+"""The table of joint angles: every digit, and no jumps."""
+
+import io
+
+import numpy as np
+
+from linkages.export.angle_table import make_angle_table
+from linkages.export.motion import motion_of_form
+from linkages.linkage import load
+from linkages.mapping import map_linkage
+
+
+def test_the_table_holds_the_form_at_even_arclengths():
+    atlas = map_linkage(load("bennett"))
+    form = atlas.forms[0]
+    text = make_angle_table(motion_of_form(form, 50), atlas.names)
+    head, *lines = text.splitlines()
+    assert head == "arclength,theta1,theta2,theta3,theta4"
+    rows = np.loadtxt(io.StringIO("\n".join(lines)), delimiter=",")
+    assert rows.shape == (50, 5)
+    assert np.array_equal(rows[:, 0], np.linspace(0, form.branch.length, 50))
+    assert np.array_equal(rows[:, 1:], form.branch(rows[:, 0]))
+    assert np.abs(np.diff(rows[:, 1:], axis=0)).max() < 0.3

@@ -1,0 +1,68 @@
+"""What the viewer reads: the pieces with all their digits, and everything on the map."""
+
+import base64
+import json
+
+import numpy as np
+import pytest
+
+from bifurc.figures.planes import choose_plane
+from bifurc.function_problem import FunctionProblem
+from bifurc.search.explore import explore
+from linkages.labels import NoLinkageError, loop_of
+from linkages.viewing.document import MOST_SAMPLES, make_view_document
+
+DSG = "special-double-subtractive-goldberg"
+
+
+def unpacked(array):
+    values = np.frombuffer(base64.b64decode(array["float64"]), "<f8")
+    return values.reshape(array["shape"])
+
+
+def test_the_pieces_keep_every_digit(atlas_of):
+    atlas = atlas_of(DSG)
+    document = json.loads(json.dumps(make_view_document(atlas), allow_nan=False))
+    for form, shown in zip(atlas.forms, document["forms"], strict=True):
+        assert np.array_equal(unpacked(shown["pieces"]), form.branch.pieces)
+        assert shown["breaks"] == form.branch.breaks.tolist()
+        assert shown["name"] == form.name
+    assert document["plane"] == list(choose_plane(atlas))
+
+
+@pytest.mark.parametrize("name", ["rigid", "too long", "nearly Bennett", "generic 12R"])
+def test_what_has_no_form_makes_a_document_as_well(atlas_of, name):
+    atlas = atlas_of(name)
+    document = make_view_document(atlas)
+    json.dumps(document, allow_nan=False)
+    assert document["forms"] == []
+    assert len(document["assemblies"]) == len(atlas.rigid)
+    assert len(document["near_motions"]) == len(atlas.near_motions)
+    assert bool(document["note"]) == (not atlas.surfaces)
+
+
+def test_the_configurations_of_a_surface_are_a_walk(atlas_of):
+    atlas = atlas_of("folded Sarrus")
+    (surface,) = make_view_document(atlas)["surfaces"]
+    samples = unpacked(surface["samples"])
+    assert 100 < len(samples) <= MOST_SAMPLES
+    assert loop_of(atlas).closure_error(samples).max() < 1e-9
+    steps = np.abs(np.sin(np.diff(samples, axis=0) / 2)).max(axis=1)
+    drawn = np.abs(np.sin((samples[::7][1:] - samples[::7][:-1]) / 2)).max(axis=1)
+    assert np.median(steps) < np.median(drawn)
+
+
+def test_the_principal_axes_are_orthonormal_and_have_a_sign(atlas_of):
+    for name in (DSG, "rigid", "too long"):
+        principal = make_view_document(atlas_of(name))["principal"]
+        axes = np.array(principal["axes"])
+        assert axes @ axes.T == pytest.approx(np.eye(2))
+        assert np.all(axes[[0, 1], np.abs(axes).argmax(axis=1)] > 0)
+
+
+def test_an_atlas_of_equations_is_refused():
+    circle = FunctionProblem(
+        lambda u: np.array([u @ u - 1.0]), np.array([[-2.0, 2.0], [-2.0, 2.0]])
+    )
+    with pytest.raises(NoLinkageError, match="not of a linkage"):
+        make_view_document(explore(circle))

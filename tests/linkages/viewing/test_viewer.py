@@ -1,0 +1,317 @@
+"""The page in a browser: what it draws is where Python says that the linkage is."""
+
+import numpy as np
+import pytest
+
+from bifurc.errors import RouteError
+from bifurc.figures.style import form_style
+from bifurc.routes.route import find_route
+from bifurc.torus import wrap
+from linkages.closure.loop_closure import LoopClosure
+from linkages.labels import loop_of
+from linkages.links.rods import place_links
+from linkages.viewing.document import make_view_document
+
+DSG = "special-double-subtractive-goldberg"
+NOT_EMPTY = """() => {
+  const canvas = document.querySelector('.bv-space canvas');
+  const gl = canvas.getContext('webgl2');
+  const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+  const pixels = new Uint8Array(4 * w * h);
+  gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+  let drawn = 0;
+  for (let i = 3; i < pixels.length; i += 4) drawn += pixels[i] > 0;
+  return drawn / (w * h);
+}"""
+
+
+def picture_of(shown):
+    """The picture of the linkage, after the frames that are on their way."""
+    return shown.page.evaluate(
+        """() => new Promise((resolve) => {
+          const canvas = document.querySelector('.bv-space canvas');
+          const read = () => resolve(canvas.toDataURL());
+          requestAnimationFrame(() => requestAnimationFrame(read));
+        })"""
+    )
+
+
+def drawn_share(shown):
+    return shown.page.evaluate(NOT_EMPTY)
+
+
+@pytest.mark.parametrize("name", [DSG, "spherical-four-bar", "folded Sarrus", "rigid"])
+def test_a_page_opens_from_disk_without_a_word_and_draws_the_linkage(show, name):
+    shown = show(name)
+    assert shown.messages == []
+    assert all(url.startswith("file:") for url in shown.requests)
+    assert len(shown.requests) == 1
+    assert drawn_share(shown) > 0.002
+    assert 0 < shown.bifurc("drawCalls") < 100
+
+
+@pytest.mark.parametrize(
+    "name", [DSG, "generic 7R", "spherical-four-bar", "huge", "tiny"]
+)
+def test_the_axes_in_the_browser_are_those_of_python_everywhere(show_shared, name):
+    shown = show_shared(name)
+    loop, problem = loop_of(shown.atlas), LoopClosure(loop_of(shown.atlas))
+    size = loop.characteristic_length
+    for form in shown.atlas.forms:
+        places = np.linspace(0.0, form.branch.length, 24)[:-1]
+        theta = form.branch(places)
+        states = shown.page.evaluate(
+            "([form, places]) => places.map((s) => bifurc.go(form, s))",
+            [form.name, places.tolist()],
+        )
+        frames = loop.frames(theta)
+        axes = np.array([state["axes"] for state in states])
+        ends = np.array([state["end"] for state in states]).reshape(-1, 3, 4)
+        angles = np.array([state["angles"] for state in states])
+        values = np.array([state["singular_values"] for state in states])
+        expected = np.linalg.svd(problem.jacobians(theta))[1]
+        assert {state["form"] for state in states} == {form.name}
+        assert np.abs(angles - theta).max() < 1e-12
+        assert np.abs(axes[:, :, 0] - frames[:, :-1, :3, 3]).max() < 1e-9 * size
+        assert np.abs(axes[:, :, 1] - frames[:, :-1, :3, 2]).max() < 1e-9
+        assert np.abs(ends[:, :, :3] - np.eye(3)).max() < 1e-9
+        assert np.abs(ends[:, :, 3]).max() < 1e-9 * size
+        assert np.abs(values[:, : expected.shape[1]] - expected).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", [DSG, "spherical-four-bar", "folded Sarrus"])
+def test_the_rods_that_are_drawn_are_those_of_python(show_shared, name):
+    shown = show_shared(name)
+    loop, form = loop_of(shown.atlas), shown.atlas.forms[0]
+    call = "f => { bifurc.go(f, 1.0); return bifurc.rods(); }"
+    rods = np.array(shown.page.evaluate(call, form.name))
+    corners = place_links(loop, form.branch(1.0))
+    expected = np.stack([corners[:, :-1], corners[:, 1:]], axis=2).reshape(-1, 2, 3)
+    is_rod = np.linalg.norm(expected[:, 1] - expected[:, 0], axis=1) > 1e-9
+    assert rods == pytest.approx(expected[is_rod], abs=1e-9)
+
+
+def test_the_slider_moves_the_rods(show):
+    shown = show(DSG)
+    before = shown.bifurc("state()")
+    picture = picture_of(shown)
+    shown.page.locator(".bv-slider").fill("1000")
+    after = shown.bifurc("state()")
+    length = next(f for f in shown.bifurc("forms") if f["name"] == after["form"])
+    assert after["s"] == pytest.approx(length["length"] / 4)
+    assert np.abs(np.array(after["axes"]) - before["axes"]).max() > 0.1
+    assert picture_of(shown) != picture
+
+
+def test_a_click_on_a_bifurcation_offers_the_branches_that_leave_it(show_shared):
+    shown = show_shared(DSG)
+    point = shown.atlas.bifurcations[1]
+    shown.click(f".bv-map [data-point={point.name}]")
+    names = {shown.atlas.forms[form].name for form, _ in point.passes}
+    offered = shown.page.locator(".bv-choice button")
+    branches = [offered.nth(i).get_attribute("data-branch") for i in range(4)]
+    assert offered.count() == 4
+    assert set(branches) == names
+    here = shown.bifurc("state()")
+    gap = np.array(here["angles"]) - point.point.u
+    assert np.abs(np.sin(gap / 2)).max() < 1e-9
+    other = next(name for name in branches if name != here["form"])
+    offered.nth(branches.index(other)).click()
+    shown.page.wait_for_timeout(200)
+    assert shown.bifurc("state().form") == other
+    assert shown.bifurc("state().playing")
+
+
+def test_a_click_on_a_curve_takes_the_linkage_there(show_shared):
+    shown = show_shared("bennett")
+    plane = make_view_document(shown.atlas)["plane"]
+    goal = shown.atlas.forms[0].branch(1.0)[list(plane)]
+    frame = shown.page.locator(".bv-frame rect").bounding_box()
+    x, y = np.degrees(wrap(goal, np.full(2, 2 * np.pi))) / 360 + 0.5
+    shown.page.mouse.click(
+        frame["x"] + x * frame["width"], frame["y"] + (1 - y) * frame["height"]
+    )
+    assert shown.bifurc("state().s") == pytest.approx(1.0, abs=0.05)
+
+
+def test_a_click_on_the_graph_goes_to_the_form(show_shared):
+    shown = show_shared(DSG)
+    for form in shown.atlas.forms:
+        shown.page.locator(f'.bv-graph [data-node="{form.name}"]').click()
+        assert shown.bifurc("state().form") == form.name
+
+
+def test_a_route_plays_to_its_end_and_is_the_one_that_python_finds(show_shared):
+    shown = show_shared(DSG)
+    shown.bifurc("go('Form I')")
+    start = shown.bifurc("state().angles")
+    route = shown.bifurc("route('Form II')")
+    shown.bifurc("playRoute('Form II', 0.4)")
+    expected = find_route(shown.atlas, np.array(start), "Form II")
+    assert route["length"] == pytest.approx(expected.length, abs=1e-6)
+    through = [leg["at"] for leg in route["legs"][:-1]]
+    assert through == [leg.at for leg in expected.legs[:-1]]
+    shown.page.wait_for_function("() => !bifurc.state().playing", timeout=20_000)
+    end = shown.bifurc("state()")
+    assert end["form"] == "Form II (Bennett 4R)"
+    gap = np.array(end["angles"]) - expected.path[-1]
+    assert np.abs(np.sin(gap / 2)).max() < 1e-6
+    assert shown.page.locator(".bv-route-text").inner_text() == "arrived"
+
+
+@pytest.mark.parametrize("name", [DSG, "altmann"])
+def test_every_route_between_two_forms_is_as_long_as_that_of_python(show_shared, name):
+    shown = show_shared(name)
+    names = [form.name for form in shown.atlas.forms]
+    pairs = [(start, goal) for start in names for goal in names if start != goal]
+    lengths = shown.page.evaluate(
+        """pairs => pairs.map(([start, goal]) => {
+          bifurc.go(start);
+          return bifurc.route(goal)?.length ?? -1;
+        })""",
+        pairs,
+    )
+    for (start, goal), length in zip(pairs, lengths, strict=True):
+        assert length == pytest.approx(length_in_python(shown.atlas, start, goal))
+
+
+def length_in_python(atlas, start, goal):
+    """The length of the route between two forms, -1 where there is none."""
+    try:
+        return find_route(atlas, start, goal, count=2).length
+    except RouteError:
+        return -1.0
+
+
+def test_playing_pauses_at_a_bifurcation(show):
+    shown = show(DSG)
+    shown.page.locator(".bv-controls select[aria-label=speed]").select_option("4")
+    shown.page.keyboard.press("Space")
+    shown.page.wait_for_function("() => !bifurc.state().playing", timeout=20_000)
+    assert shown.page.locator(".bv-choice button").count() == 4
+
+
+def test_keys_move_the_linkage(show_shared):
+    shown = show_shared(DSG)
+    s = shown.bifurc("state().s")
+    shown.page.keyboard.press("ArrowRight")
+    assert shown.bifurc("state().s") > s
+    shown.page.keyboard.press("3")
+    assert shown.bifurc("state().form") == "Form III (non-constructive 6R)"
+    shown.page.keyboard.press("ArrowUp")
+    assert shown.page.locator(".bv-choice button").count() == 4
+    shown.page.keyboard.press("Space")
+    assert shown.bifurc("state().playing")
+    shown.page.keyboard.press("Escape")
+    assert not shown.bifurc("state().playing")
+
+
+def test_ghosts_and_the_fixed_link_change_the_picture(show):
+    shown = show(DSG)
+    calls = shown.bifurc("drawCalls")
+    shown.page.keyboard.press("g")
+    for _ in range(12):
+        shown.page.keyboard.press("ArrowRight")
+    picture = picture_of(shown)
+    assert shown.bifurc("drawCalls") == calls + 1
+    axes = shown.bifurc("state().axes")
+    shown.page.locator(".bv-space-tools select").select_option("3")
+    assert picture_of(shown) != picture
+    assert shown.bifurc("state().axes") == axes
+
+
+def test_the_map_can_be_drawn_in_any_plane(show):
+    shown = show(DSG)
+    curve = shown.page.locator(".bv-map .bv-curve").first
+    drawn = {curve.get_attribute("d")}
+    shown.page.locator("select[aria-label^=horizontal]").select_option("1")
+    drawn.add(curve.get_attribute("d"))
+    shown.page.locator(".bv-map-tools input").check()
+    drawn.add(curve.get_attribute("d"))
+    assert len(drawn) == 3
+    assert shown.page.locator(".bv-axis").first.text_content() == "first principal axis"
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_forms_have_the_colours_of_the_figures(show, theme):
+    shown = show(DSG, color_scheme=theme)
+    for index, form in enumerate(shown.atlas.forms):
+        curve = shown.page.locator(f'.bv-map [data-form="{form.name}"]')
+        assert curve.get_attribute("stroke") == form_style(index).color
+    back = "() => getComputedStyle(document.querySelector('main')).backgroundColor"
+    is_dark = sum(map(int, shown.page.evaluate(back)[4:-1].split(","))) < 200
+    assert is_dark == (theme == "dark")
+
+
+@pytest.mark.parametrize(
+    ("name", "track", "count"),
+    [("rigid", "rigid assemblies", 8), ("nearly Bennett", "near motions", 1)],
+)
+def test_configurations_that_do_not_move_are_shown_one_by_one(
+    show_shared, name, track, count
+):
+    shown = show_shared(name)
+    assert {"name": track, "count": count} in shown.bifurc("lists")
+    angles = [shown.bifurc(f"go('{track}', {k}).angles") for k in range(count)]
+    assert len({tuple(one) for one in angles}) == count
+    loop = loop_of(shown.atlas)
+    allowed = 1e-9 if name == "rigid" else 1e-2
+    assert loop.closure_error(np.array(angles)).max() < allowed
+
+
+def test_a_surface_is_shown_by_closed_configurations(show_shared):
+    shown = show_shared("folded Sarrus")
+    (surface,) = shown.bifurc("lists")
+    states = [
+        shown.bifurc(f"go('surface 1', {k})") for k in range(0, surface["count"], 50)
+    ]
+    loop = loop_of(shown.atlas)
+    angles = np.array([state["angles"] for state in states])
+    assert loop.closure_error(angles).max() < 1e-9
+
+
+def test_where_a_surface_is_met_it_is_offered(show_shared):
+    shown = show_shared("folded Sarrus")
+    point = next(point for point in shown.atlas.points if point.surfaces)
+    form, s = point.passes[0]
+    name = shown.atlas.forms[form].name
+    shown.page.evaluate("([f, s]) => bifurc.go(f, s)", [name, s])
+    offered = shown.page.locator(".bv-choice button").all_inner_texts()
+    assert any("surface 1" in text for text in offered)
+
+
+def test_a_linkage_that_cannot_be_assembled_is_drawn_open(show_shared):
+    shown = show_shared("too long")
+    assert shown.bifurc("state().form") == "open chain"
+    assert "no form" in shown.page.locator(".bv-note").text_content()
+    assert drawn_share(shown) > 0.002
+
+
+def test_wrong_calls_of_scripts_are_refused_by_name(show_shared):
+    shown = show_shared(DSG)
+    for call, words in (("go('Form X')", "form Form X"), ("go(1, NaN)", "s = NaN")):
+        caught = f"() => {{ try {{ bifurc.{call} }} catch (e) {{ return `${{e}}` }} }}"
+        assert words in shown.page.evaluate(caught)
+
+
+@pytest.mark.parametrize("name", [DSG, "generic 12R"])
+@pytest.mark.parametrize("width", [400, 1280])
+def test_nothing_is_wider_than_the_window(show, name, width):
+    shown = show(name, window={"width": width, "height": 800})
+    wide = shown.page.evaluate("() => document.documentElement.scrollWidth")
+    assert wide <= width
+    inside = "e => { const b = e.getBoundingClientRect(); return b.x >= 0 && b.right <= innerWidth + 1 && b.width > 0 }"
+    for label in shown.page.locator(".bv-joint-number").all():
+        assert label.evaluate(inside)
+
+
+def test_without_webgl_map_and_numbers_work(show):
+    before = """
+      const get = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        return kind.startsWith('webgl') ? null : get.call(this, kind, ...rest);
+      };"""
+    shown = show(DSG, before=before)
+    assert "no WebGL" in shown.page.locator(".bv-no-webgl").inner_text()
+    shown.click(".bv-map [data-point=B1]")
+    assert shown.page.locator(".bv-choice button").count() == 4

@@ -1,0 +1,48 @@
+// What a page offers to scripts, as `window.bifurc`.
+
+import { jointAxes, jointFrames } from "./kinematics.js";
+import { drawnParts, seatHeights } from "./rods.js";
+import { isCurve } from "./tracks.js";
+
+export function makeApi(viewer) {
+  return {
+    forms: viewer.listed.filter(isCurve).map(({ name, length, closed }) => ({ name, length, closed })),
+    lists: viewer.listed.filter((track) => !isCurve(track)).map(({ name, samples }) => ({ name, count: samples.length })),
+    points: viewer.scene.points.map(({ name, kind }) => ({ name, kind })),
+    go: (form, s) => {
+      viewer.goByName(form, s);
+      return stateOf(viewer);
+    },
+    state: () => stateOf(viewer),
+    rods: () => rodsOf(viewer),
+    play: () => viewer.player.play(),
+    stop: () => viewer.stop(),
+    route: (form) => viewer.routeTo(form),
+    playRoute: (form, seconds) => viewer.playRoute(form, seconds),
+    get drawCalls() {
+      return viewer.view?.drawCalls ?? 0;
+    },
+  };
+}
+
+function stateOf(viewer) {
+  const { track, s, angles } = viewer.position;
+  const frames = jointFrames(viewer.table, angles);
+  return {
+    form: track.name,
+    s,
+    angles: Array.from(angles),
+    axes: jointAxes(frames),
+    end: Array.from(frames.slice(-12)),
+    singular_values: viewer.singularValuesAt(angles),
+    playing: viewer.player.isPlaying,
+  };
+}
+
+/** The rods that are drawn, as [[from, to], ...] in the unit and the frame of the axes. */
+function rodsOf(viewer) {
+  const { size } = viewer.scene.loop;
+  const table = viewer.unitTable;
+  const { rods } = drawnParts(table, jointFrames(table, viewer.position.angles), seatHeights(table));
+  return rods.map(({ from, to }) => [from, to].map((end) => end.map((x) => size * x)));
+}

@@ -1,0 +1,409 @@
+// The linkage in space: rods, joints and axes as a handful of instanced meshes, numbers as labels over the picture.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  DirectionalLight,
+  HemisphereLight,
+  InstancedMesh,
+  LineDashedMaterial,
+  LineSegments,
+  Matrix4,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Quaternion,
+  Scene,
+  SphereGeometry,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+
+import { compose, invert, jointFrames, linkTable } from "./kinematics.js";
+import { distance, drawnParts, seatHeights } from "./rods.js";
+import { element } from "./elements.js";
+
+const MOST_RODS = 36; // of 12 joints
+const MOST_GHOSTS = 8;
+const FIELD_OF_VIEW = 26; // degrees
+const FRAMING_SAMPLES = 60; // places of a track that must all be in the picture
+const MARGIN = 1.1; // around all positions, in their radius
+const THICKNESS = 0.03; // of a joint, in the size of the linkage
+const UP = new Vector3(0, 1, 0); // the axis of a cylinder of three.js
+
+export class LinkageView {
+  /** A view in `container` of a loop; `view` is where to look from at first, in degrees. */
+  constructor(container, scene) {
+    this.container = container;
+    this.table = linkTable(scene.loop, scene.loop.size);
+    this.heights = seatHeights(this.table);
+    this.fixed = 0; // the frame that stands still: that of the link before this joint (from 0)
+    this.hold = identity();
+    this.ghosts = [];
+    this.look = lookOf(scene.view);
+    this.colors = { link: "#0072B2", fixed: "#888", joint: "#333", idle: "#999", axis: "#888" };
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.canvas = this.renderer.domElement;
+    this.canvas.setAttribute("aria-label", "the linkage in space; drag to turn it");
+    this.labels = element("div", { class: "bv-labels" });
+    container.append(this.canvas, this.labels);
+    this.makeScene();
+    this.makeLabels();
+    this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, this.canvas);
+    this.orbit.addEventListener("change", () => this.requestFrame());
+    new ResizeObserver(() => this.resize()).observe(container);
+  }
+
+  makeScene() {
+    this.scene = new Scene();
+    this.scene.add(new HemisphereLight(0xffffff, 0xb0b0b0, 2.9));
+    this.lamp = new DirectionalLight(0xffffff, 1.1);
+    this.scene.add(this.lamp, this.lamp.target);
+    const rod = new CylinderGeometry(1, 1, 1, 14);
+    this.rods = instances(rod, MOST_RODS);
+    this.elbows = instances(new SphereGeometry(1, 14, 10), 2 * MOST_RODS);
+    this.joints = instances(new CylinderGeometry(1, 1, 1, 24), this.table.n);
+    this.ghostRods = instances(rod, MOST_RODS * MOST_GHOSTS);
+    this.ghostRods.material.transparent = true;
+    this.ghostRods.material.opacity = 0.22;
+    this.ghostRods.material.depthWrite = false;
+    const lines = new BufferGeometry();
+    lines.setAttribute("position", new BufferAttribute(new Float32Array(6 * this.table.n), 3));
+    this.axes = new LineSegments(lines, new LineDashedMaterial({ dashSize: 0.05, gapSize: 0.03 }));
+    this.axes.frustumCulled = false;
+    this.scene.add(this.rods, this.elbows, this.joints, this.ghostRods, this.axes);
+  }
+
+  makeLabels() {
+    this.numbers = [];
+    for (let i = 0; i < this.table.n; i += 1) {
+      const label = element("span", { class: "bv-joint-number" }, String(i + 1));
+      this.numbers.push(label);
+      this.labels.append(label);
+    }
+  }
+
+  /** The colours of the picture: {link, fixed, joint, idle, axis}. */
+  setColors(colors) {
+    this.colors = colors;
+    this.update();
+  }
+
+  /** Keep the link before joint `frame` + 1 still, where it now is. */
+  fixLink(frame, track) {
+    this.hold = this.poseOf(this.frames, frame);
+    this.fixed = frame;
+    this.ghosts = [];
+    this.fit(track);
+    this.update();
+  }
+
+  /** The frames of a configuration as the picture has them. */
+  poseOf(frames, frame) {
+    return compose(this.worldOf(frames), frames.slice(12 * frame, 12 * frame + 12));
+  }
+
+  worldOf(frames) {
+    return compose(this.hold, invert(frames.slice(12 * this.fixed, 12 * this.fixed + 12)));
+  }
+
+  /** The drawn parts of a configuration, in the picture's frame. */
+  partsOf(theta) {
+    const frames = jointFrames(this.table, theta);
+    const world = this.worldOf(frames);
+    const turned = new Float64Array(frames.length);
+    for (let i = 0; i <= this.table.n; i += 1) {
+      turned.set(compose(world, frames.slice(12 * i, 12 * i + 12)), 12 * i);
+    }
+    return { frames, parts: drawnParts(this.table, turned, this.heights) };
+  }
+
+  /** Show a configuration; `idle` are the joints (from 1) that stand still along its form. */
+  show(theta, idle = []) {
+    this.theta = theta;
+    this.idle = new Set(idle);
+    this.update();
+  }
+
+  addGhost() {
+    this.ghosts.push(Float64Array.from(this.theta));
+    if (this.ghosts.length > MOST_GHOSTS) this.ghosts.shift();
+  }
+
+  clearGhosts() {
+    this.ghosts = [];
+    this.update();
+  }
+
+  // --- the picture -----------------------------------------------------------------
+
+  /** Have all positions along a track in the picture, seen from where it is seen now, or from `look`. */
+  fit(track, look) {
+    const points = [];
+    const step = Math.max(1, Math.floor(track.samples.length / FRAMING_SAMPLES));
+    for (let k = 0; k < track.samples.length; k += step) {
+      const { parts } = this.partsOf(track.samples[k].theta);
+      for (const joint of parts.joints) points.push(joint.seat);
+      for (const rod of parts.rods) points.push(rod.from, rod.to);
+    }
+    const ball = enclosingBall(points);
+    this.swept = points;
+    this.center = ball.center;
+    this.unit = ball.radius || 1;
+    if (look) this.look = look;
+    else if (this.fitted) this.look = this.camera.position.clone().sub(this.orbit.target).normalize();
+    this.fitted = true;
+    this.placeCamera();
+    this.sizeParts(track);
+  }
+
+  /** The camera so far away that all the track sweeps is in the picture. */
+  placeCamera() {
+    const sideways = new Vector3().crossVectors(this.camera.up, this.look).normalize();
+    const upward = new Vector3().crossVectors(this.look, sideways);
+    const points = this.swept.map((point) => this.scaled(point));
+    const seen = points.map((point) => [point.dot(sideways), point.dot(upward), point.dot(this.look)]);
+    const [x, y, z] = [0, 1, 2].map((k) => middleOf(seen.map((place) => place[k])));
+    const steep = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const away = MARGIN * seen.reduce((most, [a, b, c]) => {
+      const half = Math.max(Math.abs(a - x) / this.camera.aspect, Math.abs(b - y));
+      return Math.max(most, half / steep + c - z);
+    }, 0.1);
+    this.orbit.target.copy(sideways).multiplyScalar(x).addScaledVector(upward, y).addScaledVector(this.look, z);
+    this.camera.position.copy(this.look).multiplyScalar(away).add(this.orbit.target);
+    this.orbit.minDistance = 0.2;
+    this.orbit.maxDistance = 6 * away;
+    this.orbit.update();
+  }
+
+  /** Thickness of joints and rods: in the size of the picture, thinner where links are short. */
+  sizeParts(track) {
+    const { parts } = this.partsOf(track.samples[0].theta);
+    const radii = parts.joints.map((joint) => distance(joint.seat, parts.joints[0].seat));
+    const size = Math.max(...radii, 1e-9) / this.unit;
+    const lengths = parts.rods.map((rod) => distance(rod.from, rod.to) / this.unit);
+    const shortest = Math.min(...lengths, 1);
+    this.jointRadius = Math.max(Math.min(THICKNESS * size, 0.3 * shortest), 0.5 * THICKNESS * size, 0.01);
+    this.rodRadius = 0.42 * this.jointRadius;
+  }
+
+  /** See the linkage from where it is clearest again. */
+  resetView(scene, track) {
+    this.fit(track, lookOf(scene.view));
+    this.update();
+  }
+
+  update() {
+    if (!this.theta || !this.center) return;
+    const { frames, parts } = this.partsOf(this.theta);
+    this.frames = frames;
+    this.placeRods(this.rods, parts.rods, 0, this.rodRadius);
+    this.rods.count = parts.rods.length;
+    this.colorRods(parts.rods);
+    this.placeElbows(parts.rods);
+    this.placeJoints(parts.joints);
+    this.placeAxes(parts.axes);
+    this.placeGhosts();
+    this.labelPlaces = parts.axes.map((ends) => this.scaled(ends[1]));
+    this.requestFrame();
+  }
+
+  scaled(point) {
+    return new Vector3(...point.map((x, k) => (x - this.center[k]) / this.unit));
+  }
+
+  placeRods(mesh, rods, first, radius) {
+    rods.forEach((rod, k) => mesh.setMatrixAt(first + k, rodMatrix(this.scaled(rod.from), this.scaled(rod.to), radius)));
+    mesh.instanceMatrix.needsUpdate = true;
+  }
+
+  /** Links in the colour of the form; the one that stands still in grey. */
+  colorRods(rods) {
+    const still = (this.fixed + this.table.n - 1) % this.table.n;
+    const color = new Color();
+    rods.forEach((rod, k) => {
+      color.set(rod.link === still ? this.colors.fixed : this.colors.link);
+      this.rods.setColorAt(k, color);
+      this.elbows.setColorAt(2 * k, color);
+      this.elbows.setColorAt(2 * k + 1, color);
+    });
+    this.rods.instanceColor.needsUpdate = true;
+    this.elbows.instanceColor.needsUpdate = true;
+  }
+
+  placeElbows(rods) {
+    const matrix = new Matrix4();
+    const size = new Vector3().setScalar(this.rodRadius);
+    rods.forEach((rod, k) => {
+      [rod.from, rod.to].forEach((end, side) => {
+        matrix.compose(this.scaled(end), new Quaternion(), size);
+        this.elbows.setMatrixAt(2 * k + side, matrix);
+      });
+    });
+    this.elbows.count = 2 * rods.length;
+    this.elbows.instanceMatrix.needsUpdate = true;
+  }
+
+  placeJoints(joints) {
+    const color = new Color();
+    joints.forEach((joint, i) => {
+      const half = new Vector3(...joint.direction).multiplyScalar(1.7 * this.jointRadius);
+      const seat = this.scaled(joint.seat);
+      const [from, to] = [seat.clone().sub(half), seat.clone().add(half)];
+      this.joints.setMatrixAt(i, rodMatrix(from, to, this.jointRadius));
+      color.set(this.idle.has(i + 1) ? this.colors.idle : this.colors.joint);
+      this.joints.setColorAt(i, color);
+    });
+    this.joints.instanceMatrix.needsUpdate = true;
+    this.joints.instanceColor.needsUpdate = true;
+  }
+
+  placeAxes(axes) {
+    const position = this.axes.geometry.attributes.position;
+    axes.flat().forEach((end, k) => position.setXYZ(k, ...this.scaled(end)));
+    position.needsUpdate = true;
+    this.axes.computeLineDistances();
+    this.axes.material.color.set(this.colors.axis);
+  }
+
+  placeGhosts() {
+    let count = 0;
+    for (const theta of this.ghosts) {
+      const { rods } = this.partsOf(theta).parts;
+      this.placeRods(this.ghostRods, rods, count, this.rodRadius);
+      count += rods.length;
+    }
+    this.ghostRods.count = count;
+    this.ghostRods.visible = count > 0;
+    this.ghostRods.material.color.set(this.colors.link);
+  }
+
+  // --- frames ----------------------------------------------------------------------
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.container;
+    if (!width || !height) return;
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    if (this.center) {
+      this.look = this.camera.position.clone().sub(this.orbit.target).normalize();
+      this.placeCamera();
+    }
+    this.draw();
+  }
+
+  requestFrame() {
+    if (this.requested) return;
+    this.requested = true;
+    requestAnimationFrame(() => {
+      this.requested = false;
+      this.draw();
+    });
+  }
+
+  draw() {
+    if (!this.labelPlaces) return;
+    this.lamp.position.copy(this.camera.position).add(new Vector3(0.6, 0.3, 1.2));
+    this.renderer.render(this.scene, this.camera);
+    this.placeLabels();
+  }
+
+  /** The numbers at the ends of the axes, pushed apart where they would overlap. */
+  placeLabels() {
+    const { clientWidth: width, clientHeight: height } = this.container;
+    const spots = this.labelPlaces.map((place) => {
+      const p = place.clone().project(this.camera);
+      return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height };
+    });
+    pushApart(spots, 17);
+    spots.forEach(({ x, y }, i) => {
+      const [inX, inY] = [Math.min(Math.max(x, 10), width - 10), Math.min(Math.max(y, 10), height - 10)];
+      this.numbers[i].style.transform = `translate(-50%, -50%) translate(${inX.toFixed(1)}px, ${inY.toFixed(1)}px)`;
+    });
+  }
+
+  get drawCalls() {
+    return this.renderer.info.render.calls;
+  }
+
+  dispose() {
+    this.orbit.dispose();
+    this.renderer.dispose();
+  }
+}
+
+function instances(geometry, count) {
+  const mesh = new InstancedMesh(geometry, new MeshLambertMaterial(), count);
+  mesh.frustumCulled = false;
+  mesh.count = 0;
+  if (geometry.type === "CylinderGeometry") mesh.count = count;
+  return mesh;
+}
+
+function rodMatrix(from, to, radius) {
+  const way = to.clone().sub(from);
+  const length = way.length();
+  const turn = new Quaternion().setFromUnitVectors(UP, length > 0 ? way.divideScalar(length) : UP);
+  const middle = from.clone().add(to).multiplyScalar(0.5);
+  return new Matrix4().compose(middle, turn, new Vector3(radius, Math.max(length, 1e-9), radius));
+}
+
+function middleOf(values) {
+  const low = values.reduce((least, value) => Math.min(least, value), Infinity);
+  const high = values.reduce((most, value) => Math.max(most, value), -Infinity);
+  return (low + high) / 2;
+}
+
+/** A small ball around points (Ritter 1990): from the ball on two far ones it grows to hold the others. */
+function enclosingBall(points) {
+  const farthest = (from) => points.reduce((best, point) => (distance(point, from) > distance(best, from) ? point : best));
+  const one = farthest(points[0]);
+  const other = farthest(one);
+  let center = one.map((x, k) => (x + other[k]) / 2);
+  let radius = distance(one, other) / 2;
+  for (const point of points) {
+    const away = distance(point, center);
+    if (away <= radius) continue;
+    const grown = (radius + away) / 2;
+    center = center.map((x, k) => x + ((away - grown) / away) * (point[k] - x));
+    radius = grown;
+  }
+  return { center, radius };
+}
+
+function lookOf({ elevation, azimuth }) {
+  const e = (elevation * Math.PI) / 180;
+  const a = (azimuth * Math.PI) / 180;
+  return new Vector3(Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e));
+}
+
+function identity() {
+  return Float64Array.of(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
+}
+
+/** Move spots away from each other until they are `gap` apart, or a few rounds have passed. */
+function pushApart(spots, gap) {
+  for (let round = 0; round < 12; round += 1) {
+    for (let i = 0; i < spots.length; i += 1) {
+      for (let j = i + 1; j < spots.length; j += 1) {
+        const dx = spots[j].x - spots[i].x;
+        const dy = spots[j].y - spots[i].y;
+        const apart = Math.hypot(dx, dy);
+        if (apart >= gap) continue;
+        const [ux, uy] = apart > 1e-6 ? [dx / apart, dy / apart] : [1, 0];
+        const push = (gap - apart) / 2;
+        spots[i].x -= push * ux;
+        spots[i].y -= push * uy;
+        spots[j].x += push * ux;
+        spots[j].y += push * uy;
+      }
+    }
+  }
+}
+

@@ -1,0 +1,88 @@
+// The numbers of a configuration: joint angles, singular values, and how far the next singular points are.
+
+import { angleName, DEGREES, inDegrees, wrapped } from "./angles.js";
+import { element } from "./elements.js";
+import { nextPass } from "./crossings.js";
+import { isCurve } from "./tracks.js";
+
+const DECADES = 16; // that the bars of singular values span
+const ZERO = 1e-18; // rounding of rounding
+const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+export class Numbers {
+  constructor(n) {
+    this.angles = [];
+    this.values = [];
+    const angles = element("div", { class: "bv-cells" });
+    const values = element("div", { class: "bv-cells" });
+    for (let i = 0; i < n; i += 1) {
+      this.angles.push(cell(angles, angleName(i + 1), "bv-dial"));
+      this.values.push(cell(values, `σ${angleName(i + 1).slice(1)}`, "bv-level"));
+    }
+    this.node = element(
+      "div",
+      { class: "bv-numbers" },
+      element("h2", {}, "joint angles (deg)"),
+      angles,
+      element("h2", {}, "singular values"),
+      values,
+    );
+  }
+
+  show(angles, singularValues) {
+    this.angles.forEach(({ text, mark }, i) => {
+      text.textContent = inDegrees(angles[i]).replace("-", "−");
+      mark.style.left = `${50 + (wrapped(angles[i]) * DEGREES) / 3.6}%`;
+    });
+    this.values.forEach(({ text, mark }, i) => {
+      const value = singularValues[i];
+      text.textContent = inWords(value);
+      const height = value > 0 ? Math.min(Math.max(1 + Math.log10(value / singularValues[0]) / DECADES, 0), 1) : 0;
+      mark.style.width = `${100 * height}%`;
+    });
+  }
+}
+
+function cell(parent, name, kind) {
+  const text = element("b", {});
+  const mark = element("i", {});
+  parent.append(element("div", { class: "bv-cell" }, element("span", {}, name), text, element("div", { class: kind }, mark)));
+  return { text, mark };
+}
+
+/** A number with three digits, small ones with a power of ten. */
+function inWords(value) {
+  if (value < ZERO) return "0";
+  if (value >= 1e-3) return value.toPrecision(3);
+  const [digits, exponent] = value.toExponential(1).split("e-");
+  return `${digits}·10⁻${[...exponent].map((digit) => SUPERSCRIPTS[digit]).join("")}`;
+}
+
+/** The bar between the singular points before and after the linkage. */
+export class DistanceBar {
+  constructor(passes, goToPoint) {
+    this.passes = passes;
+    this.before = element("button", { class: "bv-before", title: "previous singular point (↓)" });
+    this.after = element("button", { class: "bv-after", title: "next singular point (↑)" });
+    this.mark = element("i", {});
+    this.node = element("div", { class: "bv-distance" }, this.before, element("div", { class: "bv-gauge" }, this.mark), this.after);
+    this.before.addEventListener("click", () => this.previous && goToPoint(this.previous.point, this.previous.s));
+    this.after.addEventListener("click", () => this.next && goToPoint(this.next.point, this.next.s));
+  }
+
+  show({ track, s }) {
+    const passes = isCurve(track) ? this.passes(track) : [];
+    this.previous = nextPass(passes, track, s, -1);
+    this.next = nextPass(passes, track, s, 1);
+    this.node.classList.toggle("bv-hidden", !this.previous && !this.next);
+    this.before.textContent = this.previous ? `${this.previous.point.name} ◂ ${degrees(this.previous.ahead)}` : "";
+    this.after.textContent = this.next ? `${degrees(this.next.ahead)} ▸ ${this.next.point.name}` : "";
+    const back = this.previous?.ahead ?? s;
+    const ahead = this.next?.ahead ?? track.length - s;
+    this.mark.style.left = `${(100 * back) / Math.max(back + ahead, 1e-12)}%`;
+  }
+}
+
+function degrees(length) {
+  return `${(length * DEGREES).toFixed(1)}°`;
+}

@@ -1,0 +1,126 @@
+// The buttons and lists around the pictures.
+
+import { angleName, DEGREES, linkName } from "./angles.js";
+import { element } from "./elements.js";
+import { KEYS_IN_WORDS } from "./keyboard.js";
+import { isCurve } from "./tracks.js";
+
+const SPEEDS = [0.25, 0.5, 1, 2, 4];
+
+/** The head of the page: what the linkage is, the theme, and the keys. */
+export function header(scene, toggleTheme) {
+  const help = element("details", { class: "bv-help" }, element("summary", { title: "keys" }, "?"));
+  const rows = KEYS_IN_WORDS.map(([keys, words]) => element("tr", {}, element("th", {}, keys), element("td", {}, words)));
+  help.append(element("table", {}, ...rows));
+  const theme = element("button", { class: "bv-theme", title: "dark or light (D)", onclick: toggleTheme }, "◐");
+  const words = [scene.verdict, scene.completeness].filter(Boolean).join(" ");
+  return element("header", {}, element("h1", {}, scene.title), element("p", { title: words }, words), theme, help);
+}
+
+/** What the marks of the map mean, as far as there are any. */
+export function legend(scene) {
+  const kinds = new Set(scene.points.map((point) => point.kind));
+  const entries = [];
+  if (kinds.delete("bifurcation")) entries.push("○ bifurcation");
+  if (kinds.delete("rank drop")) entries.push("◇ rank drop");
+  for (const kind of kinds) entries.push(`□ ${kind}`);
+  if (scene.near_misses.length) entries.push("▾ near miss");
+  if (scene.assemblies.length) entries.push("× rigid assembly");
+  if (scene.near_motions.length) entries.push("× near motion");
+  if (scene.surfaces.length) entries.push("∴ mobility 2 or more");
+  return element("div", { class: "bv-legend" }, ...entries.map((entry) => element("span", {}, entry)));
+}
+
+/** Above the linkage: which link stands still, ghosts, and the whole picture. */
+export class SpaceTools {
+  /** `actions` are holdLink(frame), toggleGhosts() and resetView(). */
+  constructor(scene, actions) {
+    const n = scene.loop.lengths.length;
+    const hold = () => actions.holdLink(Number(this.link.value));
+    this.link = element("select", { "aria-label": "link that is held still", onchange: hold });
+    for (let frame = 0; frame < n; frame += 1) {
+      const joint = frame === 0 ? n : frame; // the link before joint 1 is the last one
+      this.link.append(element("option", { value: frame }, linkName(joint, n)));
+    }
+    const ghosts = { title: "ghosts of earlier positions (G)", "aria-pressed": "false", onclick: () => actions.toggleGhosts() };
+    this.ghosts = element("button", ghosts, "Ghosts");
+    const all = element("button", { title: "see all again (R)", onclick: () => actions.resetView() }, "See all");
+    this.node = element("div", { class: "bv-space-tools" }, element("label", {}, "fixed link ", this.link), this.ghosts, all);
+  }
+
+  showGhosts(areOn) {
+    this.ghosts.setAttribute("aria-pressed", String(areOn));
+  }
+
+  /** The frame of the link after the one that is held, now chosen. */
+  chooseNextLink() {
+    this.link.value = (Number(this.link.value) + 1) % this.link.options.length;
+    return Number(this.link.value);
+  }
+}
+
+/** Below the linkage: playing, its speed, and where the linkage is. */
+export class MotionTools {
+  /** `actions` are togglePlay(), playBackwards() and the `player`. */
+  constructor(scene, actions) {
+    const { player } = actions;
+    this.play = element("button", { class: "bv-play", title: "play and pause (Space)", onclick: () => actions.togglePlay() }, "▶");
+    this.back = element("button", { class: "bv-back", title: "play backwards", onclick: () => actions.playBackwards() }, "◀");
+    const speed = element("select", { "aria-label": "speed", onchange: () => (player.speed = Number(speed.value)) });
+    for (const factor of SPEEDS) speed.append(element("option", { value: factor, selected: factor === 1 }, `${factor}×`));
+    const pause = element("input", { type: "checkbox", checked: true });
+    pause.addEventListener("change", () => (player.pausesAtBifurcations = pause.checked));
+    const pauses = element("label", {}, pause, " pause at bifurcations");
+    pauses.classList.toggle("bv-hidden", scene.points.every((point) => point.leaving <= 2));
+    this.place = element("span", { class: "bv-place" });
+    this.node = element("div", { class: "bv-row" }, this.back, this.play, speed, pauses, this.place);
+  }
+
+  showPlaying(isPlaying) {
+    this.play.textContent = isPlaying ? "❚❚" : "▶";
+    this.back.disabled = isPlaying;
+  }
+
+  show({ track, s }) {
+    const degrees = (length) => `${(length * DEGREES).toFixed(1)}°`;
+    this.place.textContent = isCurve(track)
+      ? `${degrees(s)} of ${degrees(track.length)} along ${track.name}`
+      : `${track.name}: ${s + 1} of ${track.samples.length}`;
+  }
+}
+
+/** Above the map: its plane. */
+export class MapTools {
+  /** `changed()` is called when another plane is chosen. */
+  constructor(scene, changed) {
+    const n = scene.loop.lengths.length;
+    const choose = () => {
+      for (const axis of this.axes) axis.disabled = this.isPrincipal;
+      changed();
+    };
+    this.axes = ["horizontal", "vertical"].map((word, k) => {
+      const select = element("select", { "aria-label": `${word} axis of the map`, onchange: choose });
+      for (let i = 0; i < n; i += 1) {
+        select.append(element("option", { value: i, selected: i === scene.plane[k] }, angleName(i + 1)));
+      }
+      return select;
+    });
+    this.principal = element("input", { type: "checkbox", onchange: choose });
+    this.node = element(
+      "div",
+      { class: "bv-row bv-map-tools" },
+      element("label", {}, "map: ", this.axes[0]),
+      element("label", {}, " against ", this.axes[1]),
+      element("label", {}, this.principal, " principal plane"),
+    );
+  }
+
+  get isPrincipal() {
+    return this.principal.checked;
+  }
+
+  /** The two joints of the plane, from 0. */
+  get joints() {
+    return this.axes.map((axis) => Number(axis.value));
+  }
+}

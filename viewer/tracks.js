@@ -1,0 +1,103 @@
+// Tracks: what a slider can run along. A form is a curve; a surface, the rigid assemblies and the near motions are
+// lists of configurations that are passed one by one.
+
+import { unpackRows } from "./arrays.js";
+import { curveOf, drawingArclengths, evaluate } from "./pieces.js";
+
+/** All tracks of a document, the forms first. */
+export function tracksOf(scene) {
+  const tracks = scene.forms.map((form) => formTrack(form));
+  for (const surface of scene.surfaces) {
+    tracks.push(listTrack("surface", surface.name, unpackRows(surface.samples)));
+  }
+  if (scene.assemblies.length) tracks.push(listTrack("assembly", "rigid assemblies", scene.assemblies));
+  if (scene.near_motions.length) {
+    const samples = scene.near_motions.map((motion) => motion.sample);
+    tracks.push(listTrack("near motion", "near motions", samples));
+  }
+  const alone = scene.points.filter((point) => !point.passes.length);
+  if (alone.length) tracks.push(pointTrack(alone));
+  if (!tracks.length) {
+    const zeros = scene.loop.lengths.map(() => 0);
+    tracks.push(listTrack("open", "open chain", [zeros]));
+  }
+  return tracks;
+}
+
+function formTrack(form) {
+  const curve = curveOf(form);
+  const samples = drawingArclengths(curve).map((s) => ({ s, theta: evaluate(curve, s) }));
+  return {
+    kind: "form",
+    name: form.name,
+    length: curve.length,
+    closed: curve.closed,
+    color: form.color,
+    dashes: form.dashes,
+    samples,
+    at: (s) => evaluate(curve, s),
+    place: (s) => (curve.closed ? modulo(s, curve.length) : clamp(s, 0, curve.length)),
+    form,
+  };
+}
+
+function listTrack(kind, name, configurations) {
+  const last = configurations.length - 1;
+  const nearest = (s) => Math.round(clamp(s, 0, last));
+  return {
+    kind,
+    name,
+    length: last,
+    closed: false,
+    color: null,
+    dashes: [],
+    samples: configurations.map((theta, s) => ({ s, theta })),
+    at: (s) => configurations[nearest(s)],
+    place: nearest,
+    form: null,
+  };
+}
+
+/** The singular points that no form passes, as a list; each sample knows its point. */
+function pointTrack(points) {
+  const track = listTrack("singular point", "singular points", points.map((point) => point.angles));
+  points.forEach((point, k) => (track.samples[k].point = point));
+  return track;
+}
+
+/** The tracks as they are listed and numbered: forms by their names, as in the summary, then the others. */
+export function inOrder(tracks) {
+  const forms = tracks.filter(isCurve);
+  forms.sort((a, b) => (a.name < b.name ? -1 : 1));
+  return [...forms, ...tracks.filter((track) => !isCurve(track))];
+}
+
+/** Whether the slider moves along the track without steps. */
+export function isCurve(track) {
+  return track.kind === "form";
+}
+
+/** The track of a name, of the beginning of a name that only one has, or of a number from 1; undefined where none. */
+export function findTrack(tracks, name) {
+  if (typeof name === "number") return tracks[name - 1];
+  const equal = tracks.filter((track) => track.name === name);
+  if (equal.length) return equal[0];
+  const beginning = tracks.filter((track) => beginsWith(track.name, name));
+  if (beginning.length === 1) return beginning[0];
+  const containing = tracks.filter((track) => track.name.toLowerCase().includes(String(name).toLowerCase()));
+  return containing.length === 1 ? containing[0] : undefined;
+}
+
+function beginsWith(full, name) {
+  const text = String(name).toLowerCase();
+  return full.toLowerCase().startsWith(text) && !/[a-z0-9]/i.test(full.charAt(text.length));
+}
+
+export function modulo(value, period) {
+  const rest = value - Math.floor(value / period) * period;
+  return rest >= period ? 0 : rest;
+}
+
+export function clamp(value, low, high) {
+  return Math.min(Math.max(value, low), high);
+}
