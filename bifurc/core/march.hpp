@@ -46,7 +46,11 @@ constexpr double farthest_correction = 1e-2;  // of a new centre, over the radiu
 constexpr double shrink = 0.85;        // of a radius that is too long
 constexpr int shrinks = 20;
 constexpr int corrections = 6;
-constexpr std::array hops = {0.9, 0.5, 0.2, 0.0};  // of the new centre beyond the radius, over it
+// Of the new centre beyond the radius, over it. The last one is a step back: from another
+// distance to a bifurcation a piece may reach across.
+constexpr std::array hops = {0.9, 0.5, 0.2, 0.0, -0.5};
+constexpr double steep_fall = 0.1;  // of the smallest regular singular value from piece to piece
+constexpr double progress = 1.1;    // of a piece after a step back, beyond the one before
 constexpr int places = 8;           // on either side of a centre, from which a foot is looked for
 constexpr int foot_steps = 6;       // of Newton's method from there
 constexpr double standing = 1e-15;  // a step, over the radius, after which none follows
@@ -291,9 +295,10 @@ private:
             for (double& entry : direction) entry /= speed;
             const Settled settled = settle(point, direction);
             if (settled.moved > march::farthest_correction * radius || settled.gap > settings_.closing) continue;
+            if (is_beside_singular(settled.sigma, pieces.back().sigma)) continue;
             misclosure_ = std::max(misclosure_, settled.gap);
             TaylorPiece piece = expand(point, direction, settled.sigma);
-            if (piece.radius <= beyond * radius) continue;
+            if (piece.radius <= reach_needed(beyond) * radius) continue;
             const Meeting meeting = meet(pieces.back(), piece, -beyond * radius);
             const double known = blur(std::min(pieces.back().sigma, piece.sigma));
             const bool is_same = meeting.distance <= 100.0 * settings_.tolerance + march::handover * known;
@@ -330,6 +335,15 @@ private:
         return foot.s > after && std::abs(foot.s) <= piece.radius && length(foot.offset) < region.within &&
                cosine > march::same_way * length(foot.slope);
     }
+
+    // Whether a singular value falls to where points are known no better than the distance to
+    // the next sheet, which is about as large: a centre there may be on any of them.
+    bool is_beside_singular(double sigma, double before) const {
+        return sigma < march::steep_fall * before && sigma < march::handover * blur(sigma);
+    }
+
+    // The radius, over that of the piece before, with which a piece goes on from there.
+    static double reach_needed(double beyond) { return beyond < 0.0 ? -march::progress * beyond : beyond; }
 
     struct Meeting {
         double at;        // on the second piece

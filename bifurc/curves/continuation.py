@@ -102,13 +102,14 @@ def _follow(
     longest = settings.max_length * problem.scale
     while True:
         march = _march(problem, track, settings, closing)
-        if march.status is MarchStatus.OPEN:
+        if march.status is MarchStatus.OPEN and not len(track):
             gap = float(march.residuals[-1])
             return track.empty_branch(Outcome.OPEN, problem.periods, gap)
         first = max(len(track) - 1, 0)  # the former last piece may reach over the end
         track.append(march)
         end = end_of_curve(problem, track, first, settings.tolerance)
-        if end is None and march.status is MarchStatus.STALLED:
+        # beside a cusp the end of a piece may be corrected to where nothing is solved
+        if end is None and march.status is not MarchStatus.RAN:
             end = _overcome_stall(problem, track, settings)
         elif _is_clear(problem, march, settings):
             track.allow_long_steps_only()
