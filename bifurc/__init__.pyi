@@ -10,6 +10,7 @@ from .curves.certificate import Certificate as Certificate
 from .curves.continuation import TraceSettings as TraceSettings
 from .curves.continuation import trace_branch as trace_branch
 from .curves.monitor import Profile as Profile
+from .equations.symbolic import SymbolicProblem as SymbolicProblem
 from .errors import BifurcError as BifurcError
 from .errors import ProblemError as ProblemError
 from .errors import RouteError as RouteError

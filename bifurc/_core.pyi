@@ -27,3 +27,68 @@ def foot_on_piece(
 ) -> tuple[float, np.ndarray, np.ndarray]: ...
 def singular_values(matrices: np.ndarray) -> np.ndarray: ...
 def eigenvalues(matrix: np.ndarray) -> np.ndarray: ...
+
+class Tape:
+    """Recorded equations: `bifurc.equations.tape`."""
+
+    def __init__(
+        self,
+        unknowns: int,
+        operations: np.ndarray,
+        operands: np.ndarray,
+        constants: np.ndarray,
+        outputs: np.ndarray,
+    ) -> None: ...
+    @property
+    def unknowns(self) -> int: ...
+    @property
+    def equations(self) -> int: ...
+    def residuals(self, points: np.ndarray) -> np.ndarray: ...
+    def complex_residuals(self, points: np.ndarray) -> np.ndarray: ...
+    def jacobians(self, points: np.ndarray) -> np.ndarray: ...
+    def complex_jacobians(self, points: np.ndarray) -> np.ndarray: ...
+    def hessian(self, point: np.ndarray) -> np.ndarray: ...
+    def series(self, curve: np.ndarray) -> np.ndarray: ...
+    def pattern(self) -> tuple[np.ndarray, np.ndarray]: ...
+    def entries(self, point: np.ndarray) -> np.ndarray: ...
+    def value_bounds(
+        self, low: np.ndarray, high: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]: ...
+    def jacobian_bounds(
+        self, low: np.ndarray, high: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]: ...
+    def march(
+        self,
+        units: np.ndarray,
+        weights: np.ndarray,
+        start: np.ndarray,
+        tangent: np.ndarray,
+        order: int,
+        tolerance: float,
+        shortest: float,
+        longest: float,
+        count: int,
+        closing: float,
+        misclosure: float,
+        anchor: np.ndarray,
+        within: float,
+        periods: np.ndarray,
+        bounds: np.ndarray,
+    ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+    def project(
+        self,
+        units: np.ndarray,
+        weights: np.ndarray,
+        starts: np.ndarray,
+        noise: float,
+        iterations: int,
+    ) -> tuple[np.ndarray, np.ndarray]: ...
+    def project_to_sphere(
+        self,
+        units: np.ndarray,
+        weights: np.ndarray,
+        starts: np.ndarray,
+        center: np.ndarray,
+        radius: float,
+        iterations: int,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...

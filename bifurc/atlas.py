@@ -161,8 +161,8 @@ class Provenance:
     """How an atlas came about.
 
     ``seed`` of the random starts and ``settings`` of the search, whether it was
-    ``interrupted`` or ``out_of_time``, how F' was made (``derivatives``), and the
-    ``seconds`` it took.
+    ``interrupted`` or ``out_of_time``, how F' was made (``derivatives``), whether the
+    ``equations`` are recorded, for a function, and the ``seconds`` it took.
     """
 
     seed: int = 0
@@ -170,6 +170,7 @@ class Provenance:
     interrupted: bool = False
     out_of_time: bool = False
     derivatives: str = "exact"
+    equations: str = ""
     seconds: float = 0.0
 
 

@@ -240,6 +240,16 @@ is_solution_at_probe = Decision(
     Role.LOOK,
 )
 
+is_same_function = Decision(
+    "recording",
+    "recorded equations are the function that they were recorded from",
+    "difference of the values, over the width of the interval of all that rounding may "
+    "make of the recorded ones",
+    30.0,
+    "the same operations in another order differ by 1 or less; another function by 1e6 "
+    "and more",
+)
+
 # --- rank -----------------------------------------------------------------------------
 
 is_null = Decision(

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc.checks import check_callable, floats_of
+from bifurc.equations.recording import Recording, record
+from bifurc.equations.system import LARGEST_DENSE, ScaledTape
+from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
 from bifurc.numerics.bordered import as_dense
 from bifurc.numerics.collocation import march_by_collocation
@@ -15,22 +18,32 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
-from bifurc.problem import March, MarchSettings, Problem, SphereProjection
+from bifurc.problem import (
+    March,
+    MarchSettings,
+    PreciseResidual,
+    Problem,
+    SphereProjection,
+)
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 
 if TYPE_CHECKING:
+    import mpmath
+
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import sparray
 
 __all__ = ["FunctionProblem", "NumericalProblem"]
 
 PROBES = 7  # points at which a function is tried out and its derivatives are measured
+CHECKS = 20  # more points at which a recording is compared with the function
 WRONG = 1e-2  # relative difference from which on a given derivative is wrong
 LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
 HESSIAN_STEP = 1e-5  # the same for F'
+EXACT_HESSIAN = 1e-14  # how far off, over a bound on it, rounding leaves an exact F''
 
 
 class NumericalProblem(Problem):
@@ -77,12 +90,19 @@ class NumericalProblem(Problem):
 class FunctionProblem(NumericalProblem):
     """A problem from a plain Python callable ``function``: (n,) -> (m,).
 
-    Derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where given,
-    else by complex step where the function lets complex numbers through, else by
-    central differences; ``derivatives`` says which. ``bounds`` (n, 2) is the region
-    from which `explore` draws starts and in which curves are followed. Raises
-    `ProblemError` for bounds out of order and for a function that gives no finite
-    vector.
+    The function is called once with arguments that record what is done with them. Where
+    that succeeds, and the recording is equal to the function at random points, all
+    values and derivatives come from it, compiled and exact; a function that changes
+    afterwards is not noticed. `recording` holds it, or the reason why there is none;
+    ``is_recorded=False`` does without.
+
+    Otherwise derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where
+    given, else by complex step where the function lets complex numbers through, else by
+    central differences. ``derivatives`` says which.
+
+    ``bounds`` (n, 2) is the region from which `explore` draws starts and in which
+    curves are followed. Raises `ProblemError` for bounds out of order, for a function
+    that gives no finite vector, and for a ``jacobian`` that is not its derivative.
     """
 
     def __init__(
@@ -94,10 +114,30 @@ class FunctionProblem(NumericalProblem):
         names: Sequence[str] | None = None,
         units: Sequence[str] | None = None,
         periods: Sequence[float] | None = None,
+        is_recorded: bool = True,
     ):
         check_callable("function", function)
         if jacobian is not None:
             check_callable("jacobian", jacobian)
+        self._set_unknowns(bounds, names, units, periods)
+        self._function = function
+        self._jacobian = jacobian
+
+        points = self._random_points()
+        probes = self._probes_with_value(points[:PROBES])
+        self.recording = Recording(None, "not asked for")
+        if is_recorded:
+            self.recording = record(function, points)
+        self._measure(probes)
+
+    def _set_unknowns(
+        self,
+        bounds: Sequence[Sequence[float]],
+        names: Sequence[str] | None,
+        units: Sequence[str] | None,
+        periods: Sequence[float] | None,
+    ) -> None:
+        """Take the unknowns as the user describes them; raises `ProblemError`."""
         self.bounds = _checked_bounds(bounds)
         n = len(self.bounds)
         default_names = [f"u{i + 1}" for i in range(n)]
@@ -109,51 +149,139 @@ class FunctionProblem(NumericalProblem):
         if periods is not None:
             self.periods = floats_of("periods", periods)
         self._check_lengths(n)
-        self._function = function
-        self._jacobian = jacobian
+        low, high = self._finite_bounds
+        self.scale = float(np.median(high - low)) / 4.0
 
+    @property
+    def _finite_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper ends (n,), from -1 to 1 where the bounds are infinite."""
         low, high = self.bounds.T
         low = np.where(np.isfinite(low), low, -1.0)
-        high = np.where(np.isfinite(high), high, 1.0)
-        self.scale = float(np.median(high - low)) / 4.0
+        return low, np.where(np.isfinite(high), high, 1.0)
+
+    def _random_points(self) -> np.ndarray:
+        """Points (k, n) within the bounds at which the equations are looked at."""
         rng = np.random.default_rng(0)
-        probes = rng.uniform(low, high, (PROBES, n))
-        probes = self._probes_with_value(probes)
-        self.derivatives = "given" if jacobian else self._choose_derivatives(probes[0])
+        low, high = self._finite_bounds
+        return rng.uniform(low, high, (PROBES + CHECKS, self.n))
+
+    def _measure(self, probes: np.ndarray) -> None:
+        """Choose how F' is made, check it at the probes (k, n), and take its typical
+        size."""
+        self._scaled: ScaledTape | None = None
+        tape = self.recording.tape
+        if tape is not None:
+            self._scaled = self._scaled_tape(tape, 1.0)
+        self.equations = str(self.recording)
+        self.derivatives = self._choose_derivatives(probes[0])
         for probe in probes:
             self._check_jacobian(probe)
         sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
         self.magnitude = float(np.median(sizes)) or 1.0
+        if tape is not None:
+            self.hessian_error = EXACT_HESSIAN
+            self._scaled = self._scaled_tape(tape, self.magnitude)
+
+    def _scaled_tape(self, tape: Tape, magnitude: float) -> ScaledTape:
+        return ScaledTape(tape, magnitude, self.scale, self.bounds, self.periods)
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
+        points = np.atleast_2d(points)
+        if self._scaled is not None:
+            return self._scaled.residuals(points)
         function = self._function  # called thousands of times a curve
-        values = [function(point) for point in np.atleast_2d(points)]
+        values = [function(point) for point in points]
         return np.array(values, dtype=float)
 
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it
-        so."""
+        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it so,
+        or the recording of many unknowns."""
+        if self._scaled is not None:
+            if self._scaled.is_sparse:
+                return self._scaled.sparse_jacobian(point)
+            return self._scaled.jacobians(point[None])[0]
         if self._jacobian is not None:
-            jacobian = self._jacobian(point)
-            is_sparse = hasattr(jacobian, "tocsc")
-            return jacobian if is_sparse else np.asarray(jacobian, dtype=float)
+            return self._given_jacobian(point)
         if self.derivatives == "complex step":
             return self._complex_step(point)
         return self._central_difference(point)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n), dense."""
-        jacobians = [self.jacobian(point) for point in np.atleast_2d(points)]
+        points = np.atleast_2d(points)
+        if self._scaled is not None:
+            return self._scaled.jacobians(points)
+        jacobians = [self.jacobian(point) for point in points]
         return np.array([as_dense(jacobian) for jacobian in jacobians])
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,): exact where the equations are recorded, else
+        by central differences of F'."""
+        if self._compiled is not None:
+            return self._compiled.hessian(point)
+        return super().hessian(point)
+
+    def precise_residual(self) -> PreciseResidual | None:
+        """F over mpmath numbers where the equations are recorded; their constants are
+        the doubles that the function computes with."""
+        tape = self.recording.tape
+        if tape is None:
+            return None
+
+        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+            import mpmath  # it takes long to import
+
+            values: list[mpmath.mpf] = tape.over(unknowns, mpmath)
+            return values
+
+        return residual
+
+    # --- curves and solutions ---------------------------------------------------------
+
+    @property
+    def _compiled(self) -> ScaledTape | None:
+        """The recorded equations, where they are few enough for the methods that are
+        compiled."""
+        return self._scaled if self.n <= LARGEST_DENSE else None
+
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    ) -> March:
+        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,): Taylor series
+        where the equations are recorded, else by collocation."""
+        if self._compiled is not None:
+            return self._compiled.march(start, tangent, settings)
+        return super().march(start, tangent, settings)
+
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
+        left at each, by least squares."""
+        if self._compiled is not None:
+            return self._compiled.project(starts)
+        return super().project(starts)
+
+    def project_to_sphere(
+        self, starts: np.ndarray, center: np.ndarray, radius: float
+    ) -> SphereProjection:
+        """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,), by
+        Newton's method."""
+        if self._compiled is not None:
+            return self._compiled.project_to_sphere(starts, center, radius)
+        return super().project_to_sphere(starts, center, radius)
 
     # --- derivatives ------------------------------------------------------------------
 
     def _choose_derivatives(self, probe: np.ndarray) -> str:
-        """How F' is made: by complex step, if that agrees with differences at a point.
+        """How F' is made: from the recording or as it is given, else by complex step,
+        if that agrees with differences at a point.
 
         A function may also drop imaginary parts without a word.
         """
+        if self._scaled is not None:
+            return "recorded"
+        if self._jacobian is not None:
+            return "given"
         try:
             by_complex = self._complex_step(probe)
         except (TypeError, ValueError, np.exceptions.ComplexWarning):
@@ -164,6 +292,12 @@ class FunctionProblem(NumericalProblem):
         error = np.abs(by_complex - by_difference).max()
         size = 1.0 + np.abs(by_difference).max()
         return "complex step" if error < 1e-5 * size else "central differences"
+
+    def _given_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        assert self._jacobian is not None
+        jacobian = self._jacobian(point)
+        is_sparse = hasattr(jacobian, "tocsc")
+        return jacobian if is_sparse else np.asarray(jacobian, dtype=float)
 
     def _complex_step(self, point: np.ndarray) -> np.ndarray:
         columns = []
@@ -231,24 +365,30 @@ class FunctionProblem(NumericalProblem):
 
     def _check_jacobian(self, probe: np.ndarray) -> None:
         """Raise `ProblemError` unless F' has its shape and is finite at a probe (n,),
-        and agrees with differences where it is given."""
-        jacobian = as_dense(self.jacobian(probe))
+        and agrees with the recording or with differences where it is given."""
         shape = (len(self._value(probe)), self.n)
+        jacobian = as_dense(self.jacobian(probe))
+        if self._jacobian is not None:
+            jacobian = as_dense(self._given_jacobian(probe))
         if jacobian.shape != shape:
             raise ProblemError("shape of the jacobian", jacobian.shape, str(shape))
         if not np.all(np.isfinite(jacobian)):
             raise ProblemError("jacobian", jacobian, "finite")
-        if self.derivatives != "given" or self.n > LARGEST_COMPARED:
+        if self._jacobian is None or self.n > LARGEST_COMPARED:
             return
-        by_difference = self._central_difference(probe)
-        if not np.all(np.isfinite(by_difference)):
+        expected = self._central_difference(probe)
+        origin = "by differences"
+        if self._scaled is not None:
+            expected = self._scaled.jacobians(probe[None])[0]
+            origin = "as recorded"
+        if not np.all(np.isfinite(expected)):
             return  # at the rim of where the function is defined
-        gaps = np.abs(jacobian - by_difference)
-        if gaps.max() > WRONG * (1.0 + np.abs(by_difference).max()):
+        gaps = np.abs(jacobian - expected)
+        if gaps.max() > WRONG * (1.0 + np.abs(expected).max()):
             row, column = np.unravel_index(np.argmax(gaps), gaps.shape)
             allowed = (
-                f"the derivative of the function, {by_difference[row, column]:.6g} "
-                f"by differences at {probe}"
+                f"the derivative of the function, {expected[row, column]:.6g} "
+                f"{origin} at {probe}"
             )
             name = f"jacobian[{row}, {column}]"
             raise ProblemError(name, jacobian[row, column], allowed)

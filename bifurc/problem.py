@@ -167,8 +167,8 @@ class Problem(ABC):
     (inf where there is none), ``bounds`` (n, 2) the region of interest (infinite where
     there is none), ``magnitude`` the typical size of F', by which residuals and
     singular values are divided, ``scale`` the typical size of the unknowns, and
-    ``derivatives`` says how F' was made. ``hessian_error`` is how far off `hessian` may
-    be, over a bound on F''.
+    ``derivatives`` says how F' was made, ``equations`` whether a function was recorded,
+    and why not. ``hessian_error`` is how far off `hessian` may be, over a bound on F''.
     """
 
     names: tuple[str, ...]
@@ -180,6 +180,7 @@ class Problem(ABC):
     magnitude: float = 1.0
     scale: float = 1.0
     derivatives: str = "exact"
+    equations: str = ""
 
     @property
     def n(self) -> int:

@@ -7,6 +7,7 @@
 #include "bifurc/core/march.hpp"
 #include "bifurc/core/numpy.hpp"
 #include "bifurc/core/singular_values.hpp"
+#include "bifurc/core/tape_bindings.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -152,4 +153,5 @@ NB_MODULE(_core, module) {
     module.def("foot_on_piece", &foot_of_point, "piece"_a, "point"_a, "periods"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
     module.def("eigenvalues", &eigenvalues, "matrix"_a);
+    bifurc::python::bind_tape(module);
 }

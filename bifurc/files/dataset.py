@@ -162,6 +162,7 @@ def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
         "interrupted": int(provenance.interrupted),
         "out_of_time": int(provenance.out_of_time),
         "derivatives": provenance.derivatives,
+        "equations": provenance.equations,
         "seconds": provenance.seconds,
     }
     for name, value in asdict(settings.tracing).items():

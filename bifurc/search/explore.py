@@ -77,6 +77,7 @@ def explore(
         interrupted=interrupted,
         out_of_time=search.is_over,
         derivatives=problem.derivatives,
+        equations=problem.equations,
         seconds=time.perf_counter() - began,
     )
     return assemble_atlas(problem, search.findings, provenance)

@@ -24,7 +24,7 @@ def silently_wrong(u):
 
 
 def test_derivatives_are_exact_by_complex_step_where_complex_numbers_pass():
-    problem = FunctionProblem(circle, BOX)
+    problem = FunctionProblem(circle, BOX, is_recorded=False)
     assert problem.derivatives == "complex step"
     assert problem.jacobians(np.array([[0.3, 0.7]]))[0] == pytest.approx(
         np.array([[0.6, 1.4]]), abs=1e-15
@@ -52,9 +52,12 @@ def test_a_given_jacobian_is_used():
     )
 
 
-def test_the_hessian_by_differences_of_the_jacobian_is_symmetric_and_right():
+@pytest.mark.parametrize(("is_recorded", "error"), [(True, 1e-15), (False, 1e-9)])
+def test_the_hessian_is_symmetric_and_right(is_recorded, error):
     problem = FunctionProblem(
-        lambda u: np.array([u[0] ** 3 * u[1], np.sin(u[0] * u[1])]), BOX
+        lambda u: np.array([u[0] ** 3 * u[1], np.sin(u[0] * u[1])]),
+        BOX,
+        is_recorded=is_recorded,
     )
     x, y = u = np.array([0.7, -0.4])
     s, c = np.sin(x * y), np.cos(x * y)
@@ -64,8 +67,8 @@ def test_the_hessian_by_differences_of_the_jacobian_is_symmetric_and_right():
             [[-y * y * s, c - x * y * s], [c - x * y * s, -x * x * s]],
         ]
     )
-    # central differences of an exact Jacobian with steps of 1e-5: 1e-10
-    assert problem.hessian(u) == pytest.approx(expected, abs=1e-9)
+    # exact, or central differences of an exact Jacobian with steps of 1e-5: 1e-10
+    assert problem.hessian(u) == pytest.approx(expected, abs=error)
 
 
 def test_residuals_relative_to_the_magnitude_do_not_depend_on_the_scale_of_the_equations():

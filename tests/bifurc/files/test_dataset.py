@@ -83,7 +83,7 @@ def test_the_provenance_is_in_the_attributes(atlas: Atlas) -> None:
         and attributes["settings_tolerance"]
         == atlas.provenance.settings.tracing.tolerance
     )
-    assert attributes["version"] and attributes["derivatives"] == "complex step"
+    assert attributes["version"] and attributes["derivatives"] == "recorded"
 
 
 def test_the_linkage_is_stored_along_the_joints(atlas: Atlas) -> None:

@@ -1,0 +1,626 @@
+// Equations as data: a list of operations, one interpreter over any kind of number.
+//
+// A tape is what is left of a user's equations once they are recorded (`bifurc.recording`).
+// Every operation writes one slot. Values come from one sweep over the slots; exact first
+// derivatives from a second sweep with the partial derivatives of each operation, forwards or
+// backwards; second derivatives and Taylor series from one rule for each kind of operation.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bifurc/core/arrays.hpp"
+#include "bifurc/core/interval.hpp"
+#include "bifurc/core/least_squares.hpp"
+#include "bifurc/core/series.hpp"
+
+namespace bifurc {
+
+// As in `bifurc.recording.Operation`. ``left`` and ``right`` are slots, ``constant`` is a number.
+enum class Operation : int {
+    unknown,   // number ``left``
+    constant,  // ``constant``
+    add,       // left + right
+    subtract,  // left - right
+    multiply,  // left * right
+    divide,    // left / right
+    shift,     // left + constant
+    scale,     // left * constant
+    over,      // left / constant
+    power,     // left ^ constant
+    exp,
+    expm1,
+    log,
+    log1p,
+    sqrt,
+    cbrt,
+    sin,
+    cos,
+    tan,
+    asin,
+    acos,
+    atan,
+    sinh,
+    cosh,
+    tanh,
+    asinh,
+    acosh,
+    atanh,
+    angle,  // atan2(left, right)
+};
+constexpr int operation_count = 29;
+
+// How the derivative of an operation y of x = left comes about. ``rule`` is the slot of w or r.
+enum class Rule {
+    leaf,          // no operand
+    linear,        // of constant coefficients
+    product,       // y = left * right
+    quotient,      // y = left / right
+    rate,          // y' = w x'
+    inverse_rate,  // r y' = x'
+    angle,         // r y' = right left' - left right'
+};
+
+struct Instruction {
+    Operation operation;
+    Index left;
+    Index right;
+    Index rule;
+    double constant;
+};
+
+inline Rule rule_of(Operation operation) {
+    switch (operation) {
+        case Operation::unknown:
+        case Operation::constant: return Rule::leaf;
+        case Operation::add:
+        case Operation::subtract:
+        case Operation::shift:
+        case Operation::scale:
+        case Operation::over: return Rule::linear;
+        case Operation::multiply: return Rule::product;
+        case Operation::divide: return Rule::quotient;
+        case Operation::angle: return Rule::angle;
+        case Operation::power:
+        case Operation::exp:
+        case Operation::expm1:
+        case Operation::sin:
+        case Operation::cos:
+        case Operation::tan:
+        case Operation::sinh:
+        case Operation::cosh:
+        case Operation::tanh: return Rule::rate;
+        default: return Rule::inverse_rate;
+    }
+}
+
+// --- functions that the library has not for every kind of number ---------------------------------
+
+namespace functions {
+
+using Complex = std::complex<double>;
+
+inline double square(double x) { return x * x; }
+inline Complex square(const Complex& z) { return z * z; }
+inline Complex expm1(const Complex& z) {
+    const double half = std::sin(0.5 * z.imag());
+    const double real = std::expm1(z.real()) * std::cos(z.imag()) - 2.0 * half * half;
+    return {real, std::exp(z.real()) * std::sin(z.imag())};
+}
+inline Complex log1p(const Complex& z) {
+    const double x = z.real(), y = z.imag();
+    return {0.5 * std::log1p(x * (2.0 + x) + y * y), std::atan2(y, 1.0 + x)};
+}
+// Real on the real line on both sides of 0.
+inline Complex cbrt(const Complex& z) {
+    constexpr double third = 1.0 / 3.0;
+    return z.real() < 0.0 ? -std::pow(-z, third) : std::pow(z, third);
+}
+// The angle of the vector (x, z), analytic in both; by the larger of them, so that small
+// imaginary parts are kept.
+inline Complex atan2(const Complex& z, const Complex& x) {
+    constexpr double pi = std::numbers::pi;
+    if (std::abs(x.real()) < std::abs(z.real())) return std::copysign(0.5 * pi, z.real()) - std::atan(x / z);
+    const double turn = x.real() < 0.0 ? std::copysign(pi, z.real()) : 0.0;
+    return std::atan(z / x) + turn;
+}
+
+}  // namespace functions
+
+// What an operation makes of the values of its operands.
+template <class T>
+T value_of(const Instruction& instruction, const T& left, const T& right) {
+    using functions::atan2, functions::cbrt, functions::expm1, functions::log1p, functions::square;
+    using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atan2, std::atanh, std::cbrt, std::cos,
+        std::cosh, std::exp, std::expm1, std::log, std::log1p, std::pow, std::sin, std::sinh, std::sqrt, std::tan,
+        std::tanh;
+    switch (instruction.operation) {
+        case Operation::add: return left + right;
+        case Operation::subtract: return left - right;
+        case Operation::multiply: return instruction.left == instruction.right ? square(left) : left * right;
+        case Operation::divide: return left / right;
+        case Operation::shift: return left + T(instruction.constant);
+        case Operation::scale: return left * T(instruction.constant);
+        case Operation::over: return left / T(instruction.constant);
+        case Operation::power: return pow(left, instruction.constant);
+        case Operation::exp: return exp(left);
+        case Operation::expm1: return expm1(left);
+        case Operation::log: return log(left);
+        case Operation::log1p: return log1p(left);
+        case Operation::sqrt: return sqrt(left);
+        case Operation::cbrt: return cbrt(left);
+        case Operation::sin: return sin(left);
+        case Operation::cos: return cos(left);
+        case Operation::tan: return tan(left);
+        case Operation::asin: return asin(left);
+        case Operation::acos: return acos(left);
+        case Operation::atan: return atan(left);
+        case Operation::sinh: return sinh(left);
+        case Operation::cosh: return cosh(left);
+        case Operation::tanh: return tanh(left);
+        case Operation::asinh: return asinh(left);
+        case Operation::acosh: return acosh(left);
+        case Operation::atanh: return atanh(left);
+        case Operation::angle: return atan2(left, right);
+        default: return T(instruction.constant);
+    }
+}
+
+// --- the tape --------------------------------------------------------------------------------------
+
+// Partial derivatives of one operation by its operands.
+template <class T>
+struct Partials {
+    T left{};
+    T right{};
+};
+
+class Tape {
+public:
+    // Raises `std::invalid_argument` unless every operand stands before the operation on it.
+    Tape(Index unknowns, std::vector<Instruction> instructions, std::vector<Index> outputs)
+        : unknowns_(unknowns), instructions_(std::move(instructions)), outputs_(std::move(outputs)) {
+        for (Index slot = 0; slot < slots(); ++slot) check(slot);
+        for (Index output : outputs_) check_slot(output, slots());
+        find_cones();
+    }
+
+    Index unknowns() const { return unknowns_; }
+    Index equations() const { return static_cast<Index>(outputs_.size()); }
+    Index slots() const { return static_cast<Index>(instructions_.size()); }
+    Index output(Index equation) const { return outputs_[equation]; }
+    const Instruction& operator[](Index slot) const { return instructions_[slot]; }
+
+    // Slots of the values that an equation is made of, the last first.
+    Vector<const Index> cone(Index equation) const { return cones_[equation]; }
+    // Numbers of the unknowns that an equation is made of, in order.
+    Vector<const Index> unknowns_of(Index equation) const { return unknowns_of_[equation]; }
+    // Operations that a gradient of all equations takes, one after the other.
+    Index reverse_cost() const { return reverse_cost_; }
+
+    // Values of the equations alone, in ``values`` (slots).
+    template <class T>
+    void evaluate(Vector<const T> point, Vector<T> values) const {
+        for (Index slot : needed_) set_value(slot, point, values);
+    }
+
+    // Values of all slots, also of those that derivatives only are made of.
+    template <class T>
+    void evaluate_all(Vector<const T> point, Vector<T> values) const {
+        for (Index slot = 0; slot < slots(); ++slot) set_value(slot, point, values);
+    }
+
+    // The partial derivatives of the operation of a slot, from the values of all.
+    template <class T>
+    Partials<T> partials(Index slot, Vector<const T> values) const {
+        const Instruction& instruction = instructions_[slot];
+        const T& rule = values[instruction.rule];
+        switch (rule_of(instruction.operation)) {
+            case Rule::product: return {values[instruction.right], values[instruction.left]};
+            case Rule::quotient: {
+                const T inverse = T(1.0) / values[instruction.right];
+                return {inverse, -(values[slot] * inverse)};
+            }
+            case Rule::rate: return {rule, T(0.0)};
+            case Rule::inverse_rate: return {T(1.0) / rule, T(0.0)};
+            case Rule::angle: return {values[instruction.right] / rule, -(values[instruction.left] / rule)};
+            default: break;
+        }
+        switch (instruction.operation) {
+            case Operation::add: return {T(1.0), T(1.0)};
+            case Operation::subtract: return {T(1.0), T(-1.0)};
+            case Operation::shift: return {T(1.0), T(0.0)};
+            case Operation::scale: return {T(instruction.constant), T(0.0)};
+            case Operation::over: return {T(1.0) / T(instruction.constant), T(0.0)};
+            default: return {};
+        }
+    }
+
+    static bool has_left(Operation operation) {
+        return operation != Operation::unknown && operation != Operation::constant;
+    }
+    static bool has_right(Operation operation) {
+        return operation == Operation::add || operation == Operation::subtract || operation == Operation::multiply ||
+               operation == Operation::divide || operation == Operation::angle;
+    }
+
+private:
+    template <class T>
+    void set_value(Index slot, Vector<const T> point, Vector<T> values) const {
+        const Instruction& instruction = instructions_[slot];
+        if (instruction.operation == Operation::unknown) {
+            values[slot] = point[instruction.left];
+        } else {
+            values[slot] = value_of(instruction, values[instruction.left], values[instruction.right]);
+        }
+    }
+
+    void check(Index slot) const {
+        const Instruction& instruction = instructions_[slot];
+        const int code = static_cast<int>(instruction.operation);
+        if (code < 0 || code >= operation_count) throw std::invalid_argument("there is no such operation");
+        if (instruction.operation == Operation::unknown) {
+            check_slot(instruction.left, unknowns_);
+        } else if (has_left(instruction.operation)) {
+            check_slot(instruction.left, slot);
+        }
+        if (has_right(instruction.operation)) check_slot(instruction.right, slot);
+        check_slot(instruction.rule, slots());
+    }
+
+    static void check_slot(Index slot, Index end) {
+        if (slot < 0 || slot >= end) {
+            throw std::invalid_argument("operand " + std::to_string(slot) + " is not allowed; it must be from 0 to " +
+                                        std::to_string(end - 1));
+        }
+    }
+
+    void find_cones() {
+        std::vector<Index> seen(instructions_.size(), -1);  // the last equation whose cone has the slot
+        std::vector<bool> is_needed(instructions_.size(), false);
+        for (Index equation = 0; equation < equations(); ++equation) {
+            std::vector<Index> cone{outputs_[equation]}, unknowns;
+            seen[outputs_[equation]] = equation;
+            const auto visit = [&](Index slot) {
+                if (seen[slot] == equation) return;
+                seen[slot] = equation;
+                cone.push_back(slot);
+            };
+            for (std::size_t next = 0; next < cone.size(); ++next) {
+                const Instruction instruction = instructions_[cone[next]];
+                is_needed[cone[next]] = true;
+                if (instruction.operation == Operation::unknown) unknowns.push_back(instruction.left);
+                if (has_left(instruction.operation)) visit(instruction.left);
+                if (has_right(instruction.operation)) visit(instruction.right);
+            }
+            std::sort(cone.rbegin(), cone.rend());
+            std::sort(unknowns.begin(), unknowns.end());
+            unknowns.erase(std::unique(unknowns.begin(), unknowns.end()), unknowns.end());
+            reverse_cost_ += static_cast<Index>(cone.size());
+            cones_.push_back(std::move(cone));
+            unknowns_of_.push_back(std::move(unknowns));
+        }
+        for (Index slot = 0; slot < slots(); ++slot) {
+            if (is_needed[slot]) needed_.push_back(slot);
+        }
+    }
+
+    Index unknowns_;
+    std::vector<Instruction> instructions_;
+    std::vector<Index> outputs_;
+    std::vector<Index> needed_;
+    std::vector<std::vector<Index>> cones_, unknowns_of_;
+    Index reverse_cost_ = 0;
+};
+
+// --- derivatives at a point ------------------------------------------------------------------------
+
+// Values and derivatives of the equations of one tape at one point after the other.
+template <class T>
+class Sweep {
+public:
+    explicit Sweep(const Tape& tape)
+        : tape_(tape), values_(tape.slots()), partials_(tape.slots()), adjoints_(tape.slots(), T(0.0)) {}
+
+    T value(Index equation) const { return values_[tape_.output(equation)]; }
+
+    void evaluate(Vector<const T> point) { tape_.evaluate<T>(point, values_); }
+
+    // Values and partial derivatives of all operations.
+    void linearize(Vector<const T> point) {
+        tape_.evaluate_all<T>(point, values_);
+        for (Index slot = 0; slot < tape_.slots(); ++slot) partials_[slot] = tape_.partials<T>(slot, values_);
+    }
+
+    // Calls ``visit(unknown, derivative)`` for every unknown that an equation is made of, once for
+    // each of its slots, backwards from the equation (Griewank and Walther 2008, chapter 3).
+    template <class Visitor>
+    void gradient(Index equation, Visitor visit) {
+        adjoints_[tape_.output(equation)] = T(1.0);
+        for (Index slot : tape_.cone(equation)) {
+            const Instruction& instruction = tape_[slot];
+            const T adjoint = adjoints_[slot];
+            adjoints_[slot] = T(0.0);
+            if (instruction.operation == Operation::unknown) {
+                visit(instruction.left, adjoint);
+                continue;
+            }
+            if (Tape::has_left(instruction.operation)) adjoints_[instruction.left] += adjoint * partials_[slot].left;
+            if (Tape::has_right(instruction.operation)) adjoints_[instruction.right] += adjoint * partials_[slot].right;
+        }
+    }
+
+    // F' (m, n) at the point of `linearize`: backwards from each equation or forwards from all
+    // unknowns, whichever takes fewer operations.
+    void jacobian(View<T> jacobian) {
+        if (tape_.reverse_cost() <= tape_.unknowns() * tape_.slots()) {
+            std::fill_n(jacobian.data, jacobian.rows * jacobian.columns, T(0.0));
+            for (Index row = 0; row < tape_.equations(); ++row) {
+                gradient(row, [&](Index unknown, const T& entry) { jacobian(row, unknown) += entry; });
+            }
+            return;
+        }
+        const Matrix<T> gradients = forward_gradients();
+        for (Index row = 0; row < tape_.equations(); ++row) {
+            for (Index j = 0; j < tape_.unknowns(); ++j) jacobian(row, j) = gradients(tape_.output(row), j);
+        }
+    }
+
+    // F'' (m * n, n) at the point of `linearize`.
+    void hessian(View<T> hessian) const {
+        const Index n = tape_.unknowns();
+        const Matrix<T> gradients = forward_gradients();
+        Matrix<T> bends(tape_.slots(), n * (n + 1) / 2);  // lower triangles
+        for (Index slot = 0; slot < tape_.slots(); ++slot) set_bend(slot, gradients, bends);
+        for (Index row = 0; row < tape_.equations(); ++row) {
+            Index entry = 0;
+            for (Index i = 0; i < n; ++i) {
+                for (Index j = 0; j <= i; ++j, ++entry) {
+                    const T& bend = bends(tape_.output(row), entry);
+                    hessian(row * n + i, j) = hessian(row * n + j, i) = bend;
+                }
+            }
+        }
+    }
+
+private:
+    Matrix<T> forward_gradients() const {
+        const Index n = tape_.unknowns();
+        Matrix<T> gradients(tape_.slots(), n);
+        for (Index slot = 0; slot < tape_.slots(); ++slot) {
+            const Instruction& instruction = tape_[slot];
+            if (instruction.operation == Operation::unknown) gradients(slot, instruction.left) = T(1.0);
+            if (!Tape::has_left(instruction.operation)) continue;
+            const Partials<T>& partials = partials_[slot];
+            for (Index j = 0; j < n; ++j) gradients(slot, j) = partials.left * gradients(instruction.left, j);
+            if (!Tape::has_right(instruction.operation)) continue;
+            for (Index j = 0; j < n; ++j) gradients(slot, j) += partials.right * gradients(instruction.right, j);
+        }
+        return gradients;
+    }
+
+    // What second derivatives have beside those of the operands: ``factor`` times the symmetric
+    // product of the gradients of two slots.
+    struct Cross {
+        Index first;
+        Index second;
+        T factor;
+    };
+
+    Cross cross_of(Index slot) const {
+        const Instruction& instruction = tape_[slot];
+        const T half(0.5);
+        switch (rule_of(instruction.operation)) {
+            case Rule::product: return {instruction.left, instruction.right, T(1.0)};
+            case Rule::quotient: return {slot, instruction.right, -partials_[slot].left};
+            case Rule::rate: return {instruction.rule, instruction.left, half};
+            case Rule::inverse_rate:
+            case Rule::angle: return {instruction.rule, slot, -half / values_[instruction.rule]};
+            default: return {0, 0, T(0.0)};
+        }
+    }
+
+    void set_bend(Index slot, const Matrix<T>& gradients, Matrix<T>& bends) const {
+        const Instruction& instruction = tape_[slot];
+        if (!Tape::has_left(instruction.operation)) return;
+        const Index n = tape_.unknowns(), count = bends.columns();
+        const Partials<T>& partials = partials_[slot];
+        for (Index entry = 0; entry < count; ++entry) bends(slot, entry) = partials.left * bends(instruction.left, entry);
+        if (Tape::has_right(instruction.operation)) {
+            for (Index entry = 0; entry < count; ++entry) {
+                bends(slot, entry) += partials.right * bends(instruction.right, entry);
+            }
+        }
+        if (rule_of(instruction.operation) == Rule::linear) return;
+        const Cross cross = cross_of(slot);
+        Index entry = 0;
+        for (Index i = 0; i < n; ++i) {
+            for (Index j = 0; j <= i; ++j, ++entry) {
+                const T both = gradients(cross.first, i) * gradients(cross.second, j) +
+                               gradients(cross.first, j) * gradients(cross.second, i);
+                bends(slot, entry) += cross.factor * both;
+            }
+        }
+    }
+
+    const Tape& tape_;
+    std::vector<T> values_;
+    std::vector<Partials<T>> partials_;
+    std::vector<T> adjoints_;
+};
+
+// --- series ----------------------------------------------------------------------------------------
+
+// Taylor coefficients of all slots along a curve, one order after the other.
+template <class T>
+class SeriesSweep {
+public:
+    SeriesSweep(const Tape& tape, Index order)
+        : tape_(tape), coefficients_(tape.slots(), order + 1), partials_(tape.slots()), steps_(tape.slots()) {}
+
+    const T& coefficient(Index equation, Index k) const { return coefficients_(tape_.output(equation), k); }
+
+    void start(Vector<const T> point) {
+        std::vector<T> values(tape_.slots());
+        tape_.evaluate_all<T>(point, values);
+        for (Index slot = 0; slot < tape_.slots(); ++slot) {
+            coefficients_(slot, 0) = values[slot];
+            partials_[slot] = tape_.partials<T>(slot, values);
+        }
+    }
+
+    // Coefficients k > 0 of all slots where those of the unknowns are 0.
+    void advance(Index k) {
+        for (Index slot = 0; slot < tape_.slots(); ++slot) coefficients_(slot, k) = next(slot, k);
+    }
+
+    // Coefficients k of all slots once those of the unknowns are known: they depend on them
+    // linearly, by the first derivatives.
+    void correct(Index k, Vector<const T> unknowns) {
+        for (Index slot = 0; slot < tape_.slots(); ++slot) {
+            const Instruction& instruction = tape_[slot];
+            T step(0.0);
+            if (instruction.operation == Operation::unknown) step = unknowns[instruction.left];
+            if (Tape::has_left(instruction.operation)) step = partials_[slot].left * steps_[instruction.left];
+            if (Tape::has_right(instruction.operation)) step += partials_[slot].right * steps_[instruction.right];
+            steps_[slot] = step;
+            coefficients_(slot, k) += step;
+        }
+    }
+
+private:
+    T next(Index slot, Index k) const {
+        const Instruction& instruction = tape_[slot];
+        const T* const left = row(instruction.left);
+        const T* const right = row(instruction.right);
+        switch (rule_of(instruction.operation)) {
+            case Rule::leaf: return T(0.0);
+            case Rule::product:
+                return left == right ? series::square(left, k) : series::product(left, right, k);
+            case Rule::quotient: return series::quotient(left, right, row(slot), k);
+            case Rule::rate: return series::from_rate(row(instruction.rule), left, k);
+            case Rule::inverse_rate: return series::from_inverse_rate(row(instruction.rule), left, row(slot), k);
+            case Rule::angle: return series::angle(left, right, row(instruction.rule), row(slot), k);
+            case Rule::linear: break;
+        }
+        switch (instruction.operation) {
+            case Operation::add: return left[k] + right[k];
+            case Operation::subtract: return left[k] - right[k];
+            case Operation::scale: return left[k] * T(instruction.constant);
+            case Operation::over: return left[k] / T(instruction.constant);
+            default: return left[k];
+        }
+    }
+
+    // Operands of leaves are no slots; nothing reads theirs.
+    const T* row(Index slot) const { return coefficients_.view().data + slot * coefficients_.columns(); }
+
+    const Tape& tape_;
+    Matrix<T> coefficients_;
+    std::vector<Partials<T>> partials_;
+    std::vector<T> steps_;
+};
+
+// Taylor coefficients (order + 1, m) of F along u(s) with coefficients ``curve`` (order + 1, n).
+template <class T>
+void series_along(const Tape& tape, View<const T> curve, View<T> out) {
+    SeriesSweep<T> sweep(tape, curve.rows - 1);
+    sweep.start(curve.row(0));
+    for (Index k = 0; k < curve.rows; ++k) {
+        if (k > 0) {
+            sweep.advance(k);
+            sweep.correct(k, curve.row(k));
+        }
+        for (Index row = 0; row < tape.equations(); ++row) out(k, row) = sweep.coefficient(row, k);
+    }
+}
+
+// --- a system --------------------------------------------------------------------------------------
+
+// The equations of a tape in unknowns v = u / units, each times its weight. What is not finite is
+// infinitely far from a solution. Not for two threads at once: the sweep is shared.
+class TapeSystem {
+public:
+    TapeSystem(const Tape& tape, Vector<const double> units, Vector<const double> weights)
+        : tape_(tape), units_(units), weights_(weights), sweep_(tape), point_(tape.unknowns()) {}
+
+    Index unknowns() const { return tape_.unknowns(); }
+    Index equations() const { return tape_.equations(); }
+
+    void residual(Vector<const double> point, Vector<double> residual) const {
+        sweep_.evaluate(in_units(point));
+        fill(residual);
+    }
+
+    void linearize(Vector<const double> point, Vector<double> residual, View<double> jacobian) const {
+        sweep_.linearize(in_units(point));
+        fill(residual);
+        sweep_.jacobian(jacobian);
+        for (Index row = 0; row < equations(); ++row) {
+            for (Index j = 0; j < unknowns(); ++j) jacobian(row, j) *= weights_[row] * units_[j];
+        }
+    }
+
+    // The solution curve: coefficient k of F along it with nothing for coefficient k of the
+    // unknowns is the right-hand side for that coefficient. |dv/ds| = 1 gives the last row.
+    void series(Vector<const double> point, Vector<const double> tangent, const Factorization& factorization,
+                View<double> coefficients) const {
+        const Index order = coefficients.rows - 1, n = unknowns(), m = equations();
+        SeriesSweep<double> sweep(tape_, order);
+        std::vector<double> right(m + 1), step(n);
+        sweep.start(in_units(point));
+        std::copy(point.begin(), point.end(), coefficients.row(0).begin());
+        for (Index k = 1; k <= order; ++k) {
+            sweep.advance(k);
+            const Vector<double> row = coefficients.row(k);
+            if (k == 1) {
+                std::copy(tangent.begin(), tangent.end(), row.begin());
+            } else {
+                for (Index i = 0; i < m; ++i) right[i] = -weights_[i] * sweep.coefficient(i, k);
+                right[m] = along(coefficients, k);
+                factorization.solve(right, row);
+            }
+            for (Index j = 0; j < n; ++j) step[j] = units_[j] * row[j];
+            sweep.correct(k, step);
+        }
+    }
+
+private:
+    // The component of coefficient k along the tangent for which the speed stays 1.
+    static double along(View<const double> coefficients, Index k) {
+        double excess = 0.0;
+        for (Index j = 2; j < k; ++j) {
+            const double factor = static_cast<double>(j * (k + 1 - j));
+            double dot = 0.0;
+            for (Index i = 0; i < coefficients.columns; ++i) dot += coefficients(j, i) * coefficients(k + 1 - j, i);
+            excess += factor * dot;
+        }
+        return -0.5 * excess / static_cast<double>(k);
+    }
+
+    Vector<const double> in_units(Vector<const double> point) const {
+        for (Index j = 0; j < unknowns(); ++j) point_[j] = units_[j] * point[j];
+        return point_;
+    }
+
+    void fill(Vector<double> residual) const {
+        for (Index row = 0; row < equations(); ++row) {
+            const double value = weights_[row] * sweep_.value(row);
+            residual[row] = std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+        }
+    }
+
+    const Tape& tape_;
+    Vector<const double> units_, weights_;
+    mutable Sweep<double> sweep_;
+    mutable std::vector<double> point_;
+};
+
+}  // namespace bifurc

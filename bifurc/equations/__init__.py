@@ -1,0 +1,1 @@
+"""Equations as data: recorded from a callable or made of sympy expressions."""

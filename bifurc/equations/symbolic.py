@@ -1,0 +1,214 @@
+"""Problems from sympy expressions: the same tape, without a callable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import sympy
+
+from bifurc.equations.recording import Recording
+from bifurc.equations.tape import FUNCTIONS, Operation, Tape, TapeWriter, TooLong
+from bifurc.errors import ProblemError
+from bifurc.function_problem import PROBES, FunctionProblem
+
+if TYPE_CHECKING:
+    from bifurc.problem import PreciseResidual
+
+__all__ = ["SymbolicProblem"]
+
+# of one number, by their names in sympy
+_RECIPROCALS = {
+    "sec": Operation.COS,
+    "csc": Operation.SIN,
+    "cot": Operation.TAN,
+    "sech": Operation.COSH,
+    "csch": Operation.SINH,
+    "coth": Operation.TANH,
+}
+
+
+class SymbolicProblem(FunctionProblem):
+    """The problem that sympy ``expressions`` in the ``unknowns`` are zero.
+
+    An expression may be an equation `sympy.Eq`. ``bounds`` (n, 2) and ``periods`` (n,)
+    are in the order of the unknowns, as for `FunctionProblem`. At high precision the
+    numbers in the expressions are exact: a third is a third. Raises `ProblemError` that
+    names the expression and the symbol or the function which cannot be used.
+    """
+
+    def __init__(
+        self,
+        expressions: Sequence[Any],
+        unknowns: Sequence[sympy.Symbol],
+        bounds: Sequence[Sequence[float]],
+        *,
+        periods: Sequence[float] | None = None,
+        units: Sequence[str] | None = None,
+    ):
+        self.unknowns = _checked_unknowns(unknowns)
+        self.expressions = _checked_expressions(expressions, self.unknowns)
+        names = [symbol.name for symbol in self.unknowns]
+        if len(bounds) != len(names):
+            raise ProblemError("number of bounds", len(bounds), f"{len(names)}")
+        self._set_unknowns(bounds, names, units, periods)
+        tape = _tape_of(self.expressions, self.unknowns)
+        self.recording = Recording(tape)
+        self._function = _TapeFunction(tape)
+        self._jacobian = None
+        self._measure(self._probes_with_value(self._random_points()[:PROBES]))
+
+    def precise_residual(self) -> PreciseResidual:
+        """F over mpmath numbers, to whatever precision is set."""
+        function = sympy.lambdify([self.unknowns], self.expressions, modules="mpmath")
+        residual: PreciseResidual = function
+        return residual
+
+
+@dataclass(frozen=True)
+class _TapeFunction:
+    """F (m,) at one point (n,), from a tape."""
+
+    tape: Tape
+
+    def __call__(self, point: np.ndarray) -> np.ndarray:
+        values: np.ndarray = self.tape.compiled.residuals(point[None])[0]
+        return values
+
+
+# --- checks ---------------------------------------------------------------------------
+
+
+def _checked_unknowns(unknowns: Sequence[sympy.Symbol]) -> list[sympy.Symbol]:
+    """The unknowns as a list of different symbols."""
+    symbols = list(unknowns)
+    for i, symbol in enumerate(symbols):
+        if not isinstance(symbol, sympy.Symbol):
+            raise ProblemError(f"unknowns[{i}]", repr(symbol), "a sympy Symbol")
+        if symbol in symbols[:i]:
+            raise ProblemError(f"unknowns[{i}]", symbol, "another than those before")
+    if not symbols:
+        raise ProblemError("unknowns", symbols, "one symbol or more")
+    return symbols
+
+
+def _checked_expressions(
+    expressions: Sequence[Any], unknowns: Sequence[sympy.Symbol]
+) -> list[sympy.Expr]:
+    """The expressions that are to be zero; each in the ``unknowns`` only."""
+    checked = []
+    for i, given in enumerate(expressions):
+        try:
+            expression = sympy.sympify(given, strict=True)
+        except sympy.SympifyError:
+            allowed = "a sympy expression"
+            raise ProblemError(f"expressions[{i}]", repr(given), allowed) from None
+        if isinstance(expression, sympy.Equality):
+            expression = expression.lhs - expression.rhs
+        if not isinstance(expression, sympy.Expr):
+            raise ProblemError(f"expressions[{i}]", given, "an expression or Eq")
+        foreign = sorted(expression.free_symbols - set(unknowns), key=str)
+        if foreign:
+            names = ", ".join(symbol.name for symbol in unknowns)
+            allowed = f"in the unknowns {names} only; it holds the symbol {foreign[0]}"
+            raise ProblemError(f"expressions[{i}]", expression, allowed)
+        checked.append(expression)
+    if not checked:
+        raise ProblemError("expressions", "[]", "one expression or more")
+    return checked
+
+
+# --- translation ----------------------------------------------------------------------
+
+
+def _tape_of(
+    expressions: Sequence[sympy.Expr], unknowns: Sequence[sympy.Symbol]
+) -> Tape:
+    """The tape of the expressions; what they have in common is evaluated once."""
+    translation = _Translation(unknowns)
+    outputs = []
+    for i, expression in enumerate(expressions):
+        try:
+            outputs.append(translation.slot_of(expression))
+        except _Untranslatable as error:
+            allowed = f"of functions that can be evaluated; it holds {error}"
+            raise ProblemError(f"expressions[{i}]", expression, allowed) from None
+        except TooLong:
+            allowed = "of fewer operations"
+            raise ProblemError(f"expressions[{i}]", "too long", allowed) from None
+    return translation.writer.tape(outputs)
+
+
+class _Untranslatable(Exception):
+    """A part of an expression that no tape can hold."""
+
+
+class _Translation:
+    """Expressions while they are written on a tape. Parts that have been written are
+    known: they are written once."""
+
+    def __init__(self, unknowns: Sequence[sympy.Symbol]):
+        self.writer = TapeWriter(len(unknowns))
+        self._slots: dict[sympy.Basic, int] = {
+            symbol: self.writer.unknown(i) for i, symbol in enumerate(unknowns)
+        }
+
+    def slot_of(self, expression: sympy.Basic) -> int:
+        """The slot that holds an expression; raises `_Untranslatable`."""
+        slot = self._slots.get(expression)
+        if slot is None:
+            slot = self._write(expression)
+            self._slots[expression] = slot
+        return slot
+
+    def _write(self, expression: sympy.Basic) -> int:
+        if expression.is_number:
+            return self._constant(expression)
+        if expression.is_Add:
+            return self._folded(self.writer.add, expression.args)
+        if expression.is_Mul:
+            return self._product(expression)
+        if expression.is_Pow:
+            base, exponent = expression.as_base_exp()
+            return self.writer.power(self.slot_of(base), self.slot_of(exponent))
+        return self._function(expression)
+
+    def _constant(self, number: sympy.Basic) -> int:
+        value = sympy.N(number, 30)
+        if not value.is_Float and not value.is_Integer:
+            raise _Untranslatable(f"the number {number}, which is not real")
+        return self.writer.constant(float(value))
+
+    def _folded(
+        self, write: Callable[[int, int], int], parts: Sequence[sympy.Basic]
+    ) -> int:
+        slot = self.slot_of(parts[0])
+        for part in parts[1:]:
+            slot = write(slot, self.slot_of(part))
+        return slot
+
+    def _product(self, product: sympy.Basic) -> int:
+        number, rest = product.as_coeff_Mul()
+        if number != 1:
+            return self.writer.multiply(self.slot_of(rest), self._constant(number))
+        numerator, denominator = product.as_numer_denom()
+        if denominator == 1 or numerator == product:
+            return self._folded(self.writer.multiply, product.args)
+        above = self.slot_of(numerator)
+        return self.writer.divide(above, self.slot_of(denominator))
+
+    def _function(self, expression: sympy.Basic) -> int:
+        name = expression.func.__name__
+        if name == "atan2":
+            y, x = expression.args
+            return self.writer.angle(self.slot_of(y), self.slot_of(x))
+        is_reciprocal = name in _RECIPROCALS
+        operation = _RECIPROCALS.get(name) or FUNCTIONS.get(name)
+        if operation is None or len(expression.args) != 1:
+            raise _Untranslatable(name)
+        slot = self.writer.apply(operation, self.slot_of(expression.args[0]))
+        if is_reciprocal:
+            return self.writer.divide(self.writer.constant(1.0), slot)
+        return slot

@@ -1,0 +1,185 @@
+"""A tape at the scale of a problem: what the compiled methods make of it.
+
+Inside, unknowns are counted in a ``unit`` and equations in ``magnitude`` times that
+unit, so that nothing depends on either. The unit is a power of 2: nothing is lost on
+the way in and out.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bifurc.equations.tape import Tape
+from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
+
+if TYPE_CHECKING:
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import csr_array
+
+__all__ = ["LARGEST_DENSE", "ScaledTape"]
+
+LARGEST_DENSE = 100  # unknowns up to which dense matrices are factored
+SPARSE = 0.25  # share of entries of a larger Jacobian up to which it is sparse
+ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
+PROJECTION_STEPS = 80
+SPHERE_STEPS = 25
+ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
+SAMPLES = 20  # starts from which solutions are looked for to measure it
+SOLVED = 1e-9  # residual of a solution
+SMALLEST_SHARE = 1e-8  # of the magnitude, that a curve is followed with
+
+
+class ScaledTape:
+    """The compiled methods of a ``tape`` whose F' is of size ``magnitude`` and whose
+    unknowns are of size ``scale``, within ``bounds`` (n, 2) and with ``periods``
+    (n,). Immutable."""
+
+    def __init__(
+        self,
+        tape: Tape,
+        magnitude: float,
+        scale: float,
+        bounds: np.ndarray,
+        periods: np.ndarray,
+    ):
+        self.tape = tape
+        self._scale = scale
+        self._magnitude = magnitude
+        self._unit = 2.0 ** round(math.log2(scale))
+        self._units = np.full(tape.n, self._unit)
+        self._weights = np.full(tape.m, 1.0 / (magnitude * self._unit))
+        self._bounds = bounds
+        self._periods = periods
+
+    # --- values and derivatives -------------------------------------------------------
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        return self.tape.compiled.residuals(_contiguous(points))
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        return self.tape.compiled.jacobians(_contiguous(points))
+
+    def sparse_jacobian(self, point: np.ndarray) -> csr_array:
+        """F' (m, n) at one point (n,)."""
+        from scipy.sparse import csr_array
+
+        starts, columns = self._pattern
+        entries = self.tape.compiled.entries(_contiguous(point))
+        shape = (self.tape.m, self.tape.n)
+        return csr_array((entries, columns, starts), shape=shape)
+
+    @cached_property
+    def is_sparse(self) -> bool:
+        """Whether F' is large and has few entries."""
+        if self.tape.n <= LARGEST_DENSE:
+            return False
+        _, columns = self._pattern
+        return len(columns) <= SPARSE * self.tape.m * self.tape.n
+
+    @cached_property
+    def _pattern(self) -> tuple[np.ndarray, np.ndarray]:
+        starts, columns = self.tape.compiled.pattern()
+        return starts.astype(np.int32), columns.astype(np.int32)
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,)."""
+        return self.tape.compiled.hessian(_contiguous(point))
+
+    # --- curves and solutions ---------------------------------------------------------
+
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    ) -> March:
+        """Taylor pieces of the curve from ``start`` (n,) along ``tangent`` (n,)."""
+        unit = self._unit
+        share = self._share_of_magnitude
+        anchor, within = np.empty((0, self.tape.n)), 0.0
+        if settings.anchor is not None:
+            place, heading, within = settings.anchor
+            anchor = np.array([place / unit, heading])
+        status, pieces, steps, radii, residuals, _ = self.tape.compiled.march(
+            units=self._units,
+            weights=self._weights / share,
+            start=_contiguous(start) / unit,
+            tangent=_contiguous(tangent),
+            order=settings.order,
+            tolerance=settings.tolerance * self._scale / unit,
+            shortest=settings.shortest / unit,
+            longest=settings.longest / unit,
+            count=settings.count,
+            closing=settings.closing / (share * unit),
+            misclosure=settings.misclosure / (share * unit),
+            anchor=anchor,
+            within=within / unit,
+            periods=self._periods / unit,
+            bounds=self._bounds / unit,
+        )
+        return March(
+            status=MarchStatus(status),
+            pieces=unit * pieces,
+            steps=unit * steps,
+            radii=unit * radii,
+            residuals=share * unit * residuals,
+        )
+
+    @cached_property
+    def _share_of_magnitude(self) -> float:
+        """The magnitude of F' over which rounding on the solutions is what a march
+        takes it to be, over that of the problem; 1 at most.
+
+        Bounds on the rounding come from intervals, at solutions near random points in the
+        middle of the bounds.
+        """
+        rng = np.random.default_rng(0)
+        low, high = self._bounds.T
+        low = np.where(np.isfinite(low), low, -self._scale)
+        high = np.where(np.isfinite(high), high, self._scale)
+        inner = rng.uniform(0.25, 0.75, (SAMPLES, self.tape.n))
+        starts = low + inner * (high - low)
+        points, gaps = self.project(starts)
+        solutions = points[gaps <= SOLVED * self._unit]
+        lowest, highest = self.tape.compiled.value_bounds(solutions, solutions)
+        widths = np.linalg.norm(highest - lowest, axis=1)
+        widths = widths[np.isfinite(widths) & (widths > 0.0)]
+        if not len(widths):
+            return 1.0
+        magnitude = np.median(widths) / (ROUNDING_OF_MARCH * self._unit)
+        return float(np.clip(magnitude / self._magnitude, SMALLEST_SHARE, 1.0))
+
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Solutions (k, n) near starts (k, n) and the residual (k,), over the
+        magnitude, that is left at each."""
+        points, gaps = self.tape.compiled.project(
+            self._units,
+            self._weights,
+            _contiguous(starts) / self._unit,
+            ROUNDING,
+            PROJECTION_STEPS,
+        )
+        return self._unit * points, self._unit * gaps
+
+    def project_to_sphere(
+        self, starts: np.ndarray, center: np.ndarray, radius: float
+    ) -> SphereProjection:
+        """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,)."""
+        unit = self._unit
+        points, gaps, last_steps = self.tape.compiled.project_to_sphere(
+            self._units,
+            self._weights,
+            _contiguous(starts) / unit,
+            _contiguous(center) / unit,
+            radius / unit,
+            SPHERE_STEPS,
+        )
+        return SphereProjection(unit * points, unit * gaps, unit * last_steps)
+
+
+def _contiguous(values: np.ndarray) -> np.ndarray:
+    """``values`` as the floats in one block of memory that compiled code takes."""
+    return np.ascontiguousarray(values, dtype=float)

@@ -1,0 +1,445 @@
+"""A tape: equations as a list of operations, and how one is written.
+
+Every operation writes one slot. Equal operations share theirs, and what the arithmetic
+of doubles makes of constants alone is a constant. The interpreter of tapes is compiled
+(`bifurc/core/tape.hpp`); here they are written, kept and evaluated over numbers of any
+other kind.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from enum import IntEnum
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bifurc import _core
+
+__all__ = ["FUNCTIONS", "Node", "Operation", "Tape", "TapeWriter", "TooLong"]
+
+LONGEST = 200_000  # operations of a tape
+LARGEST_POWER = 64  # whole exponent up to which a power is a chain of products
+
+
+class Operation(IntEnum):
+    """What a slot of a tape holds; the numbers are those of the compiled interpreter.
+
+    Operands are the slots ``left`` and ``right`` and the number ``constant``.
+    """
+
+    UNKNOWN = 0
+    CONSTANT = 1
+    ADD = 2
+    SUBTRACT = 3
+    MULTIPLY = 4
+    DIVIDE = 5
+    SHIFT = 6  # left + constant
+    SCALE = 7  # left * constant
+    OVER = 8  # left / constant
+    POWER = 9  # left ** constant
+    EXP = 10
+    EXPM1 = 11
+    LOG = 12
+    LOG1P = 13
+    SQRT = 14
+    CBRT = 15
+    SIN = 16
+    COS = 17
+    TAN = 18
+    ASIN = 19
+    ACOS = 20
+    ATAN = 21
+    SINH = 22
+    COSH = 23
+    TANH = 24
+    ASINH = 25
+    ACOSH = 26
+    ATANH = 27
+    ANGLE = 28  # atan2(left, right)
+
+
+# Functions of one number, by their names in the standard library and in mpmath.
+FUNCTIONS = {
+    operation.name.lower(): operation
+    for operation in Operation
+    if Operation.POWER < operation < Operation.ANGLE
+}
+_IN_DOUBLES: Mapping[Operation, Callable[..., Any]] = {
+    Operation.EXP: np.exp,
+    Operation.EXPM1: np.expm1,
+    Operation.LOG: np.log,
+    Operation.LOG1P: np.log1p,
+    Operation.SQRT: np.sqrt,
+    Operation.CBRT: np.cbrt,
+    Operation.SIN: np.sin,
+    Operation.COS: np.cos,
+    Operation.TAN: np.tan,
+    Operation.ASIN: np.arcsin,
+    Operation.ACOS: np.arccos,
+    Operation.ATAN: np.arctan,
+    Operation.SINH: np.sinh,
+    Operation.COSH: np.cosh,
+    Operation.TANH: np.tanh,
+    Operation.ASINH: np.arcsinh,
+    Operation.ACOSH: np.arccosh,
+    Operation.ATANH: np.arctanh,
+}
+
+
+class TooLong(Exception):
+    """A tape has more than `LONGEST` operations."""
+
+
+class Node(NamedTuple):
+    """One operation: on the slots ``left`` and ``right``, where it has two, and a
+    ``constant``."""
+
+    operation: Operation
+    left: int = 0
+    right: int = 0
+    constant: float = 0.0
+
+
+# --- a tape ---------------------------------------------------------------------------
+
+
+class Tape:
+    """m equations in n unknowns as a list of k operations.
+
+    ``operations`` (k,), ``operands`` (k, 3) (left, right and the slot of the rule for
+    derivatives), ``constants`` (k,), and ``outputs`` (m,), the slots of the equations.
+    Immutable; copied and pickled by these arrays.
+    """
+
+    def __init__(
+        self,
+        n: int,
+        operations: np.ndarray,
+        operands: np.ndarray,
+        constants: np.ndarray,
+        outputs: np.ndarray,
+    ):
+        self.n = n
+        self.operations = np.ascontiguousarray(operations, dtype=np.int64)
+        self.operands = np.ascontiguousarray(operands, dtype=np.int64).reshape(-1, 3)
+        self.constants = np.ascontiguousarray(constants, dtype=float)
+        self.outputs = np.ascontiguousarray(outputs, dtype=np.int64)
+
+    def __reduce__(self) -> tuple[type[Tape], tuple[Any, ...]]:
+        arrays = (self.operations, self.operands, self.constants, self.outputs)
+        return Tape, (self.n, *arrays)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Tape: {self.m} equations in {self.n} unknowns, {self.size} operations>"
+        )
+
+    @property
+    def m(self) -> int:
+        """Number of equations."""
+        return len(self.outputs)
+
+    @cached_property
+    def size(self) -> int:
+        """Number of operations that the equations are made of, without unknowns and
+        constants."""
+        leaves = (Operation.UNKNOWN, Operation.CONSTANT)
+        return sum(1 for slot in self._needed if self.operations[slot] not in leaves)
+
+    @cached_property
+    def compiled(self) -> _core.Tape:
+        """The compiled interpreter with this tape."""
+        return _core.Tape(
+            self.n, self.operations, self.operands, self.constants, self.outputs
+        )
+
+    @cached_property
+    def _needed(self) -> list[int]:
+        """The slots that the equations are made of, in order; the others serve
+        derivatives."""
+        needed = set(self.outputs.tolist())
+        for slot in range(len(self.operations) - 1, -1, -1):
+            operation = self.operations[slot]
+            if slot not in needed or operation <= Operation.CONSTANT:
+                continue
+            needed.add(int(self.operands[slot, 0]))
+            if operation in _BINARY:
+                needed.add(int(self.operands[slot, 1]))
+        return sorted(needed)
+
+    def over(self, unknowns: Sequence[Any], library: Any) -> list[Any]:
+        """F, m numbers, of n ``unknowns`` of any kind, with the constructor ``mpf`` and
+        the functions of a ``library`` like mpmath."""
+        values: dict[int, Any] = {}
+        for slot in self._needed:
+            operation = Operation(int(self.operations[slot]))
+            left, right, _ = self.operands[slot].tolist()
+            if operation is Operation.UNKNOWN:
+                values[slot] = unknowns[left]
+                continue
+            constant = library.mpf(float(self.constants[slot]))
+            if operation is Operation.CONSTANT:
+                values[slot] = constant
+            elif operation in _BINARY:
+                second = values[right]
+                values[slot] = _binary(operation, library)(values[left], second)
+            elif operation in _WITH_CONSTANT:
+                values[slot] = _WITH_CONSTANT[operation](values[left], constant)
+            else:
+                function = getattr(library, operation.name.lower())
+                values[slot] = function(values[left])
+        return [values[slot] for slot in self.outputs.tolist()]
+
+
+_BINARY = {
+    Operation.ADD: operator.add,
+    Operation.SUBTRACT: operator.sub,
+    Operation.MULTIPLY: operator.mul,
+    Operation.DIVIDE: operator.truediv,
+    Operation.ANGLE: None,
+}
+_WITH_CONSTANT: Mapping[Operation, Callable[[Any, Any], Any]] = {
+    Operation.SHIFT: operator.add,
+    Operation.SCALE: operator.mul,
+    Operation.OVER: operator.truediv,
+    Operation.POWER: operator.pow,
+}
+
+
+def _binary(operation: Operation, library: Any) -> Callable[[Any, Any], Any]:
+    function = _BINARY[operation]
+    return library.atan2 if function is None else function
+
+
+# --- writing --------------------------------------------------------------------------
+
+
+class TapeWriter:
+    """A tape while it is written. Every method returns the slot of its result."""
+
+    def __init__(self, n: int):
+        self.n = n
+        self._nodes: list[Node] = []
+        self._rules: dict[int, int] = {}
+        self._slots: dict[Node, int] = {}
+
+    def tape(self, outputs: Sequence[int]) -> Tape:
+        """The tape whose equations stand in the slots ``outputs``."""
+        for slot in range(len(self._nodes)):
+            self._write_rule(slot)
+        slot = len(self._rules)
+        while slot < len(self._nodes):  # rules may need rules
+            self._write_rule(slot)
+            slot += 1
+        rules = [self._rules[slot] for slot in range(len(self._nodes))]
+        operands = [
+            (node.left, node.right, rule)
+            for node, rule in zip(self._nodes, rules, strict=True)
+        ]
+        return Tape(
+            self.n,
+            np.array([node.operation for node in self._nodes], dtype=np.int64),
+            np.array(operands, dtype=np.int64),
+            np.array([node.constant for node in self._nodes]),
+            np.array(outputs, dtype=np.int64),
+        )
+
+    # --- leaves -----------------------------------------------------------------------
+
+    def unknown(self, number: int) -> int:
+        """Unknown ``number`` of n."""
+        return self._slot(Node(Operation.UNKNOWN, number))
+
+    def constant(self, value: float) -> int:
+        """A number."""
+        return self._slot(Node(Operation.CONSTANT, constant=value))
+
+    def value(self, slot: int) -> float | None:
+        """The number that a slot holds; None where it depends on the unknowns."""
+        node = self._nodes[slot]
+        return node.constant if node.operation is Operation.CONSTANT else None
+
+    # --- arithmetic -------------------------------------------------------------------
+
+    def add(self, left: int, right: int) -> int:
+        """left + right."""
+        a, b = self.value(left), self.value(right)
+        if a is not None and b is not None:
+            return self.constant(a + b)
+        if a is not None:
+            return self._shifted(right, a)
+        if b is not None:
+            return self._shifted(left, b)
+        for operand, other in ((right, left), (left, right)):
+            node = self._nodes[operand]
+            if node.operation is Operation.SCALE and node.constant == -1.0:
+                return self.subtract(other, node.left)
+        return self._slot(Node(Operation.ADD, *sorted((left, right))))
+
+    def subtract(self, left: int, right: int) -> int:
+        """left - right."""
+        a, b = self.value(left), self.value(right)
+        if a is not None and b is not None:
+            return self.constant(a - b)
+        if a is not None:
+            return self._shifted(self._scaled(right, -1.0), a)
+        if b is not None:
+            return self._shifted(left, -b)
+        return self._slot(Node(Operation.SUBTRACT, left, right))
+
+    def multiply(self, left: int, right: int) -> int:
+        """left * right."""
+        a, b = self.value(left), self.value(right)
+        if a is not None and b is not None:
+            return self.constant(a * b)
+        if a is not None:
+            return self._scaled(right, a)
+        if b is not None:
+            return self._scaled(left, b)
+        return self._slot(Node(Operation.MULTIPLY, *sorted((left, right))))
+
+    def divide(self, left: int, right: int) -> int:
+        """left / right."""
+        a, b = self.value(left), self.value(right)
+        if a is not None and b is not None:
+            with np.errstate(all="ignore"):
+                return self.constant(float(np.divide(a, b)))
+        if b is not None:
+            return left if b == 1.0 else self._slot(Node(Operation.OVER, left, 0, b))
+        return self._slot(Node(Operation.DIVIDE, left, right))
+
+    def negative(self, operand: int) -> int:
+        """-operand."""
+        return self.multiply(operand, self.constant(-1.0))
+
+    def power(self, base: int, exponent: int) -> int:
+        """base ** exponent; the base of an exponent that depends on the unknowns has to
+        be positive where that is evaluated."""
+        a, b = self.value(base), self.value(exponent)
+        if a is not None and b is not None:
+            with np.errstate(all="ignore"):
+                return self.constant(float(np.float64(a) ** b))
+        if b is None:
+            if a is not None:
+                return self.apply(
+                    Operation.EXP, self.multiply(exponent, self.constant(np.log(a)))
+                )
+            logarithm = self.apply(Operation.LOG, base)
+            return self.apply(Operation.EXP, self.multiply(exponent, logarithm))
+        if b == 0.5:
+            return self.apply(Operation.SQRT, base)
+        if b.is_integer() and abs(b) <= LARGEST_POWER:
+            return self._whole_power(base, int(b))
+        return self._slot(Node(Operation.POWER, base, 0, b))
+
+    def _whole_power(self, base: int, exponent: int) -> int:
+        """By squares and products, which are defined and smooth at 0 as well."""
+        if exponent < 0:
+            one = self.constant(1.0)
+            return self.divide(one, self._whole_power(base, -exponent))
+        if exponent == 0:
+            return self.constant(1.0)
+        half = self._whole_power(base, exponent // 2)
+        square = self.multiply(half, half) if exponent > 1 else half
+        return self.multiply(square, base) if exponent % 2 else square
+
+    def _shifted(self, operand: int, constant: float) -> int:
+        if constant == 0.0:
+            return operand
+        return self._slot(Node(Operation.SHIFT, operand, 0, constant))
+
+    def _scaled(self, operand: int, factor: float) -> int:
+        if factor == 0.0:
+            return self.constant(0.0)
+        if factor == 1.0:
+            return operand
+        return self._slot(Node(Operation.SCALE, operand, 0, factor))
+
+    # --- functions --------------------------------------------------------------------
+
+    def apply(self, operation: Operation, operand: int) -> int:
+        """A function of one number."""
+        value = self.value(operand)
+        if value is not None:
+            with np.errstate(all="ignore"):
+                return self.constant(float(_IN_DOUBLES[operation](value)))
+        return self._slot(Node(operation, operand))
+
+    def angle(self, y: int, x: int) -> int:
+        """The angle of the vector (x, y): atan2(y, x)."""
+        a, b = self.value(y), self.value(x)
+        if a is not None and b is not None:
+            return self.constant(float(np.arctan2(a, b)))
+        return self._slot(Node(Operation.ANGLE, y, x))
+
+    def _slot(self, node: Node) -> int:
+        slot = self._slots.get(node)
+        if slot is None:
+            slot = len(self._nodes)
+            if slot >= LONGEST:
+                raise TooLong
+            self._slots[node] = slot
+            self._nodes.append(node)
+        return slot
+
+    # --- rules ------------------------------------------------------------------------
+
+    def _write_rule(self, slot: int) -> None:
+        """Write what the derivatives of a slot y = f(x) are made of: w with y' = w x'
+        or r with r y' = x'."""
+        node = self._nodes[slot]
+        rule = _RULES.get(node.operation)
+        self._rules[slot] = 0 if rule is None else rule(self, slot, node)
+
+    def _square(self, operand: int) -> int:
+        return self.multiply(operand, operand)
+
+    def _rule_of_power(self, slot: int, node: Node) -> int:
+        return self._scaled(self.divide(slot, node.left), node.constant)
+
+    def _rule_of_angle(self, slot: int, node: Node) -> int:
+        return self.add(self._square(node.left), self._square(node.right))
+
+    def _one_plus_square(self, operand: int) -> int:
+        return self._shifted(self._square(operand), 1.0)
+
+    def _one_minus_square(self, operand: int) -> int:
+        return self._shifted(self._scaled(self._square(operand), -1.0), 1.0)
+
+    def _root(self, operand: int) -> int:
+        return self.apply(Operation.SQRT, operand)
+
+
+Rule = Callable[[TapeWriter, int, Node], int]
+
+_RULES: dict[Operation, Rule] = {
+    # y' = w x'
+    Operation.POWER: TapeWriter._rule_of_power,
+    Operation.EXP: lambda t, y, node: y,
+    Operation.EXPM1: lambda t, y, node: t._shifted(y, 1.0),
+    Operation.SIN: lambda t, y, node: t.apply(Operation.COS, node.left),
+    Operation.COS: lambda t, y, node: t._scaled(
+        t.apply(Operation.SIN, node.left), -1.0
+    ),
+    Operation.TAN: lambda t, y, node: t._one_plus_square(y),
+    Operation.SINH: lambda t, y, node: t.apply(Operation.COSH, node.left),
+    Operation.COSH: lambda t, y, node: t.apply(Operation.SINH, node.left),
+    Operation.TANH: lambda t, y, node: t._one_minus_square(y),
+    # r y' = x'
+    Operation.LOG: lambda t, y, node: node.left,
+    Operation.LOG1P: lambda t, y, node: t._shifted(node.left, 1.0),
+    Operation.SQRT: lambda t, y, node: t._scaled(y, 2.0),
+    Operation.CBRT: lambda t, y, node: t._scaled(t._square(y), 3.0),
+    Operation.ASIN: lambda t, y, node: t._root(t._one_minus_square(node.left)),
+    Operation.ACOS: lambda t, y, node: t._scaled(
+        t._root(t._one_minus_square(node.left)), -1.0
+    ),
+    Operation.ATAN: lambda t, y, node: t._one_plus_square(node.left),
+    Operation.ASINH: lambda t, y, node: t._root(t._one_plus_square(node.left)),
+    Operation.ACOSH: lambda t, y, node: t._root(t._shifted(t._square(node.left), -1.0)),
+    Operation.ATANH: lambda t, y, node: t._one_minus_square(node.left),
+    Operation.ANGLE: TapeWriter._rule_of_angle,
+}

@@ -1,0 +1,110 @@
+"""The compiled methods on recorded equations: scales, domains, sparse matrices."""
+
+import numpy as np
+import pytest
+from scipy.sparse import issparse
+
+from bifurc.branch import Outcome
+from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.function_problem import FunctionProblem
+from bifurc.problem import Anchor, MarchSettings, MarchStatus
+from studies.methods.cases import bratu
+
+
+def circle(size, weight):
+    return FunctionProblem(
+        lambda u: [weight * (u @ u - size**2)], [(-2 * size, 2 * size)] * 2
+    )
+
+
+@pytest.mark.parametrize("size", [1e-6, 0.3, 1.0, 1e5])
+@pytest.mark.parametrize("weight", [1e-8, 1.0, 1e8])
+def test_a_march_does_not_depend_on_the_units(size, weight):
+    problem = circle(size, weight)
+    settings = MarchSettings(16, 1e-13, 1e-9 * size, 2 * size, 20, closing=1e-3)
+    start, tangent = np.array([size, 0.0]), np.array([0.0, 1.0])
+    march = problem.march(start, tangent, settings)
+    assert march.status is MarchStatus.RAN
+    # pieces are known to 1e-13 of the size
+    for piece in march.pieces:
+        points = np.vander(np.linspace(-1, 1, 21), 17, increasing=True) @ piece
+        assert np.linalg.norm(points, axis=1) == pytest.approx(size, rel=3e-13)
+    assert len(march.pieces) == len(
+        circle(1.0, 1.0)
+        .march(
+            start / size,
+            tangent,
+            MarchSettings(16, 1e-13, 1e-9, 2.0, 20, closing=1e-3),
+        )
+        .pieces
+    )
+
+
+def test_projections_reach_solutions_and_state_what_is_left():
+    problem = circle(3.0, 50.0)
+    starts = np.random.default_rng(0).uniform(-6, 6, (40, 2))
+    points, gaps = problem.project(starts)
+    assert np.linalg.norm(points, axis=1) == pytest.approx(3.0, abs=1e-13)
+    assert gaps == pytest.approx(problem.gaps(points), abs=1e-15)
+    center = np.array([3.0, 0.0])
+    on_sphere = problem.project_to_sphere(center + 0.1 * starts, center, 0.5)
+    distances = np.linalg.norm(on_sphere.points - center, axis=1)
+    assert distances == pytest.approx(0.5, abs=1e-12)
+    assert np.linalg.norm(on_sphere.points, axis=1) == pytest.approx(3.0, abs=1e-12)
+
+
+def test_where_the_equations_are_not_defined_there_is_no_solution():
+    problem = FunctionProblem(lambda u: [np.log(u[0]) - u[1]], [(-1.0, 3.0)] * 2)
+    points, gaps = problem.project(np.array([[-0.5, 0.0], [0.5, 0.0]]))
+    assert gaps[0] == np.inf
+    assert gaps[1] < 1e-15
+    branch = trace_branch(problem, points[1])
+    assert branch.outcome is Outcome.LEFT_REGION
+    assert branch.residuals.max() < 1e-12
+    assert (
+        problem.march(
+            np.array([-0.5, 0.0]),
+            np.array([1.0, 0.0]),
+            MarchSettings(16, 1e-13, 1e-9, 1, 5),
+        ).status
+        is MarchStatus.OPEN
+    )
+
+
+def test_a_march_with_an_anchor_ends_where_the_bounds_are_left():
+    problem = FunctionProblem(
+        lambda u: [u[1] - np.exp(u[0])], [(-1.0, 1.0), (0.0, 5.0)]
+    )
+    start, tangent = np.array([0.0, 1.0]), np.array([1.0, 1.0]) / np.sqrt(2.0)
+    anchor = Anchor(start, tangent, 1e-9)
+    settings = MarchSettings(16, 1e-13, 1e-9, 2.0, 50, anchor=anchor)
+    march = problem.march(start, tangent, settings)
+    assert march.status is MarchStatus.RAN
+    assert len(march.pieces) < 20
+    inside = march.pieces[:-1].sum(axis=1)
+    assert np.all(inside[:, 0] <= 1.0)
+
+
+def test_many_unknowns_have_a_sparse_jacobian():
+    case = bratu(150)
+    jacobian = case.problem.jacobian(case.start)
+    assert case.problem.derivatives == "recorded"
+    assert issparse(jacobian)
+    assert jacobian.nnz == 150 + 2 * 149 + 150
+    branch = trace_branch(
+        case.problem, case.start, case.tangent, TraceSettings(tolerance=1e-8)
+    )
+    assert branch.outcome is Outcome.LEFT_REGION
+    assert branch.residuals.max() < 1e-8
+
+
+@pytest.mark.parametrize("tolerance", [1e-8, 1e-13])
+def test_a_curve_is_exact_where_the_equations_are_far_larger_elsewhere(tolerance):
+    # exp(20) within the bounds, 1 and less along the curve
+    case = bratu(30)
+    branch = trace_branch(
+        case.problem, case.start, case.tangent, TraceSettings(tolerance=tolerance)
+    )
+    points = branch.sample(300)
+    # rounding over the magnitude, which is 1e5, would be 1e-10
+    assert np.abs(case.problem.residuals(points)).max() < 0.2 * tolerance + 5e-13
