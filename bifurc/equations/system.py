@@ -28,9 +28,9 @@ ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
 PROJECTION_STEPS = 80
 SPHERE_STEPS = 25
 ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
-SAMPLES = 20  # starts from which solutions are looked for to measure it
+SAMPLES = 20  # places at which it is measured
 SOLVED = 1e-9  # residual of a solution
-SMALLEST_SHARE = 1e-8  # of the magnitude, that a curve is followed with
+SMALLEST_SHARE = 1e-8  # of the magnitude, with which a curve is followed
 
 
 class ScaledTape:
@@ -98,7 +98,7 @@ class ScaledTape:
     ) -> March:
         """Taylor pieces of the curve from ``start`` (n,) along ``tangent`` (n,)."""
         unit = self._unit
-        share = self._share_of_magnitude
+        share = self._share_of_magnitude(start)
         anchor, within = np.empty((0, self.tape.n)), 0.0
         if settings.anchor is not None:
             place, heading, within = settings.anchor
@@ -128,29 +128,36 @@ class ScaledTape:
             residuals=share * unit * residuals,
         )
 
-    @cached_property
-    def _share_of_magnitude(self) -> float:
-        """The magnitude of F' over which rounding on the solutions is what a march
-        takes it to be, over that of the problem; 1 at most.
+    def _share_of_magnitude(self, start: np.ndarray) -> float:
+        """The magnitude of F' over which rounding is what a march takes it to be, over
+        that of the problem; 1 at most.
 
-        Bounds on the rounding come from intervals, at solutions near random points in the
-        middle of the bounds.
+        F may be far smaller on its solutions than elsewhere within the bounds. Rounding
+        is measured there; where none are known, about the ``start`` (n,).
         """
-        rng = np.random.default_rng(0)
-        low, high = self._bounds.T
-        low = np.where(np.isfinite(low), low, -self._scale)
-        high = np.where(np.isfinite(high), high, self._scale)
-        inner = rng.uniform(0.25, 0.75, (SAMPLES, self.tape.n))
-        starts = low + inner * (high - low)
-        points, gaps = self.project(starts)
-        solutions = points[gaps <= SOLVED * self._unit]
-        lowest, highest = self.tape.compiled.value_bounds(solutions, solutions)
+        points = self._solutions
+        if not len(points):
+            rng = np.random.default_rng(0)
+            offsets = rng.uniform(-self._scale, self._scale, (SAMPLES, self.tape.n))
+            points = np.clip(start + offsets, *self._bounds.T)
+        lowest, highest = self.tape.compiled.value_bounds(points, points)
         widths = np.linalg.norm(highest - lowest, axis=1)
         widths = widths[np.isfinite(widths) & (widths > 0.0)]
         if not len(widths):
             return 1.0
         magnitude = np.median(widths) / (ROUNDING_OF_MARCH * self._unit)
         return float(np.clip(magnitude / self._magnitude, SMALLEST_SHARE, 1.0))
+
+    @cached_property
+    def _solutions(self) -> np.ndarray:
+        """Solutions (k, n) near random points in the middle of the bounds."""
+        low, high = self._bounds.T
+        low = np.where(np.isfinite(low), low, -self._scale)
+        high = np.where(np.isfinite(high), high, self._scale)
+        rng = np.random.default_rng(0)
+        inner = rng.uniform(0.25, 0.75, (SAMPLES, self.tape.n))
+        points, gaps = self.project(low + inner * (high - low))
+        return points[gaps <= SOLVED * self._unit]
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the residual (k,), over the
