@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -40,6 +41,7 @@ PROBES = 7  # points at which a function is tried out and its derivatives are me
 CHECKS = 20  # more points at which a recording is compared with the function
 WRONG = 1e-2  # relative difference from which on a given derivative is wrong
 LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
+AT_ONCE = 14  # pieces by collocation in one march
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
 HESSIAN_STEP = 1e-5  # the same for F'
@@ -67,8 +69,9 @@ class NumericalProblem(Problem):
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
-        collocation."""
-        return march_by_collocation(self, start, tangent, settings)
+        collocation; no more than `AT_ONCE`, as they do not end where the curve does."""
+        few = replace(settings, count=min(settings.count, AT_ONCE))
+        return march_by_collocation(self, start, tangent, few)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is

@@ -326,8 +326,7 @@ private:
 template <class T>
 class Sweep {
 public:
-    explicit Sweep(const Tape& tape)
-        : tape_(tape), values_(tape.slots()), partials_(tape.slots()), adjoints_(tape.slots(), T(0.0)) {}
+    explicit Sweep(const Tape& tape) : tape_(tape), values_(tape.slots()) {}
 
     T value(Index equation) const { return values_[tape_.output(equation)]; }
 
@@ -335,6 +334,8 @@ public:
 
     // Values and partial derivatives of all operations.
     void linearize(Vector<const T> point) {
+        partials_.resize(tape_.slots());
+        adjoints_.resize(tape_.slots(), T(0.0));
         tape_.evaluate_all<T>(point, values_);
         for (Index slot = 0; slot < tape_.slots(); ++slot) partials_[slot] = tape_.partials<T>(slot, values_);
     }

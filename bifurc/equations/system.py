@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
-    from scipy.sparse import csr_array
+    from scipy.sparse import csc_array
 
 __all__ = ["LARGEST_DENSE", "ScaledTape"]
 
@@ -28,9 +28,18 @@ ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
 PROJECTION_STEPS = 80
 SPHERE_STEPS = 25
 ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
-SAMPLES = 20  # places at which it is measured
+SAMPLES, BESIDE = 20, 0.1  # places at which it is measured, so far, over the scale, off
 SOLVED = 1e-9  # residual of a solution
 SMALLEST_SHARE = 1e-8  # of the magnitude, with which a curve is followed
+
+
+class _Pattern(NamedTuple):
+    """Where F' has entries: the ``order`` (e,) by columns of those by rows, their
+    ``rows`` (e,), and the ``starts`` (n + 1,) of the columns."""
+
+    order: np.ndarray
+    rows: np.ndarray
+    starts: np.ndarray
 
 
 class ScaledTape:
@@ -65,27 +74,29 @@ class ScaledTape:
         """F' (k, m, n) at points (k, n)."""
         return self.tape.compiled.jacobians(_contiguous(points))
 
-    def sparse_jacobian(self, point: np.ndarray) -> csr_array:
-        """F' (m, n) at one point (n,)."""
-        from scipy.sparse import csr_array
+    def sparse_jacobian(self, point: np.ndarray) -> csc_array:
+        """F' (m, n) at one point (n,), by columns, as it is factored."""
+        from scipy.sparse import csc_array
 
-        starts, columns = self._pattern
+        pattern = self._pattern
         entries = self.tape.compiled.entries(_contiguous(point))
-        shape = (self.tape.m, self.tape.n)
-        return csr_array((entries, columns, starts), shape=shape)
+        by_columns = (entries[pattern.order], pattern.rows, pattern.starts)
+        return csc_array(by_columns, shape=(self.tape.m, self.tape.n))
 
     @cached_property
     def is_sparse(self) -> bool:
         """Whether F' is large and has few entries."""
         if self.tape.n <= LARGEST_DENSE:
             return False
-        _, columns = self._pattern
-        return len(columns) <= SPARSE * self.tape.m * self.tape.n
+        return len(self._pattern.rows) <= SPARSE * self.tape.m * self.tape.n
 
     @cached_property
-    def _pattern(self) -> tuple[np.ndarray, np.ndarray]:
-        starts, columns = self.tape.compiled.pattern()
-        return starts.astype(np.int32), columns.astype(np.int32)
+    def _pattern(self) -> _Pattern:
+        by_rows, columns = self.tape.compiled.pattern()
+        rows = np.repeat(np.arange(self.tape.m), np.diff(by_rows))
+        order = np.argsort(columns, kind="stable")
+        starts = np.searchsorted(columns[order], np.arange(self.tape.n + 1))
+        return _Pattern(order, rows[order].astype(np.int32), starts.astype(np.int32))
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
@@ -132,14 +143,15 @@ class ScaledTape:
         """The magnitude of F' over which rounding is what a march takes it to be, over
         that of the problem; 1 at most.
 
-        F may be far smaller on its solutions than elsewhere within the bounds. Rounding
-        is measured there; where none are known, about the ``start`` (n,).
+        F may be far smaller beside its solutions than elsewhere within the bounds.
+        Rounding is measured there; where none are known, about the ``start`` (n,). At
+        some solutions it happens to be nothing: a little way off it is not.
         """
-        points = self._solutions
-        if not len(points):
-            rng = np.random.default_rng(0)
-            offsets = rng.uniform(-self._scale, self._scale, (SAMPLES, self.tape.n))
-            points = np.clip(start + offsets, *self._bounds.T)
+        centers = (
+            self._solutions if len(self._solutions) else np.tile(start, (SAMPLES, 1))
+        )
+        rng = np.random.default_rng(0)
+        points = centers + BESIDE * self._scale * rng.normal(size=centers.shape)
         lowest, highest = self.tape.compiled.value_bounds(points, points)
         widths = np.linalg.norm(highest - lowest, axis=1)
         widths = widths[np.isfinite(widths) & (widths > 0.0)]

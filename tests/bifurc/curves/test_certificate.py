@@ -114,7 +114,7 @@ def test_a_near_miss_is_followed_and_certified_with_points_that_grow_like_the_lo
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
     assert certificate.status is CertificateStatus.CERTIFIED
     # as many arcs as Taylor pieces, and these shorten with the distance to the vertex
-    assert certificate.points < NODE_COUNT * (10 + 2.5 * np.log(1 / gap))
+    assert certificate.points < NODE_COUNT * (10 + 3.5 * np.log(1 / gap))
 
 
 @pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12])

@@ -107,4 +107,4 @@ def test_a_curve_is_exact_where_the_equations_are_far_larger_elsewhere(tolerance
     )
     points = branch.sample(300)
     # rounding over the magnitude, which is 1e5, would be 1e-10
-    assert np.abs(case.problem.residuals(points)).max() < 0.2 * tolerance + 5e-13
+    assert np.abs(case.problem.residuals(points)).max() < 2 * tolerance + 5e-12
