@@ -9,7 +9,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
-    from scipy.sparse import sparray
+    from scipy.sparse import csc_array, sparray
 
 __all__ = ["Bordered", "as_dense", "bordered_matrix", "sparse_bordered"]
 
@@ -88,14 +88,13 @@ def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solv
     to a size far below that of F', columns are ordered by minimum degree of A^T + A,
     and a diagonal entry will do as a pivot from a tenth of the largest.
     """
-    from scipy.sparse import csc_array, vstack
+    from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
     matrix = csc_array(jacobian)
     typical = float(np.median(np.abs(matrix.data))) or 1.0
     weight = BORDER * typical / np.abs(tangent).max()
-    border = csc_array(weight * tangent[None])
-    stacked = csc_array(vstack([matrix, border]))
+    stacked = _with_last_row(matrix, weight * tangent)
     factors = splu(stacked, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT)
 
     def solve(right: np.ndarray) -> np.ndarray:
@@ -105,6 +104,19 @@ def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solv
         return solution
 
     return solve
+
+
+def _with_last_row(matrix: csc_array, row: np.ndarray) -> csc_array:
+    """The matrix (m + 1, n) of a sparse one (m, n) and a dense row (n,) under it: one
+    entry more at the end of every column."""
+    from scipy.sparse import csc_array
+
+    m, n = matrix.shape
+    ends = matrix.indptr[1:]
+    entries = np.insert(matrix.data, ends, row)
+    rows = np.insert(matrix.indices, ends, m)
+    starts = matrix.indptr + np.arange(n + 1, dtype=matrix.indptr.dtype)
+    return csc_array((entries, rows, starts), shape=(m + 1, n))
 
 
 def _lu_solver(matrix: np.ndarray) -> Solver | None:
