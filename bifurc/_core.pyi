@@ -74,6 +74,7 @@ class Tape:
         within: float,
         periods: np.ndarray,
         bounds: np.ndarray,
+        length: float,
     ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def project(
         self,

@@ -172,9 +172,9 @@ inline TapeSystem system_of(const Tape& tape, const Doubles& units, const Double
 inline nb::tuple tape_march(const Tape& tape, const Doubles& units, const Doubles& weights, const Doubles& start,
                             const Doubles& tangent, Index order, double tolerance, double shortest, double longest,
                             Index count, double closing, double misclosure, const Table& anchor, double within,
-                            const Doubles& periods, const Table& bounds) {
+                            const Doubles& periods, const Table& bounds, double length) {
     const MarchSettings settings{order, tolerance, shortest, longest, count, closing, misclosure};
-    const std::optional<Region> region = region_of(anchor, within, periods, bounds);
+    const std::optional<Region> region = region_of(anchor, within, periods, bounds, length);
     return march(system_of(tape, units, weights), start, tangent, settings, region);
 }
 
@@ -207,7 +207,7 @@ inline void bind_tape(nb::module_& module) {
         .def("jacobian_bounds", &tape_jacobian_bounds, arg("low"), arg("high"))
         .def("march", &tape_march, arg("units"), arg("weights"), arg("start"), arg("tangent"), arg("order"),
              arg("tolerance"), arg("shortest"), arg("longest"), arg("count"), arg("closing"), arg("misclosure"),
-             arg("anchor"), arg("within"), arg("periods"), arg("bounds"))
+             arg("anchor"), arg("within"), arg("periods"), arg("bounds"), arg("length"))
         .def("project", &tape_project, arg("units"), arg("weights"), arg("starts"), arg("noise"), arg("iterations"))
         .def("project_to_sphere", &tape_project_to_sphere, arg("units"), arg("weights"), arg("starts"),
              arg("center"), arg("radius"), arg("iterations"));

@@ -130,6 +130,7 @@ class ScaledTape:
             within=within / unit,
             periods=self._periods / unit,
             bounds=self._bounds / unit,
+            length=settings.length / unit,
         )
         return March(
             status=MarchStatus(status),
