@@ -148,7 +148,8 @@ class Track:
         self.pieces = np.concatenate([self.pieces, march.pieces])
         self.centers = np.concatenate([self.centers, centers])
         self.radii = np.concatenate([self.radii, march.radii])
-        self.residuals = np.concatenate([self.residuals, march.residuals])
+        residuals = march.residuals[: len(march.pieces)]  # not the gap of an open one
+        self.residuals = np.concatenate([self.residuals, residuals])
 
     def append_bridge(self, bridge: Bridge) -> None:
         """The track goes on with a bridge; pieces after its begin are dropped."""
