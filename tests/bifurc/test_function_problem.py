@@ -1,10 +1,16 @@
 """Problems from plain functions: derivatives, checks, magnitudes."""
 
+import copy
+import pickle
+
+import mpmath
 import numpy as np
 import pytest
 
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
+from bifurc.search.explore import explore
+from bifurc.search.settings import SearchSettings
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 
@@ -118,3 +124,62 @@ def test_a_bad_argument_is_named_with_its_value_and_what_is_allowed(arguments, n
 def test_a_function_without_a_finite_vector_is_refused(function):
     with pytest.raises(ProblemError, match="value of the function"):
         FunctionProblem(function, BOX)
+
+
+# --- recorded equations ---------------------------------------------------------------
+
+
+def test_a_problem_says_whether_its_equations_are_recorded_and_why_not():
+    recorded = FunctionProblem(circle, BOX)
+    assert recorded.derivatives == "recorded"
+    assert recorded.equations == "recorded (4 operations)"
+    refused = FunctionProblem(silently_wrong, BOX)
+    assert refused.derivatives == "central differences"
+    assert refused.equations.startswith("not recorded: it takes an absolute value")
+    without = FunctionProblem(circle, BOX, is_recorded=False)
+    assert without.equations == "not recorded: not asked for"
+    atlas = explore(recorded, settings=SearchSettings(starts=5))
+    assert atlas.provenance.derivatives == "recorded"
+    assert atlas.provenance.equations == recorded.equations
+
+
+def test_a_given_jacobian_is_compared_with_the_recorded_one():
+    def right(u):
+        return np.array([[2 * u[0], 2 * u[1]]])
+
+    def wrong(u):
+        return np.array([[2 * u[0], 3 * u[1]]])
+
+    assert FunctionProblem(circle, BOX, jacobian=right).derivatives == "recorded"
+    with pytest.raises(ProblemError, match=r"jacobian\[0, 1\].* as recorded at"):
+        FunctionProblem(circle, BOX, jacobian=wrong)
+
+
+def test_a_recorded_function_is_not_called_again():
+    calls = []
+
+    def counted(u):
+        calls.append(u)
+        return circle(u)
+
+    problem = FunctionProblem(counted, BOX)
+    count = len(calls)
+    explore(problem, settings=SearchSettings(starts=5))
+    assert len(calls) == count
+
+
+def test_a_recorded_problem_is_known_at_fifty_digits_and_others_are_not():
+    residual = FunctionProblem(circle, BOX).precise_residual()
+    with mpmath.workdps(50):
+        (value,) = residual([mpmath.mpf(1) / 3, mpmath.mpf(0)])
+        assert abs(value + mpmath.mpf(8) / 9) < mpmath.mpf(10) ** -49
+    assert FunctionProblem(silently_wrong, BOX).precise_residual() is None
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_a_problem_is_copied_and_pickled(is_recorded):
+    problem = FunctionProblem(circle, BOX, is_recorded=is_recorded)
+    points = np.array([[0.2, 0.5]])
+    for twin in (pickle.loads(pickle.dumps(problem)), copy.deepcopy(problem)):
+        assert np.array_equal(twin.residuals(points), problem.residuals(points))
+        assert np.array_equal(twin.project(points)[0], problem.project(points)[0])
