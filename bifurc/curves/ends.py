@@ -16,6 +16,8 @@ from bifurc.problem import Problem
 
 __all__ = ["end_of_curve", "same_place"]
 
+# where the bounds are left is looked for in so many parts, and in those of one of them
+PARTS, REFINEMENTS = 16, 15
 LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
 NEAR = 1e-9  # distance, over the scale, within which a curve is back in any case
 PLAIN = 1e-3  # share of that: nothing else is asked
@@ -145,12 +147,11 @@ def _exit(problem: Problem, piece: np.ndarray, grid: np.ndarray) -> float | None
     first = outside[0]
     low = grid[max(first - 1, 0)]
     high = grid[first]
-    for _ in range(60):
-        middle = np.array([0.5 * (low + high)])
-        if _excess(problem, piece, middle)[0] > 0:
-            high = middle[0]
-        else:
-            low = middle[0]
+    for _ in range(REFINEMENTS):
+        places = np.linspace(low, high, PARTS + 1)
+        outside = np.flatnonzero(_excess(problem, piece, places) > 0)
+        first = max(outside[0], 1) if len(outside) else PARTS
+        low, high = places[first - 1], places[first]
     return float(low)
 
 
