@@ -28,7 +28,7 @@ ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
 PROJECTION_STEPS = 80
 SPHERE_STEPS = 25
 ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
-SAMPLES, BESIDE = 20, 0.1  # places at which it is measured, so far, over the scale, off
+SAMPLES, BESIDE = 20, 0.3  # places at which it is measured, so far, over the scale, off
 SOLVED = 1e-9  # residual of a solution
 SMALLEST_SHARE = 1e-8  # of the magnitude, with which a curve is followed
 
