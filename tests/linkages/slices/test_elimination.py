@@ -2,6 +2,7 @@
 list must have."""
 
 import _thread
+import signal
 import threading
 
 import numpy as np
@@ -306,8 +307,13 @@ def test_no_angles_give_no_configurations():
 
 
 def test_ctrl_c_gets_through_many_slices():
+    # a process that was started in the background ignores the signal
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     timer = threading.Timer(0.1, _thread.interrupt_main)
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
-        slice_configurations(DSG, 1, np.linspace(-3, 3, 500_000))
-    timer.join()
+    try:
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            slice_configurations(DSG, 1, np.linspace(-3, 3, 500_000))
+        timer.join()
+    finally:
+        signal.signal(signal.SIGINT, handler)
