@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from bifurc._core import Curve
-from bifurc.checks import check_whole
+from bifurc.checks import check_distance, check_finite, check_whole, floats_of
 from bifurc.errors import ProblemError
 from bifurc.torus import whole_turns
 
@@ -109,8 +109,7 @@ class Branch:
     def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
         """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of
         a closed curve."""
-        if derivative < 0:
-            raise ProblemError("derivative", derivative, "0 or more")
+        check_whole("derivative", derivative, 0)
         s = np.asarray(s, dtype=float)
         flat = s.ravel()
         points = self._curve.evaluate(flat, derivative)
@@ -152,13 +151,16 @@ class Branch:
         )
 
     def begun_at(self, s: float) -> Branch:
-        """The same closed curve with its arclengths counted from ``s``.
+        """The same closed curve with its arclengths counted from ``s``, which is taken
+        modulo the length.
 
         The piece that holds ``s`` comes first and, as far as ``s``, last. Raises
-        `ProblemError` for an open curve.
+        `ProblemError` for an open curve, and for an ``s`` that is not finite.
         """
         if not self.closed:
             raise ProblemError("outcome", self.outcome.name, "a closed curve")
+        check_finite("s", s)
+        s %= self.length
         count = len(self.pieces)
         first, last = self._pieces_around(s)
         numbers = np.arange(first, last + count + 1)
@@ -190,7 +192,13 @@ class Branch:
         return first, last
 
     def moved_by_periods(self, turns: np.ndarray) -> Branch:
-        """The same curve with whole numbers (n,) of periods added to the unknowns."""
+        """The same curve with whole numbers (n,) of periods added to the unknowns.
+
+        Raises `ProblemError` for anything else.
+        """
+        turns = np.asarray(turns)
+        if turns.shape != (self.n,) or not np.all(turns == np.round(turns)):
+            raise ProblemError("turns", turns, f"{self.n} whole numbers")
         pieces = self.pieces.copy()
         moving = turns != 0
         pieces[:, 0, moving] += turns[moving] * self.periods[moving]
@@ -208,21 +216,29 @@ class Branch:
         0. Nothing is near a branch of no pieces. Raises `ProblemError` for points of
         another shape or not finite.
         """
-        points = np.atleast_2d(np.asarray(points, dtype=float))
+        points = np.atleast_2d(floats_of("points", points))
         if points.ndim != 2 or points.shape[1] != self.n:
             raise ProblemError("shape of the points", points.shape, f"(k, {self.n})")
-        if not np.all(np.isfinite(points)):
-            raise ProblemError("points", points, "finite")
+        check_finite("points", points)
+        check_distance("within", within)
         return self._curve.nearest(points, within)
 
     def passes(self, point: np.ndarray, within: float) -> np.ndarray:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below
         ``within``, in order."""
-        return self._curve.passes(np.asarray(point, dtype=float), within, SAME_PASS)
+        point = floats_of("point", point)
+        if point.shape != (self.n,):
+            raise ProblemError("shape of the point", point.shape, f"({self.n},)")
+        check_finite("point", point)
+        check_distance("within", within)
+        return self._curve.passes(point, within, SAME_PASS)
 
     def turning_points(self, unknown: int) -> np.ndarray:
-        """Arclengths, in order, at which the derivative of an unknown (from 0) changes
-        sign."""
+        """Arclengths, in order, at which the derivative of an ``unknown`` (from 0)
+        changes sign."""
+        check_whole("unknown", unknown, 0)
+        if unknown >= self.n:
+            raise ProblemError("unknown", unknown, f"below {self.n}")
         return self._curve.turning_points(unknown)
 
     # --- what is derived from the pieces ----------------------------------------------

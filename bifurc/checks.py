@@ -8,7 +8,16 @@ from numpy.typing import ArrayLike
 
 from bifurc.errors import ProblemError
 
-__all__ = ["check_callable", "check_number", "check_type", "check_whole", "floats_of"]
+__all__ = [
+    "check_callable",
+    "check_distance",
+    "check_finite",
+    "check_number",
+    "check_type",
+    "check_whole",
+    "floats_of",
+    "rows_of",
+]
 
 
 def check_type(name: str, value: object, kind: type) -> None:
@@ -40,9 +49,37 @@ def check_number(name: str, value: object) -> None:
         raise ProblemError(name, repr(value), "a number")
 
 
+def check_finite(name: str, values: float | np.ndarray) -> None:
+    """Raises `ProblemError` where one of the ``values`` is infinite or no number."""
+    values = np.asarray(values)
+    if not np.all(np.isfinite(values)):
+        raise ProblemError(name, values[~np.isfinite(values)][0], "finite")
+
+
+def check_distance(name: str, value: object) -> None:
+    """Raises `ProblemError` unless ``value`` is a number, 0 or more, which may be
+    infinite."""
+    check_number(name, value)
+    if not float(value) >= 0.0:  # type: ignore[arg-type]
+        raise ProblemError(name, value, "0 or more")
+
+
 def floats_of(name: str, value: ArrayLike) -> np.ndarray:
     """``value`` as an array of floats; raises `ProblemError` where it is none."""
     try:
+        if np.iscomplexobj(value):
+            raise TypeError("complex numbers")
         return np.array(value, dtype=float)
     except (TypeError, ValueError) as error:
         raise ProblemError(name, repr(value), "numbers") from error
+
+
+def rows_of(name: str, values: ArrayLike, n: int) -> np.ndarray:
+    """``values`` as an array of floats (k, n); raises `ProblemError` where it is
+    none."""
+    if not isinstance(values, np.ndarray) or values.dtype != float:
+        values = floats_of(name, values)
+    rows: np.ndarray = values
+    if rows.ndim != 2 or rows.shape[1] != n:
+        raise ProblemError(f"shape of {name}", rows.shape, f"(k, {n})")
+    return rows

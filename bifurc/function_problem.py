@@ -128,6 +128,7 @@ class FunctionProblem(NumericalProblem):
 
         points = self._random_points()
         probes = self._probes_with_value(points[:PROBES])
+        self._rows = len(np.atleast_1d(function(probes[0])))
         self.recording = Recording(None, "not asked for")
         if is_recorded:
             self.recording = record(function, points)
@@ -195,7 +196,7 @@ class FunctionProblem(NumericalProblem):
             return self._scaled.residuals(points)
         function = self._function  # called thousands of times a curve
         values = [function(point) for point in points]
-        return np.array(values, dtype=float)
+        return np.array(values, dtype=float).reshape(len(points), self._rows)
 
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it so,
@@ -215,8 +216,8 @@ class FunctionProblem(NumericalProblem):
         points = np.atleast_2d(points)
         if self._scaled is not None:
             return self._scaled.jacobians(points)
-        jacobians = [self.jacobian(point) for point in points]
-        return np.array([as_dense(jacobian) for jacobian in jacobians])
+        jacobians = [as_dense(self.jacobian(point)) for point in points]
+        return np.array(jacobians).reshape(len(points), self._rows, self.n)
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,): exact where the equations are recorded, else

@@ -12,6 +12,7 @@ import linkages
 from bifurc import BifurcError, FunctionProblem, SearchSettings, TraceSettings
 from bifurc.seeds import Seeds
 from linkages import Loop, LoopClosure
+from linkages.closure.coupled import CoupledClosure
 
 NAN = float("nan")
 INF = float("inf")
@@ -92,6 +93,40 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "a jacobian that is not finite": (
         lambda: with_jacobian(lambda u: [[NAN, 2 * u[1]]]),
         "jacobian",
+    ),
+    "a place on a branch that is no number": (lambda: BRANCH.begun_at(NAN), "s"),
+    "a point that is no number": (lambda: BRANCH.passes([NAN, 0.0], 0.1), "point"),
+    "a point of another shape": (lambda: BRANCH.passes([[1.0, 0.0]], 0.1), "point"),
+    "a distance that is no number": (lambda: BRANCH.passes([1.0, 0.0], NAN), "within"),
+    "a negative distance": (lambda: BRANCH.nearest([[1.0, 0.0]], -1.0), "within"),
+    "a distance of text": (lambda: BRANCH.nearest([[1.0, 0.0]], "a"), "within"),
+    "complex points": (lambda: BRANCH.nearest([[1j, 0.0]]), "points"),
+    "an unknown that there is not": (lambda: BRANCH.turning_points(2), "unknown"),
+    "an unknown that is no number": (lambda: BRANCH.turning_points("a"), "unknown"),
+    "half a derivative": (lambda: BRANCH(0.0, 1.5), "derivative"),
+    "half a turn": (lambda: BRANCH.moved_by_periods([0.5, 0]), "turns"),
+    "turns of other unknowns": (lambda: BRANCH.moved_by_periods([1]), "turns"),
+    "one configuration for many": (
+        lambda: LoopClosure(BENNETT.loop).residuals([1.0, 2.0, 3.0, 4.0]),
+        "shape of points",
+    ),
+    "configurations of another loop": (
+        lambda: LoopClosure(BENNETT.loop).jacobians([[1.0, 2.0]]),
+        "shape of points",
+    ),
+    "starts of nothing": (
+        lambda: LoopClosure(BENNETT.loop).project(None),
+        "shape of starts",
+    ),
+    "a sphere of no size": (
+        lambda: LoopClosure(BENNETT.loop).project_to_sphere(
+            np.zeros((1, 4)), np.zeros(4), 0.0
+        ),
+        "radius",
+    ),
+    "a coupling of text": (
+        lambda: CoupledClosure(BENNETT.loop, "x"),
+        "coupling matrix",
     ),
     "one name for two unknowns": (lambda: problem(names=["a"]), "number of names"),
     "names that are no texts": (lambda: problem(names=3), "names"),

@@ -14,6 +14,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from bifurc.checks import floats_of
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings
 from linkages.closure.loop_closure import LoopClosure, march
@@ -115,7 +116,7 @@ def locked_joints(
 def _coupling_matrix(n: int, matrix: np.ndarray) -> np.ndarray:
     """M (n, k) as floats; raises `GeometryError` for a wrong shape, values that are not
     finite and dependent columns."""
-    m = np.array(matrix, dtype=float)
+    m = floats_of("coupling matrix", matrix)
     if m.ndim != 2 or m.shape[0] != n or not 1 <= m.shape[1] <= n:
         allowed = f"({n}, k) with k from 1 to {n}"
         raise GeometryError("shape of the coupling matrix", m.shape, allowed)
@@ -132,7 +133,7 @@ def _coupling_offset(n: int, offset: np.ndarray | None) -> np.ndarray:
     and values that are not finite."""
     if offset is None:
         return np.zeros(n)
-    c = np.array(offset, dtype=float)
+    c = floats_of("coupling offset", offset)
     if c.shape != (n,):
         raise GeometryError("shape of the coupling offset", c.shape, f"({n},)")
     _check_finite("coupling offset", c)

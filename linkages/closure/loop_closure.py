@@ -8,8 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from bifurc.checks import check_type
+from bifurc.checks import check_number, check_type, rows_of
 from bifurc.decisions import is_start_solved
+from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import (
     March,
@@ -62,15 +63,15 @@ class LoopClosure(NumericalProblem):
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """Closure residuals (k, 6): rotation, then translation over the characteristic
         length."""
-        return _core.residuals(points, self._geometry)
+        return _core.residuals(rows_of("points", points, self.n), self._geometry)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """Derivatives (k, 6, n) of `residuals`."""
-        return _core.jacobians(points, self._geometry)
+        return _core.jacobians(rows_of("points", points, self.n), self._geometry)
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
-        return _core.hessian(point, self._geometry)
+        return _core.hessian(self.check_point(point, "point"), self._geometry)
 
     def precise_residual(self) -> Callable[[Sequence[Number]], list[Number]]:
         """Closure residuals over mpmath numbers, of the loop's own numbers."""
@@ -169,6 +170,7 @@ class LoopClosure(NumericalProblem):
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
         each."""
+        starts = rows_of("starts", starts, self.n)
         return _core.project(starts, self._geometry, ROUNDING, PROJECTION_STEPS)
 
     def project_to_sphere(
@@ -176,6 +178,11 @@ class LoopClosure(NumericalProblem):
     ) -> SphereProjection:
         """Closed configurations near ``starts`` (k, n) at distance ``radius`` from
         ``center`` (n,)."""
+        check_number("radius", radius)
+        if not 0.0 < radius < np.inf:
+            raise ProblemError("radius", radius, "positive and finite")
+        starts = rows_of("starts", starts, self.n)
+        center = self.check_point(center, "center")
         projected = _core.project_to_sphere(
             starts, center, radius, self._geometry, SPHERE_STEPS
         )

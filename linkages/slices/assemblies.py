@@ -110,6 +110,7 @@ def isolated_assemblies(loop: Loop, seconds: float = np.inf) -> Assemblies:
     for attempt in range(ATTEMPTS):
         start = _generic_loop(attempt)
         paths = follow_paths(start, longer.table, deadline.left)
+        paths = _followed_on(paths, start, longer.table, deadline)
         ends = _Ends.of(paths, longer.table)
         known = _distinct(np.concatenate([known, ends.regular]))
         if ends.are_complete or deadline.passed:
@@ -131,6 +132,29 @@ def follow_paths(
     last = np.asarray(table, dtype=complex)
     paths = _core.follow_paths(start.configurations, start.table, last, seconds)
     return Paths(*paths)
+
+
+def _followed_on(
+    paths: Paths, start: GenericLoop, table: np.ndarray, deadline: Deadline
+) -> Paths:
+    """Those of the ``paths`` that stopped near their end, followed again from there, as
+    long as there is time.
+
+    Two regular configurations may be so near each other that the last steps of a path
+    to one of them are too short beside all of it; beside what is left of it they are
+    not.
+    """
+    angles, rest, ends = paths.angles.copy(), paths.rest.copy(), paths.ends.copy()
+    has_stopped = (ends == PathEnd.STOPPED) & is_near_its_end(rest)
+    for k in np.flatnonzero(has_stopped):
+        if deadline.passed:
+            break
+        geometry = table + rest[k] * (start.table - table)
+        here = GenericLoop(geometry, angles[k : k + 1])
+        again = follow_paths(here, table, deadline.left)
+        angles[k], ends[k] = again.angles[0], again.ends[0]
+        rest[k] *= again.rest[0]
+    return Paths(angles, rest, ends)
 
 
 # --- a loop of six joints -------------------------------------------------------------

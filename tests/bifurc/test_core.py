@@ -178,6 +178,15 @@ def test_a_turning_point_between_two_pieces_is_found_once():
     assert not len(parabola.turning_points(0))
 
 
+@pytest.mark.parametrize("s", [-10.0, -1.0, 3.0, 100.0])
+def test_a_curve_may_begin_at_any_arclength(branch, s):
+    begun = branch.begun_at(s)
+    fractions = np.linspace(0.0, branch.length, 301)
+    gaps = begun(fractions) - branch(fractions + s)
+    gaps -= 2 * np.pi * np.round(gaps / (2 * np.pi))
+    assert np.abs(gaps).max() < 1e-12
+
+
 def test_arrays_that_do_not_fit_each_other_are_no_curve():
     with pytest.raises(ValueError, match="do not fit"):
         _core.Curve(

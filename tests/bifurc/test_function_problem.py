@@ -183,3 +183,14 @@ def test_a_problem_is_copied_and_pickled(is_recorded):
     for twin in (pickle.loads(pickle.dumps(problem)), copy.deepcopy(problem)):
         assert np.array_equal(twin.residuals(points), problem.residuals(points))
         assert np.array_equal(twin.project(points)[0], problem.project(points)[0])
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_nothing_is_made_of_no_points(is_recorded):
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1.0]),
+        [[-2.0, 2.0], [-2.0, 2.0]],
+        is_recorded=is_recorded,
+    )
+    assert problem.residuals(np.empty((0, 2))).shape == (0, 1)
+    assert problem.jacobians(np.empty((0, 2))).shape == (0, 1, 2)

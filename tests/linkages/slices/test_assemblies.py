@@ -201,3 +201,35 @@ def test_a_path_that_passes_far_away_is_followed_again():
         assert found.complete
         counts.append(len(found.configurations))
     assert counts == [4] * 6
+
+
+def test_two_assemblies_of_the_longer_loop_may_nearly_coincide():
+    # a 5R with two parallel axes: with its last link cut, two of the 16 configurations
+    # have a singular value of 1e-5
+    loop = Loop(
+        lengths=(
+            0.003658668677516869,
+            0.0017027847079167649,
+            0.0009929134562091336,
+            0.0018819322460218906,
+            0.0004763679831448735,
+        ),
+        twists=(
+            -1.9594251533023215,
+            0.0,
+            -0.42516387567863473,
+            -0.7447023564946288,
+            -1.8934330552438008,
+        ),
+        offsets=(
+            -0.0022166005291136192,
+            0.0,
+            -0.0007002015078702471,
+            0.0022569195858368105,
+            -0.0022946853303091983,
+        ),
+    )
+    known = [-2.77810447, -2.65674538, -1.6581603, 2.88854395, -1.62638396]
+    assemblies = isolated_assemblies(loop)
+    assert assemblies.complete
+    assert assemblies.configurations == pytest.approx(np.array([known]), abs=1e-8)
