@@ -288,10 +288,12 @@ def _generic_loop(number: int) -> GenericLoop:
 class _Ends:
     """Where paths ended: at ``regular`` configurations (k, 6), complex; and how many of
     them at ``singular`` ones, ``at_infinity``, on the way there (``distant``), or
-    ``lost``."""
+    ``lost``. Of the singular ones some are ``far_out``, where it is not known whether
+    they run to infinity."""
 
     regular: np.ndarray
     singular: int
+    far_out: int
     at_infinity: int
     distant: int
     lost: int
@@ -306,13 +308,14 @@ class _Ends:
         is_singular = is_singular_end(smallest)
         stopped, rest = paths.angles[has_stopped], paths.rest[has_stopped]
         is_near = is_near_its_end(rest)
-        is_lost = is_in_reach(_largest_imaginary_parts(stopped[~is_near]))
+        may_be_reached = is_in_reach(_largest_imaginary_parts(stopped))
         return _Ends(
             regular=arrived[~is_singular],
             singular=int(np.count_nonzero(is_singular) + np.count_nonzero(is_near)),
+            far_out=int(np.count_nonzero(is_near & ~may_be_reached)),
             at_infinity=int(np.count_nonzero(paths.ends == PathEnd.AT_INFINITY)),
-            distant=int(np.count_nonzero(~is_lost)),
-            lost=int(np.count_nonzero(is_lost)),
+            distant=int(np.count_nonzero(~is_near & ~may_be_reached)),
+            lost=int(np.count_nonzero(~is_near & may_be_reached)),
         )
 
     @property
@@ -321,13 +324,14 @@ class _Ends:
         one configuration, or one of two conjugate configurations would be missing.
 
         What runs to infinity does so in conjugate pairs: where one angle goes to +i
-        infinity, that of the other goes to -i infinity.
+        infinity, that of the other goes to -i infinity. Where a path ends far out it is
+        not known whether its partner is counted among them.
         """
         in_reach = is_in_reach(_largest_imaginary_parts(self.regular))
         configurations = self.regular[in_reach]
         both = np.concatenate([configurations, configurations.conj()])
         numbers = {len(_distinct(each)) for each in (configurations, both)}
-        are_pairs = (self.at_infinity + self.distant) % 2 == 0
+        are_pairs = (self.at_infinity + self.distant) % 2 == 0 or self.far_out > 0
         return not self.lost and are_pairs and numbers == {len(configurations)}
 
     def statement(self, real: int) -> str:
