@@ -281,7 +281,7 @@ class Atlas:
 
 def _find(name: str, names: Sequence[str]) -> int:
     """Index of the one of the ``names`` that is ``name``, or begins with it, or
-    contains it; raises `RouteError`."""
+    contains it; raises `RouteError`, also for a blank name."""
     lowered = name.lower()
     equal: list[int] = []
     beginning: list[int] = []
@@ -294,7 +294,9 @@ def _find(name: str, names: Sequence[str]) -> int:
             beginning.append(i)
         if lowered in candidate.lower():
             containing.append(i)
-    for matches in (equal, beginning, containing):
+    # every name contains a blank one, which names nothing
+    lists = (equal, beginning, containing) if name.strip() else (equal,)
+    for matches in lists:
         if len(matches) == 1:
             return matches[0]
     raise RouteError(f"form {name!r}: it must be one of {', '.join(map(repr, names))}")

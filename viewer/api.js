@@ -15,6 +15,7 @@ export function makeApi(viewer) {
     },
     state: () => stateOf(viewer),
     rods: () => rodsOf(viewer),
+    canvas: () => viewer.view?.canvasPlaces,
     play: () => viewer.player.play(),
     stop: () => viewer.stop(),
     route: (form) => viewer.routeTo(form),

@@ -28,21 +28,25 @@ import { element } from "./elements.js";
 const MOST_RODS = 36; // of 12 joints
 const MOST_GHOSTS = 8;
 const FIELD_OF_VIEW = 26; // degrees
-const FRAMING_SAMPLES = 60; // places of a track that must all be in the picture
-const MARGIN = 1.1; // around all positions, in their radius
+const FRAMING_SAMPLES = 60; // places of a track, at least, that must all be in the picture
+const MARGIN = 1.05; // around these, in their radius: for the places between
+const NUMBER_ROOM = 22; // pixels that stay free for numbers on each side
+const BALL_ROUNDS = 100;
+const JOINT_LENGTH = 1.7; // of half the cylinder of a joint, in its radius
+const JOINT_REACH = Math.hypot(JOINT_LENGTH, 1); // of its farthest corner from its seat
 const THICKNESS = 0.03; // of a joint, in the size of the linkage
 const UP = new Vector3(0, 1, 0); // the axis of a cylinder of three.js
 
 export class LinkageView {
-  /** A view in `container` of a loop; `view` is where to look from at first, in degrees. */
-  constructor(container, scene) {
+  /** A view in `container` of the loop of a scene, with room for all its tracks. */
+  constructor(container, scene, tracks) {
     this.container = container;
+    this.tracks = tracks;
     this.table = linkTable(scene.loop, scene.loop.size);
     this.heights = seatHeights(this.table);
     this.fixed = 0; // the frame that stands still: that of the link before this joint (from 0)
     this.hold = identity();
     this.ghosts = [];
-    this.look = lookOf(scene.view);
     this.colors = { link: "#0072B2", fixed: "#888", joint: "#333", idle: "#999", axis: "#888" };
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
@@ -56,6 +60,7 @@ export class LinkageView {
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, this.canvas);
     this.orbit.addEventListener("change", () => this.requestFrame());
+    this.fit(lookOf(scene.view));
     new ResizeObserver(() => this.resize()).observe(container);
   }
 
@@ -95,11 +100,11 @@ export class LinkageView {
   }
 
   /** Keep the link before joint `frame` + 1 still, where it now is. */
-  fixLink(frame, track) {
+  fixLink(frame) {
     this.hold = this.poseOf(this.frames, frame);
     this.fixed = frame;
     this.ghosts = [];
-    this.fit(track);
+    this.fit(this.lookNow());
     this.update();
   }
 
@@ -142,48 +147,54 @@ export class LinkageView {
 
   // --- the picture -----------------------------------------------------------------
 
-  /** Have all positions along a track in the picture, seen from where it is seen now, or from `look`. */
-  fit(track, look) {
+  /** Have all positions along all tracks in the picture, seen along `look`. */
+  fit(look) {
     const points = [];
-    const step = Math.max(1, Math.floor(track.samples.length / FRAMING_SAMPLES));
-    for (let k = 0; k < track.samples.length; k += step) {
-      const { parts } = this.partsOf(track.samples[k].theta);
-      for (const joint of parts.joints) points.push(joint.seat);
-      for (const rod of parts.rods) points.push(rod.from, rod.to);
+    const seats = [];
+    for (const { samples } of this.tracks) {
+      const step = Math.max(1, Math.floor(samples.length / FRAMING_SAMPLES));
+      for (let k = 0; k < samples.length; k += step) {
+        const { parts } = this.partsOf(samples[k].theta);
+        for (const joint of parts.joints) seats.push(joint.seat);
+        for (const rod of parts.rods) points.push(rod.from, rod.to);
+        for (const axis of parts.axes) points.push(...axis);
+      }
     }
-    const ball = enclosingBall(points);
-    this.swept = points;
+    const ball = enclosingBall([...seats, ...points]);
     this.center = ball.center;
     this.unit = ball.radius || 1;
-    if (look) this.look = look;
-    else if (this.fitted) this.look = this.camera.position.clone().sub(this.orbit.target).normalize();
-    this.fitted = true;
+    this.sizeParts();
+    const farthestSeat = seats.reduce((most, seat) => Math.max(most, distance(seat, this.center)), 0) / this.unit;
+    this.reach = Math.max(1, farthestSeat + JOINT_REACH * this.jointRadius);
+    this.look = look;
     this.placeCamera();
-    this.sizeParts(track);
   }
 
-  /** The camera so far away that all the track sweeps is in the picture. */
+  /** From where the picture is seen now. */
+  lookNow() {
+    return this.camera.position.clone().sub(this.orbit.target).normalize();
+  }
+
+  /** The camera so far away that the ball of all positions fits the narrower of the two angles of the canvas. */
   placeCamera() {
-    const sideways = new Vector3().crossVectors(this.camera.up, this.look).normalize();
-    const upward = new Vector3().crossVectors(this.look, sideways);
-    const points = this.swept.map((point) => this.scaled(point));
-    const seen = points.map((point) => [point.dot(sideways), point.dot(upward), point.dot(this.look)]);
-    const [x, y, z] = [0, 1, 2].map((k) => middleOf(seen.map((place) => place[k])));
-    const steep = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-    const away = MARGIN * seen.reduce((most, [a, b, c]) => {
-      const half = Math.max(Math.abs(a - x) / this.camera.aspect, Math.abs(b - y));
-      return Math.max(most, half / steep + c - z);
-    }, 0.1);
-    this.orbit.target.copy(sideways).multiplyScalar(x).addScaledVector(upward, y).addScaledVector(this.look, z);
-    this.camera.position.copy(this.look).multiplyScalar(away).add(this.orbit.target);
+    const { clientWidth: width, clientHeight: height } = this.container;
+    const smaller = Math.max(Math.min(width, height), 4 * NUMBER_ROOM);
+    const upward = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    const narrower = upward * Math.min(1, this.camera.aspect);
+    const half = Math.atan(narrower * (1 - (2 * NUMBER_ROOM) / smaller));
+    const away = (MARGIN * this.reach) / Math.sin(half);
+    this.orbit.target.set(0, 0, 0);
+    this.camera.position.copy(this.look).multiplyScalar(away);
+    this.camera.far = 10 * away;
+    this.camera.updateProjectionMatrix();
     this.orbit.minDistance = 0.2;
     this.orbit.maxDistance = 6 * away;
     this.orbit.update();
   }
 
-  /** Thickness of joints and rods: in the size of the picture, thinner where links are short. */
-  sizeParts(track) {
-    const { parts } = this.partsOf(track.samples[0].theta);
+  /** Thickness of joints and rods: in the size of the linkage, thinner where links are short. */
+  sizeParts() {
+    const { parts } = this.partsOf(this.tracks[0].samples[0].theta);
     const radii = parts.joints.map((joint) => distance(joint.seat, parts.joints[0].seat));
     const size = Math.max(...radii, 1e-9) / this.unit;
     const lengths = parts.rods.map((rod) => distance(rod.from, rod.to) / this.unit);
@@ -193,13 +204,13 @@ export class LinkageView {
   }
 
   /** See the linkage from where it is clearest again. */
-  resetView(scene, track) {
-    this.fit(track, lookOf(scene.view));
+  resetView(scene) {
+    this.fit(lookOf(scene.view));
     this.update();
   }
 
   update() {
-    if (!this.theta || !this.center) return;
+    if (!this.theta) return;
     const { frames, parts } = this.partsOf(this.theta);
     this.frames = frames;
     this.placeRods(this.rods, parts.rods, 0, this.rodRadius);
@@ -252,7 +263,7 @@ export class LinkageView {
   placeJoints(joints) {
     const color = new Color();
     joints.forEach((joint, i) => {
-      const half = new Vector3(...joint.direction).multiplyScalar(1.7 * this.jointRadius);
+      const half = new Vector3(...joint.direction).multiplyScalar(JOINT_LENGTH * this.jointRadius);
       const seat = this.scaled(joint.seat);
       const [from, to] = [seat.clone().sub(half), seat.clone().add(half)];
       this.joints.setMatrixAt(i, rodMatrix(from, to, this.jointRadius));
@@ -291,10 +302,8 @@ export class LinkageView {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    if (this.center) {
-      this.look = this.camera.position.clone().sub(this.orbit.target).normalize();
-      this.placeCamera();
-    }
+    this.look = this.lookNow();
+    this.placeCamera();
     this.draw();
   }
 
@@ -317,15 +326,27 @@ export class LinkageView {
   /** The numbers at the ends of the axes, pushed apart where they would overlap. */
   placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.container;
-    const spots = this.labelPlaces.map((place) => {
-      const p = place.clone().project(this.camera);
-      return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height };
-    });
+    const spots = this.labelPlaces.map((place) => this.spotOf(place));
     pushApart(spots, 17);
     spots.forEach(({ x, y }, i) => {
       const [inX, inY] = [Math.min(Math.max(x, 10), width - 10), Math.min(Math.max(y, 10), height - 10)];
       this.numbers[i].style.transform = `translate(-50%, -50%) translate(${inX.toFixed(1)}px, ${inY.toFixed(1)}px)`;
     });
+  }
+
+  /** Where a place of the picture is on the canvas, in pixels from its upper left corner. */
+  spotOf(place) {
+    const { clientWidth: width, clientHeight: height } = this.container;
+    const p = place.clone().project(this.camera);
+    return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height };
+  }
+
+  /** The size of the canvas and where the joints are on it, in pixels. */
+  get canvasPlaces() {
+    const { clientWidth: width, clientHeight: height } = this.container;
+    const { joints } = this.partsOf(this.theta).parts;
+    const spots = joints.map((joint) => this.spotOf(this.scaled(joint.seat)));
+    return { width, height, joints: spots.map(({ x, y }) => [x, y]) };
   }
 
   get drawCalls() {
@@ -354,27 +375,23 @@ function rodMatrix(from, to, radius) {
   return new Matrix4().compose(middle, turn, new Vector3(radius, Math.max(length, 1e-9), radius));
 }
 
-function middleOf(values) {
-  const low = values.reduce((least, value) => Math.min(least, value), Infinity);
-  const high = values.reduce((most, value) => Math.max(most, value), -Infinity);
-  return (low + high) / 2;
+/** A small ball around points: its centre steps towards the farthest point, ever less far (Badoiu and Clarkson 2003). */
+function enclosingBall(points) {
+  let center = points[0];
+  for (let round = 1; round <= BALL_ROUNDS; round += 1) {
+    const far = farthestFrom(center, points);
+    center = center.map((x, k) => x + (far[k] - x) / (round + 1));
+  }
+  return { center, radius: distance(farthestFrom(center, points), center) };
 }
 
-/** A small ball around points (Ritter 1990): from the ball on two far ones it grows to hold the others. */
-function enclosingBall(points) {
-  const farthest = (from) => points.reduce((best, point) => (distance(point, from) > distance(best, from) ? point : best));
-  const one = farthest(points[0]);
-  const other = farthest(one);
-  let center = one.map((x, k) => (x + other[k]) / 2);
-  let radius = distance(one, other) / 2;
+function farthestFrom(center, points) {
+  let [farthest, most] = [points[0], -1];
   for (const point of points) {
-    const away = distance(point, center);
-    if (away <= radius) continue;
-    const grown = (radius + away) / 2;
-    center = center.map((x, k) => x + ((away - grown) / away) * (point[k] - x));
-    radius = grown;
+    const away = (point[0] - center[0]) ** 2 + (point[1] - center[1]) ** 2 + (point[2] - center[2]) ** 2;
+    if (away > most) [farthest, most] = [point, away];
   }
-  return { center, radius };
+  return farthest;
 }
 
 function lookOf({ elevation, azimuth }) {

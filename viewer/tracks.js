@@ -82,6 +82,7 @@ export function findTrack(tracks, name) {
   if (typeof name === "number") return tracks[name - 1];
   const equal = tracks.filter((track) => track.name === name);
   if (equal.length) return equal[0];
+  if (!String(name).trim()) return undefined; // every name contains it
   const beginning = tracks.filter((track) => beginsWith(track.name, name));
   if (beginning.length === 1) return beginning[0];
   const containing = tracks.filter((track) => track.name.toLowerCase().includes(String(name).toLowerCase()));

@@ -102,7 +102,7 @@ export class Viewer {
 
   makeSpace() {
     if (offersWebGL()) {
-      this.view = new LinkageView(this.space, this.scene);
+      this.view = new LinkageView(this.space, this.scene, this.listed);
       return;
     }
     const words = "The linkage cannot be drawn: this browser offers no WebGL 2. Map and numbers work without it.";
@@ -158,8 +158,6 @@ export class Viewer {
     if (this.view && isNewTrack) {
       this.view.ghosts = [];
       this.view.colors = { ...this.surroundings, link: this.colorOf(track) };
-      this.view.theta = angles;
-      this.view.fit(track);
     }
     this.view?.show(angles, track.form?.inactive_joints);
     this.leaveGhost();
@@ -336,7 +334,7 @@ export class Viewer {
   }
 
   holdLink(frame) {
-    this.view?.fixLink(frame, this.position.track);
+    this.view?.fixLink(frame);
   }
 
   holdNextLink() {
@@ -344,7 +342,7 @@ export class Viewer {
   }
 
   resetView() {
-    this.view?.resetView(this.scene, this.position.track);
+    this.view?.resetView(this.scene);
   }
 
   dispose() {

@@ -31,6 +31,7 @@ __all__ = [
     "chart_graph",
     "entrances",
     "path_length",
+    "place_at",
     "resample",
     "shortest_path",
 ]
@@ -46,6 +47,8 @@ SOLVED = 1e-10
 # Height above a plane, over the largest radius, above which a point was corrected onto
 # another sheet; the longest step of a round is no longer either.
 TOO_FAR = 0.5
+# Share of a path below which a point is its end but for rounding.
+AT_END = 1e-12
 # Shortest spacing of points while they are pulled, over the median radius of charts.
 COARSE = 0.3
 # Shares of the way from a singular point to a chart at which solutions are looked for,
@@ -96,6 +99,18 @@ def resample(
     """A path (intervals + 1, n) on the surface along a tight one (k, n), evenly spread
     and tight as well. Raises `SurfacePathError`."""
     return _spread(problem, charts, path, intervals, FINAL_ROUNDS)
+
+
+def place_at(
+    problem: Problem, charts: ChartAtlas, path: np.ndarray, shares: np.ndarray
+) -> np.ndarray:
+    """Solutions (k, n) at shares (k,) of the length of an evenly spread path on the
+    surface; raises `SurfacePathError`."""
+    points = _place_along(path, shares)
+    # the ends are solutions already, and may be singular: nothing is corrected there
+    is_inner = (shares > AT_END) & (shares < 1.0 - AT_END)
+    points[is_inner] = _lifted(problem, charts, points[is_inner])
+    return points
 
 
 def path_length(path: np.ndarray) -> float:
@@ -235,18 +250,22 @@ def _spread(
 
 
 def _lift(problem: Problem, charts: ChartAtlas, path: np.ndarray) -> None:
-    """Correct the inner points of a path (k, n) onto the surface, in place, straight
-    above the planes of the nearest charts."""
-    inner = path[1:-1]
-    if not len(inner):
-        return
-    planes = charts.bases[charts.nearest_charts(inner)]
-    feet, are_solutions = _correct(problem, charts, inner, planes)
+    """Correct the inner points of a path (k, n) onto the surface, in place."""
+    path[1:-1] = _lifted(problem, charts, path[1:-1])
+
+
+def _lifted(problem: Problem, charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
+    """Points (k, n) corrected onto the surface, straight above the planes of the
+    nearest charts."""
+    if not len(points):
+        return points
+    planes = charts.bases[charts.nearest_charts(points)]
+    feet, are_solutions = _correct(problem, charts, points, planes)
     if not np.all(are_solutions):
         raise SurfacePathError(
             "the path between the charts cannot be corrected onto the surface"
         )
-    path[1:-1] = feet
+    return feet
 
 
 class _PulledPath:
@@ -373,7 +392,13 @@ def _count_intervals(points: np.ndarray, spacing: float) -> int:
 def _place_evenly(points: np.ndarray, intervals: int) -> np.ndarray:
     """Points (intervals + 1, n) evenly spread along the chords between ``points`` (k,
     n), the ends included."""
+    return _place_along(points, np.linspace(0.0, 1.0, intervals + 1))
+
+
+def _place_along(points: np.ndarray, shares: np.ndarray) -> np.ndarray:
+    """Points (m, n) at shares (m,) of the length of the chords between ``points`` (k,
+    n)."""
     arclengths = np.concatenate([[0.0], np.cumsum(_chord_lengths(points))])
-    at = np.linspace(0.0, arclengths[-1], intervals + 1)
+    at = shares * arclengths[-1]
     columns = [np.interp(at, arclengths, column) for column in points.T]
     return np.stack(columns, axis=1)

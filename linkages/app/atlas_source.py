@@ -24,12 +24,17 @@ def is_atlas_file(source: str) -> bool:
 def atlas_of(source: str, parameters: Sequence[str], search: SearchOptions) -> Atlas:
     """The saved atlas, or that of the linkage, called ``source``.
 
-    Raises `CommandError` for parameters of a saved atlas, and where Ctrl-C ended the
-    search.
+    Raises `CommandError` for parameters of a saved atlas, or options of its search, and
+    where Ctrl-C ended the search.
     """
     if is_atlas_file(source):
         if parameters:
             raise CommandError("--param: it has no effect on a saved atlas")
+        if search != SearchOptions():
+            raise CommandError(
+                "--starts, --seed, --tolerance, --budget: they have no effect on a "
+                "saved atlas, which is not searched again"
+            )
         return open_linkage_atlas(source)
     atlas = explore_linkage(choose_linkage(source, parameters), search)
     require_uninterrupted(atlas)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from bifurc.atlas import Atlas, Form
+from bifurc.errors import RouteError
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.verdict import judge
 
-__all__ = ["choose_form", "listed_forms", "require_forms"]
+__all__ = ["choose_form", "choose_forms", "listed_forms", "require_forms"]
 
 
 def listed_forms(atlas: Atlas) -> list[Form]:
@@ -14,19 +17,35 @@ def listed_forms(atlas: Atlas) -> list[Form]:
     return sorted(atlas.forms, key=lambda form: form.name)
 
 
+def choose_forms(atlas: Atlas, texts: Sequence[str]) -> list[Form]:
+    """The forms that ``texts`` name, each as in `choose_form`; all where there are no
+    texts. Raises `CommandError` for one that is named twice."""
+    chosen: list[Form] = []
+    for text in texts:
+        form = choose_form(atlas, text)
+        if form in chosen:
+            raise CommandError(
+                f"--form {text}: {form.name!r} is named already, and may be only once"
+            )
+        chosen.append(form)
+    return chosen if texts else listed_forms(atlas)
+
+
 def choose_form(atlas: Atlas, text: str) -> Form:
     """The form called ``text``, in full or by an unambiguous part, or of that number
-    from 1 in the summary. Raises `RouteError` for another name and `CommandError` for
-    another number."""
-    if not text.isdecimal():
-        return atlas.forms[atlas.form(text)]
+    from 1 in the summary. Raises `CommandError` for another name or number."""
     forms = listed_forms(atlas)
-    number = int(text)
-    if not 1 <= number <= len(forms):
+    if not text.isdecimal():
+        try:
+            return atlas.forms[atlas.form(text)]
+        except RouteError as error:
+            raise CommandError(f"--form: {error}") from None
+    numbered = {str(k): form for k, form in enumerate(forms, 1)}
+    if text not in numbered:
         raise CommandError(
             f"--form {text}: it must be a name, or a number from 1 to {len(forms)}"
         )
-    return forms[number - 1]
+    return numbered[text]
 
 
 def require_forms(atlas: Atlas) -> None:

@@ -32,7 +32,18 @@ LARGEST_SEED = 2**63 - 1  # files store the seed as a signed number of 64 bits
 
 
 class NumberRange(click.FloatRange):
-    """A range of floats. "Not a number" compares with no bound, and is refused."""
+    """A range of floats. "Not a number" compares with no bound, and is refused;
+    infinity only goes where ``allows_infinity`` says so."""
+
+    def __init__(
+        self,
+        min: float | None = None,
+        max: float | None = None,
+        min_open: bool = False,
+        allows_infinity: bool = False,
+    ):
+        self.allows_infinity = allows_infinity
+        super().__init__(min=min, max=max, min_open=min_open)
 
     def convert(
         self, value: float, param: click.Parameter | None, ctx: click.Context | None
@@ -41,12 +52,15 @@ class NumberRange(click.FloatRange):
         number = float(super().convert(value, param, ctx))
         if math.isnan(number):
             self.fail(f"{value} is not a number.", param, ctx)
+        if math.isinf(number) and not self.allows_infinity:
+            allowed = self._describe_range()
+            self.fail(f"{value} is not a finite number in {allowed}.", param, ctx)
         return number
 
 
 STARTS = click.IntRange(1, MOST_STARTS)
 SEED = click.IntRange(0, LARGEST_SEED)
-POSITIVE = NumberRange(min=0, min_open=True)
+POSITIVE = NumberRange(min=0, min_open=True, allows_infinity=True)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,14 @@ import click
 
 from linkages.app.exit_codes import CommandError
 
-__all__ = ["require_folder", "require_writable", "say", "say_json", "writing_to"]
+__all__ = [
+    "require_ending",
+    "require_folder",
+    "require_writable",
+    "say",
+    "say_json",
+    "writing_to",
+]
 
 
 def say(text: str) -> None:
@@ -52,6 +59,14 @@ def require_folder(out: Path) -> None:
 
     with writing_to(out):
         prepare_folder(out)
+
+
+def require_ending(option: str, out: Path, *endings: str) -> None:
+    """Raise `CommandError` unless the name of the file ``out`` has one of the
+    ``endings``, in capitals or not."""
+    if not out.name.lower().endswith(endings):
+        allowed = " or ".join(endings)
+        raise CommandError(f"{option} {out}: it must end with {allowed}")
 
 
 def require_writable(out: Path) -> None:

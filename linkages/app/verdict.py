@@ -5,6 +5,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NoReturn
+
+import click
 
 from bifurc.atlas import Atlas, NearMotion
 from bifurc.decisions import closes_to_rounding
@@ -14,7 +17,7 @@ from bifurc.singular.point import Kind
 from linkages.app.exit_codes import ExitCode
 from linkages.app.texts import count_of
 
-__all__ = ["Verdict", "is_without_gaps", "judge"]
+__all__ = ["Verdict", "exit_by", "is_without_gaps", "judge"]
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,14 @@ def judge(atlas: Atlas) -> Verdict:
     if atlas.completeness.level is Level.OUT_OF_TIME:
         return Verdict(_nothing_known(atlas), ExitCode.NOTHING_KNOWN)
     return Verdict(_immobile(atlas), ExitCode.DOES_NOT_MOVE)
+
+
+def exit_by(verdict: Verdict) -> NoReturn:
+    """End a command that has written what there is, with the exit code of the verdict;
+    one that is not "done" is said on standard error."""
+    if verdict.code is not ExitCode.DONE:
+        click.echo(verdict.sentence, err=True)
+    click.get_current_context().exit(verdict.code)
 
 
 def is_without_gaps(completeness: Completeness) -> bool:

@@ -9,6 +9,9 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.routes.route import Route
+from bifurc.routes.spread import spread_route
+from linkages.closure.loop_closure import LoopClosure
+from linkages.labels import loop_of
 from linkages.loop import Loop
 
 __all__ = ["Motion", "Poses", "link_poses", "motion_of_form", "motion_of_route"]
@@ -44,12 +47,12 @@ def motion_of_form(form: Form, count: int) -> Motion:
     return Motion(form.name, configurations, arclength)
 
 
-def motion_of_route(atlas: Atlas, route: Route, start: str, goal: str) -> Motion:
-    """A route between the forms of two names."""
-    steps = np.linalg.norm(np.diff(route.path, axis=0), axis=1)
-    arclength = np.concatenate([[0.0], np.cumsum(steps)])
-    name = f"{atlas.full_name(start)} to {atlas.full_name(goal)}"
-    return Motion(name, route.path, arclength)
+def motion_of_route(atlas: Atlas, route: Route, name: str, count: int) -> Motion:
+    """A route at ``count`` places, its begin and its end among them; raises
+    `bifurc.RouteError` for one without length."""
+    problem = LoopClosure(loop_of(atlas))
+    arclength, configurations = spread_route(atlas, route, count, problem)
+    return Motion(name, configurations, arclength)
 
 
 def link_poses(loop: Loop, motion: Motion) -> Poses:

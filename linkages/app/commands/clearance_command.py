@@ -31,7 +31,10 @@ __all__ = ["clearance_command"]
     type=NumberRange(min=0),
     default=0.0,
     show_default=True,
-    help="Diameter of the links, in the unit of the linkage.",
+    help=(
+        "Diameter of the links, in the unit of the linkage; 0 is that of their "
+        "middle lines."
+    ),
 )
 @json_option("; angles in radians")
 @param_option
@@ -59,17 +62,19 @@ def clearance_command(
     from linkages.app.atlas_source import atlas_of
     from linkages.app.clearance import clearance_document, clearance_of
     from linkages.app.clearance_text import describe_clearance
-    from linkages.app.forms import choose_form, listed_forms, require_forms
+    from linkages.app.forms import choose_forms, require_forms
     from linkages.app.output import say, say_json
     from linkages.app.status import say_more
+    from linkages.app.verdict import exit_by, judge
 
     if verbose:
         say_more()
     atlas = atlas_of(source, parameters, search)
     require_forms(atlas)
-    chosen = [choose_form(atlas, form) for form in forms] or listed_forms(atlas)
+    chosen = choose_forms(atlas, forms)
     clearances = [clearance_of(atlas, form, diameter) for form in chosen]
     if as_json:
         say_json(clearance_document(atlas, clearances))
     else:
         say(describe_clearance(atlas, clearances))
+    exit_by(judge(atlas))

@@ -81,12 +81,13 @@ def export_command(
     from bifurc.files.atomic import replace_file
     from linkages.app.atlas_source import atlas_of
     from linkages.app.forms import require_forms
-    from linkages.app.output import require_writable, writing_to
+    from linkages.app.output import require_ending, require_writable, writing_to
     from linkages.app.status import say_more
+    from linkages.app.verdict import exit_by, judge
 
     if verbose:
         say_more()
-    _require_ending(out)
+    require_ending("--to", out, MODEL, TABLE)
     require_writable(out)
     atlas = atlas_of(source, parameters, search)
     require_forms(atlas)
@@ -96,11 +97,7 @@ def export_command(
         replace_file(out, lambda part: part.write_bytes(content))
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
-
-
-def _require_ending(out: Path) -> None:
-    if out.suffix.lower() not in (MODEL, TABLE):
-        raise CommandError(f"--to {out}: it must end with {MODEL} or {TABLE}")
+    exit_by(judge(atlas))
 
 
 def choose_motions(
@@ -110,33 +107,57 @@ def choose_motions(
     count: int,
 ) -> list[Motion]:
     """The motions along forms and routes, all forms where neither is named."""
-    from bifurc.errors import RouteError
-    from bifurc.routes.route import find_route
-    from linkages.app.forms import choose_form, listed_forms
-    from linkages.closure.loop_closure import LoopClosure
-    from linkages.export.motion import motion_of_form, motion_of_route
-    from linkages.labels import loop_of
+    from linkages.app.forms import choose_forms
+    from linkages.export.motion import motion_of_form
 
-    chosen = [choose_form(atlas, form) for form in forms]
-    if not forms and not routes:
-        chosen = listed_forms(atlas)
+    chosen = choose_forms(atlas, forms) if forms or not routes else []
     motions = [motion_of_form(form, count) for form in chosen]
     for start, goal in routes:
-        first, last = atlas.full_name(start), atlas.full_name(goal)
-        problem = LoopClosure(loop_of(atlas))
-        try:
-            route = find_route(atlas, first, last, count=count, problem=problem)
-        except RouteError as error:
-            raise CommandError(str(error), ExitCode.NO_ROUTE) from None
-        motions.append(motion_of_route(atlas, route, first, last))
+        motion = make_route_motion(atlas, start, goal, count)
+        if motion.name in [other.name for other in motions]:
+            raise CommandError(
+                f"--route {start!r} {goal!r}: the route from {motion.name} is named "
+                "already, and may be only once"
+            )
+        motions.append(motion)
     return motions
+
+
+def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion:
+    """The motion along the shortest route between two forms.
+
+    Raises `CommandError` for an unknown form, where there is no route, and for one
+    without length.
+    """
+    from bifurc.errors import RouteError
+    from bifurc.routes.route import find_route
+    from linkages.closure.loop_closure import LoopClosure
+    from linkages.export.motion import motion_of_route
+    from linkages.labels import loop_of
+
+    option = f"--route {start!r} {goal!r}"
+    try:
+        first, last = atlas.full_name(start), atlas.full_name(goal)
+    except RouteError as error:
+        raise CommandError(f"{option}: {error}") from None
+    problem = LoopClosure(loop_of(atlas))
+    try:
+        route = find_route(atlas, first, last, problem=problem)
+    except RouteError as error:
+        raise CommandError(str(error), ExitCode.NO_ROUTE) from None
+    if not route.legs:
+        raise CommandError(
+            f"{option}: it begins and ends in one configuration of {first!r}; name two "
+            "different forms, or --form for all of one"
+        )
+    return motion_of_route(atlas, route, f"{first} to {last}", count)
 
 
 def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
     """What the file of that ending holds."""
     from linkages.labels import loop_of
 
-    if out.suffix.lower() == TABLE:
+    if out.name.lower().endswith(TABLE):
         from linkages.export.angle_table import make_angle_table
 
         if len(motions) != 1:

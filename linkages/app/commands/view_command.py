@@ -49,15 +49,16 @@ def view_command(
       bifurc view out/atlas.nc
     """
     from linkages.app.atlas_source import atlas_of
-    from linkages.app.output import require_writable, writing_to
+    from linkages.app.output import require_ending, require_writable, writing_to
     from linkages.app.status import say_more
-    from linkages.app.verdict import judge
+    from linkages.app.verdict import exit_by, judge
     from linkages.viewing.document import make_view_document
     from linkages.viewing.page import write_page
 
     if verbose:
         say_more()
     path = out or Path(Path(source).stem + PAGE)
+    require_ending("--out", path, PAGE)
     require_writable(path)
     atlas = atlas_of(source, parameters, search)
     verdict = judge(atlas)
@@ -67,7 +68,7 @@ def view_command(
     click.echo(f"wrote {path}", err=True)
     if not no_open:
         open_page(path)
-    click.get_current_context().exit(verdict.code)
+    exit_by(verdict)
 
 
 def open_page(path: Path) -> None:

@@ -57,6 +57,24 @@ def test_a_table_holds_one_form(atlas_file, tmp_path):
     assert "a table holds one form or route, and there are 4" in result.stderr
 
 
+@pytest.mark.parametrize("count", [2, 5, 60])
+def test_a_table_of_a_route_has_as_many_rows_at_even_arclengths(
+    atlas_file, tmp_path, count
+):
+    out = tmp_path / "route.csv"
+    route = ("--route", "Form I", "Bennett 4R")
+    result = bifurc("export", atlas_file, "--to", out, *route, "--count", count)
+    assert result.exit_code == ExitCode.DONE
+    rows = np.loadtxt(out, delimiter=",", skiprows=1)
+    assert rows.shape == (count, 7)
+    assert rows[:, 0] == pytest.approx(np.linspace(0, rows[-1, 0], count), abs=1e-12)
+    steps = np.linalg.norm(np.diff(rows[:, 1:], axis=0), axis=1)
+    assert steps.max() <= np.diff(rows[:, 0]).max() * (1 + 1e-9)
+    route = ("--route", "Form I", "Form II")
+    again = bifurc("export", atlas_file, "--to", out, *route, "--count", count)
+    assert again.exit_code == ExitCode.DONE
+
+
 def test_the_clearance_names_links_and_where_they_are_nearest(tmp_path):
     result = bifurc("clearance", "bricard-trihedral", "--diameter", 0.05)
     assert result.exit_code == ExitCode.DONE

@@ -91,6 +91,73 @@ def test_the_rods_that_are_drawn_are_those_of_python(show_shared, name):
     assert rods == pytest.approx(expected[is_rod], abs=1e-9)
 
 
+BORDER = """() => {
+  const canvas = document.querySelector('.bv-space canvas');
+  const gl = canvas.getContext('webgl2');
+  const [w, h] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+  let drawn = 0;
+  for (const [x, y, dx, dy] of [[0, 0, w, 2], [0, h - 2, w, 2], [0, 0, 2, h], [w - 2, 0, 2, h]]) {
+    const pixels = new Uint8Array(4 * dx * dy);
+    gl.readPixels(x, y, dx, dy, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    for (let i = 3; i < pixels.length; i += 4) drawn += pixels[i] > 0;
+  }
+  return drawn;
+}"""
+NUMBERS_OUTSIDE = """() => {
+  const space = document.querySelector('.bv-space').getBoundingClientRect();
+  return [...document.querySelectorAll('.bv-joint-number')].filter((number) => {
+    const box = number.getBoundingClientRect();
+    return box.top < space.top || box.bottom > space.bottom
+      || box.left < space.left || box.right > space.right;
+  }).length;
+}"""
+
+
+def assert_all_is_in_the_picture(shown):
+    """No joint or number is near the border of the canvas, and nothing drawn on it, at
+    several positions of every track."""
+    places = []
+    for form in shown.bifurc("forms"):
+        places += [(form["name"], form["length"] * k / 3) for k in range(3)]
+    for one in shown.bifurc("lists"):
+        places += [(one["name"], k) for k in range(min(one["count"], 3))]
+    for place in places:
+        shown.page.evaluate("([name, s]) => bifurc.go(name, s)", place)
+        picture_of(shown)
+        canvas = shown.bifurc("canvas()")
+        joints = np.array(canvas["joints"])
+        assert joints.min() > 20
+        assert (joints < [canvas["width"] - 20, canvas["height"] - 20]).all()
+        assert shown.page.evaluate(BORDER) == 0
+        assert shown.page.evaluate(NUMBERS_OUTSIDE) == 0
+
+
+@pytest.mark.parametrize("name", ["spherical-four-bar", "nearly Bennett", DSG])
+def test_the_whole_motion_is_in_the_picture_whatever_the_window(show, name):
+    shown = show(name, window={"width": 1280, "height": 800})
+    assert_all_is_in_the_picture(shown)
+    shown.page.set_viewport_size({"width": 420, "height": 800})
+    assert_all_is_in_the_picture(shown)
+    shown.page.locator(".bv-space-tools select").select_option("1")
+    assert_all_is_in_the_picture(shown)
+
+
+def test_all_is_in_the_picture_again_when_that_is_asked_for(show):
+    shown = show("spherical-four-bar", window={"width": 1280, "height": 800})
+    before = shown.bifurc("canvas()")
+    box = shown.page.locator(".bv-space canvas").bounding_box()
+    shown.page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    for _ in range(8):
+        shown.page.mouse.wheel(0, -400)
+        picture_of(shown)
+    assert shown.bifurc("canvas()") != before
+    shown.page.get_by_role("button", name="See all").click()
+    picture_of(shown)
+    joints = np.array(shown.bifurc("canvas()")["joints"])
+    assert joints == pytest.approx(np.array(before["joints"]), abs=1e-6)
+    assert_all_is_in_the_picture(shown)
+
+
 def test_the_slider_moves_the_rods(show):
     shown = show(DSG)
     before = shown.bifurc("state()")
