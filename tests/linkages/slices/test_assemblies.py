@@ -148,25 +148,36 @@ def test_smallest_singular_values_of_complex_configurations_are_those_of_lapack(
         assert abs(value - expected[-1]) < 1e-14 * expected[0]
 
 
+def ends_at(regular, singular=0, far_out=0, at_infinity=0):
+    return assemblies._Ends(
+        regular=regular,
+        singular=singular,
+        far_out=far_out,
+        at_infinity=at_infinity,
+        distant=0,
+        lost=0,
+    )
+
+
 def test_a_path_that_goes_over_to_another_one_is_noticed():
     one, other = 0.3 + 0.1j, 0.5 - 0.2j
     pair = np.array([[one] * 6, [np.conj(one)] * 6])
     alone = np.array([[one] * 6, [other] * 6])
     twice = np.array([[one] * 6, [one] * 6])
     for regular, complete in ((pair, True), (alone, False), (twice, False)):
-        ends = assemblies._Ends(regular, 14, 0, 0, 0)
+        ends = ends_at(regular, singular=14)
         assert ends.are_complete is complete
 
 
 def test_an_odd_number_of_paths_to_infinity_leaves_the_assemblies_incomplete():
     # these paths go in conjugate pairs: one of an odd number has passed far away, and
     # would have come back
-    def ends(regular, at_infinity):
-        angles = np.arange(1.0, regular + 1.0)[:, None] * np.ones(6)
-        return assemblies._Ends(angles.astype(complex), 0, at_infinity, 0, 0)
-
-    assert ends(14, at_infinity=2).are_complete
-    assert not ends(15, at_infinity=1).are_complete
+    angles = np.arange(1.0, 16.0)[:, None] * np.ones(6)
+    assert ends_at(angles[:14] + 0j, at_infinity=2).are_complete
+    assert not ends_at(angles + 0j, at_infinity=1).are_complete
+    # the partner of one may be among those that end far out
+    partner = ends_at(angles[:14] + 0j, at_infinity=1, singular=1, far_out=1)
+    assert partner.are_complete
 
 
 def test_a_path_that_passes_far_away_is_followed_again():
