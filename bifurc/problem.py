@@ -217,6 +217,11 @@ class Problem(ABC):
         return sizes / self.magnitude
 
     @property
+    def has_crossings(self) -> bool:
+        """Whether curves may cross: short steps are then a sign of a crossing."""
+        return True
+
+    @property
     def has_rim(self) -> bool:
         """Whether curves may leave the region in which they are followed."""
         return bool(np.any(np.isfinite(self.bounds)))

@@ -34,12 +34,14 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     """
     if not len(track):
         return None
-    misclosure = visible_misclosure(problem, track.pieces[:, 0])
-    if not is_solution(misclosure):
-        misclosure = 0.0  # a near motion: where forms crossed, it turns
     blurred = _blurred_ahead(problem, track)
     if blurred is not None:
         return _bridge_of_problem(problem, track, blurred)
+    if track.caution.bridges is BridgeRule.NOWHERE:
+        return None
+    misclosure = visible_misclosure(problem, track.pieces[:, 0])
+    if not is_solution(misclosure):
+        misclosure = 0.0
     only_singular = track.caution.bridges is BridgeRule.AT_SINGULAR_POINTS
     if only_singular and not _is_near_singular(problem, track.front.point, misclosure):
         return None

@@ -98,7 +98,7 @@ def _follow(
 ) -> Branch:
     """The curve from ``start`` to the side of its tangent until it closes, leaves the
     region, stalls or grows too long."""
-    track = Track(start, settings.order)
+    track = Track(start, settings.order, problem.has_crossings)
     longest = settings.max_length * problem.scale
     while True:
         march = _march(problem, track, settings, closing)
@@ -158,11 +158,13 @@ def _overcome_stall(
     if not track.may_overcome_stall():
         return End(Outcome.STALLED, track.reached)
     bridge = bridge_from(problem, track, settings.tolerance)
-    if bridge is None:
-        track.allow_shorter_steps()
-        return None
-    track.append_bridge(bridge)
-    return end_of_curve(problem, track, len(track) - 1, settings.tolerance)
+    if bridge is not None:
+        track.append_bridge(bridge)
+        return end_of_curve(problem, track, len(track) - 1, settings.tolerance)
+    if not track.may_take_shorter_steps:
+        return End(Outcome.STALLED, track.reached)
+    track.allow_shorter_steps()
+    return None
 
 
 def _joined(before: Branch, after: Branch) -> Branch:

@@ -17,6 +17,7 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.jumps import repeats_itself
 from bifurc.curves.misclosure import largest_of, misclosures
 from bifurc.curves.monitor import NODES, singular_values
 from bifurc.curves.valley import correct_to_valley
@@ -35,8 +36,9 @@ from bifurc.problem import Problem
 __all__ = ["NearMotionTrace", "trace_near_motion"]
 
 LONGEST = 200.0  # scales along which a near motion is followed
-# Of the misclosure: tolerance of the pieces, within these bounds.
-PRECISION, FINEST, COARSEST = 1e-2, 1e-11, 1e-10
+# Of the misclosure: tolerance of the pieces, within these bounds. Pieces that may miss as
+# much as the near motion itself pass a crossing straight on, which has opened.
+PRECISION, FINEST, COARSEST = 1e-2, 1e-13, 1e-10
 # How far beside a start it is followed from where the valley is not single at the
 # start, in scales, after so many steps onto it.
 BESIDE, CORRECTIONS = 0.1, 5
@@ -64,15 +66,17 @@ class NearMotionTrace:
     ``branch``: as far as it nearly closes, or all round if it ``is_closed``; where it
     ``is_short`` it counts as none. The least residuals across it go up to
     ``misclosure``, over the magnitude; where it passes a place at which the rank drops
-    it ``is_blurred`` there, and what it misses is looked for before and beyond. At the
-    ``assemblies`` (k, n) on it the system is solved. ``tolerance``: how closely it was
-    followed.
+    it ``is_blurred`` there, and what it misses is looked for before and beyond. Where
+    it ``is_repeated`` it passes stretches twice, as no curve does: it went over to
+    another one, and its length is wrong. At the ``assemblies`` (k, n) on it the system
+    is solved. ``tolerance``: how closely it was followed.
     """
 
     branch: Branch
     misclosure: float
     is_short: bool
     is_blurred: bool
+    is_repeated: bool
     assemblies: np.ndarray
     tolerance: float
 
@@ -140,6 +144,7 @@ def trace_near_motion(
         misclosure=largest_of(problem, points, heights),
         is_short=not branch.closed and is_stretch_short(branch.length, problem.scale),
         is_blurred=bool(len(course.bridges)),
+        is_repeated=repeats_itself(problem, branch),
         assemblies=_assemblies(problem, course),
         tolerance=settings.tolerance,
     )

@@ -78,8 +78,9 @@ class Track:
     """A curve while it is followed: its pieces so far, with the arclengths of their
     ``centers`` (k,), and how cautiously it goes on."""
 
-    def __init__(self, start: Place, order: int):
+    def __init__(self, start: Place, order: int, has_crossings: bool = True):
         self._start = start
+        self._cautions = CAUTIOUS if has_crossings else CAUTIOUS[-1:]
         self._level = 0
         self._stalls = 0
         self.pieces = np.empty((0, order + 1, len(start.point)))
@@ -120,7 +121,7 @@ class Track:
     @property
     def caution(self) -> Caution:
         """How cautiously the next pieces are made."""
-        return CAUTIOUS[self._level]
+        return self._cautions[self._level]
 
     def at(self, number: int, s: float) -> Place:
         """The place on piece ``number`` at arclength ``s``."""
@@ -168,8 +169,12 @@ class Track:
         followed where nothing else is left of the equations.
         """
         self._stalls += 1
-        is_cautious = self.caution.bridges is not BridgeRule.NOWHERE
-        return is_cautious and self._stalls <= MOST_STALLS
+        return self._stalls <= MOST_STALLS
+
+    @property
+    def may_take_shorter_steps(self) -> bool:
+        """Whether there are shorter steps than those that are taken."""
+        return self._level + 1 < len(self._cautions)
 
     def allow_shorter_steps(self) -> None:
         """There is no singular point to jump over: a sharp bend, to be followed."""

@@ -122,6 +122,11 @@ class ValleyProblem(NumericalProblem):
     # --- the region -------------------------------------------------------------------
 
     @property
+    def has_crossings(self) -> bool:
+        """Whether curves may cross: no, crossings have opened, and the valley turns."""
+        return False
+
+    @property
     def has_rim(self) -> bool:
         """Whether curves may leave the region: where they miss too much."""
         return True

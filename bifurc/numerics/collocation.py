@@ -29,6 +29,9 @@ LOOSE = 30  # times the tolerance: the residual that a piece may have between it
 TAIL = 4.0  # times the distance to which points are known: last coefficients
 # times the misclosure at the start of a piece: the same, where the system misses closure
 MISSED = 4.0
+# Times the distance to which points are known: the tolerance to which they are
+# corrected. A hundredth of that is left, and more corrections are rounding.
+SETTLED = 1.0
 FAILED = 0.4  # factor of the width where no correction converges
 NEWTON_STEPS = 8  # from a share of the arclength to the parameter
 
@@ -210,11 +213,13 @@ def _points_at_nodes(
     points[0] = start
     jacobian = problem.jacobian(start) / problem.magnitude
     factored: Bordered | None = Bordered(jacobian, heading)
+    # nearer than rounding lets a point be known no correction leads
+    enough = max(aim.tolerance, SETTLED * aim.known_to)
     for k in range(1, len(offsets)):
         guess = basis.predictors[k] @ points[:k] if k > 1 else start
         covered = (guess - start) @ heading
         guess = guess + (offsets[k] - covered) * heading
-        corrected = correct_across(problem, guess, heading, aim.tolerance, factored)
+        corrected = correct_across(problem, guess, heading, enough, factored)
         points[k] = corrected.point
         factored = corrected.factored
         step = points[k] - points[k - 1]

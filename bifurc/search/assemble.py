@@ -215,6 +215,7 @@ def _doubts_of_near_motions(findings: Findings) -> list[str]:
     """What is open about near motions, a sentence for each."""
     loose = sum(trace.has_loose_end for trace in findings.near_motions)
     blurred = sum(trace.is_blurred for trace in findings.near_motions)
+    repeated = sum(trace.is_repeated for trace in findings.near_motions)
     faint = sum(is_faint(trace.misclosure) for trace in findings.near_motions)
     doubts = []
     if faint:
@@ -226,6 +227,11 @@ def _doubts_of_near_motions(findings: Findings) -> list[str]:
         doubts.append(
             f"{loose} of the near motions end where they cannot be followed, and may go "
             "on"
+        )
+    if repeated:
+        doubts.append(
+            f"{repeated} of the near motions pass the same places twice: they went over "
+            "to another one on the way, and their lengths are wrong"
         )
     if blurred:
         doubts.append(

@@ -1,9 +1,12 @@
 """Curves along which contradictory equations are nearly solved."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from bifurc.curves.continuation import TraceSettings
+from bifurc.curves import bridges, near_motion
+from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.near_motion import trace_near_motion
 from bifurc.decisions import nearly_closes
 from bifurc.function_problem import FunctionProblem
@@ -85,6 +88,47 @@ def test_where_a_near_motion_is_traced_from_makes_no_difference():
     ends = np.abs(np.array([traces[0].branch(0.0), traces[0].branch(lengths[0])]))
     assert np.sort(ends, axis=1)[:, 1] == pytest.approx([2.0, 2.0], rel=1e-6)
     assert np.argmax(ends[0]) != np.argmax(ends[1])
+
+
+@pytest.mark.parametrize("error", [3e-12, 1e-11, 1e-9])
+def test_a_near_motion_turns_where_forms_crossed_however_little_it_misses(error):
+    problem = crossing_missed(error)
+    for x in (1.0, 0.3, -1.0):
+        near = trace_near_motion(problem, np.array([x, -error / x]), SETTINGS)
+        # it leaves the bounds on either line, and cuts the corner between them
+        ends = np.abs(near.branch(np.array([0.0, near.length])))
+        assert np.argmax(ends[0]) != np.argmax(ends[1])
+        assert near.length == pytest.approx(4.0, abs=5.0 * np.sqrt(error))
+        assert not near.is_repeated
+
+
+def test_a_near_motion_needs_no_bridge_where_forms_crossed(monkeypatch):
+    def no_bridge(*arguments):
+        raise AssertionError("a bridge was tried")
+
+    monkeypatch.setattr(bridges, "locate_singular_point", no_bridge)
+    monkeypatch.setattr(bridges, "bridge_by_collocation", no_bridge)
+    near = trace_near_motion(crossing_missed(1e-10), np.array([1.0, -1e-10]), SETTINGS)
+    assert not near.has_loose_end
+
+
+def test_a_near_motion_that_passes_stretches_twice_is_said_to(monkeypatch):
+    def twice_round(problem, start, direction, settings):
+        branch = trace_branch(problem, start, direction, settings)
+        pieces = len(branch.pieces)
+        return replace(
+            branch,
+            pieces=np.tile(branch.pieces, (2, 1, 1)),
+            centers=np.append(branch.centers, branch.centers + branch.length),
+            radii=np.tile(branch.radii, 2),
+            breaks=np.append(branch.breaks[:pieces], branch.breaks + branch.length),
+            residuals=np.tile(branch.residuals, 2),
+        )
+
+    start = np.array([0.6, 0.8])
+    assert not trace_near_motion(circle_missed(1e-6), start, SETTINGS).is_repeated
+    monkeypatch.setattr(near_motion, "trace_branch", twice_round)
+    assert trace_near_motion(circle_missed(1e-6), start, SETTINGS).is_repeated
 
 
 def test_a_near_motion_goes_straight_on_where_the_rank_of_its_form_drops():
