@@ -213,8 +213,11 @@ def _points_at_nodes(
     points[0] = start
     jacobian = problem.jacobian(start) / problem.magnitude
     factored: Bordered | None = Bordered(jacobian, heading)
-    # nearer than rounding lets a point be known no correction leads
-    enough = max(aim.tolerance, SETTLED * aim.known_to)
+    # Nearer than rounding lets a point be known no correction leads. Where curves cross
+    # the corrections are to go on: what is left of them is what the certificate sees.
+    enough = aim.tolerance
+    if not problem.has_crossings:
+        enough = max(enough, SETTLED * aim.known_to)
     for k in range(1, len(offsets)):
         guess = basis.predictors[k] @ points[:k] if k > 1 else start
         covered = (guess - start) @ heading

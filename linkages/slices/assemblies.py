@@ -145,13 +145,17 @@ def _followed_on(
     not.
     """
     angles, rest, ends = paths.angles.copy(), paths.rest.copy(), paths.ends.copy()
-    has_stopped = (ends == PathEnd.STOPPED) & is_near_its_end(rest)
-    for k in np.flatnonzero(has_stopped):
+    stopped = np.flatnonzero(ends == PathEnd.STOPPED)
+    for k in stopped[is_near_its_end(rest[stopped])]:
         if deadline.passed:
             break
         geometry = table + rest[k] * (start.table - table)
         here = GenericLoop(geometry, angles[k : k + 1])
         again = follow_paths(here, table, deadline.left)
+        if again.ends[0] == PathEnd.ARRIVED:
+            # Newton's method goes on: a singular value that vanishes falls with it
+            there = GenericLoop(table, again.angles)
+            again = follow_paths(there, table, deadline.left)
         angles[k], ends[k] = again.angles[0], again.ends[0]
         rest[k] *= again.rest[0]
     return Paths(angles, rest, ends)
