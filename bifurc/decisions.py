@@ -461,7 +461,9 @@ is_same_half_branch = Decision(
     "two solutions on a small sphere are one",
     "distance over the radius of the sphere",
     1e-4,
-    "they are exact to rounding over the radius",
+    "they are exact to rounding over the radius, but on a curve of singular points",
+    third_answer="where the section does not show what was traced the point is "
+    "undecided",
 )
 fills_circle = Decision(
     "full circle",
@@ -517,7 +519,10 @@ is_same_point = Decision(
     "two points are one, or two curves",
     "distance over the scale",
     1e-6,
-    "points are exact to 1e-13, near singular points to half the digits",
+    "points are exact to 1e-13, near singular points to half the digits; on a curve of "
+    "singular points they lie at any distance",
+    third_answer="such points have no half-branches that were traced, and are "
+    "undecided",
 )
 is_back = Decision(
     "closed",

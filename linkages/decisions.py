@@ -60,6 +60,8 @@ is_singular_end = Decision(
     "smallest singular value there",
     1e-6,
     "paths to such configurations stop before they arrive, as a rule",
+    third_answer="up to four times that is counted in the statement, and nothing is "
+    "complete then",
 )
 is_real_end = Decision(
     "real end of a path",

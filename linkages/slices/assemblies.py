@@ -42,6 +42,9 @@ __all__ = [
 ]
 
 JOINTS = 6
+# Times the singular value of a singular end: ends between are taken for regular ones,
+# and nothing is complete.
+DOUBTFUL = 4.0
 ATTEMPTS = 3  # generic geometries from which the paths start
 ROTATION = np.exp(0.7j)  # of the generic lengths and offsets from attempt to attempt
 # Lengths (over the characteristic length), twists and offsets of the cuts.
@@ -293,7 +296,8 @@ class _Ends:
     """Where paths ended: at ``regular`` configurations (k, 6), complex; and how many of
     them at ``singular`` ones, ``at_infinity``, on the way there (``distant``), or
     ``lost``. Of the singular ones some are ``far_out``, where it is not known whether
-    they run to infinity."""
+    they run to infinity; of the regular ones some are ``undecided``, where the rank is
+    nearly low."""
 
     regular: np.ndarray
     singular: int
@@ -301,6 +305,7 @@ class _Ends:
     at_infinity: int
     distant: int
     lost: int
+    undecided: int
 
     @staticmethod
     def of(paths: Paths, table: np.ndarray) -> _Ends:
@@ -310,6 +315,7 @@ class _Ends:
         arrived = paths.angles[has_arrived]
         smallest = _core.smallest_singular_values(arrived, table.astype(complex))
         is_singular = is_singular_end(smallest)
+        is_open = ~is_singular & is_singular_end(smallest, DOUBTFUL)
         stopped, rest = paths.angles[has_stopped], paths.rest[has_stopped]
         is_near = is_near_its_end(rest)
         may_be_reached = is_in_reach(_largest_imaginary_parts(stopped))
@@ -320,6 +326,7 @@ class _Ends:
             at_infinity=int(np.count_nonzero(paths.ends == PathEnd.AT_INFINITY)),
             distant=int(np.count_nonzero(~is_near & ~may_be_reached)),
             lost=int(np.count_nonzero(~is_near & may_be_reached)),
+            undecided=int(np.count_nonzero(is_open)),
         )
 
     @property
@@ -336,7 +343,12 @@ class _Ends:
         both = np.concatenate([configurations, configurations.conj()])
         numbers = {len(_distinct(each)) for each in (configurations, both)}
         are_pairs = (self.at_infinity + self.distant) % 2 == 0 or self.far_out > 0
-        return not self.lost and are_pairs and numbers == {len(configurations)}
+        return (
+            not self.lost
+            and not self.undecided
+            and are_pairs
+            and numbers == {len(configurations)}
+        )
 
     def statement(self, real: int) -> str:
         """Where the paths ended, as a sentence; ``real`` assemblies are known."""
@@ -350,6 +362,8 @@ class _Ends:
             parts.append(f"{self.at_infinity + self.distant} ran to infinity")
         if self.lost:
             parts.append(f"{self.lost} stopped on the way")
+        if self.undecided:
+            parts.append(f"{self.undecided} where the rank is nearly low")
         return ", ".join(parts)
 
 

@@ -148,7 +148,7 @@ def test_smallest_singular_values_of_complex_configurations_are_those_of_lapack(
         assert abs(value - expected[-1]) < 1e-14 * expected[0]
 
 
-def ends_at(regular, singular=0, far_out=0, at_infinity=0):
+def ends_at(regular, singular=0, far_out=0, at_infinity=0, undecided=0):
     return assemblies._Ends(
         regular=regular,
         singular=singular,
@@ -156,6 +156,7 @@ def ends_at(regular, singular=0, far_out=0, at_infinity=0):
         at_infinity=at_infinity,
         distant=0,
         lost=0,
+        undecided=undecided,
     )
 
 
@@ -178,6 +179,12 @@ def test_an_odd_number_of_paths_to_infinity_leaves_the_assemblies_incomplete():
     # the partner of one may be among those that end far out
     partner = ends_at(angles[:14] + 0j, at_infinity=1, singular=1, far_out=1)
     assert partner.are_complete
+
+
+def test_an_end_where_the_rank_is_nearly_low_leaves_the_assemblies_incomplete():
+    angles = np.arange(1.0, 17.0)[:, None] * np.ones(6) + 0j
+    assert ends_at(angles).are_complete
+    assert not ends_at(angles, undecided=1).are_complete
 
 
 def test_a_path_that_passes_far_away_is_followed_again():
