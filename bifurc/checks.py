@@ -56,11 +56,11 @@ def check_finite(name: str, values: float | np.ndarray) -> None:
         raise ProblemError(name, values[~np.isfinite(values)][0], "finite")
 
 
-def check_distance(name: str, value: object) -> None:
+def check_distance(name: str, value: float) -> None:
     """Raises `ProblemError` unless ``value`` is a number, 0 or more, which may be
     infinite."""
     check_number(name, value)
-    if not float(value) >= 0.0:  # type: ignore[arg-type]
+    if not value >= 0.0:
         raise ProblemError(name, value, "0 or more")
 
 

@@ -187,6 +187,16 @@ class Problem(ABC):
         """Number of unknowns."""
         return len(self.names)
 
+    def take_unknowns_of(self, other: Problem) -> None:
+        """Take the unknowns of another problem, with its region and its sizes."""
+        self.names = other.names
+        self.units = other.units
+        self.periods = other.periods
+        self.bounds = other.bounds
+        self.magnitude = other.magnitude
+        self.scale = other.scale
+        self.derivatives = other.derivatives
+
     @abstractmethod
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""

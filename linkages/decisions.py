@@ -55,13 +55,22 @@ is_same_dead_point = Decision(
     "nothing is proved then",
 )
 is_singular_end = Decision(
-    "regular end of a path",
+    "singular end of a path",
     "a path ended at a configuration of lower rank, on a motion or shaky",
     "smallest singular value there",
+    1e-7,
+    "rounding moves such an end by the root of it, which leaves 1e-8",
+    third_answer="one below that of a regular end is counted in the statement, and "
+    "nothing is complete then",
+)
+is_nearly_singular_end = Decision(
+    "regular end of a path",
+    "a path ended where the rank is low or nearly low",
+    "smallest singular value there",
     1e-6,
-    "paths to such configurations stop before they arrive, as a rule",
-    third_answer="up to four times that is counted in the statement, and nothing is "
-    "complete then",
+    "the ends come in pairs, about as far from each other: they must be two",
+    third_answer="one above that of a singular end is counted in the statement, and "
+    "nothing is complete then",
 )
 is_real_end = Decision(
     "real end of a path",

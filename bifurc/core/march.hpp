@@ -36,7 +36,8 @@ struct Region {
     double length;
 };
 
-// The thresholds of a march; `bifurc.decisions` gives them names and reasons.
+// How a march is made. No count, kind or word hangs on these: a march that goes wrong by them is
+// found out by the certificate, and made again with shorter pieces.
 namespace march {
 constexpr double rounding = 1e-15;     // a residual that nothing brings down
 constexpr double handover = 20.0;      // distance of two pieces where one hands over, over the blur

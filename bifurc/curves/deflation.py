@@ -77,13 +77,7 @@ class Deflated(NumericalProblem):
 
     def __init__(self, problem: Problem):
         self._problem = problem
-        self.names = problem.names
-        self.units = problem.units
-        self.periods = problem.periods
-        self.bounds = problem.bounds
-        self.magnitude = problem.magnitude
-        self.scale = problem.scale
-        self.derivatives = problem.derivatives
+        self.take_unknowns_of(problem)
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""

@@ -61,13 +61,7 @@ class ValleyProblem(NumericalProblem):
     def __init__(self, of: Problem):
         self.of = of
         self.rank = of.n - 1
-        self.names = of.names
-        self.units = of.units
-        self.periods = of.periods
-        self.bounds = of.bounds
-        self.magnitude = of.magnitude
-        self.scale = of.scale
-        self.derivatives = of.derivatives
+        self.take_unknowns_of(of)
         self.hessian_error = of.hessian_error
 
     # --- G and G' ---------------------------------------------------------------------

@@ -18,6 +18,7 @@ __all__ = [
     "SEED",
     "NumberRange",
     "SearchOptions",
+    "form_option",
     "json_option",
     "out_option",
     "param_option",
@@ -137,6 +138,13 @@ def search_options(command: Command) -> Command:
     return decorated
 
 
+form_option = click.option(
+    "--form",
+    "forms",
+    multiple=True,
+    metavar="FORM",
+    help="A form, by its name or its number in the summary.  [default: every form]",
+)
 param_option = click.option(
     "--param",
     "parameters",

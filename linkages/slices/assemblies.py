@@ -27,6 +27,7 @@ from linkages import _core
 from linkages.decisions import (
     is_in_reach,
     is_near_its_end,
+    is_nearly_singular_end,
     is_real_end,
     is_same_end,
     is_singular_end,
@@ -42,9 +43,6 @@ __all__ = [
 ]
 
 JOINTS = 6
-# Times the singular value of a singular end: ends between are taken for regular ones,
-# and nothing is complete.
-DOUBTFUL = 4.0
 ATTEMPTS = 3  # generic geometries from which the paths start
 ROTATION = np.exp(0.7j)  # of the generic lengths and offsets from attempt to attempt
 # Lengths (over the characteristic length), twists and offsets of the cuts.
@@ -294,18 +292,17 @@ def _generic_loop(number: int) -> GenericLoop:
 @dataclass(frozen=True)
 class _Ends:
     """Where paths ended: at ``regular`` configurations (k, 6), complex; and how many of
-    them at ``singular`` ones, ``at_infinity``, on the way there (``distant``), or
-    ``lost``. Of the singular ones some are ``far_out``, where it is not known whether
-    they run to infinity; of the regular ones some are ``undecided``, where the rank is
-    nearly low."""
+    them at ``singular`` ones, at ``nearly_singular`` ones, ``at_infinity``, on the way
+    there (``distant``), or ``lost``. Of the singular ones some are ``far_out``, where
+    it is not known whether they run to infinity."""
 
     regular: np.ndarray
     singular: int
+    nearly_singular: int
     far_out: int
     at_infinity: int
     distant: int
     lost: int
-    undecided: int
 
     @staticmethod
     def of(paths: Paths, table: np.ndarray) -> _Ends:
@@ -315,18 +312,18 @@ class _Ends:
         arrived = paths.angles[has_arrived]
         smallest = _core.smallest_singular_values(arrived, table.astype(complex))
         is_singular = is_singular_end(smallest)
-        is_open = ~is_singular & is_singular_end(smallest, DOUBTFUL)
+        is_regular = ~is_nearly_singular_end(smallest)
         stopped, rest = paths.angles[has_stopped], paths.rest[has_stopped]
         is_near = is_near_its_end(rest)
         may_be_reached = is_in_reach(_largest_imaginary_parts(stopped))
         return _Ends(
-            regular=arrived[~is_singular],
+            regular=arrived[is_regular],
             singular=int(np.count_nonzero(is_singular) + np.count_nonzero(is_near)),
+            nearly_singular=int(np.count_nonzero(~is_singular & ~is_regular)),
             far_out=int(np.count_nonzero(is_near & ~may_be_reached)),
             at_infinity=int(np.count_nonzero(paths.ends == PathEnd.AT_INFINITY)),
             distant=int(np.count_nonzero(~is_near & ~may_be_reached)),
             lost=int(np.count_nonzero(~is_near & may_be_reached)),
-            undecided=int(np.count_nonzero(is_open)),
         )
 
     @property
@@ -345,7 +342,7 @@ class _Ends:
         are_pairs = (self.at_infinity + self.distant) % 2 == 0 or self.far_out > 0
         return (
             not self.lost
-            and not self.undecided
+            and not self.nearly_singular
             and are_pairs
             and numbers == {len(configurations)}
         )
@@ -362,8 +359,8 @@ class _Ends:
             parts.append(f"{self.at_infinity + self.distant} ran to infinity")
         if self.lost:
             parts.append(f"{self.lost} stopped on the way")
-        if self.undecided:
-            parts.append(f"{self.undecided} where the rank is nearly low")
+        if self.nearly_singular:
+            parts.append(f"{self.nearly_singular} where the rank is nearly low")
         return ", ".join(parts)
 
 

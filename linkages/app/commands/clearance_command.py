@@ -8,6 +8,7 @@ from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import (
     NumberRange,
     SearchOptions,
+    form_option,
     json_option,
     param_option,
     search_options,
@@ -19,13 +20,7 @@ __all__ = ["clearance_command"]
 
 @click.command("clearance", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
-@click.option(
-    "--form",
-    "forms",
-    multiple=True,
-    metavar="FORM",
-    help="A form, by its name or its number in the summary.  [default: every form]",
-)
+@form_option
 @click.option(
     "--diameter",
     type=NumberRange(min=0),

@@ -10,6 +10,7 @@ import click
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
     SearchOptions,
+    form_option,
     param_option,
     search_options,
     verbose_option,
@@ -35,13 +36,7 @@ FEWEST, MOST = 2, 100_000
     metavar="FILE",
     help="The file: .glb is an animated model, .csv a table of joint angles (rad).",
 )
-@click.option(
-    "--form",
-    "forms",
-    multiple=True,
-    metavar="FORM",
-    help="A form, by its name or its number in the summary.  [default: every form]",
-)
+@form_option
 @click.option(
     "--route",
     "routes",

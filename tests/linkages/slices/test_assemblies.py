@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bifurc.limits import Deadline
 from linkages import _core
 from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
@@ -148,15 +149,15 @@ def test_smallest_singular_values_of_complex_configurations_are_those_of_lapack(
         assert abs(value - expected[-1]) < 1e-14 * expected[0]
 
 
-def ends_at(regular, singular=0, far_out=0, at_infinity=0, undecided=0):
+def ends_at(regular, singular=0, nearly_singular=0, far_out=0, at_infinity=0):
     return assemblies._Ends(
         regular=regular,
         singular=singular,
+        nearly_singular=nearly_singular,
         far_out=far_out,
         at_infinity=at_infinity,
         distant=0,
         lost=0,
-        undecided=undecided,
     )
 
 
@@ -181,10 +182,25 @@ def test_an_odd_number_of_paths_to_infinity_leaves_the_assemblies_incomplete():
     assert partner.are_complete
 
 
-def test_an_end_where_the_rank_is_nearly_low_leaves_the_assemblies_incomplete():
-    angles = np.arange(1.0, 17.0)[:, None] * np.ones(6) + 0j
-    assert ends_at(angles).are_complete
-    assert not ends_at(angles, undecided=1).are_complete
+@pytest.mark.parametrize(
+    ("short", "nearly_singular"), [(1e-5, 0), (1e-6, 2), (1e-7, 0)]
+)
+def test_ends_near_a_lower_rank_are_counted_and_leave_nothing_complete(
+    short, nearly_singular
+):
+    # a Bennett linkage with one pair of links ``short``: the smallest singular value at
+    # two of the ends is 0.4 times that
+    twist = np.arcsin(short * np.sin(1.0))
+    loop = Loop((1.0, short, 1.0, short), (1.0, twist, 1.0, twist), (0.0,) * 4)
+    table = assemblies._with_six_joints(loop).table
+    start = assemblies._stored_loop()
+    paths = follow_paths(start, table)
+    paths = assemblies._followed_on(paths, start, table, Deadline(np.inf))
+    ends = assemblies._Ends.of(paths, table)
+    assert ends.nearly_singular == nearly_singular
+    assert ends.are_complete is (nearly_singular == 0)
+    is_said = "where the rank is nearly low" in ends.statement(0)
+    assert is_said is (nearly_singular > 0)
 
 
 def test_a_path_that_passes_far_away_is_followed_again():
