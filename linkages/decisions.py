@@ -68,7 +68,7 @@ is_nearly_singular_end = Decision(
     "a path ended where the rank is low or nearly low",
     "smallest singular value there",
     1e-6,
-    "the ends come in pairs, about as far from each other: they must be two",
+    "another end may be as near as that, and so near two ends count as one",
     third_answer="one above that of a singular end is counted in the statement, and "
     "nothing is complete then",
 )

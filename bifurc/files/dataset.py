@@ -40,6 +40,7 @@ from bifurc.files.point_layout import (
     read_near_miss,
     read_point,
 )
+from bifurc.files.seal import append_seal, is_seal_broken
 from bifurc.files.surface_layout import SURFACES, read_surface
 from bifurc.files.table import JOINT, Frame, make_variable
 from bifurc.search.settings import SearchSettings
@@ -87,6 +88,7 @@ def save_atlas(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
         except RuntimeError as error:  # the library's word for a full disk
             reason = f"it cannot be written ({error})"
             raise OSError(errno.EIO, reason) from error
+        append_seal(part)
 
     return replace_file(path, write)
 
@@ -102,6 +104,9 @@ def load_atlas(path: str | os.PathLike[str]) -> Atlas:
         raise FileNotFoundError(f"{source}: there is no such file")
     if not source.is_file():
         raise AtlasFileError(str(source), "it is a folder or a device, not a file")
+    if is_seal_broken(source):
+        reason = "its bytes are not those that were written: the file is damaged"
+        raise AtlasFileError(str(source), reason)
     try:
         with xr.open_dataset(source, engine="netcdf4", decode_times=False) as file:
             dataset = file.load()

@@ -7,6 +7,7 @@ import errno
 from dataclasses import replace
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -19,6 +20,7 @@ from bifurc.files.dataset import (
     save_atlas,
     to_dataset,
 )
+from bifurc.files.seal import MARK
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
@@ -197,9 +199,31 @@ def test_a_file_with_wrong_bytes_is_refused_or_gives_the_same_atlas(
     assert refused > 10
 
 
+def test_the_libraries_are_not_asked_to_read_a_file_with_wrong_bytes(
+    content: bytes, tmp_path, monkeypatch
+) -> None:
+    """They may crash on it."""
+    path = tmp_path / "damaged.nc"
+    path.write_bytes(content[:1000] + bytes([content[1000] ^ 1]) + content[1001:])
+    monkeypatch.delattr(xr, "open_dataset")
+    with pytest.raises(AtlasFileError, match="the file is damaged"):
+        load_atlas(path)
+
+
+def test_a_file_that_another_program_has_written_on_is_read(
+    atlas: Atlas, content: bytes, tmp_path
+) -> None:
+    path = tmp_path / "a.nc"
+    path.write_bytes(content)
+    with netCDF4.Dataset(path, "a") as file:
+        file.setncattr("comment", "for the archive")
+    assert len(load_atlas(path).forms) == len(atlas.forms)
+
+
 def test_a_truncated_file_is_refused(content: bytes, tmp_path) -> None:
     path = tmp_path / "short.nc"
-    for length in np.linspace(0, len(content) - 1, 30, dtype=int):
+    data = content.index(MARK)
+    for length in np.linspace(0, data - 1, 30, dtype=int):
         path.write_bytes(content[:length])
         with pytest.raises(AtlasFileError, match=r"short\.nc: it cannot be read"):
             load_atlas(path)

@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import linkages.app
+from linkages.app import start
 from linkages.app.cli import main
+from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import catalogue
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
@@ -290,3 +293,19 @@ def test_a_name_without_the_ending_of_a_file_leads_to_the_file(write, monkeypatc
     result = bifurc("map", "mine")
     assert result.exit_code == 2
     assert "the nearest names are mine.toml" in result.stderr
+
+
+def test_ctrl_c_during_the_imports_ends_in_one_line(monkeypatch, capsys):
+    class Interrupted:
+        @staticmethod
+        def find_spec(name, path=None, target=None):
+            if name == "linkages.app.cli":
+                raise KeyboardInterrupt
+
+    monkeypatch.delitem(sys.modules, "linkages.app.cli")
+    monkeypatch.delattr(linkages.app, "cli")
+    monkeypatch.setattr(sys, "meta_path", [Interrupted, *sys.meta_path])
+    with pytest.raises(SystemExit) as end:
+        start.main()
+    assert end.value.code == ExitCode.INTERRUPTED
+    assert capsys.readouterr().err == "interrupted\n"

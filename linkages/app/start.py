@@ -1,0 +1,15 @@
+"""Where the program `bifurc` begins."""
+
+import sys
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Run the command line; Ctrl-C ends it in one line also while it is imported."""
+    try:
+        from linkages.app.cli import main as command_line
+    except KeyboardInterrupt:
+        sys.stderr.write("interrupted\n")
+        sys.exit(130)  # as `linkages.app.exit_codes.ExitCode.INTERRUPTED`
+    command_line()
