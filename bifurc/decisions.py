@@ -320,6 +320,22 @@ may_be_mobile = Decision(
     "isolated solution there is nothing but a stub to trace",
     Role.LOOK,
 )
+is_weakly_isolated = Decision(
+    "weak assembly",
+    "an isolated solution may be one at which others come together, which is looked for",
+    "smallest of all n singular values",
+    1e-5,
+    "rounding leaves 1e-7 of a double solution, and spreads what is found about it to "
+    "1e-6",
+    Role.LOOK,
+)
+is_plainly_closed_curve = Decision(
+    "closed curve",
+    "what closes is a curve, and no trace of rounding",
+    "how far its place is known, over its length",
+    1e-3,
+    "rounding turns round within what it leaves of a singular point",
+)
 may_be_singular = Decision(
     "seed of low rank",
     "a seed may lie at a singular point, which is then looked for",

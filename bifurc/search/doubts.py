@@ -53,6 +53,7 @@ def doubts_of(
             doubts.append(f"form {index + 1} {_refusal(form.certificate)}")
     for point in points:
         doubts += _doubts_of_point(problem, point)
+    doubts += _doubts_of_double_solutions(problem, points)
     return tuple(doubts)
 
 
@@ -157,6 +158,22 @@ def _places(intervals: np.ndarray) -> str:
     return places
 
 
+def _doubts_of_double_solutions(
+    problem: Problem, points: Sequence[MeetingPoint]
+) -> list[str]:
+    """How many solutions there are where two come together."""
+    double = [
+        point.name
+        for point in points
+        if point.kind is Kind.ISOLATED and point.point.rank == problem.n - 1
+    ]
+    if not double:
+        return []
+    return [
+        f"rounding does not tell a double solution from two, or none: {', '.join(double)}"
+    ]
+
+
 def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
     """Whether a singular point is one, and of which kind."""
     place = point.point.u[None]
@@ -168,8 +185,8 @@ def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
         missed = misclosure_at(problem, point.point.u, rank)
         if not misses_by_rounding(missed - explained):
             return [
-                f"{point.name} may be a {point.kind.value} or a near miss: it misses "
-                f"the equations by {missed:.1e}"
+                f"{point.name} ({point.kind.value}) may be a near miss: it misses the "
+                f"equations by {missed:.1e}"
             ]
     if point.kind is Kind.UNDECIDED:
         reason = point.note or "sections of two radii disagree"

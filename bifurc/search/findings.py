@@ -14,7 +14,13 @@ from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile, singular_values
 from bifurc.curves.near_motion import NearMotionTrace
 from bifurc.curves.near_surface import NearSurface
-from bifurc.decisions import Decision, is_same_point, may_be_known, may_be_weak
+from bifurc.decisions import (
+    Decision,
+    is_same_point,
+    is_weakly_isolated,
+    may_be_known,
+    may_be_weak,
+)
 from bifurc.numerics.blur import same_reach
 from bifurc.problem import Problem
 from bifurc.search.components import Components
@@ -26,6 +32,7 @@ __all__ = ["NO_DOUBT", "Doubt", "Findings", "PointSighting", "TracedBranch"]
 
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
+SHARPER = 1e-2  # times the distance of two assemblies: where they are weak
 
 
 class Doubt(NamedTuple):
@@ -276,16 +283,24 @@ class Findings:
                 return PointSighting(point, number, is_new=False)
         return None
 
-    def rigid_at(self, u: np.ndarray) -> int | None:
-        """The number of the known rigid assembly at ``u`` (n,)."""
+    def rigid_at(self, u: np.ndarray, stiffness: float = np.inf) -> int | None:
+        """The number of the known rigid assembly at ``u`` (n,), where the smallest
+        singular value is its ``stiffness``.
+
+        One that is weak has another beside it, as near as it is weak.
+        """
+        unit = self.problem.scale
+        if is_weakly_isolated(stiffness):
+            unit *= SHARPER
         for number, known in enumerate(self.rigid):
-            if is_same_point(self._distance(known, u), self.problem.scale):
+            if is_same_point(self._distance(known, u), unit):
                 return number
         return None
 
-    def rigid_assembly(self, u: np.ndarray) -> int:
-        """The number of the rigid assembly at ``u`` (n,), which is recorded if new."""
-        known = self.rigid_at(u)
+    def rigid_assembly(self, u: np.ndarray, stiffness: float = np.inf) -> int:
+        """The number of the rigid assembly at ``u`` (n,), which is recorded if new; see
+        `rigid_at`."""
+        known = self.rigid_at(u, stiffness)
         if known is not None:
             return known
         self.rigid.append(u)

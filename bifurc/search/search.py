@@ -22,10 +22,12 @@ from bifurc.decisions import (
     is_beside_singular,
     is_deep_place,
     is_passed,
+    is_plainly_closed_curve,
     is_same_point,
     is_solution,
     is_start_solved,
     is_stub,
+    is_weakly_isolated,
     may_be_crossed,
     may_be_mobile,
     may_be_singular,
@@ -33,7 +35,7 @@ from bifurc.decisions import (
     nearly_closes,
 )
 from bifurc.limits import Deadline, HeldInterrupt
-from bifurc.numerics.blur import distance_to_singular
+from bifurc.numerics.blur import blur_along, distance_to_singular
 from bifurc.problem import Problem
 from bifurc.search.assembly import polished
 from bifurc.search.canonical_course import canonical_course
@@ -48,7 +50,7 @@ from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
-from bifurc.singular.point import SingularPoint
+from bifurc.singular.point import Kind, SingularPoint
 from bifurc.singular.sphere import is_on_surface
 
 __all__ = ["Limits", "Search", "Start"]
@@ -56,7 +58,7 @@ __all__ = ["Limits", "Search", "Start"]
 log = logging.getLogger(__name__)
 
 # Singular values are over the problem's magnitude, lengths over its scale.
-CLOSED_STUB = 20  # times shorter: a branch that does not stall and is none
+LEAVING_STUB = 20  # times shorter: a branch that leaves the bounds and is none
 # A curve is traced at a misclosure a little above what it may have: the largest one
 # along it, measured afterwards, decides.
 LENIENT = 4.0 * is_solution.threshold
@@ -232,15 +234,33 @@ class Search:
         """
         findings = self.findings
         solution = polished(self.problem, point)
-        known = findings.rigid_at(solution.point)
+        known = findings.rigid_at(*solution[:2])
         if known is not None:
             return SeedFate(Fate.RIGID, known)
+        if is_weakly_isolated(solution.stiffness):
+            shaky = self._shaky_assembly(solution.point)
+            if shaky is not None:
+                return SeedFate(Fate.AT_SINGULAR_POINT, shaky)
         near = None
         if may_nearly_move(solution.stiffness):
             near = self._near_motion_through(point)
         if near is None or solution.is_isolated:
-            return SeedFate(Fate.RIGID, findings.rigid_assembly(solution.point))
+            return SeedFate(Fate.RIGID, findings.rigid_assembly(*solution[:2]))
         return SeedFate(Fate.ON_NEAR_MOTION, near)
+
+    def _shaky_assembly(self, point: np.ndarray) -> int | None:
+        """The number of the isolated singular point at which solutions next to
+        ``point`` (n,) come together, as far as rounding tells; None where there is
+        none."""
+        reach = SEED_REACH * self.problem.scale
+        located = locate_singular_point(self.problem, point, 1, reach)
+        if located is None:
+            return None
+        gap = float(self.problem.gaps(located.u[None])[0])
+        if not closes_to_rounding(gap):
+            return None  # beside two that rounding tells apart
+        sighting = self._sight(located)
+        return sighting.number if sighting.point.kind is Kind.ISOLATED else None
 
     def _near_motion_through(self, point: np.ndarray) -> int | None:
         """The number of the near motion through a point (n,), which is traced if it is
@@ -417,9 +437,12 @@ class Search:
         point."""
         if not len(branch.pieces):
             return False
+        if branch.closed:
+            blur = blur_along(self.problem, branch) * self.problem.scale
+            return is_plainly_closed_curve(blur, branch.length)
         unit = self.problem.scale
         if branch.outcome is not Outcome.STALLED:
-            unit /= CLOSED_STUB
+            unit /= LEAVING_STUB
         return not is_stub(branch.length, unit)
 
     # --- singular points --------------------------------------------------------------

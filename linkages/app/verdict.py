@@ -136,6 +136,8 @@ def _near_motion(motion: NearMotion) -> str:
 
 def _assemblies(count: int, shaky: int) -> str:
     remark = f", {shaky} of them shaky (of lower rank)" if shaky else ""
+    if count == shaky == 1:
+        remark = ", which is shaky (of lower rank)"
     return (
         f"It closes in {count_of(count, 'isolated assembly')}{remark}, and does not "
         "move from there."
