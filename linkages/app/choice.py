@@ -14,9 +14,11 @@ from linkages.entry import Entry, ParameterKind
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
+from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = [
     "choose_linkage",
+    "choose_loop",
     "choose_precisely",
     "read_number",
     "read_parameters",
@@ -26,9 +28,21 @@ __all__ = [
 SMALLEST, LARGEST = 1e-100, 1e100  # characteristic lengths of a linkage
 
 
-def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
-    """The linkage called ``text``, or read from the file ``text`` if that is one (or
-    ends with .toml).
+def choose_loop(text: str, parameters: Sequence[str] = ()) -> Linkage:
+    """The single loop that `choose_linkage` finds. Raises `CommandError` for a
+    mechanism as well."""
+    chosen = choose_linkage(text, parameters)
+    if isinstance(chosen, Linkage):
+        return chosen
+    raise CommandError(
+        f"{text}: it describes a mechanism, and this command takes single loops of "
+        "revolute joints that are given as a table or as axes"
+    )
+
+
+def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mechanism:
+    """The linkage called ``text``, or the linkage or mechanism read from the file
+    ``text`` if that is one (or ends with .toml).
 
     ``parameters`` are "key=value", angles in degrees. Raises `CommandError`,
     `GeometryError`, `UnknownLinkageError` and `LinkageFileError`.
@@ -44,19 +58,25 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
         linkage = load(text, **values)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
-    _require_size(text, linkage.loop)
+    _require_size(text, linkage)
     return linkage
 
 
-def _require_size(text: str, loop: Loop) -> None:
+def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
     """Raise `CommandError` for lengths whose squares leave the range of doubles."""
     with np.errstate(over="ignore"):
-        size = loop.characteristic_length
+        size = _size(linkage)
     if not SMALLEST < size < LARGEST:
         raise CommandError(
             f"{text}: the lengths are about {size:.1g}; choose a unit in which they "
             f"are between {SMALLEST:g} and {LARGEST:g}"
         )
+
+
+def _size(linkage: Linkage | Mechanism) -> float:
+    if isinstance(linkage, Mechanism):
+        return linkage.extent
+    return linkage.loop.characteristic_length
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:

@@ -9,12 +9,13 @@ from linkages.app.status import StatusLine
 from linkages.app.verdict import judge
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
+from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["explore_linkage", "require_uninterrupted"]
 
 
-def explore_linkage(linkage: Linkage, search: SearchOptions) -> Atlas:
-    """The transition map of a linkage; progress is shown on standard error.
+def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:
+    """The transition map of a linkage or a mechanism; progress is shown on standard error.
 
     Ctrl-C ends the search early, and the atlas holds what was found by then. Raises
     `bifurc.ProblemError` for settings out of their range.

@@ -1,0 +1,90 @@
+"""Configurations of an atlas for the screen and for JSON: joint angles of a loop, joint
+variables of a mechanism."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bifurc.atlas import Atlas
+from bifurc.torus import wrap
+from linkages.app.texts import in_degrees
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.readout import Readout
+
+__all__ = [
+    "heading",
+    "numbers_at",
+    "readout_of",
+    "show_configuration",
+    "show_travel",
+    "unknown_factors",
+]
+
+SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
+
+
+@lru_cache(maxsize=2)
+def readout_of(atlas: Atlas) -> Readout | None:
+    """What reads the joint variables from the atlas of a mechanism; None for that of a
+    loop. Raises `NoLinkageError` for a damaged one."""
+    if "joints" not in atlas.subject:
+        return None
+    from linkages.mechanisms.readout import Readout
+    from linkages.mechanisms.subject import mechanism_of
+
+    mechanism = mechanism_of(atlas)
+    return None if mechanism is None else Readout(mechanism)
+
+
+def unknown_factors(atlas: Atlas) -> NDArray[np.float64]:
+    """What the unknowns (n,) of an atlas are multiplied with to be in rad and in the
+    user's unit of length."""
+    readout = readout_of(atlas)
+    if readout is None or readout.single_loop is not None:
+        return np.ones(len(atlas.names))
+    unknowns = readout.structure.unknowns
+    is_length = [not one.is_angle and one.variable >= 0 for one in unknowns]
+    return np.where(is_length, readout.structure.unit, 1.0)
+
+
+def numbers_at(atlas: Atlas, point: NDArray[np.float64]) -> list[float]:
+    """The unknowns (n,) of an atlas, angles between -pi and pi, lengths in the user's
+    unit."""
+    numbers = wrap(point, atlas.periods) * unknown_factors(atlas)
+    return [float(number) for number in numbers]
+
+
+def heading(atlas: Atlas) -> str:
+    """What stands above configurations."""
+    readout = readout_of(atlas)
+    if readout is None or readout.single_loop is not None:
+        return "joint angles (deg)"
+    has_lengths = any(not one.is_angle for one in readout.structure.unknowns)
+    unit = "deg, lengths" if has_lengths else "deg"
+    return f"{', '.join(atlas.names)} ({unit})"
+
+
+def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:
+    """The unknowns (n,) as text: angles in degrees, above -180 and up to 180, lengths
+    in the user's unit."""
+    angles = wrap(point, atlas.periods, within=SHOWN_SHARE)
+    return " ".join(f"{text:>9}" for text in show_travel(atlas, angles))
+
+
+def show_travel(atlas: Atlas, point: NDArray[np.float64], digits: int = 4) -> list[str]:
+    """The unknowns (n,) as texts, as they stand, with so many digits of a degree."""
+    is_angle = [unit == "rad" for unit in atlas.units]
+    texts = []
+    for value, factor, angle in zip(
+        point, unknown_factors(atlas), is_angle, strict=True
+    ):
+        if angle:
+            texts.append(in_degrees(value, digits))
+        else:
+            texts.append(f"{factor * value:.6g}")
+    return texts
