@@ -75,7 +75,7 @@ def loop_of(atlas: Atlas) -> Loop:
     else."""
     check_type("atlas", atlas, Atlas)
     subject = atlas.subject
-    if "joints" in subject and "lengths" not in subject:
+    if "mechanism" in subject and "lengths" not in subject:
         raise NoLinkageError("it is of a mechanism, no single loop of joints")
     for key in Subject.__required_keys__:
         if key not in subject:

@@ -22,6 +22,7 @@ __all__ = [
     "choose_precisely",
     "read_number",
     "read_parameters",
+    "require_loop",
     "split_parameter",
 ]
 
@@ -34,10 +35,23 @@ def choose_loop(text: str, parameters: Sequence[str] = ()) -> Linkage:
     chosen = choose_linkage(text, parameters)
     if isinstance(chosen, Linkage):
         return chosen
-    raise CommandError(
-        f"{text}: it describes a mechanism, and this command takes single loops of "
-        "revolute joints that are given as a table or as axes"
-    )
+    return Linkage(require_loop(text, chosen))
+
+
+def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
+    """The loop of a linkage, or of a mechanism that is a single loop of revolute
+    joints; raises `CommandError` for another one."""
+    if isinstance(linkage, Linkage):
+        return linkage.loop
+    from linkages.mechanisms.readout import Readout
+
+    single = Readout(linkage).single_loop
+    if single is None:
+        raise CommandError(
+            f"{text}: it is a mechanism, which `bifurc map` and `bifurc route` take; "
+            "this command takes single loops of 4 to 12 revolute joints so far"
+        )
+    return single.loop
 
 
 def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mechanism:
@@ -114,21 +128,21 @@ def read_parameters(family: Entry, texts: Sequence[str]) -> dict[str, float]:
     return values
 
 
-def split_parameter(text: str) -> tuple[str, str]:
-    """Name and value of "key=value"; raises `GeometryError`."""
+def split_parameter(text: str, option: str = "--param") -> tuple[str, str]:
+    """Name and value of "key=value" behind an option; raises `GeometryError`."""
     name, equals, value = text.partition("=")
     if not equals:
-        raise GeometryError("--param", repr(text), "of the form key=value")
+        raise GeometryError(option, repr(text), "of the form key=value")
     return name.strip(), value
 
 
-def read_number(name: str, text: str) -> float:
-    """The finite number that ``text`` is, for the parameter ``name``; raises
-    `GeometryError`."""
+def read_number(name: str, text: str, option: str = "--param") -> float:
+    """The finite number that ``text`` is, for what is called ``name`` behind an
+    option; raises `GeometryError`."""
     try:
         number = float(text)
     except ValueError:
-        raise GeometryError(f"--param {name}", repr(text), "a number") from None
+        raise GeometryError(f"{option} {name}", repr(text), "a number") from None
     if not math.isfinite(number):
-        raise GeometryError(f"--param {name}", number, "a finite number")
+        raise GeometryError(f"{option} {name}", number, "a finite number")
     return number

@@ -32,7 +32,7 @@ SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not sho
 def readout_of(atlas: Atlas) -> Readout | None:
     """What reads the joint variables from the atlas of a mechanism; None for that of a
     loop. Raises `NoLinkageError` for a damaged one."""
-    if "joints" not in atlas.subject:
+    if "mechanism" not in atlas.subject:
         return None
     from linkages.mechanisms.readout import Readout
     from linkages.mechanisms.subject import mechanism_of
@@ -47,9 +47,7 @@ def unknown_factors(atlas: Atlas) -> NDArray[np.float64]:
     readout = readout_of(atlas)
     if readout is None or readout.single_loop is not None:
         return np.ones(len(atlas.names))
-    unknowns = readout.structure.unknowns
-    is_length = [not one.is_angle and one.variable >= 0 for one in unknowns]
-    return np.where(is_length, readout.structure.unit, 1.0)
+    return readout.structure.scales
 
 
 def numbers_at(atlas: Atlas, point: NDArray[np.float64]) -> list[float]:

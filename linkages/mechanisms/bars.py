@@ -22,6 +22,9 @@ __all__ = ["read_bars"]
 Content: TypeAlias = Mapping[str, Any]
 
 FRAME = "frame"
+POLISHING_STEPS = 5
+RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
+TINY = 1e-300  # length of a bar that has none
 
 
 @dataclass(frozen=True)
@@ -202,33 +205,77 @@ def _misfits(system: _Bars, places: Mapping[str, complex]) -> np.ndarray:
 
 def _least_squares(system: _Bars, free: Sequence[str]) -> dict[str, complex]:
     """The places of all points where the lengths of all bars are best fitted."""
+    if not free:
+        return _places(system, system.points)
     from scipy.optimize import least_squares
 
-    first = _places(system, system.points)
-    lengths = np.array(
-        [
-            abs(first[bar.end] - first[bar.start]) if bar.length is None else bar.length
-            for bar in system.bars
-        ]
-    )
+    shape = _Shape(system, free)
+    start = np.array([system.points[name] for name in free])
+    solution = least_squares(shape.gaps, _pairs(start), shape.derivatives).x
+    for _ in range(POLISHING_STEPS):
+        step = np.linalg.lstsq(
+            shape.derivatives(solution), -shape.gaps(solution), rcond=RANK
+        )[0]
+        solution = solution + step
+    moved = zip(free, _complex_numbers(solution), strict=True)
+    points = dict(system.points) | {name: complex(place) for name, place in moved}
+    return _places(system, points)
 
-    def places_at(values: np.ndarray) -> dict[str, complex]:
-        moved = dict(system.points)
-        for name, x, y in zip(free, values[::2], values[1::2], strict=True):
-            moved[name] = complex(x, y)
-        return _places(system, moved)
 
-    def gaps(values: np.ndarray) -> np.ndarray:
-        places = places_at(values)
-        sizes = [abs(places[bar.end] - places[bar.start]) for bar in system.bars]
-        differences: np.ndarray = np.array(sizes) - lengths
-        return differences
+def _pairs(numbers: np.ndarray) -> np.ndarray:
+    """Complex numbers (k,) as real ones (2 k,)."""
+    return np.column_stack([numbers.real, numbers.imag]).ravel()
 
-    start = [c for name in free for c in (first[name].real, first[name].imag)]
-    if not start:
-        return first
-    solution = least_squares(gaps, start, xtol=1e-15, ftol=1e-15, gtol=1e-15)
-    return places_at(solution.x)
+
+def _complex_numbers(pairs: np.ndarray) -> np.ndarray:
+    """Real numbers (2 k,) as complex ones (k,)."""
+    numbers: np.ndarray = pairs[::2] + 1j * pairs[1::2]
+    return numbers
+
+
+class _Shape:
+    """The lengths of all bars as functions of the places of the ``free`` points.
+
+    Every vector along a bar is ``constant`` (b,) + ``factors`` (b, k) @ places (k,), in
+    complex numbers.
+    """
+
+    def __init__(self, system: _Bars, free: Sequence[str]):
+        at_rest = dict(system.points) | dict.fromkeys(free, 0j)
+        self.constant = _vectors(system, at_rest)
+        columns = []
+        for name in free:
+            moved = _vectors(system, at_rest | {name: 1 + 0j})
+            columns.append(moved - self.constant)
+        self.factors = np.column_stack(columns)
+        now = np.abs(_vectors(system, system.points))
+        given = [np.nan if bar.length is None else bar.length for bar in system.bars]
+        self.lengths = np.where(np.isnan(given), now, given)
+
+    def _along(self, values: np.ndarray) -> np.ndarray:
+        along: np.ndarray = self.constant + self.factors @ _complex_numbers(values)
+        return along
+
+    def gaps(self, values: np.ndarray) -> np.ndarray:
+        """How much too long the bars (b,) are."""
+        gaps: np.ndarray = np.abs(self._along(values)) - self.lengths
+        return gaps
+
+    def derivatives(self, values: np.ndarray) -> np.ndarray:
+        """Derivatives (b, 2 k) of `gaps`."""
+        along = self._along(values)
+        directions = np.conj(along) / np.maximum(np.abs(along), TINY)
+        rates = directions[:, None] * self.factors
+        derivatives = np.empty((len(along), 2 * self.factors.shape[1]))
+        derivatives[:, ::2] = rates.real
+        derivatives[:, 1::2] = -rates.imag
+        return derivatives
+
+
+def _vectors(system: _Bars, points: Mapping[str, complex]) -> np.ndarray:
+    """The vectors (b,) along all bars, as complex numbers."""
+    places = _places(system, points)
+    return np.array([places[bar.end] - places[bar.start] for bar in system.bars])
 
 
 # --- bodies and joints ----------------------------------------------------------------

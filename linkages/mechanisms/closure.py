@@ -21,6 +21,7 @@ from bifurc.problem import (
 )
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
+from linkages.mechanisms.curvature import CurvatureBounds
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
@@ -110,6 +111,25 @@ class MechanismClosure(NumericalProblem):
             columns += [structure.column_of[k] for k in free]
             columns += structure.embedded.get(number, ())
         return columns
+
+    def curvature_bound(self) -> float | None:
+        """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations;
+        None for a mechanism with embedded spherical joints."""
+        bounds = self._curvature
+        return None if bounds is None else bounds.near_solutions
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
+        """Bounds (k,) on |F''| at complex points no farther than ``reach`` (k,) from a
+        real one within the limits; None for a mechanism with embedded spherical
+        joints."""
+        bounds = self._curvature
+        return None if bounds is None else bounds.at_complex_points(reach)
+
+    @cached_property
+    def _curvature(self) -> CurvatureBounds | None:
+        if self.structure.embedded:
+            return None
+        return CurvatureBounds(self.structure, self.curvature_residual)
 
     # --- curves and solutions ---------------------------------------------------------
 

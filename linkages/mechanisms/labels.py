@@ -26,7 +26,10 @@ def label_mechanism(atlas: Atlas, problem: MechanismClosure) -> Atlas:
     names = [form.name for form in atlas.forms]
     labels = [_labels(problem, form.branch).as_values() for form in atlas.forms]
     named = atlas.renamed(names, labels)
-    return replace(named, subject=mechanism_subject(problem.mechanism))
+    subject = mechanism_subject(problem.mechanism)
+    # what unknowns are multiplied with to be in rad and in the user's unit
+    subject["scale"] = problem.structure.scales.tolist()
+    return replace(named, subject=subject)
 
 
 def _labels(problem: MechanismClosure, branch: Branch) -> FormLabels:

@@ -254,6 +254,13 @@ class Structure:
                 unknowns.append(Unknown(label, -1, np.inf, -np.inf, np.inf, False))
         return tuple(unknowns)
 
+    @property
+    def scales(self) -> np.ndarray:
+        """What the unknowns (n,) are multiplied with to be in rad and in the user's
+        unit."""
+        is_slide = [not one.is_angle and one.variable >= 0 for one in self.unknowns]
+        return np.where(is_slide, self.unit, 1.0)
+
     @cached_property
     def column_of(self) -> dict[int, int]:
         """The number of the unknown that every free variable is, by its number."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bifurc.atlas import Atlas, JsonObject
+from bifurc.atlas import Atlas
 from linkages.labels import NoLinkageError
 from linkages.loop import GeometryError
 from linkages.mechanisms.joint import Joint
@@ -16,20 +16,18 @@ __all__ = ["joint_values", "mechanism_from", "mechanism_of", "mechanism_subject"
 def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
     """The ``subject`` of an atlas of a mechanism."""
     joints = [joint_values(joint) for joint in mechanism.joints]
-    return {
-        "name": mechanism.name,
-        "joints": joints,
-        "is_planar": mechanism.is_planar,
-    }
+    values = {"joints": joints, "is_planar": mechanism.is_planar}
+    return {"name": mechanism.name, "mechanism": values}
 
 
 def mechanism_of(atlas: Atlas) -> Mechanism | None:
     """The mechanism that an atlas is of; None where it is of a loop that was given as
     such, or of something else. Raises `NoLinkageError` where it is damaged."""
-    if "joints" not in atlas.subject:
+    values = atlas.subject.get("mechanism")
+    if values is None:
         return None
     try:
-        return mechanism_from(atlas.subject)
+        return mechanism_from(values, str(atlas.subject.get("name", "")))
     except GeometryError as error:
         raise NoLinkageError(str(error)) from None
 
@@ -57,10 +55,10 @@ def joint_values(joint: Joint) -> dict[str, Any]:
     return values
 
 
-def mechanism_from(subject: JsonObject) -> Mechanism:
-    """The mechanism of values that `mechanism_subject` gave; raises `GeometryError` for
-    others."""
-    values = subject["joints"]
+def mechanism_from(given: object, name: str) -> Mechanism:
+    """The mechanism of the values that `mechanism_subject` gave; raises `GeometryError`
+    for others."""
+    values = given.get("joints") if isinstance(given, dict) else None
     if not isinstance(values, list) or not all(isinstance(v, dict) for v in values):
         raise GeometryError("joints", repr(values), "a list of joints")
     joints = []
@@ -71,5 +69,5 @@ def mechanism_from(subject: JsonObject) -> Mechanism:
             joints.append(Joint(**{**others, "limits": tuple(limits)}))
         except TypeError as error:
             raise GeometryError("joint", repr(value), f"a joint: {error}") from None
-    is_planar = bool(subject.get("is_planar", False))
-    return Mechanism(tuple(joints), str(subject.get("name", "")), is_planar)
+    assert isinstance(given, dict)
+    return Mechanism(tuple(joints), name, bool(given.get("is_planar", False)))
