@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "heading",
+    "joint_names",
     "numbers_at",
     "readout_of",
     "show_configuration",
@@ -57,19 +58,30 @@ def numbers_at(atlas: Atlas, point: NDArray[np.float64]) -> list[float]:
     return [float(number) for number in numbers]
 
 
+def joint_names(atlas: Atlas) -> list[str]:
+    """What the unknowns are called on the screen: the numbers of the joints of a loop,
+    the variables of a mechanism."""
+    readout = readout_of(atlas)
+    if readout is None:
+        return [str(number + 1) for number in range(len(atlas.names))]
+    return [readout.label_of_unknown(index) for index in range(len(atlas.names))]
+
+
 def heading(atlas: Atlas) -> str:
     """What stands above configurations."""
-    readout = readout_of(atlas)
-    if readout is None or readout.single_loop is not None:
+    if readout_of(atlas) is None:
         return "joint angles (deg)"
-    has_lengths = any(not one.is_angle for one in readout.structure.unknowns)
-    unit = "deg, lengths" if has_lengths else "deg"
-    return f"{', '.join(atlas.names)} ({unit})"
+    unit = "deg" if set(atlas.units) == {"rad"} else "deg, lengths"
+    return f"{', '.join(joint_names(atlas))} ({unit})"
 
 
 def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:
     """The unknowns (n,) as text: angles in degrees, above -180 and up to 180, lengths
-    in the user's unit."""
+    in the user's unit; those of a mechanism from its reference configuration."""
+    readout = readout_of(atlas)
+    if readout is not None and readout.single_loop is not None:
+        single = readout.single_loop
+        point = single.signs * (point - single.reference)
     angles = wrap(point, atlas.periods, within=SHOWN_SHARE)
     return " ".join(f"{text:>9}" for text in show_travel(atlas, angles))
 

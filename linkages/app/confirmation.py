@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import mpmath
 
 from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.problem import PreciseResidual
 from bifurc.singular.confirm import Confirmation, confirm_singular_point
 from linkages.app.choice import choose_precisely
 from linkages.app.configurations import readout_of
@@ -23,6 +24,7 @@ def confirm_points(
 ) -> Iterator[tuple[MeetingPoint, Confirmation]]:
     """Every singular point of the map of a linkage with its `Confirmation`, the
     geometry at the same precision; that of a mechanism is taken from its doubles."""
+    residual: PreciseResidual | None
     if readout_of(atlas) is None:
         with mpmath.workdps(3 * digits + 30):
             residual = precise_residual(choose_precisely(linkage, parameters))

@@ -46,7 +46,7 @@ def with_inputs(
     from linkages.mechanisms.driving import joints_to_hold
 
     held = joints_to_hold(mechanism, driver)
-    notes = ()
+    notes: tuple[str, ...] = ()
     if held:
         names = ", ".join(held)
         notes = (

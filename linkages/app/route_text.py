@@ -6,7 +6,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.routes.route import Route
-from linkages.app.configurations import readout_of, show_configuration, show_travel
+from linkages.app.configurations import joint_names, show_configuration, show_travel
 from linkages.app.texts import table
 
 __all__ = ["describe_route"]
@@ -16,7 +16,7 @@ def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
     """A route as a table: along which form, to which singular point, how far each joint
     turns on the way."""
     length = np.degrees(route.length)
-    turns = [f"turn {name}" for name in _joint_names(atlas)]
+    turns = [f"turn {name}" for name in joint_names(atlas)]
     heads = ("", "along", "to", *turns, "configuration reached")
     explanation = "All in degrees; a turn is the sum of a joint's movements both ways."
     if set(atlas.units) != {"rad"}:
@@ -45,14 +45,6 @@ def _rows(atlas: Atlas, route: Route) -> list[tuple[str, ...]]:
         rows.append((str(number), leg.form, leg.at or "goal", *turns, reached))
     rows.append(("", "total", "", *_turns(atlas, route.travel), ""))
     return rows
-
-
-def _joint_names(atlas: Atlas) -> list[str]:
-    """The names of the unknowns of a mechanism, the numbers of the joints of a loop."""
-    readout = readout_of(atlas)
-    if readout is None:
-        return [str(number + 1) for number in range(len(atlas.names))]
-    return [readout.label_of_unknown(index) for index in range(len(atlas.names))]
 
 
 def _turns(atlas: Atlas, travel: np.ndarray) -> list[str]:

@@ -10,7 +10,12 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch
 from bifurc.singular.point import Kind
-from linkages.app.configurations import heading, readout_of, show_configuration
+from linkages.app.configurations import (
+    heading,
+    joint_names,
+    readout_of,
+    show_configuration,
+)
 from linkages.app.entry_text import describe_geometry
 from linkages.app.texts import in_degrees, section
 from linkages.app.verdict import judge
@@ -83,7 +88,7 @@ def _forms(atlas: Atlas) -> str:
                 _closure(form.branch),
                 f"{np.degrees(form.branch.length):.6g}",
                 _winding(form.branch),
-                _inactive_joints(labels),
+                _inactive_joints(atlas, labels),
                 labels.symmetry.value or "-",
                 f"{form.min_singular_value:.3g}",
                 f"{labels.max_residual:.1e}",
@@ -114,7 +119,11 @@ def _winding(branch: Branch) -> str:
     return " ".join(f"{turns:+d}" if turns else "0" for turns in branch.winding)
 
 
-def _inactive_joints(labels: FormLabels) -> str:
+def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:
+    """The joints that stand still, those of a mechanism by name; where, of a loop."""
+    names = joint_names(atlas)
+    if readout_of(atlas) is not None:
+        return ", ".join(names[joint - 1] for joint in labels.inactive_joints) or "-"
     pairs = zip(labels.inactive_joints, labels.inactive_angles, strict=True)
     shown = ", ".join(f"{joint} at {in_degrees(angle)}" for joint, angle in pairs)
     return shown or "-"

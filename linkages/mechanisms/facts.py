@@ -25,6 +25,7 @@ __all__ = [
 ]
 
 SAMPLES = 400  # of a form
+IN_PLANE = 3  # constraints of a cycle in a plane
 CONSTRAINTS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
 
 
@@ -65,6 +66,8 @@ def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
             if columns and _rank(np.delete(block, columns, axis=1)) == rank:
                 dependent.append(joint)
         constraints = CONSTRAINTS[closure.kind]
+        if readout.mechanism.is_planar:
+            constraints = min(constraints, IN_PLANE)
         facts.append(
             LoopFacts(
                 tuple(dict.fromkeys(closure.joints)),
