@@ -114,7 +114,8 @@ class MechanismClosure(NumericalProblem):
 
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations;
-        None for a mechanism with embedded spherical joints."""
+        None for a mechanism with embedded spherical joints or
+        legs."""
         bounds = self._curvature
         return None if bounds is None else bounds.near_solutions
 
@@ -127,7 +128,8 @@ class MechanismClosure(NumericalProblem):
 
     @cached_property
     def _curvature(self) -> CurvatureBounds | None:
-        if self.structure.embedded:
+        has_legs = any(rod.leg is not None for rod in self.structure.rods)
+        if self.structure.embedded or has_legs:
             return None
         return CurvatureBounds(self.structure, self.curvature_residual)
 
@@ -171,7 +173,7 @@ class MechanismClosure(NumericalProblem):
         elsewhere it need not be closed."""
         reference = np.zeros(self.n)
         for columns in self.structure.embedded.values():
-            reference[list(columns)] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+            reference[list(columns[:6])] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
         return reference
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:

@@ -40,7 +40,7 @@ class _Element:
 
 class CurvatureBounds:
     """Bounds on F'' of the closures of a ``structure`` without embedded spherical
-    joints, lengths in its unit, where residuals are at most ``misclosure``."""
+    joints and legs, lengths in its unit, where residuals are at most ``misclosure``."""
 
     def __init__(self, structure: Structure, misclosure: float):
         self.structure = structure
@@ -171,9 +171,8 @@ class _Chain:
 
     @property
     def _length(self) -> float:
-        first = self.placement.point(self.closure.first)
-        second = self.placement.point(self.closure.second)
-        return float(np.linalg.norm(second - first))
+        assert self.closure.rod is not None
+        return self.closure.rod.length / self.structure.unit
 
     @property
     def _before(self) -> np.ndarray:
@@ -209,7 +208,7 @@ def _elements(
 ) -> list[_Element]:
     """The elementary motions of a pair, in the order of the chain."""
     elements = []
-    for number in structure.mechanism.pairs[pair].variables[::sign]:
+    for number in structure.variables_of(pair)[::sign]:
         variable = structure.mechanism.variables[number]
         column = structure.column_of.get(number)
         if column is None:

@@ -55,7 +55,7 @@ def write_equations(structure: Structure) -> Equations:
         outputs += slots
     for columns in structure.embedded.values():
         numbers = [_unknown(writer, column) for column in columns]
-        outputs += _slots(writer, _orthonormal(numbers[:3], numbers[3:]))
+        outputs += _slots(writer, _orthonormal(numbers[:3], numbers[3:6]))
     return Equations(writer.tape(outputs), tuple(counts))
 
 
@@ -140,8 +140,18 @@ class _ChainWriter:
         gaps = [x - float(c) for x, c in zip(arrival, first, strict=True)]
         if self.closure.kind is ClosureKind.POINT:
             return gaps
-        length = float(np.linalg.norm(second - first))
-        return [(_dot(gaps, gaps) - length**2) / (2 * length)]
+        return [self._of_rod(_dot(gaps, gaps))]
+
+    def _of_rod(self, square: Number) -> Number:
+        """How much too long a rod is, for small errors, from the ``square`` of the
+        distance of its ends."""
+        rod = self.closure.rod
+        assert rod is not None
+        rest = rod.length / self.structure.unit
+        length: Number = rest
+        if rod.leg is not None:
+            length = rest + rod.leg.sign * self.values[rod.leg.variable]
+        return (square - length * length) / (2 * rest)
 
     def _of_cycle(self) -> list[Number]:
         """Twice the vector part of the product of motors: for small errors the rotation
@@ -156,7 +166,7 @@ class _ChainWriter:
     def _elements(self, step: Step) -> Iterator[tuple[Motion, Number]]:
         """The elementary motions of a step, the last to act first, with their
         values."""
-        variables = self.structure.mechanism.pairs[step.pair].variables
+        variables = self.structure.variables_of(step.pair)
         for number in variables[:: step.sign]:
             value = self.values[number]
             if isinstance(value, float) and value == 0.0:
@@ -200,21 +210,21 @@ class _ChainWriter:
         return _shifted(turned, direction, self._advance(motion, value))
 
     def _turned_freely(self, point: Point, step: Step) -> Point:
-        """A point turned by an embedded spherical joint: the columns of the rotation
-        are two unit vectors and their cross product."""
-        pair = self.structure.mechanism.pairs[step.pair]
-        assert pair.center is not None
-        center = self.placement.point(pair.center)
+        """A point turned by an embedded spherical joint, and moved by a free pair: the
+        columns of the rotation are two unit vectors and their cross product."""
+        center = self.placement.point(self.structure.center(step.pair))
         columns = self.structure.embedded[step.pair]
-        numbers = [_unknown(self.writer, column) for column in columns]
-        a, b = numbers[:3], numbers[3:]
+        numbers: list[Number] = [_unknown(self.writer, one) for one in columns]
+        a, b, shift = numbers[:3], numbers[3:6], numbers[6:] or [0.0, 0.0, 0.0]
         vectors = [a, b, _cross(a, b)]
         offset = [x - float(c) for x, c in zip(point, center, strict=True)]
         if step.sign < 0:
+            offset = [x - t for x, t in zip(offset, shift, strict=True)]
             turned = [_dot(vector, offset) for vector in vectors]
         else:
             rows = zip(*vectors, strict=True)
             turned = [_dot(row, offset) for row in rows]
+            turned = [x + t for x, t in zip(turned, shift, strict=True)]
         return [float(c) + x for c, x in zip(center, turned, strict=True)]
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
 
-from linkages.mechanisms.joint import Motion
+from linkages.mechanisms.displacements import displacement_of, transforms, turns
+from linkages.mechanisms.rods import Rod
 from linkages.mechanisms.structure import Structure
 
 __all__ = ["Poses", "rotation_vectors"]
@@ -34,10 +34,10 @@ class Poses:
                 motion = _inverse(motion)
             poses[:, goal] = poses[:, origin] @ motion
         for rod in self.structure.rods:
-            if rod.body in self.structure.idle_bodies:
-                place = bodies.index(rod.body)
-                poses[:, place] = self._rod_pose(poses, rod.pairs, rod.ends)
-        return poses
+            self._place_rod(poses, points, rod)
+        frame = bodies.index(self.mechanism.frame)
+        from_frame: np.ndarray = _inverse(poses[:, frame])[:, None] @ poses
+        return from_frame
 
     def rotations(self, points: np.ndarray, number: int) -> np.ndarray:
         """The rotations (k, 3, 3) of the moved body of a pair with respect to its
@@ -53,11 +53,11 @@ class Poses:
     @cached_property
     def _tree(self) -> list[tuple[int, int, int, int]]:
         """Steps (from body, to body, across pair, sign) that reach every body but the
-        idle ones, from the frame on."""
-        bodies = self.mechanism.bodies
+        idle ones, from one that is not."""
         pairs = self.structure.tree_pairs
+        idle = {body for rod in self.structure.rods for body in rod.bodies}
         steps = []
-        reached = [bodies.index(self.mechanism.frame)]
+        reached = [min(set(range(len(self.mechanism.bodies))) - idle)]
         for body in reached:  # it grows on the way
             for number, ends in pairs.items():
                 for here, there, sign in (
@@ -72,43 +72,75 @@ class Poses:
     def _displacement(self, points: np.ndarray, number: int) -> np.ndarray:
         """The transform (k, 4, 4) of the moved body of a pair with respect to its
         base."""
-        pair = self.mechanism.pairs[number]
         result = np.tile(np.eye(4), (len(points), 1, 1))
-        if pair.center is not None:
-            columns = list(self.structure.embedded[number])
-            a, b = points[:, columns[:3]], points[:, columns[3:]]
+        columns = list(self.structure.embedded.get(number, ()))
+        if columns:
+            a, b = points[:, columns[:3]], points[:, columns[3:6]]
             rotation = np.stack([a, b, np.cross(a, b)], axis=-1)
+            center = self.structure.center(number)
             result[:, :3, :3] = rotation
-            result[:, :3, 3] = pair.center - rotation @ pair.center
+            result[:, :3, 3] = center - rotation @ center
+            if len(columns) > 6:
+                result[:, :3, 3] += points[:, columns[6:]] * self.structure.unit
             return result
-        for variable in pair.variables:
+        for variable in self.structure.variables_of(number):
             motion = self.mechanism.variables[variable].motion
             values = self.structure.values(points, variable)
-            result = result @ _transforms(motion, values)
+            result = result @ transforms(motion, values)
         return result
 
-    def _rod_pose(
-        self, poses: np.ndarray, pairs: Sequence[int], ends: Sequence[int]
-    ) -> np.ndarray:
-        """The transform (k, 4, 4) of a rod between two spherical joints on bodies whose
-        ``poses`` are known, turned as little as can be."""
-        centers = []
-        for pair in pairs:
-            center = self.mechanism.pairs[pair].center
-            assert center is not None
-            centers.append(center)
+    def _place_rod(self, poses: np.ndarray, points: np.ndarray, rod: Rod) -> None:
+        """Fill in the ``poses`` (k, b, 4, 4) of the bodies of a rod at configurations
+        (k, n), turned as little as can be."""
+        centers = [self.structure.center(pair) for pair in rod.pairs]
         places = [
             poses[:, body, :3, :3] @ center + poses[:, body, :3, 3]
-            for body, center in zip(ends, centers, strict=True)
+            for body, center in zip(rod.ends, centers, strict=True)
         ]
-        along = (centers[1] - centers[0]) / np.linalg.norm(centers[1] - centers[0])
         now = places[1] - places[0]
         now = now / np.linalg.norm(now, axis=1)[:, None]
-        result = np.tile(np.eye(4), (len(poses), 1, 1))
+        if rod.leg is not None:  # beyond length 0 it points the other way
+            slide = self.structure.values(points, rod.leg.variable)
+            now = now * np.sign(rod.length + rod.leg.sign * slide)[:, None]
+        inside = self._inside(rod)
+        holder = self._holder(rod, 1)
+        far = (inside[holder] @ np.append(centers[1], 1.0))[:3]
+        along = (far - centers[0]) / np.linalg.norm(far - centers[0])
         rotation = _shortest_rotations(along, now)
-        result[:, :3, :3] = rotation
-        result[:, :3, 3] = places[0] - rotation @ centers[0]
-        return result
+        starts = [centers[0], far]
+        for part, start, place in zip(rod.parts, starts, places, strict=True):
+            pose = np.tile(np.eye(4), (len(poses), 1, 1))
+            pose[:, :3, :3] = rotation
+            pose[:, :3, 3] = place - rotation @ start
+            for body in part:
+                poses[:, body] = pose @ inside[body]
+
+    def _holder(self, rod: Rod, end: int) -> int:
+        """The body of a rod that its first or second spherical joint holds."""
+        pair = self.mechanism.pairs[rod.pairs[end]]
+        names = (pair.base, pair.moved)
+        numbers = [self.mechanism.bodies.index(name) for name in names]
+        return next(number for number in numbers if number in rod.parts[end])
+
+    def _inside(self, rod: Rod) -> dict[int, np.ndarray]:
+        """The displacements (4, 4) of the bodies of a rod with respect to the one that
+        its first joint holds, slides at 0."""
+        bodies = self.mechanism.bodies
+        inside = {self._holder(rod, 0): np.eye(4)}
+        pending = list(rod.inner)
+        while pending:
+            number = pending.pop(0)
+            pair = self.mechanism.pairs[number]
+            base, moved = bodies.index(pair.base), bodies.index(pair.moved)
+            is_slide = rod.leg is not None and rod.leg.variable in pair.variables
+            step = np.eye(4) if is_slide else displacement_of(self.mechanism, number)
+            if base in inside:
+                inside.setdefault(moved, inside[base] @ step)
+            elif moved in inside:
+                inside[base] = inside[moved] @ np.linalg.inv(step)
+            else:
+                pending.append(number)
+        return inside
 
 
 def rotation_vectors(rotations: np.ndarray) -> np.ndarray:
@@ -117,30 +149,6 @@ def rotation_vectors(rotations: np.ndarray) -> np.ndarray:
 
     vectors: np.ndarray = Rotation.from_matrix(rotations).as_rotvec()
     return vectors
-
-
-def _transforms(motion: Motion, values: np.ndarray) -> np.ndarray:
-    """The transforms (k, 4, 4) of an elementary motion by ``values`` (k,), in rad or
-    the user's unit."""
-    result = np.tile(np.eye(4), (len(values), 1, 1))
-    if not motion.is_turn:
-        result[:, :3, 3] = values[:, None] * motion.direction
-        return result
-    rotation = _turns(motion.direction, values)
-    result[:, :3, :3] = rotation
-    advance = (motion.advance * values)[:, None] * motion.direction
-    result[:, :3, 3] = motion.point - rotation @ motion.point + advance
-    return result
-
-
-def _turns(direction: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Rotations (k, 3, 3) about a unit vector (3,) by ``angles`` (k,)."""
-    x, y, z = direction
-    turned = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    along = np.outer(direction, direction)
-    cosines, sines = np.cos(angles)[:, None, None], np.sin(angles)[:, None, None]
-    rotations: np.ndarray = along + cosines * (np.eye(3) - along) + sines * turned
-    return rotations
 
 
 def _shortest_rotations(start: np.ndarray, goals: np.ndarray) -> np.ndarray:
@@ -153,7 +161,7 @@ def _shortest_rotations(start: np.ndarray, goals: np.ndarray) -> np.ndarray:
         if sine < SMALL:
             axis = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
         axis = axis / np.linalg.norm(axis)
-        rotations.append(_turns(axis, np.array([np.arctan2(sine, cosine)]))[0])
+        rotations.append(turns(axis, np.array([np.arctan2(sine, cosine)]))[0])
     return np.array(rotations).reshape(-1, 3, 3)
 
 

@@ -13,9 +13,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
-import networkx as nx
 import numpy as np
+from networkx.utils import UnionFind
 
 from linkages.loop import GeometryError
 from linkages.mechanisms.cycles import (
@@ -28,12 +29,16 @@ from linkages.mechanisms.cycles import (
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.placement import Placement
+from linkages.mechanisms.rods import Rod, find_rods
 from linkages.mechanisms.size import Size
 
-__all__ = ["Closure", "ClosureKind", "Rod", "Structure", "Unknown"]
+__all__ = ["Closure", "ClosureKind", "FreePair", "Structure", "Unknown"]
 
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
-EMBEDDED = ("ax", "ay", "az", "bx", "by", "bz")
+FREE = 6  # freedoms of a free pair
+# numbers of an embedded rotation, two orthonormal vectors, and of a translation
+ROTATION = ("ax", "ay", "az", "bx", "by", "bz")
+TRANSLATION = ("x", "y", "z")
 
 
 class ClosureKind(Enum):
@@ -58,16 +63,16 @@ class Closure:
     joints: tuple[str, ...]
     first: np.ndarray = field(default_factory=lambda: np.zeros(3))
     second: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    rod: Rod | None = None
 
 
-@dataclass(frozen=True)
-class Rod:
-    """A body that two spherical joints hold, pairs of these numbers, and the bodies,
-    by number, at its ends."""
+class FreePair(NamedTuple):
+    """Two bodies that no chain of joints but rods joins: ``moved`` is anywhere with
+    respect to ``base``, as a rotation about ``center`` (3,) and a translation."""
 
-    body: str
-    pairs: tuple[int, int]
-    ends: tuple[int, int]
+    base: int
+    moved: int
+    center: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -124,117 +129,130 @@ class Structure:
 
     @cached_property
     def rods(self) -> tuple[Rod, ...]:
-        """The bodies that are held by two spherical joints and nothing else."""
-        rods: list[Rod] = []
-        taken: set[int] = set()
-        for body, number in self._numbers.items():
-            pairs = [k for k, ends in self._ends.items() if number in ends[:2]]
-            if len(pairs) != 2 or not set(pairs) <= set(self._spherical):
-                continue
-            others = [self._other(pair, number) for pair in pairs]
-            if taken & set(pairs) or others[0] == others[1]:
-                continue
-            taken |= set(pairs)
-            rods.append(Rod(body, (pairs[0], pairs[1]), (others[0], others[1])))
-        return tuple(rods)
-
-    def _other(self, pair: int, body: int) -> int:
-        base, moved, _ = self._ends[pair]
-        return moved if base == body else base
+        """The bodies that only two spherical joints hold."""
+        return find_rods(self.mechanism, self._ends)
 
     # --- chains -----------------------------------------------------------------------
 
     @cached_property
     def _plain(self) -> dict[int, Ends]:
-        """The pairs without spherical ones."""
-        return {k: ends for k, ends in self._ends.items() if k not in self._spherical}
+        """The pairs without spherical ones and those inside rods."""
+        inner = {pair for rod in self.rods for pair in rod.inner}
+        left_out = inner | set(self._spherical)
+        return {k: ends for k, ends in self._ends.items() if k not in left_out}
 
     @cached_property
     def _kept_spherical(self) -> list[int]:
         """The spherical pairs that are not cut: they hold the bodies together."""
-        graph = nx.utils.UnionFind(range(len(self.mechanism.bodies)))
+        parts = UnionFind(range(len(self.mechanism.bodies)))
         for ends in self._plain.values():
-            graph.union(ends.base, ends.moved)
+            parts.union(ends.base, ends.moved)
         in_rods = {pair for rod in self.rods for pair in rod.pairs}
         kept = []
         for number in self._spherical:
-            ends = self._ends[number]
-            if number in in_rods or graph[ends.base] == graph[ends.moved]:
-                continue
-            graph.union(ends.base, ends.moved)
-            kept.append(number)
-        # parts that only rods hold together are reached through one end of a rod
-        for rod in self.rods:
-            if graph[rod.ends[0]] != graph[rod.ends[1]]:
-                for number in rod.pairs:
-                    graph.union(*self._ends[number][:2])
-                    kept.append(number)
+            base, moved, _ = self._ends[number]
+            if number not in in_rods and parts[base] != parts[moved]:
+                parts.union(base, moved)
+                kept.append(number)
         return kept
+
+    @cached_property
+    def free_pairs(self) -> dict[int, FreePair]:
+        """Pairs, numbered after those of the mechanism, between bodies that only rods
+        join."""
+        parts = UnionFind(range(len(self.mechanism.bodies)))
+        for ends in self._plain.values():
+            parts.union(ends.base, ends.moved)
+        for number in self._kept_spherical:
+            parts.union(*self._ends[number][:2])
+        free: dict[int, FreePair] = {}
+        for rod in self.rods:
+            base, moved = rod.ends
+            if parts[base] != parts[moved]:
+                parts.union(base, moved)
+                center = self.mechanism.pairs[rod.pairs[1]].center
+                assert center is not None
+                number = len(self.mechanism.pairs) + len(free)
+                free[number] = FreePair(base, moved, center)
+        return free
 
     @cached_property
     def closures(self) -> tuple[Closure, ...]:
         """The chains that have to close, as short as can be: cycles, then points, then
         rods."""
-        kept = set(self._kept_spherical)
-        free_rods = [rod for rod in self.rods if not kept & set(rod.pairs)]
-        in_rods = {pair for rod in free_rods for pair in rod.pairs}
         bodies = len(self.mechanism.bodies)
         cycles = cycle_basis(bodies, self._plain)
         closures = [
             Closure(ClosureKind.CYCLE, chain, self._joints(chain)) for chain in cycles
         ]
-        tree = self.tree_pairs
+        in_rods = {pair for rod in self.rods for pair in rod.pairs}
         for number in self._spherical:
-            if number not in kept and number not in in_rods:
-                closures.append(self._point_closure(tree, number))
-        closures += [self._rod_closure(tree, rod) for rod in free_rods]
+            if number not in self._kept_spherical and number not in in_rods:
+                closures.append(self._point_closure(number))
+        closures += [self._rod_closure(rod) for rod in self.rods]
         return tuple(closures)
 
     @cached_property
     def tree_pairs(self) -> dict[int, Ends]:
         """The pairs that lead from body to body: all but the spherical ones that are
-        cut."""
-        return self._plain | {k: self._ends[k] for k in self._kept_spherical}
+        cut, and the free ones."""
+        kept = {number: self._ends[number] for number in self._kept_spherical}
+        free = {
+            number: Ends(pair.base, pair.moved, FREE)
+            for number, pair in self.free_pairs.items()
+        }
+        return self._plain | kept | free
 
     @property
     def idle_bodies(self) -> tuple[str, ...]:
-        """The rods whose own turning about the line between their ends is left out."""
-        kept = set(self._kept_spherical)
-        return tuple(rod.body for rod in self.rods if not kept & set(rod.pairs))
+        """The bodies of rods, whose own turning about the line between the spherical
+        joints is left out."""
+        bodies = self.mechanism.bodies
+        return tuple(bodies[number] for rod in self.rods for number in rod.bodies)
 
-    def _point_closure(self, tree: dict[int, Ends], number: int) -> Closure:
+    def _point_closure(self, number: int) -> Closure:
         base, moved, _ = self._ends[number]
-        chain = chain_between(len(self.mechanism.bodies), tree, base, moved)
+        chain = chain_between(len(self.mechanism.bodies), self.tree_pairs, base, moved)
         assert chain is not None
         pair = self.mechanism.pairs[number]
         assert pair.center is not None
         joints = (pair.joint, *self._joints(chain))
         return Closure(ClosureKind.POINT, chain, joints, pair.center, pair.center)
 
-    def _rod_closure(self, tree: dict[int, Ends], rod: Rod) -> Closure:
-        chain = chain_between(len(self.mechanism.bodies), tree, *rod.ends)
+    def _rod_closure(self, rod: Rod) -> Closure:
+        chain = chain_between(len(self.mechanism.bodies), self.tree_pairs, *rod.ends)
         assert chain is not None
         first, second = (self.mechanism.pairs[number] for number in rod.pairs)
         assert first.center is not None and second.center is not None
-        joints = (first.joint, *self._joints(chain), second.joint)
-        if not np.any(first.center != second.center):
-            what = f"joints {first.joint} and {second.joint} of body {rod.body}"
-            raise GeometryError(what, "at one point", "at two points")
-        return Closure(ClosureKind.ROD, chain, joints, first.center, second.center)
+        inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
+        joints = (first.joint, *self._joints(chain), second.joint, *inner)
+        return Closure(ClosureKind.ROD, chain, joints, first.center, second.center, rod)
 
     def _joints(self, chain: Chain) -> tuple[str, ...]:
-        return tuple(self.mechanism.pairs[step.pair].joint for step in chain)
+        return tuple(
+            self.mechanism.pairs[step.pair].joint
+            for step in chain
+            if step.pair not in self.free_pairs
+        )
+
+    def variables_of(self, pair: int) -> tuple[int, ...]:
+        """The variables of a pair, by number; none for a free one."""
+        if pair in self.free_pairs:
+            return ()
+        return self.mechanism.pairs[pair].variables
 
     def motions(self, step: Step) -> list[Motion]:
         """The motions of a step, but for those locked at 0."""
         variables = [
-            self.mechanism.variables[number]
-            for number in self.mechanism.pairs[step.pair].variables
+            self.mechanism.variables[number] for number in self.variables_of(step.pair)
         ]
         return [one.motion for one in variables if one.locked != 0.0]
 
     def placement(self, closure: Closure) -> Placement:
-        """The frame in which a closure is written."""
+        """The frame in which a closure is written; that of the file where the numbers
+        of a rotation are unknowns."""
+        if any(step.pair in self.embedded for step in closure.chain):
+            return Placement(closure.first, np.eye(3), self.unit)
         motions = [m for step in closure.chain for m in self.motions(step)]
         return Placement.of_chain(motions, self.unit)
 
@@ -249,9 +267,10 @@ class Structure:
                 unknowns.append(self._unknown(number))
         for pair in self._kept_spherical:
             joint = self.mechanism.pairs[pair].joint
-            for part in EMBEDDED:
-                label = f"{joint}.{part}"
-                unknowns.append(Unknown(label, -1, np.inf, -np.inf, np.inf, False))
+            unknowns += [_number_of(joint, part) for part in ROTATION]
+        for free in self.free_pairs.values():
+            body = self.mechanism.bodies[free.moved]
+            unknowns += [_number_of(body, part) for part in (*ROTATION, *TRANSLATION)]
         return tuple(unknowns)
 
     @property
@@ -264,8 +283,12 @@ class Structure:
     @cached_property
     def column_of(self) -> dict[int, int]:
         """The number of the unknown that every free variable is, by its number."""
-        numbers = [one.variable for one in self.unknowns if one.variable >= 0]
-        return {variable: column for column, variable in enumerate(numbers)}
+        free = [
+            number
+            for number, variable in enumerate(self.mechanism.variables)
+            if variable.locked is None
+        ]
+        return {variable: column for column, variable in enumerate(free)}
 
     def values(self, points: np.ndarray, variable: int) -> np.ndarray:
         """The values (k,) of a variable, by number, at configurations (k, n): in rad
@@ -279,13 +302,25 @@ class Structure:
 
     @cached_property
     def embedded(self) -> dict[int, tuple[int, ...]]:
-        """The numbers of the six unknowns of every embedded spherical pair."""
+        """The numbers of the unknowns of every embedded spherical pair, six, and of
+        every free one, nine."""
         first = len(self.column_of)
         embedded = {}
-        for pair in self._kept_spherical:
-            embedded[pair] = tuple(range(first, first + 6))
-            first += 6
+        for pair in (*self._kept_spherical, *self.free_pairs):
+            count = len(ROTATION)
+            if pair in self.free_pairs:
+                count += len(TRANSLATION)
+            embedded[pair] = tuple(range(first, first + count))
+            first += count
         return embedded
+
+    def center(self, pair: int) -> np.ndarray:
+        """The point (3,) about which an embedded spherical pair or a free one turns."""
+        if pair in self.free_pairs:
+            return self.free_pairs[pair].center
+        center = self.mechanism.pairs[pair].center
+        assert center is not None
+        return center
 
     def _unknown(self, number: int) -> Unknown:
         variable = self.mechanism.variables[number]
@@ -302,23 +337,27 @@ class Structure:
             limit /= abs(motion.advance) / self.unit
         return Unknown(variable.label, number, np.inf, -limit, limit, motion.is_turn)
 
+    def _variables_around(self, closure: Closure) -> set[int]:
+        """The variables, by number, of the joints round a loop."""
+        numbers = {k for step in closure.chain for k in self.variables_of(step.pair)}
+        if closure.rod is not None and closure.rod.leg is not None:
+            numbers.add(closure.rod.leg.variable)
+        return numbers
+
     def _reach(self, number: int) -> float:
         """How far a slide is looked at from the reference configuration: farther than
         the bodies of its shortest cycle reach."""
         lengths = self.size.body_lengths
         sums = []
         for closure in self.closures:
-            numbers = [
-                k
-                for step in closure.chain
-                for k in self.mechanism.pairs[step.pair].variables
-            ]
-            if number in numbers:
-                bodies = {
-                    body
-                    for step in closure.chain
-                    for body in self.mechanism.pairs[step.pair][1:3]
-                }
+            if number in self._variables_around(closure):
+                joints = [self.mechanism.joint(name) for name in closure.joints]
+                bodies = {body for joint in joints for body in joint.bodies}
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
+
+
+def _number_of(name: str, part: str) -> Unknown:
+    """An unknown that is a number of a rotation or a translation."""
+    return Unknown(f"{name}.{part}", -1, np.inf, -np.inf, np.inf, False)

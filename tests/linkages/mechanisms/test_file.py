@@ -129,7 +129,7 @@ MALFORMED = {
     BARS.format(length="").replace('["A", "B"]', '["A", "A"]'): r'fixed: "A" .* once',
     BARS.format(length="").replace("D = [2, 1.5]", "D = [2]"): r"point D: \[2\] .* two",
     BARS.format(length="") + "E = [1, 1]\n": r"point E: on no bar",
-    BARS.format(length="").replace('], ["C", "D"]', ', 3, 4]'): r"bars\[2\]: ",
+    BARS.format(length="").replace('], ["C", "D"]', ", 3, 4]"): r"bars\[2\]: ",
     BARS.format(length="").replace(', ["C", "D"]', ""): r"body .*: one joint only",
     BARS.format(length="") + '[points_on_bars]\nP = ["A", "D", [0, 1]]\n': (
         r"points_on_bars P: A and D .* there is none between"

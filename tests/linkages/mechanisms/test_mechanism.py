@@ -119,7 +119,9 @@ def test_what_is_wrong_is_named_with_its_value(changes, message):
 
 def test_bodies_that_do_not_hang_together_are_named():
     second = [
-        replace(joint, name=f"{joint.name}2", bodies=tuple(f"{b}2" for b in joint.bodies))
+        replace(
+            joint, name=f"{joint.name}2", bodies=tuple(f"{b}2" for b in joint.bodies)
+        )
         for joint in four_bar().joints
     ]
     with pytest.raises(GeometryError, match=r"bodies: coupler2, .* joined to"):
