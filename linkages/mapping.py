@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from bifurc.numerics.blur import change_by_rounding
@@ -14,7 +15,9 @@ from linkages.forms import FormIdentity, name_forms
 from linkages.labels import largest_residual, subject_of
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError, Loop
-from linkages.mechanisms.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["map_linkage", "name_atlas"]
 
@@ -40,9 +43,11 @@ def map_linkage(
     has its ``certificate``, unless the settings say otherwise. Raises `GeometryError`
     for anything but a linkage or a mechanism.
     """
-    if isinstance(linkage, Mechanism):
-        return _map_mechanism(linkage, settings, seed, progress)
-    linkage = _as_linkage(linkage)
+    if isinstance(linkage, Loop):
+        linkage = Linkage(linkage)
+    if not isinstance(linkage, Linkage):
+        mechanism = _as_mechanism(linkage)
+        return _map_mechanism(mechanism, settings, seed, progress)
     problem = LoopClosure(linkage.loop)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
     return name_atlas(atlas, linkage)
@@ -81,10 +86,11 @@ def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     return _label(atlas, identities, LoopClosure(linkage.loop))
 
 
-def _as_linkage(linkage: object) -> Linkage:
-    if isinstance(linkage, Loop):
-        return Linkage(linkage)
-    if not isinstance(linkage, Linkage):
+def _as_mechanism(linkage: object) -> Mechanism:
+    """What is neither a linkage nor a loop, as a mechanism; raises `GeometryError`."""
+    from linkages.mechanisms.mechanism import Mechanism
+
+    if not isinstance(linkage, Mechanism):
         allowed = (
             "what `linkages.load` returns, a `Linkage` or a `Mechanism`, or a `Loop`"
         )

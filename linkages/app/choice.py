@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +15,9 @@ from linkages.entry import Entry, ParameterKind
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
-from linkages.mechanisms.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = [
     "choose_linkage",
@@ -88,9 +91,9 @@ def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
 
 
 def _size(linkage: Linkage | Mechanism) -> float:
-    if isinstance(linkage, Mechanism):
-        return linkage.extent
-    return linkage.loop.characteristic_length
+    if isinstance(linkage, Linkage):
+        return linkage.loop.characteristic_length
+    return linkage.extent
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:

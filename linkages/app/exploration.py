@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from bifurc.atlas import Atlas
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import SearchOptions
@@ -9,7 +11,9 @@ from linkages.app.status import StatusLine
 from linkages.app.verdict import judge
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
-from linkages.mechanisms.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["explore_linkage", "require_uninterrupted"]
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from linkages.app.choice import read_number, split_parameter
 from linkages.app.exit_codes import CommandError
 from linkages.linkage import Linkage
-from linkages.mechanisms.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["Inputs", "with_inputs"]
 
@@ -35,7 +38,7 @@ def with_inputs(
     if not locks and driver is None:
         return Inputs(linkage)
     option = "--lock" if locks else "--drive"
-    if not isinstance(linkage, Mechanism):
+    if isinstance(linkage, Linkage):
         raise CommandError(
             f"{option}: it takes a mechanism with joints by name, and {text} is a "
             "single loop, a table or axes"
