@@ -111,6 +111,42 @@ def test_more_freedoms_are_counted(name):
     assert not atlas.forms
 
 
+# Peaucellier 1864: where A and C coincide, D is free; and B and D may coincide instead
+# Sarrus 1853: equal links fold flat, and then both chains turn freely
+MEETING_A_SURFACE = {
+    "Peaucellier-Lipkin inversor": (2, 0, 4),
+    "Sarrus with a P joint between base and platform": (2, 2, 4),
+}
+
+
+@pytest.mark.parametrize("name", MEETING_A_SURFACE)
+def test_forms_meet_a_surface_where_links_fold(name):
+    mechanism = mechanism_of_case(cases()[name])
+    settings = SearchSettings(starts=60, charts=0, certify=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings)
+    kinds = [point.kind for point in atlas.points]
+    forms, bifurcations, changes = MEETING_A_SURFACE[name]
+    assert len(atlas.forms) == forms
+    assert kinds.count(Kind.BIFURCATION) == bifurcations
+    assert kinds.count(Kind.DIMENSION_CHANGE) == changes
+    assert {surface.dimension for surface in atlas.surfaces} == {2}
+
+
+def test_the_inversor_draws_a_straight_line():
+    mechanism = mechanism_of_case(cases()["Peaucellier-Lipkin inversor"])
+    settings = SearchSettings(starts=60, charts=0, certify=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings)
+    readout = Readout(mechanism)
+    end = np.append(mechanism.joint("D").point, 1.0)
+    spreads = []
+    for form in atlas.forms:
+        poses = readout.poses(form.branch.sample(100))
+        places = poses[:, mechanism.bodies.index("A-D")] @ end
+        spreads.append(np.ptp(places[:, 0]))
+    assert min(spreads) < 1e-12
+    assert max(spreads) > 0.1
+
+
 def test_a_form_that_reaches_the_limit_of_a_slide_ends_there():
     mechanism = mechanism_of_case(
         cases()["spatial RPRP, equal distances and opposite slopes"]
