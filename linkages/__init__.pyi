@@ -9,9 +9,16 @@ from .labels import Symmetry as Symmetry
 from .labels import loop_of as loop_of
 from .linkage import Linkage as Linkage
 from .linkage import load as load
+from .linkage import load_linkage as load_linkage
 from .loop import GeometryError as GeometryError
 from .loop import Loop as Loop
 from .mapping import map_linkage as map_linkage
+from .mechanisms.closure import MechanismClosure as MechanismClosure
+from .mechanisms.joint import Joint as Joint
+from .mechanisms.joint import JointKind as JointKind
+from .mechanisms.mechanism import Mechanism as Mechanism
+from .mechanisms.readout import Readout as Readout
+from .mechanisms.subject import mechanism_of as mechanism_of
 from .slices.assemblies import Assemblies as Assemblies
 from .slices.assemblies import isolated_assemblies as isolated_assemblies
 from .viewing.notebook import view as view

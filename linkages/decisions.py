@@ -101,5 +101,44 @@ is_in_reach = Decision(
     "paths are followed up to 12; of isolated configurations 9 is the largest one seen",
     third_answer="a lost path is counted in the statement, and nothing is proved then",
 )
+is_parallel_axis = Decision(
+    "parallel axes",
+    "axes of a chain are parallel, or a slide is parallel or perpendicular to them",
+    "sine of the angle between them, or between the slide and the plane",
+    1e-11,
+    "the rounding of coordinates; a chain whose axes are off by more gets all six "
+    "equations, and misses them by as much",
+)
+meets_in_one_point = Decision(
+    "axes through one point",
+    "the axes of a chain pass through one point",
+    "largest distance of an axis from the point nearest to all, over the "
+    "characteristic length",
+    1e-11,
+    "the rounding of coordinates; a chain whose axes are off by more gets all six "
+    "equations, and misses them by as much",
+)
+is_rounding_of_zero = Decision(
+    "equation without unknowns",
+    "a closure equation that holds no unknown is satisfied",
+    "its value",
+    1e-12,
+    "the closing tolerance",
+)
+is_bar_assembled = Decision(
+    "assembled bars",
+    "bars have the lengths that are given for them",
+    "largest difference of a length, over the extent of the points",
+    1e-11,
+    "the rounding of coordinates; least squares converge to 1e-15 where bars can be "
+    "assembled",
+)
+is_dependent_constraint = Decision(
+    "redundant constraint",
+    "a constraint of a loop follows from its others",
+    "singular value of the loop's Jacobian, over the magnitude",
+    1e-8,
+    "constraints that depend on each other give 1e-15",
+)
 
 TABLE = decisions_in(globals())

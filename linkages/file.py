@@ -1,6 +1,6 @@
 """Reading a linkage from a TOML file.
 
-Two formats, told apart by their keys. A Denavit-Hartenberg table in the convention of
+Formats are told apart by their keys. A single loop is a Denavit-Hartenberg table in the convention of
 `linkages.loop`:
 
     name = "my linkage"            # optional
@@ -13,6 +13,9 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
 
     points = [[0, 0, 0], [1, 0, 0], ...]
     directions = [[0, 0, 1], [0, 1, 1], ...]
+
+What has ``[[joints]]``, or ``bars`` between ``[points]``, is a mechanism
+(`linkages.mechanisms.file`).
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ import tomllib
 from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
@@ -39,7 +42,10 @@ from linkages.loop import (
     quoted,
 )
 
-__all__ = ["LinkageFileError", "read_linkage", "read_precisely"]
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["LinkageFileError", "read_file", "read_linkage", "read_precisely"]
 
 log = logging.getLogger(__name__)
 
@@ -67,6 +73,28 @@ class LinkageFileError(BifurcError, ValueError):
         super().__init__(f"{path}: {message}")
 
 
+def read_file(path: Path | str) -> Loop | Mechanism:
+    """The loop or the mechanism that a TOML file describes; without a name it is called
+    after the file. Raises `LinkageFileError`."""
+    path = Path(path)
+    content = _parse(path)
+    if not _is_of_mechanism(content):
+        loop, _ = read_linkage(path)
+        return loop
+    from linkages.mechanisms.file import read_mechanism
+
+    try:
+        return read_mechanism(content, path.stem)
+    except GeometryError as error:
+        raise LinkageFileError(path, str(error)) from None
+
+
+def _is_of_mechanism(content: Content) -> bool:
+    """Whether the content of a file is a mechanism, and no single loop."""
+    has_points = isinstance(content.get("points"), Mapping)
+    return "joints" in content or "bars" in content or has_points
+
+
 def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
     """The loop that a TOML file describes, and its joint angles (n,), rad, where the
     file gives axes (else None).
@@ -77,6 +105,11 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
     """
     path = Path(path)
     content = _parse(path)
+    if _is_of_mechanism(content):
+        message = (
+            "describes a mechanism, and this takes a single loop of revolute joints"
+        )
+        raise LinkageFileError(path, message)
     try:
         _check_keys(content)
         name = content.get("name", path.stem)

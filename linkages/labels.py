@@ -11,12 +11,26 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypedDict, cast
 
+import numpy as np
+
 from bifurc.atlas import Atlas, Form
+from bifurc.branch import Branch
 from bifurc.checks import check_type
 from bifurc.errors import BifurcError
+from bifurc.problem import Problem
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["FormLabels", "NoLinkageError", "Symmetry", "loop_of", "subject_of"]
+__all__ = [
+    "FormLabels",
+    "NoLinkageError",
+    "Symmetry",
+    "largest_residual",
+    "loop_of",
+    "subject_of",
+]
+
+# where on every piece of a form its closure is checked
+CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)
 
 
 class Subject(TypedDict):
@@ -61,6 +75,8 @@ def loop_of(atlas: Atlas) -> Loop:
     else."""
     check_type("atlas", atlas, Atlas)
     subject = atlas.subject
+    if "mechanism" in subject and "lengths" not in subject:
+        raise NoLinkageError("it is of a mechanism, no single loop of joints")
     for key in Subject.__required_keys__:
         if key not in subject:
             raise NoLinkageError(f"its subject has no {key}")
@@ -138,3 +154,12 @@ class FormLabels:
             symmetry=Symmetry(values["symmetry"]),
             max_residual=float(values["max_residual"]),
         )
+
+
+def largest_residual(problem: Problem, branch: Branch) -> float:
+    """The largest closure error at places all along a branch: the norm over rotation
+    and translation."""
+    lengths = np.diff(branch.breaks)
+    places = branch.breaks[:-1, None] + lengths[:, None] * CLOSING
+    residuals = problem.residuals(branch(places.ravel()))
+    return float(np.linalg.norm(residuals, axis=1).max(initial=0.0))

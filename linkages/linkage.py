@@ -5,14 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import FormPattern
-from linkages.file import LinkageFileError, read_linkage
+from linkages.file import LinkageFileError, read_file
 from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import GeometryError, Loop, check_number
 
-__all__ = ["Linkage", "is_linkage_file", "load"]
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["Linkage", "is_linkage_file", "load", "load_linkage"]
 
 
 @dataclass(frozen=True)
@@ -47,8 +51,9 @@ class Linkage:
         return f"forms named by the source: {', '.join(names)}"
 
 
-def load(source: str | Path, **parameters: float) -> Linkage:
-    """The linkage called ``source`` in the catalogue, or read from a TOML file.
+def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
+    """The linkage called ``source`` in the catalogue, or the linkage or the mechanism
+    read from a TOML file.
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. Raises `UnknownLinkageError` with the nearest names,
@@ -64,9 +69,19 @@ def load(source: str | Path, **parameters: float) -> Linkage:
             names = ", ".join(parameters)
             allowed = "left out with a file, which holds the whole geometry"
             raise GeometryError(f"parameters of {source}", names, allowed)
-        loop, _ = read_linkage(source)
-        return Linkage(loop)
+        content = read_file(source)
+        return Linkage(content) if isinstance(content, Loop) else content
     return _load_entry(str(source), parameters)
+
+
+def load_linkage(source: str | Path, **parameters: float) -> Linkage:
+    """What `load` returns, where that is a single loop; raises `GeometryError` for a
+    mechanism as well."""
+    linkage = load(source, **parameters)
+    if not isinstance(linkage, Linkage):
+        allowed = "a single loop of revolute joints, given as a table or as axes"
+        raise GeometryError(str(source), "a mechanism", allowed)
+    return linkage
 
 
 def is_linkage_file(source: str | Path) -> bool:

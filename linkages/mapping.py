@@ -4,49 +4,79 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from bifurc.branch import Branch
 from bifurc.numerics.blur import change_by_rounding
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.forms import FormIdentity, name_forms
-from linkages.labels import subject_of
+from linkages.labels import largest_residual, subject_of
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["largest_residual", "map_linkage", "name_atlas"]
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["map_linkage", "name_atlas"]
 
 DEFAULT_SEARCH = SearchSettings()
 
 NAMING = 400  # samples of a form for its name
-# where on every piece of a form its closure is checked
-CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)
 
 
 def map_linkage(
-    linkage: Linkage | Loop,
+    linkage: Linkage | Loop | Mechanism,
     *,
     settings: SearchSettings = DEFAULT_SEARCH,
     seed: int = 0,
     progress: Callable[[str, int], None] | None = None,
 ) -> Atlas:
-    """The transition map of a linkage: every form with its name, every bifurcation,
-    every near miss.
+    """The transition map of a linkage or a mechanism: every form with its name, every
+    bifurcation, every near miss.
 
     ``seed`` is that of the random starts; ``progress`` is called with what was found
     and how many. `linkages.labels.FormLabels` reads what a form is,
-    `linkages.labels.loop_of` the loop that an atlas is of. Every form has its
-    ``certificate``, unless the settings say otherwise. Raises `GeometryError` for
-    anything but a linkage.
+    `linkages.labels.loop_of` the loop that an atlas is of, and
+    `linkages.mechanisms.readout.Readout` the joint variables of a mechanism. Every form
+    has its ``certificate``, unless the settings say otherwise. Raises `GeometryError`
+    for anything but a linkage or a mechanism.
     """
-    linkage = _as_linkage(linkage)
+    if isinstance(linkage, Loop):
+        linkage = Linkage(linkage)
+    if not isinstance(linkage, Linkage):
+        mechanism = _as_mechanism(linkage)
+        return _map_mechanism(mechanism, settings, seed, progress)
     problem = LoopClosure(linkage.loop)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
     return name_atlas(atlas, linkage)
+
+
+def _map_mechanism(
+    mechanism: Mechanism,
+    settings: SearchSettings,
+    seed: int,
+    progress: Callable[[str, int], None] | None,
+) -> Atlas:
+    """The transition map of a mechanism: that of its loop, where it is a single one of
+    revolute joints."""
+    # they import networkx, which a loop does not need
+    from linkages.mechanisms.closure import MechanismClosure
+    from linkages.mechanisms.labels import label_mechanism
+    from linkages.mechanisms.readout import Readout
+    from linkages.mechanisms.subject import mechanism_subject
+
+    readout = Readout(mechanism)
+    single = readout.single_loop
+    if single is not None:
+        atlas = map_linkage(
+            single.loop, settings=settings, seed=seed, progress=progress
+        )
+        return replace(atlas, subject={**atlas.subject, **mechanism_subject(mechanism)})
+    problem = MechanismClosure(mechanism)
+    atlas = explore(problem, settings=settings, seed=seed, progress=progress)
+    return label_mechanism(atlas, problem)
 
 
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
@@ -56,20 +86,14 @@ def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     return _label(atlas, identities, LoopClosure(linkage.loop))
 
 
-def largest_residual(problem: LoopClosure, branch: Branch) -> float:
-    """The largest closure error at places all along a branch: the norm over rotation
-    and translation."""
-    lengths = np.diff(branch.breaks)
-    places = branch.breaks[:-1, None] + lengths[:, None] * CLOSING
-    residuals = problem.residuals(branch(places.ravel()))
-    return float(np.linalg.norm(residuals, axis=1).max(initial=0.0))
+def _as_mechanism(linkage: object) -> Mechanism:
+    """What is neither a linkage nor a loop, as a mechanism; raises `GeometryError`."""
+    from linkages.mechanisms.mechanism import Mechanism
 
-
-def _as_linkage(linkage: Linkage | Loop) -> Linkage:
-    if isinstance(linkage, Loop):
-        return Linkage(linkage)
-    if not isinstance(linkage, Linkage):
-        allowed = "a `Linkage`, which `linkages.load` returns, or a `Loop`"
+    if not isinstance(linkage, Mechanism):
+        allowed = (
+            "what `linkages.load` returns, a `Linkage` or a `Mechanism`, or a `Loop`"
+        )
         raise GeometryError("linkage", repr(linkage), allowed)
     return linkage
 

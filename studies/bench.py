@@ -30,7 +30,7 @@ from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import load
+from linkages.linkage import load_linkage
 from linkages.mapping import map_linkage
 from linkages.slices.elimination import slice_configurations
 from studies.methods.cases import bratu
@@ -103,7 +103,7 @@ def _tracing_benchmarks() -> dict[str, float]:
 
 def _search_benchmarks() -> dict[str, float]:
     """The steps of a search for all forms of the linkage, and the whole of it."""
-    linkage = load(LINKAGE)
+    linkage = load_linkage(LINKAGE)
     loop = linkage.loop
     problem = LoopClosure(loop)
     starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (200, loop.n))

@@ -27,7 +27,7 @@ import numpy as np
 from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
 from bifurc.problem import MarchSettings
 from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import Linkage, load
+from linkages.linkage import Linkage, load_linkage
 from linkages.mapping import map_linkage
 
 __all__ = ["Share", "budget", "process_times", "series_operations"]
@@ -197,7 +197,7 @@ def _least_seconds(work: Callable[[], object]) -> float:
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False))
 def main(name: str, out: Path | None) -> None:
     """Print the tables; write them to ``out``/budget.txt where that is given."""
-    linkage = load(name)
+    linkage = load_linkage(name)
     shares = budget(linkage)
     whole = sum(share.seconds for share in shares)
     lines = [f"{name}: {1e3 * whole:.1f} ms a map under the profiler", ""]

@@ -13,6 +13,7 @@ in which cases the quantities of one decision lie nearest to its threshold.
 
 from __future__ import annotations
 
+import json
 import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -32,11 +33,15 @@ from bifurc.problem import Problem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
+from linkages.app.document import make_document
 from linkages.catalogue import catalogue
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
 from linkages.loop import GeometryError, Loop
 from linkages.mapping import map_linkage
+from linkages.mechanisms.bars import read_bars
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
 from studies.hard_cases import crossings
 from studies.near_misses import near_misses
 from studies.near_something_larger import FAMILIES
@@ -73,6 +78,17 @@ BOX = [(-1.0, 1.0)] * 3  # in which surfaces in space lie
 GAP = 3.0  # decades in which nothing lies on which a clear verdict was taken
 NEAREST = 5  # cases on either side of a threshold that are named
 PAGE = Path("docs/decisions.md")
+MECHANISMS = Path("data/mechanisms.json")
+MAPPED = (  # of the mechanisms there, those whose maps are quick
+    "spatial RPRP, equal distances and opposite slopes",
+    "planar RPRP",
+    "planar slider-crank RRRP",
+    "Sarrus with a P joint between base and platform",
+    "Bennett geometry with joints CRCR",
+    "K(2,3)",
+    "Dixon I, K(3,3)",
+    "three equal parallel cranks, pivots on a line",
+)
 WIDTH = 118  # of the lines of the page
 
 
@@ -234,6 +250,26 @@ def _surfaces() -> Iterator[Case]:
         yield Case(name, partial(explore, problem, settings=SETTINGS))
 
 
+def _mechanisms() -> Iterator[Case]:
+    """Known mechanisms with slides, and planar ones."""
+    content = json.loads(MECHANISMS.read_text(encoding="utf-8"))
+    for case in content["cases"]:
+        if case["name"] not in MAPPED:
+            continue
+        if "bars" in case:
+            mechanism = read_bars(case, case["name"])
+        else:
+            joints = tuple(Joint(**joint) for joint in case["joints"])
+            mechanism = Mechanism(joints, case["name"])
+        search = partial(_describe, mechanism)
+        yield Case(case["name"], search)
+
+
+def _describe(mechanism: Mechanism) -> None:
+    """Map a mechanism and take what is said of it besides."""
+    make_document(map_linkage(mechanism, settings=SETTINGS))
+
+
 def _plane_curves(count: int) -> Iterator[Case]:
     """Random plane curves."""
     rng = np.random.default_rng(0)
@@ -271,8 +307,8 @@ Every comparison on which a count, a kind, a level or a word hangs compares one 
 in `bifurc/decisions.py` and `linkages/decisions.py`; singular values and residuals are over the problem's magnitude,
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
 over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, surfaces,
-hard cases and random plane curves. `python -m studies.margins --nearest "same point"` says in which cases the
-quantities of a decision lie nearest to its threshold.
+mechanisms, hard cases and random plane curves. `python -m studies.margins --nearest "same point"` says in which cases
+the quantities of a decision lie nearest to its threshold.
 
 A *verdict* decides a count, a kind, a level or a word. Its threshold stands in an empty gap of three decades or more.
 Where the truth itself has no gap (a linkage may miss a condition by any amount), it has a *third answer*: what is said
@@ -362,6 +398,7 @@ def main(members: int, near: int, target: bool, name: str | None) -> None:
         yield from _near_bifurcations(near)
         yield from _near_something_larger()
         yield from _surfaces()
+        yield from _mechanisms()
         yield from _hard_curves()
         yield from _plane_curves(CURVES)
 

@@ -30,7 +30,7 @@ from linkages.app.texts import table
 from linkages.catalogue import entry
 from linkages.families.bennett import bennett
 from linkages.families.four_bar import four_bar, kite, parallelogram
-from linkages.linkage import Linkage, load
+from linkages.linkage import Linkage, load_linkage
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
 
@@ -99,7 +99,7 @@ class Answer:
 
 def _special(name: str) -> Member:
     """A special double-Goldberg linkage whose twists delta and beta become equal."""
-    return lambda e: load(name, alpha=2.0, beta=1.0, delta=1.0 + e)
+    return lambda e: load_linkage(name, alpha=2.0, beta=1.0, delta=1.0 + e)
 
 
 def _bricard(e: float) -> Linkage:
@@ -107,7 +107,7 @@ def _bricard(e: float) -> Linkage:
     equal."""
     name = "bricard-line-symmetric-zero-offset"
     default = {each.name: each.default for each in entry(name).parameters}
-    return load(name, a23=default["a12"] + e, alpha23=default["alpha12"] + e)
+    return load_linkage(name, a23=default["a12"] + e, alpha23=default["alpha12"] + e)
 
 
 def _short_bennett(e: float) -> Loop:

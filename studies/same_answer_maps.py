@@ -19,7 +19,7 @@ import click
 from bifurc.search.explore import explore
 from linkages.app.document import MapDocument, make_document
 from linkages.catalogue import catalogue
-from linkages.linkage import load
+from linkages.linkage import load_linkage
 from linkages.mapping import map_linkage, name_atlas
 from studies.document_differences import differences
 from studies.noisy_loop import noisy_closure
@@ -44,13 +44,13 @@ class Comparison:
 
 def map_document(name: str, seed: int) -> MapDocument:
     """The document of the map of a linkage of the catalogue."""
-    return make_document(map_linkage(load(name), seed=seed))
+    return make_document(map_linkage(load_linkage(name), seed=seed))
 
 
 def noisy_document(name: str, draw: int) -> MapDocument:
     """The document of its map seen through rounding noise; ``draw`` is also the seed of
     the random starts."""
-    linkage = load(name)
+    linkage = load_linkage(name)
     atlas = explore(noisy_closure(linkage.loop, draw), seed=draw)
     return make_document(name_atlas(atlas, linkage))
 

@@ -6,6 +6,7 @@ from bifurc.atlas import Atlas
 from bifurc.files.dataset import load_atlas
 from linkages.app.exit_codes import CommandError
 from linkages.labels import NoLinkageError, loop_of
+from linkages.mechanisms.subject import mechanism_of
 
 __all__ = ["open_linkage_atlas"]
 
@@ -18,7 +19,8 @@ def open_linkage_atlas(path: str) -> Atlas:
     except FileNotFoundError:
         raise CommandError(f"{path}: there is no such file") from None
     try:
-        loop_of(atlas)
+        if mechanism_of(atlas) is None:
+            loop_of(atlas)
     except NoLinkageError as error:
         raise CommandError(f"{path}: {error}") from None
     return atlas

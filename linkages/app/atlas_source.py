@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 from bifurc.atlas import Atlas
 from linkages.app.atlas_file import open_linkage_atlas
-from linkages.app.choice import choose_linkage
+from linkages.app.choice import choose_linkage, require_loop
 from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
 from linkages.app.options import SearchOptions
+from linkages.labels import loop_of
 
-__all__ = ["atlas_of", "is_atlas_file"]
+__all__ = ["atlas_of", "is_atlas_file", "loop_atlas_of"]
 
 ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
 
@@ -38,4 +39,16 @@ def atlas_of(source: str, parameters: Sequence[str], search: SearchOptions) -> A
         return open_linkage_atlas(source)
     atlas = explore_linkage(choose_linkage(source, parameters), search)
     require_uninterrupted(atlas)
+    return atlas
+
+
+def loop_atlas_of(
+    source: str, parameters: Sequence[str], search: SearchOptions
+) -> Atlas:
+    """The saved atlas, or that of the linkage, called ``source``, where it is a single
+    loop of revolute joints; raises `CommandError` for a mechanism as well."""
+    if not is_atlas_file(source):
+        require_loop(source, choose_linkage(source, parameters))
+    atlas = atlas_of(source, parameters, search)
+    loop_of(atlas)
     return atlas

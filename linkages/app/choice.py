@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,20 +16,50 @@ from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
 
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
+
 __all__ = [
     "choose_linkage",
+    "choose_loop",
     "choose_precisely",
     "read_number",
     "read_parameters",
+    "require_loop",
     "split_parameter",
 ]
 
 SMALLEST, LARGEST = 1e-100, 1e100  # characteristic lengths of a linkage
 
 
-def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
-    """The linkage called ``text``, or read from the file ``text`` if that is one (or
-    ends with .toml).
+def choose_loop(text: str, parameters: Sequence[str] = ()) -> Linkage:
+    """The single loop that `choose_linkage` finds. Raises `CommandError` for a
+    mechanism as well."""
+    chosen = choose_linkage(text, parameters)
+    if isinstance(chosen, Linkage):
+        return chosen
+    return Linkage(require_loop(text, chosen))
+
+
+def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
+    """The loop of a linkage, or of a mechanism that is a single loop of revolute
+    joints; raises `CommandError` for another one."""
+    if isinstance(linkage, Linkage):
+        return linkage.loop
+    from linkages.mechanisms.readout import Readout
+
+    single = Readout(linkage).single_loop
+    if single is None:
+        raise CommandError(
+            f"{text}: it is a mechanism, which `bifurc map` and `bifurc route` take; "
+            "this command takes single loops of 4 to 12 revolute joints so far"
+        )
+    return single.loop
+
+
+def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mechanism:
+    """The linkage called ``text``, or the linkage or mechanism read from the file
+    ``text`` if that is one (or ends with .toml).
 
     ``parameters`` are "key=value", angles in degrees. Raises `CommandError`,
     `GeometryError`, `UnknownLinkageError` and `LinkageFileError`.
@@ -44,19 +75,25 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage:
         linkage = load(text, **values)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
-    _require_size(text, linkage.loop)
+    _require_size(text, linkage)
     return linkage
 
 
-def _require_size(text: str, loop: Loop) -> None:
+def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
     """Raise `CommandError` for lengths whose squares leave the range of doubles."""
     with np.errstate(over="ignore"):
-        size = loop.characteristic_length
+        size = _size(linkage)
     if not SMALLEST < size < LARGEST:
         raise CommandError(
             f"{text}: the lengths are about {size:.1g}; choose a unit in which they "
             f"are between {SMALLEST:g} and {LARGEST:g}"
         )
+
+
+def _size(linkage: Linkage | Mechanism) -> float:
+    if isinstance(linkage, Linkage):
+        return linkage.loop.characteristic_length
+    return linkage.extent
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
@@ -94,21 +131,21 @@ def read_parameters(family: Entry, texts: Sequence[str]) -> dict[str, float]:
     return values
 
 
-def split_parameter(text: str) -> tuple[str, str]:
-    """Name and value of "key=value"; raises `GeometryError`."""
+def split_parameter(text: str, option: str = "--param") -> tuple[str, str]:
+    """Name and value of "key=value" behind an option; raises `GeometryError`."""
     name, equals, value = text.partition("=")
     if not equals:
-        raise GeometryError("--param", repr(text), "of the form key=value")
+        raise GeometryError(option, repr(text), "of the form key=value")
     return name.strip(), value
 
 
-def read_number(name: str, text: str) -> float:
-    """The finite number that ``text`` is, for the parameter ``name``; raises
-    `GeometryError`."""
+def read_number(name: str, text: str, option: str = "--param") -> float:
+    """The finite number that ``text`` is, for what is called ``name`` behind an
+    option; raises `GeometryError`."""
     try:
         number = float(text)
     except ValueError:
-        raise GeometryError(f"--param {name}", repr(text), "a number") from None
+        raise GeometryError(f"{option} {name}", repr(text), "a number") from None
     if not math.isfinite(number):
-        raise GeometryError(f"--param {name}", number, "a finite number")
+        raise GeometryError(f"{option} {name}", number, "a finite number")
     return number

@@ -6,7 +6,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from linkages.app.clearance import FormClearance
-from linkages.app.summary import show_configuration
+from linkages.app.configurations import show_configuration
 from linkages.app.texts import link_name, table
 from linkages.labels import loop_of
 

@@ -8,8 +8,11 @@ from collections.abc import Iterator, Sequence
 import mpmath
 
 from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.problem import PreciseResidual
 from bifurc.singular.confirm import Confirmation, confirm_singular_point
 from linkages.app.choice import choose_precisely
+from linkages.app.configurations import readout_of
+from linkages.app.equations import equations_of
 from linkages.app.texts import table
 from linkages.closure.precise import precise_residual
 
@@ -20,9 +23,14 @@ def confirm_points(
     atlas: Atlas, linkage: str, parameters: Sequence[str] = (), digits: int = 50
 ) -> Iterator[tuple[MeetingPoint, Confirmation]]:
     """Every singular point of the map of a linkage with its `Confirmation`, the
-    geometry at the same precision."""
-    with mpmath.workdps(3 * digits + 30):
-        residual = precise_residual(choose_precisely(linkage, parameters))
+    geometry at the same precision; that of a mechanism is taken from its doubles."""
+    residual: PreciseResidual | None
+    if readout_of(atlas) is None:
+        with mpmath.workdps(3 * digits + 30):
+            residual = precise_residual(choose_precisely(linkage, parameters))
+    else:
+        residual = equations_of(atlas).precise_residual()
+    assert residual is not None
     for meeting in atlas.points:
         point = meeting.point
         confirmation = confirm_singular_point(

@@ -1,30 +1,37 @@
-"""An atlas of a linkage as one JSON document: angles in radians, joints numbered from
-1."""
+"""An atlas of a linkage or a mechanism as one JSON document: angles in radians, joints
+numbered from 1; for a mechanism also variables by the names of its joints."""
 
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import TypedDict
+from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.decisions import is_tied
-from bifurc.torus import wrap
+from linkages.app.configurations import numbers_at, readout_of
+from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels, loop_of
+
+if TYPE_CHECKING:
+    # they import networkx, which loops do not need
+    from linkages.app.mechanism_document import MechanismDocument, RangeDocument
+    from linkages.mechanisms.readout import JointVariables
 
 __all__ = ["MapDocument", "make_document"]
 
 
 class LinkageDocument(TypedDict):
-    """The Denavit-Hartenberg table, twists in rad."""
+    """The name, and of a single loop of revolute joints the Denavit-Hartenberg table,
+    twists in rad."""
 
     name: str
-    lengths: list[float]
-    twists: list[float]
-    offsets: list[float]
+    lengths: NotRequired[list[float]]
+    twists: NotRequired[list[float]]
+    offsets: NotRequired[list[float]]
 
 
 class CertificateDocument(TypedDict):
@@ -36,8 +43,21 @@ class CertificateDocument(TypedDict):
     blurred: list[list[float]]
 
 
-class FormDocument(TypedDict):
-    """A form; or a surface, with None for what makes sense for a curve only."""
+class PlaceDocument(TypedDict):
+    """A configuration of a mechanism: its ``variables`` by the names of its joints."""
+
+    variables: NotRequired[JointVariables]
+
+
+class AssemblyDocument(PlaceDocument):
+    """A rigid assembly of a mechanism."""
+
+    theta: list[float]
+
+
+class FormDocument(PlaceDocument):
+    """A form; or a surface, with None for what makes sense for a curve only. Of a
+    mechanism also what its joints and bodies do."""
 
     name: str
     dimension: int
@@ -52,9 +72,12 @@ class FormDocument(TypedDict):
     min_singular_value: float | None
     component: int
     certificate: CertificateDocument | None
+    ranges: NotRequired[dict[str, RangeDocument]]
+    still_joints: NotRequired[list[str]]
+    bodies_as_one: NotRequired[list[list[str]]]
 
 
-class BifurcationDocument(TypedDict):
+class BifurcationDocument(PlaceDocument):
     """A bifurcation: ``forms`` and ``tangents`` once for every pass of a form."""
 
     theta: list[float]
@@ -64,7 +87,7 @@ class BifurcationDocument(TypedDict):
     error: float
 
 
-class RankDropDocument(TypedDict):
+class RankDropDocument(PlaceDocument):
     """A point of lower rank that one form passes."""
 
     theta: list[float]
@@ -72,7 +95,7 @@ class RankDropDocument(TypedDict):
     form: str
 
 
-class NearMissDocument(TypedDict):
+class NearMissDocument(PlaceDocument):
     """A minimum of the smallest regular singular value."""
 
     theta: list[float]
@@ -81,7 +104,7 @@ class NearMissDocument(TypedDict):
     form: str
 
 
-class NearMotionDocument(TypedDict):
+class NearMotionDocument(PlaceDocument):
     """A path along which the loop misses closure by no more than ``misclosure``."""
 
     misclosure: float
@@ -91,12 +114,13 @@ class NearMotionDocument(TypedDict):
     sample: list[float]
 
 
-class DeadPointDocument(TypedDict):
+class DeadPointDocument(PlaceDocument):
     """Where a joint (from 1) stands still for a moment."""
 
     theta: list[float]
     joint: int
     form: str
+    variable: NotRequired[str]
 
 
 class CompletenessDocument(TypedDict):
@@ -112,12 +136,15 @@ class MapDocument(TypedDict):
     """The whole document; docs/results.md says what each key holds."""
 
     linkage: LinkageDocument
+    mobility: int
+    gruebler: int
+    mechanism: NotRequired[MechanismDocument]
     forms: list[FormDocument]
     bifurcations: list[BifurcationDocument]
     rank_drops: list[RankDropDocument]
     near_misses: list[NearMissDocument]
     dead_points: list[DeadPointDocument]
-    rigid_assemblies: list[list[float]]
+    rigid_assemblies: list[list[float] | AssemblyDocument]
     near_motions: list[NearMotionDocument]
     completeness: CompletenessDocument
     seconds: float
@@ -130,14 +157,16 @@ def make_document(atlas: Atlas) -> MapDocument:
     """The document that `bifurc map --json` prints."""
     forms = [_form(atlas, i) for i in range(len(atlas.forms))]
     surfaces = [_surface(atlas, k) for k in range(len(atlas.surfaces))]
-    return {
+    document: MapDocument = {
         "linkage": _linkage(atlas),
+        "mobility": mobility_of(atlas),
+        "gruebler": gruebler_of(atlas),
         "forms": forms + surfaces,
         "bifurcations": [_bifurcation(atlas, point) for point in atlas.bifurcations],
         "rank_drops": [_rank_drop(atlas, point) for point in atlas.rank_drops],
         "near_misses": [_near_miss(atlas, event) for event in atlas.near_misses],
         "dead_points": [_dead_point(atlas, event) for event in atlas.dead_points],
-        "rigid_assemblies": [_angles(atlas, theta) for theta in atlas.rigid],
+        "rigid_assemblies": [_assembly(atlas, theta) for theta in atlas.rigid],
         "near_motions": [_near_motion(atlas, near) for near in atlas.near_motions],
         "completeness": _completeness(atlas),
         "seconds": atlas.provenance.seconds,
@@ -145,9 +174,37 @@ def make_document(atlas: Atlas) -> MapDocument:
         "seed": atlas.provenance.seed,
         "tolerance": atlas.provenance.settings.tracing.tolerance,
     }
+    readout = readout_of(atlas)
+    if readout is not None:
+        from linkages.app.mechanism_document import describe_mechanism
+
+        document["mechanism"] = describe_mechanism(atlas, readout)
+    return document
+
+
+def _add_variables(
+    atlas: Atlas, document: PlaceDocument, theta: NDArray[np.float64]
+) -> None:
+    """Add the variables of a mechanism at a configuration (n,); nothing for a loop."""
+    readout = readout_of(atlas)
+    if readout is not None:
+        document["variables"] = readout.variables(theta)
+
+
+def _assembly(
+    atlas: Atlas, theta: NDArray[np.float64]
+) -> list[float] | AssemblyDocument:
+    if readout_of(atlas) is None:
+        return numbers_at(atlas, theta)
+    document: AssemblyDocument = {"theta": numbers_at(atlas, theta)}
+    _add_variables(atlas, document, theta)
+    return document
 
 
 def _linkage(atlas: Atlas) -> LinkageDocument:
+    readout = readout_of(atlas)
+    if readout is not None and readout.single_loop is None:
+        return {"name": readout.mechanism.name}
     loop = loop_of(atlas)
     lengths, twists, offsets = loop.arrays
     return {
@@ -162,7 +219,7 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
     form = atlas.forms[index]
     labels = FormLabels.of(form)
     sample = form.branch(_clear_arclength(atlas, index))
-    return {
+    document: FormDocument = {
         "name": form.name,
         "dimension": 1,
         "closed": form.branch.closed,
@@ -170,13 +227,23 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "winding": form.branch.winding.tolist(),
         "inactive_joints": list(labels.inactive_joints),
         "symmetry": labels.symmetry.value,
-        "sample": _angles(atlas, sample),
+        "sample": numbers_at(atlas, sample),
         "max_residual": labels.max_residual,
         "misclosure": form.misclosure,
         "min_singular_value": form.min_singular_value,
         "component": form.component,
         "certificate": _certificate(form),
     }
+    _add_variables(atlas, document, sample)
+    readout = readout_of(atlas)
+    if readout is not None:
+        from linkages.app.mechanism_document import describe_motion
+
+        motion = describe_motion(atlas, index, readout)
+        document["ranges"] = motion["ranges"]
+        document["still_joints"] = motion["still_joints"]
+        document["bodies_as_one"] = motion["bodies_as_one"]
+    return document
 
 
 def _certificate(form: Form) -> CertificateDocument | None:
@@ -193,7 +260,7 @@ def _certificate(form: Form) -> CertificateDocument | None:
 def _surface(atlas: Atlas, index: int) -> FormDocument:
     """A component of dimension 2 or more, shown by one configuration."""
     surface = atlas.surfaces[index]
-    return {
+    document: FormDocument = {
         "name": f"surface {index + 1}",
         "dimension": surface.dimension,
         "closed": None,
@@ -201,59 +268,74 @@ def _surface(atlas: Atlas, index: int) -> FormDocument:
         "winding": None,
         "inactive_joints": [],
         "symmetry": "",
-        "sample": _angles(atlas, surface.samples[0]),
+        "sample": numbers_at(atlas, surface.samples[0]),
         "max_residual": None,
         "misclosure": None,
         "min_singular_value": None,
         "component": atlas.components + index,
         "certificate": None,
     }
+    _add_variables(atlas, document, surface.samples[0])
+    return document
 
 
 def _bifurcation(atlas: Atlas, point: MeetingPoint) -> BifurcationDocument:
-    return {
-        "theta": _angles(atlas, point.point.u),
+    document: BifurcationDocument = {
+        "theta": numbers_at(atlas, point.point.u),
         "rank": point.point.rank,
         "forms": [atlas.forms[index].name for index, _ in point.passes],
         "tangents": point.tangents.tolist(),
         "error": point.point.error,
     }
+    _add_variables(atlas, document, point.point.u)
+    return document
 
 
 def _rank_drop(atlas: Atlas, point: MeetingPoint) -> RankDropDocument:
     index, _ = point.passes[0]
-    return {
-        "theta": _angles(atlas, point.point.u),
+    document: RankDropDocument = {
+        "theta": numbers_at(atlas, point.point.u),
         "rank": point.point.rank,
         "form": atlas.forms[index].name,
     }
+    _add_variables(atlas, document, point.point.u)
+    return document
 
 
 def _near_miss(atlas: Atlas, event: Event) -> NearMissDocument:
-    return {
-        "theta": _angles(atlas, event.u),
+    document: NearMissDocument = {
+        "theta": numbers_at(atlas, event.u),
         "singular_value": event.value,
         "error": event.error,
         "form": atlas.forms[event.form].name,
     }
+    _add_variables(atlas, document, event.u)
+    return document
 
 
 def _near_motion(atlas: Atlas, near: NearMotion) -> NearMotionDocument:
-    return {
+    document: NearMotionDocument = {
         "misclosure": near.misclosure,
         "length": near.length,
         "closed": near.is_closed,
         "mobility": near.mobility,
-        "sample": _angles(atlas, near.sample),
+        "sample": numbers_at(atlas, near.sample),
     }
+    _add_variables(atlas, document, near.sample)
+    return document
 
 
 def _dead_point(atlas: Atlas, event: Event) -> DeadPointDocument:
-    return {
-        "theta": _angles(atlas, event.u),
+    document: DeadPointDocument = {
+        "theta": numbers_at(atlas, event.u),
         "joint": event.index + 1,
         "form": atlas.forms[event.form].name,
     }
+    _add_variables(atlas, document, event.u)
+    readout = readout_of(atlas)
+    if readout is not None:
+        document["variable"] = readout.label_of_unknown(event.index)
+    return document
 
 
 def _completeness(atlas: Atlas) -> CompletenessDocument:
@@ -283,8 +365,3 @@ def _clear_arclength(atlas: Atlas, index: int) -> float:
     # of stretches as long as one another, which symmetry makes, the first
     longest = int(np.argmax(gaps > gaps.max() - is_tied.threshold * branch.length))
     return 0.5 * (marks[longest] + marks[longest + 1])
-
-
-def _angles(atlas: Atlas, theta: NDArray[np.float64]) -> list[float]:
-    """Joint angles (n,), rad, between -pi and pi."""
-    return [float(angle) for angle in wrap(theta, atlas.periods)]

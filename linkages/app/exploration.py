@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from bifurc.atlas import Atlas
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import SearchOptions
@@ -10,11 +12,14 @@ from linkages.app.verdict import judge
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
 
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
+
 __all__ = ["explore_linkage", "require_uninterrupted"]
 
 
-def explore_linkage(linkage: Linkage, search: SearchOptions) -> Atlas:
-    """The transition map of a linkage; progress is shown on standard error.
+def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:
+    """The transition map of a linkage or a mechanism; progress is shown on standard error.
 
     Ctrl-C ends the search early, and the atlas holds what was found by then. Raises
     `bifurc.ProblemError` for settings out of their range.

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.routes.route import Route
-from linkages.app.summary import show_configuration
+from linkages.app.configurations import joint_names, show_configuration, show_travel
 from linkages.app.texts import table
 
 __all__ = ["describe_route"]
@@ -18,9 +16,14 @@ def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
     """A route as a table: along which form, to which singular point, how far each joint
     turns on the way."""
     length = np.degrees(route.length)
-    turns = [f"turn {i + 1}" for i in range(len(atlas.names))]
+    turns = [f"turn {name}" for name in joint_names(atlas)]
     heads = ("", "along", "to", *turns, "configuration reached")
     explanation = "All in degrees; a turn is the sum of a joint's movements both ways."
+    if set(atlas.units) != {"rad"}:
+        explanation = (
+            "Angles in degrees, slides in the unit of the file; a turn is the sum of a "
+            "joint's movements both ways."
+        )
     if any(leg.dimension > 1 for leg in route.legs):
         explanation += " Over a surface the way is a geodesic."
     return (
@@ -37,12 +40,12 @@ def _rows(atlas: Atlas, route: Route) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for number, leg in enumerate(route.legs, start=1):
         end = places[leg.at] if leg.at else route.path[-1]
-        turns = _turns(leg.travel)
+        turns = _turns(atlas, leg.travel)
         reached = show_configuration(atlas, end)
         rows.append((str(number), leg.form, leg.at or "goal", *turns, reached))
-    rows.append(("", "total", "", *_turns(route.travel), ""))
+    rows.append(("", "total", "", *_turns(atlas, route.travel), ""))
     return rows
 
 
-def _turns(travel: Iterable[float]) -> list[str]:
-    return [f"{np.degrees(turn):.2f}" for turn in travel]
+def _turns(atlas: Atlas, travel: np.ndarray) -> list[str]:
+    return show_travel(atlas, travel, digits=2)

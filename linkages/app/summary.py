@@ -10,15 +10,19 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch
 from bifurc.singular.point import Kind
-from bifurc.torus import wrap
+from linkages.app.configurations import (
+    heading,
+    joint_names,
+    readout_of,
+    show_configuration,
+)
 from linkages.app.entry_text import describe_geometry
 from linkages.app.texts import in_degrees, section
 from linkages.app.verdict import judge
 from linkages.labels import FormLabels, loop_of
 
-__all__ = ["make_summary", "show_configuration"]
+__all__ = ["make_summary"]
 
-SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
 # titles of the tables of singular points, and the kinds that stand in each
 POINT_TABLES = (
@@ -35,12 +39,11 @@ POINT_TABLES = (
 def make_summary(atlas: Atlas) -> str:
     """What `bifurc map` shows: verdict, geometry, forms, singular points, completeness
     and time."""
-    loop = loop_of(atlas)
     completeness = atlas.completeness
     provenance = atlas.provenance
     parts = [
-        f"{loop.name}\n{judge(atlas).sentence}",
-        describe_geometry(loop),
+        f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
+        *_geometry(atlas),
         _forms(atlas),
         _surfaces(atlas),
         *(_points(atlas, title, kinds) for title, kinds in POINT_TABLES),
@@ -48,16 +51,31 @@ def make_summary(atlas: Atlas) -> str:
         _rigid_assemblies(atlas),
         _near_motions(atlas),
         _certificates(atlas),
+        *_motions(atlas),
         f"Completeness ({completeness.level}): {completeness.statement}.",
         f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def show_configuration(atlas: Atlas, theta: NDArray[np.float64]) -> str:
-    """Joint angles (n,), rad, in degrees, above -180 and up to 180."""
-    angles = wrap(theta, atlas.periods, within=SHOWN_SHARE)
-    return " ".join(f"{in_degrees(angle):>9}" for angle in angles)
+def _geometry(atlas: Atlas) -> list[str]:
+    """Tables of what was mapped."""
+    readout = readout_of(atlas)
+    if readout is None:
+        return [describe_geometry(loop_of(atlas))]
+    from linkages.app.mechanism_text import describe_joints, describe_loops
+
+    return [describe_joints(readout), describe_loops(atlas, readout)]
+
+
+def _motions(atlas: Atlas) -> list[str]:
+    """What the joints and bodies of a mechanism do along its forms."""
+    readout = readout_of(atlas)
+    if readout is None or not atlas.forms:
+        return []
+    from linkages.app.mechanism_text import describe_motions
+
+    return [describe_motions(atlas, readout)]
 
 
 def _forms(atlas: Atlas) -> str:
@@ -70,7 +88,7 @@ def _forms(atlas: Atlas) -> str:
                 _closure(form.branch),
                 f"{np.degrees(form.branch.length):.6g}",
                 _winding(form.branch),
-                _inactive_joints(labels),
+                _inactive_joints(atlas, labels),
                 labels.symmetry.value or "-",
                 f"{form.min_singular_value:.3g}",
                 f"{labels.max_residual:.1e}",
@@ -101,7 +119,11 @@ def _winding(branch: Branch) -> str:
     return " ".join(f"{turns:+d}" if turns else "0" for turns in branch.winding)
 
 
-def _inactive_joints(labels: FormLabels) -> str:
+def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:
+    """The joints that stand still, those of a mechanism by name; where, of a loop."""
+    names = joint_names(atlas)
+    if readout_of(atlas) is not None:
+        return ", ".join(names[joint - 1] for joint in labels.inactive_joints) or "-"
     pairs = zip(labels.inactive_joints, labels.inactive_angles, strict=True)
     shown = ", ".join(f"{joint} at {in_degrees(angle)}" for joint, angle in pairs)
     return shown or "-"
@@ -137,7 +159,7 @@ def _points(atlas: Atlas, title: str, kinds: Sequence[Kind]) -> str:
                 point.kind.value + remark,
             )
         )
-    heads = ("name", "joint angles (deg)", "rank", "error", "forms", "kind")
+    heads = ("name", heading(atlas), "rank", "error", "forms", "kind")
     return section(title, heads, rows)
 
 
@@ -154,13 +176,13 @@ def _near_misses(atlas: Atlas) -> str:
         angles = show_configuration(atlas, miss.u)
         value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
         rows.append((angles, value, error, atlas.forms[miss.form].name))
-    heads = ("joint angles (deg)", "singular value", "error", "form")
+    heads = (heading(atlas), "singular value", "error", "form")
     return _beginning("Near misses (no bifurcation)", heads, rows)
 
 
 def _rigid_assemblies(atlas: Atlas) -> str:
     rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
-    return _beginning("Rigid assemblies", ("joint angles (deg)",), rows)
+    return _beginning("Rigid assemblies", (heading(atlas),), rows)
 
 
 def _near_motions(atlas: Atlas) -> str:
@@ -173,7 +195,7 @@ def _near_motions(atlas: Atlas) -> str:
             closed, length = "-", "-"
         mobility = str(near.mobility)
         rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
-    heads = ("joint angles (deg)", "mobility", "closed", "length (deg)", "misclosure")
+    heads = (heading(atlas), "mobility", "closed", "length (deg)", "misclosure")
     return _beginning("Near motions (the loop nearly closes)", heads, rows)
 
 

@@ -28,10 +28,11 @@ def section(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> 
     return f"{title}\n{table(heads, rows)}"
 
 
-def in_degrees(angle: float) -> str:
-    """An angle (rad) in degrees, to four decimals and without a negative zero."""
-    shown = f"{np.degrees(angle) + 0.0:.4f}"
-    return shown.replace("-0.0000", "0.0000")
+def in_degrees(angle: float, digits: int = 4) -> str:
+    """An angle (rad) in degrees, to so many decimals and without a negative zero."""
+    shown = f"{np.degrees(angle) + 0.0:.{digits}f}"
+    zero = f"{0.0:.{digits}f}"
+    return zero if shown == f"-{zero}" else shown
 
 
 def link_name(joint: int, joints: int) -> str:

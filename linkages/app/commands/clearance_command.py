@@ -54,7 +54,7 @@ def clearance_command(
       bifurc clearance bricard-trihedral
       bifurc clearance out/atlas.nc --form "Form I" --diameter 0.05
     """
-    from linkages.app.atlas_source import atlas_of
+    from linkages.app.atlas_source import loop_atlas_of
     from linkages.app.clearance import clearance_document, clearance_of
     from linkages.app.clearance_text import describe_clearance
     from linkages.app.forms import choose_forms, require_forms
@@ -64,7 +64,7 @@ def clearance_command(
 
     if verbose:
         say_more()
-    atlas = atlas_of(source, parameters, search)
+    atlas = loop_atlas_of(source, parameters, search)
     require_forms(atlas)
     chosen = choose_forms(atlas, forms)
     clearances = [clearance_of(atlas, form, diameter) for form in chosen]

@@ -74,7 +74,7 @@ def export_command(
       bifurc export out/atlas.nc --route "Form I" "Bennett 4R" --to route.glb
     """
     from bifurc.files.atomic import replace_file
-    from linkages.app.atlas_source import atlas_of
+    from linkages.app.atlas_source import loop_atlas_of
     from linkages.app.forms import require_forms
     from linkages.app.output import require_ending, require_writable, writing_to
     from linkages.app.status import say_more
@@ -84,7 +84,7 @@ def export_command(
         say_more()
     require_ending("--to", out, MODEL, TABLE)
     require_writable(out)
-    atlas = atlas_of(source, parameters, search)
+    atlas = loop_atlas_of(source, parameters, search)
     require_forms(atlas)
     motions = choose_motions(atlas, forms, routes, count)
     content = make_content(atlas, motions, out)

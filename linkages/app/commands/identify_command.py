@@ -33,7 +33,7 @@ def identify_command(linkage: str, tolerance: float, as_json: bool) -> None:
     Example:
       bifurc identify my_linkage.toml
     """
-    from linkages.app.choice import choose_linkage
+    from linkages.app.choice import choose_loop
     from linkages.app.identify import (
         describe_identification,
         make_identification_document,
@@ -41,7 +41,7 @@ def identify_command(linkage: str, tolerance: float, as_json: bool) -> None:
     from linkages.app.output import say, say_json
     from linkages.identification.identify import identify
 
-    loop = choose_linkage(linkage).loop
+    loop = choose_loop(linkage).loop
     identification = identify(loop, tolerance)
     if as_json:
         say_json(make_identification_document(identification))

@@ -42,12 +42,33 @@ __all__ = ["map_command"]
         "and show how many of the map's agree."
     ),
 )
+@click.option(
+    "--lock",
+    "locks",
+    multiple=True,
+    metavar="JOINT=VALUE",
+    help=(
+        "Hold a joint of a mechanism at a value, in degrees or in the unit of its "
+        "file; may be given several times."
+    ),
+)
+@click.option(
+    "--drive",
+    "driver",
+    metavar="JOINT",
+    help=(
+        "Hold as many joints of a mechanism as it takes for this one to move all "
+        "others; says which."
+    ),
+)
 @param_option
 @search_options
 @verbose_option
 def map_command(
     linkage: str,
     parameters: tuple[str, ...],
+    locks: tuple[str, ...],
+    driver: str | None,
     out: Path | None,
     as_json: bool,
     no_certify: bool,
@@ -63,10 +84,13 @@ def map_command(
       bifurc map bennett --param alpha=70 --param beta=30
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map my_linkage.toml --json > map.json
+      bifurc map five_bar.toml --lock J1=40
       bifurc map special-double-subtractive-goldberg --digits 50
     """
     from linkages.app.choice import choose_linkage
+    from linkages.app.equations import is_of_loop
     from linkages.app.exploration import explore_linkage
+    from linkages.app.inputs import with_inputs
     from linkages.app.output import require_folder, say
     from linkages.app.status import say_more
     from linkages.app.verdict import judge
@@ -80,9 +104,14 @@ def map_command(
     if out is not None:
         require_folder(out)
     chosen = choose_linkage(linkage, parameters)
+    inputs = with_inputs(linkage, chosen, locks, driver)
+    for note in inputs.notes:
+        click.echo(note, err=True)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_linkage(chosen, replace(search, certify=not no_certify))
+        atlas = explore_linkage(
+            inputs.mechanism, replace(search, certify=not no_certify)
+        )
         try:
             report(atlas, as_json)
         finally:  # where nothing can be shown, there are still the files
@@ -93,7 +122,8 @@ def map_command(
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
         paths += draw_figures(atlas, out)
-        paths.append(write_map_page(atlas, out))
+        if is_of_loop(atlas):
+            paths.append(write_map_page(atlas, out))
         names = ", ".join(path.name for path in paths)
         click.echo(f"wrote {names} to {out}", err=True)
     verdict = judge(atlas)

@@ -70,11 +70,9 @@ def _route_between(atlas: Atlas, start: str, goal: str) -> Route:
     there is none."""
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.closure.loop_closure import LoopClosure
-    from linkages.labels import loop_of
+    from linkages.app.equations import equations_of
 
-    problem = LoopClosure(loop_of(atlas))
     try:
-        return find_route(atlas, start, goal, problem=problem)
+        return find_route(atlas, start, goal, problem=equations_of(atlas))
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None

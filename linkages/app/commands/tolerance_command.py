@@ -66,7 +66,7 @@ def tolerance_command(
     Example:
       bifurc tolerance special-double-subtractive-goldberg --error 1e-4 --out out
     """
-    from linkages.app.choice import choose_linkage
+    from linkages.app.choice import choose_loop
     from linkages.app.exploration import explore_linkage
     from linkages.app.output import require_folder, say
     from linkages.app.tolerance import climb, measure
@@ -74,7 +74,7 @@ def tolerance_command(
 
     if out is not None:
         require_folder(out)
-    chosen = choose_linkage(linkage, parameters)
+    chosen = choose_loop(linkage, parameters)
     atlas = explore_linkage(chosen, SearchOptions())
     _require_forms(atlas)
     seeds = range(seed, seed + samples)

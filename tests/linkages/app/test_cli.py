@@ -26,6 +26,8 @@ offsets = [0, 0, 0, 0]
 """
 KEYS = {
     "linkage": {"name", "lengths", "twists", "offsets"},
+    "mobility": None,
+    "gruebler": None,
     "forms": {
         "name",
         "dimension",

@@ -1,0 +1,100 @@
+"""Configurations of an atlas for the screen and for JSON: joint angles of a loop, joint
+variables of a mechanism."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bifurc.atlas import Atlas
+from bifurc.torus import wrap
+from linkages.app.texts import in_degrees
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.readout import Readout
+
+__all__ = [
+    "heading",
+    "joint_names",
+    "numbers_at",
+    "readout_of",
+    "show_configuration",
+    "show_travel",
+    "unknown_factors",
+]
+
+SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
+
+
+@lru_cache(maxsize=2)
+def readout_of(atlas: Atlas) -> Readout | None:
+    """What reads the joint variables from the atlas of a mechanism; None for that of a
+    loop. Raises `NoLinkageError` for a damaged one."""
+    if "mechanism" not in atlas.subject:
+        return None
+    from linkages.mechanisms.readout import Readout
+    from linkages.mechanisms.subject import mechanism_of
+
+    mechanism = mechanism_of(atlas)
+    return None if mechanism is None else Readout(mechanism)
+
+
+def unknown_factors(atlas: Atlas) -> NDArray[np.float64]:
+    """What the unknowns (n,) of an atlas are multiplied with to be in rad and in the
+    user's unit of length."""
+    readout = readout_of(atlas)
+    if readout is None or readout.single_loop is not None:
+        return np.ones(len(atlas.names))
+    return readout.structure.scales
+
+
+def numbers_at(atlas: Atlas, point: NDArray[np.float64]) -> list[float]:
+    """The unknowns (n,) of an atlas, angles between -pi and pi, lengths in the user's
+    unit."""
+    numbers = wrap(point, atlas.periods) * unknown_factors(atlas)
+    return [float(number) for number in numbers]
+
+
+def joint_names(atlas: Atlas) -> list[str]:
+    """What the unknowns are called on the screen: the numbers of the joints of a loop,
+    the variables of a mechanism."""
+    readout = readout_of(atlas)
+    if readout is None:
+        return [str(number + 1) for number in range(len(atlas.names))]
+    return [readout.label_of_unknown(index) for index in range(len(atlas.names))]
+
+
+def heading(atlas: Atlas) -> str:
+    """What stands above configurations."""
+    if readout_of(atlas) is None:
+        return "joint angles (deg)"
+    unit = "deg" if set(atlas.units) == {"rad"} else "deg, lengths"
+    return f"{', '.join(joint_names(atlas))} ({unit})"
+
+
+def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:
+    """The unknowns (n,) as text: angles in degrees, above -180 and up to 180, lengths
+    in the user's unit; those of a mechanism from its reference configuration."""
+    readout = readout_of(atlas)
+    if readout is not None and readout.single_loop is not None:
+        single = readout.single_loop
+        point = single.signs * (point - single.reference)
+    angles = wrap(point, atlas.periods, within=SHOWN_SHARE)
+    return " ".join(f"{text:>9}" for text in show_travel(atlas, angles))
+
+
+def show_travel(atlas: Atlas, point: NDArray[np.float64], digits: int = 4) -> list[str]:
+    """The unknowns (n,) as texts, as they stand, with so many digits of a degree."""
+    is_angle = [unit == "rad" for unit in atlas.units]
+    texts = []
+    for value, factor, angle in zip(
+        point, unknown_factors(atlas), is_angle, strict=True
+    ):
+        if angle:
+            texts.append(in_degrees(value, digits))
+        else:
+            texts.append(f"{factor * value:.6g}")
+    return texts

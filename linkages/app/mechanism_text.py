@@ -1,0 +1,119 @@
+"""A mechanism, its loops, and what it does along its forms, as tables."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bifurc.atlas import Atlas
+from linkages.app.mechanism_document import describe_mechanism
+from linkages.app.mobility import gruebler_of, mobility_of
+from linkages.app.texts import in_degrees, section
+from linkages.mechanisms.facts import VariableRange, form_facts
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.readout import Readout
+
+__all__ = ["describe_joints", "describe_loops", "describe_motions"]
+
+
+def describe_joints(readout: Readout) -> str:
+    """The joints of a mechanism, and the limits within which it is followed."""
+    rows = [_joint_row(joint) for joint in readout.mechanism.joints]
+    heads = ("name", "kind", "bodies", "point", "direction", "locked")
+    text = section("Joints", heads, rows)
+    is_turn = {
+        variable.label: variable.motion.is_turn
+        for variable in readout.mechanism.variables
+    }
+    limits = [
+        f"{label} from {_shown(low, is_turn[label])} to {_shown(high, is_turn[label])}"
+        for label, (low, high) in readout.limits().items()
+    ]
+    if limits:
+        text += f"\n\nFollowed within limits: {', '.join(limits)}."
+    idle = readout.structure.idle_bodies
+    if idle:
+        text += (
+            f"\n\nLeft out: {', '.join(idle)} may turn about the line between its two "
+            "spherical joints, which moves nothing else."
+        )
+    return text
+
+
+def _joint_row(joint: Joint) -> tuple[str, ...]:
+    motions = joint.motions * (len(joint.bodies) - 1)
+    locks = [
+        _shown(value, motion.is_turn)
+        for value, motion in zip(joint.locked, motions, strict=True)
+        if value is not None
+    ]
+    return (
+        joint.name,
+        joint.kind.value,
+        ", ".join(joint.bodies),
+        _vector(joint.point),
+        _vector(joint.direction),
+        ", ".join(locks) or "-",
+    )
+
+
+def _vector(vector: tuple[float, float, float] | None) -> str:
+    if vector is None:
+        return "-"
+    return " ".join(f"{coordinate:.6g}" for coordinate in vector)
+
+
+def _shown(value: float, is_turn: bool) -> str:
+    """A variable as it is shown: degrees, or the user's unit."""
+    return f"{in_degrees(value)} deg" if is_turn else f"{value:.6g}"
+
+
+def describe_loops(atlas: Atlas, readout: Readout) -> str:
+    """Grübler's count beside the mobility, and what is redundant in every loop."""
+    document = describe_mechanism(atlas, readout)
+    rows = []
+    for loop in document["loops"]:
+        dependent = ", ".join(loop["dependent_joints"]) or "-"
+        rows.append(
+            (
+                ", ".join(loop["joints"]),
+                str(loop["constraints"]),
+                str(loop["redundant"]),
+                dependent,
+            )
+        )
+    heads = ("joints", "constraints", "redundant", "motion that others can make")
+    count = f"Mobility {mobility_of(atlas)}; Grübler's count is {gruebler_of(atlas)}."
+    loops = section("Loops", heads, rows)
+    return f"{loops}\n\n{count}" if loops else count
+
+
+def describe_motions(atlas: Atlas, readout: Readout) -> str:
+    """What joints and bodies do along each form."""
+    rows = []
+    is_turn = [v.motion.is_turn for v in readout.mechanism.variables]
+    for index in np.argsort([form.name for form in atlas.forms]):
+        facts = form_facts(atlas, int(index), readout)
+        ranges = [
+            _range(one, turn) for one, turn in zip(facts.ranges, is_turn, strict=True)
+        ]
+        groups = [" = ".join(group) for group in facts.groups]
+        rows.append(
+            (
+                atlas.forms[index].name,
+                ", ".join(ranges),
+                ", ".join(facts.still) or "-",
+                ", ".join(groups) or "-",
+            )
+        )
+    heads = ("form", "ranges", "joints that stand still", "bodies that move as one")
+    return section("Motions (deg, lengths in the unit of the file)", heads, rows)
+
+
+def _range(one: VariableRange, is_turn: bool) -> str:
+    if one.turns:
+        times = "once" if abs(one.turns) == 1 else f"{abs(one.turns)} times"
+        return f"{one.label} turns {times}"
+    low, high = one.low, one.high
+    if is_turn:
+        return f"{one.label} {in_degrees(low, 2)} to {in_degrees(high, 2)}"
+    return f"{one.label} {low:.5g} to {high:.5g}"

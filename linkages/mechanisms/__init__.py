@@ -1,0 +1,1 @@
+"""Mechanisms of several loops and of every kind of joint."""

@@ -1,0 +1,185 @@
+"""The closure of a mechanism as a problem for `bifurc`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bifurc.checks import check_type, rows_of
+from bifurc.decisions import is_start_solved
+from bifurc.equations.system import LARGEST_DENSE, ScaledTape
+from bifurc.function_problem import NumericalProblem
+from bifurc.problem import (
+    March,
+    MarchSettings,
+    PreciseResidual,
+    SphereProjection,
+)
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Seeds
+from linkages.mechanisms.curvature import CurvatureBounds
+from linkages.mechanisms.equations import Equations, write_equations
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.structure import Structure
+
+if TYPE_CHECKING:
+    import mpmath
+    from scipy.sparse import sparray
+
+__all__ = ["MechanismClosure"]
+
+
+class MechanismClosure(NumericalProblem):
+    """The closure equations of a mechanism in the variables of its joints.
+
+    Angles are in radians, slides in characteristic lengths. All derivatives are exact:
+    they come from the tape of the equations.
+    """
+
+    curvature_residual = 0.2
+    hessian_error = 1e-14
+    derivatives = "recorded"
+
+    def __init__(self, mechanism: Mechanism):
+        check_type("mechanism", mechanism, Mechanism)
+        self.mechanism = mechanism
+        self.structure = Structure(mechanism)
+        unknowns = self.structure.unknowns
+        self.names = tuple(unknown.label for unknown in unknowns)
+        self.units = tuple("rad" if one.is_angle else "size" for one in unknowns)
+        self.periods = np.array([unknown.period for unknown in unknowns])
+        self.bounds = np.array([[one.low, one.high] for one in unknowns])
+        self._equations: Equations = write_equations(self.structure)
+        tape = self._equations.tape
+        self.equations = f"recorded ({tape.size} operations)"
+        self._tape = ScaledTape(
+            tape, self.magnitude, self.scale, self.bounds, self.periods
+        )
+
+    # --- values and derivatives -------------------------------------------------------
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        return self._tape.residuals(rows_of("points", points, self.n))
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,), sparse for many unknowns."""
+        point = self.check_point(point, "point")
+        if self._tape.is_sparse:
+            return self._tape.sparse_jacobian(point)
+        return self._tape.jacobians(point[None])[0]
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        return self._tape.jacobians(rows_of("points", points, self.n))
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,)."""
+        return self._tape.hessian(self.check_point(point, "point"))
+
+    def precise_residual(self) -> PreciseResidual:
+        """F over mpmath numbers; the geometry is that of the doubles, taken as
+        exact."""
+        tape = self._equations.tape
+
+        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+            import mpmath  # it takes long to import
+
+            values: list[mpmath.mpf] = tape.over(unknowns, mpmath)
+            return values
+
+        return residual
+
+    @cached_property
+    def rows_of_closures(self) -> list[slice]:
+        """The equations that belong to each closure of the structure."""
+        ends = np.cumsum([0, *self._equations.counts])
+        return [slice(int(a), int(b)) for a, b in pairwise(ends)]
+
+    def columns_of_joint(self, name: str) -> list[int]:
+        """The numbers of the unknowns that belong to a joint."""
+        structure = self.structure
+        columns = []
+        for number, pair in enumerate(self.mechanism.pairs):
+            if pair.joint != name:
+                continue
+            free = [k for k in pair.variables if k in structure.column_of]
+            columns += [structure.column_of[k] for k in free]
+            columns += structure.embedded.get(number, ())
+        return columns
+
+    def curvature_bound(self) -> float | None:
+        """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations;
+        None for a mechanism with embedded spherical joints or
+        legs."""
+        bounds = self._curvature
+        return None if bounds is None else bounds.near_solutions
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
+        """Bounds (k,) on |F''| at complex points no farther than ``reach`` (k,) from a
+        real one within the limits; None for a mechanism with embedded spherical
+        joints."""
+        bounds = self._curvature
+        return None if bounds is None else bounds.at_complex_points(reach)
+
+    @cached_property
+    def _curvature(self) -> CurvatureBounds | None:
+        has_legs = any(rod.leg is not None for rod in self.structure.rods)
+        if self.structure.embedded or has_legs:
+            return None
+        return CurvatureBounds(self.structure, self.curvature_residual)
+
+    # --- curves and solutions ---------------------------------------------------------
+
+    @cached_property
+    def _is_dense(self) -> bool:
+        """Whether the methods that are compiled factor the matrices."""
+        return self.n <= LARGEST_DENSE
+
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    ) -> March:
+        """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
+        if self._is_dense:
+            return self._tape.march(start, tangent, settings)
+        return super().march(start, tangent, settings)
+
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
+        each."""
+        starts = rows_of("starts", starts, self.n)
+        if self._is_dense:
+            return self._tape.project(starts)
+        return super().project(starts)
+
+    def project_to_sphere(
+        self, starts: np.ndarray, center: np.ndarray, radius: float
+    ) -> SphereProjection:
+        """Closed configurations near ``starts`` (k, n) at distance ``radius`` from
+        ``center`` (n,)."""
+        if self._is_dense:
+            return self._tape.project_to_sphere(starts, center, radius)
+        return super().project_to_sphere(starts, center, radius)
+
+    # --- starts -----------------------------------------------------------------------
+
+    @property
+    def reference(self) -> np.ndarray:
+        """The reference configuration (n,): all variables 0. Where joints are locked
+        elsewhere it need not be closed."""
+        reference = np.zeros(self.n)
+        for columns in self.structure.embedded.values():
+            reference[list(columns[:6])] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+        return reference
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        """The closed configuration nearest to the reference, and what is reached from
+        ``count`` random starts."""
+        drawn = random_seeds(self, rng, count)
+        points, gaps = self.project(self.reference[None])
+        is_inside = self.excess(points) <= 0.0
+        return drawn.with_constructed(points[is_start_solved(gaps) & is_inside])

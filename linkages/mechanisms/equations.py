@@ -1,0 +1,242 @@
+"""The closure equations of a mechanism, written on a tape.
+
+A cycle of pairs is closed when the product of the displacements along it is the
+identity (the product of exponentials in the reference configuration, Brockett 1984).
+Where a chain ends in a spherical joint, a point comes back to itself; between two of
+them, two points keep their distance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bifurc.equations.recorded import RecordedNumber, Recorder
+from bifurc.equations.tape import Tape
+from linkages.decisions import is_rounding_of_zero
+from linkages.mechanisms.cycles import Step
+from linkages.mechanisms.joint import Motion
+from linkages.mechanisms.motors import (
+    IDENTITY,
+    Motor,
+    Number,
+    Point,
+    product,
+    rotated_about,
+    slide,
+    turn,
+)
+from linkages.mechanisms.structure import Closure, ClosureKind, Structure
+
+__all__ = ["Equations", "write_equations"]
+
+
+@dataclass(frozen=True)
+class Equations:
+    """The ``tape`` of all equations, and how many of them belong to each closure."""
+
+    tape: Tape
+    counts: tuple[int, ...]
+
+
+def write_equations(structure: Structure) -> Equations:
+    """The equations of all closures, then those of the embedded spherical joints."""
+    writer = Recorder(len(structure.unknowns))
+    values = _values(structure, writer)
+    outputs: list[int] = []
+    counts = []
+    for closure in structure.closures:
+        chain = _ChainWriter(structure, closure, writer, values)
+        slots = _slots(writer, chain.residuals())
+        counts.append(len(slots))
+        outputs += slots
+    for columns in structure.embedded.values():
+        numbers = [_unknown(writer, column) for column in columns]
+        outputs += _slots(writer, _orthonormal(numbers[:3], numbers[3:6]))
+    return Equations(writer.tape(outputs), tuple(counts))
+
+
+def _unknown(writer: Recorder, number: int) -> RecordedNumber:
+    return RecordedNumber(writer, writer.unknown(number))
+
+
+def _values(structure: Structure, writer: Recorder) -> list[Number]:
+    """The value of every variable: an unknown, or the number at which it is locked."""
+    values: list[Number] = []
+    for number, variable in enumerate(structure.mechanism.variables):
+        column = structure.column_of.get(number)
+        if column is not None:
+            values.append(_unknown(writer, column))
+        else:
+            assert variable.locked is not None
+            unit = 1.0 if variable.motion.is_turn else structure.unit
+            values.append(variable.locked / unit)
+    return values
+
+
+def _slots(writer: Recorder, residuals: Sequence[Number]) -> list[int]:
+    """The slots of equations, without those that hold whatever the unknowns are."""
+    slots = []
+    for residual in residuals:
+        if not isinstance(residual, RecordedNumber):
+            residual = RecordedNumber(writer, writer.constant(float(residual)))
+        value = writer.value(residual.slot)
+        if value is None or not is_rounding_of_zero(abs(value)):
+            slots.append(residual.slot)
+    return slots
+
+
+def _orthonormal(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
+    """The equations of two orthogonal unit vectors; 0 where they are."""
+    return [
+        0.5 * (_dot(a, a) - 1.0),
+        0.5 * (_dot(b, b) - 1.0),
+        _dot(a, b),
+    ]
+
+
+def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
+    return [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+
+
+# --- one chain ------------------------------------------------------------------------
+
+
+class _ChainWriter:
+    """The equations of one closure while they are written."""
+
+    def __init__(
+        self,
+        structure: Structure,
+        closure: Closure,
+        writer: Recorder,
+        values: Sequence[Number],
+    ):
+        self.structure = structure
+        self.closure = closure
+        self.writer = writer
+        self.values = values
+        self.placement = structure.placement(closure)
+
+    def residuals(self) -> list[Number]:
+        """The equations, 0 where the chain is closed; lengths in the structure's
+        unit."""
+        if self.closure.kind is ClosureKind.CYCLE:
+            return self._of_cycle()
+        first = self.placement.point(self.closure.first)
+        second = self.placement.point(self.closure.second)
+        arrival = self._moved(list(second))
+        gaps = [x - float(c) for x, c in zip(arrival, first, strict=True)]
+        if self.closure.kind is ClosureKind.POINT:
+            return gaps
+        return [self._of_rod(_dot(gaps, gaps))]
+
+    def _of_rod(self, square: Number) -> Number:
+        """How much too long a rod is, for small errors, from the ``square`` of the
+        distance of its ends."""
+        rod = self.closure.rod
+        assert rod is not None
+        rest = rod.length / self.structure.unit
+        length: Number = rest
+        if rod.leg is not None:
+            length = rest + rod.leg.sign * self.values[rod.leg.variable]
+        return (square - length * length) / (2 * rest)
+
+    def _of_cycle(self) -> list[Number]:
+        """Twice the vector part of the product of motors: for small errors the rotation
+        vector and the translation. It is zero at closure alone, at half turns it is
+        not."""
+        motor = IDENTITY
+        for step in self.closure.chain:
+            for motion, value in self._elements(step):
+                motor = product(motor, self._motor(motion, value))
+        return [2.0 * number for number in (*motor.real[1:], *motor.dual[1:])]
+
+    def _elements(self, step: Step) -> Iterator[tuple[Motion, Number]]:
+        """The elementary motions of a step, the last to act first, with their
+        values."""
+        variables = self.structure.variables_of(step.pair)
+        for number in variables[:: step.sign]:
+            value = self.values[number]
+            if isinstance(value, float) and value == 0.0:
+                continue
+            motion = self.structure.mechanism.variables[number].motion
+            yield motion, value if step.sign > 0 else -value
+
+    def _motor(self, motion: Motion, value: Number) -> Motor:
+        direction = self.placement.direction(motion)
+        if not motion.is_turn:
+            return slide(direction, value)
+        moment = np.cross(self.placement.point_on_axis(motion), direction)
+        half = 0.5 * value
+        advance = self._advance(motion, value)
+        return turn(direction, moment, _cosine(half), _sine(half), advance)
+
+    def _advance(self, motion: Motion, value: Number) -> Number:
+        """How far a turn by ``value`` advances, in the unit of the structure."""
+        if motion.advance == 0.0:
+            return 0.0
+        return (motion.advance / self.structure.unit) * value
+
+    # --- points -----------------------------------------------------------------------
+
+    def _moved(self, point: Point) -> Point:
+        """Where the chain takes a ``point`` (3,) of its last body."""
+        for step in reversed(self.closure.chain):
+            if step.pair in self.structure.embedded:
+                point = self._turned_freely(point, step)
+                continue
+            for motion, value in reversed(list(self._elements(step))):
+                point = self._moved_by(point, motion, value)
+        return point
+
+    def _moved_by(self, point: Point, motion: Motion, value: Number) -> Point:
+        direction = self.placement.direction(motion)
+        if not motion.is_turn:
+            return _shifted(point, direction, value)
+        center = self.placement.point_on_axis(motion)
+        turned = rotated_about(point, direction, center, _cosine(value), _sine(value))
+        return _shifted(turned, direction, self._advance(motion, value))
+
+    def _turned_freely(self, point: Point, step: Step) -> Point:
+        """A point turned by an embedded spherical joint, and moved by a free pair: the
+        columns of the rotation are two unit vectors and their cross product."""
+        center = self.placement.point(self.structure.center(step.pair))
+        columns = self.structure.embedded[step.pair]
+        numbers: list[Number] = [_unknown(self.writer, one) for one in columns]
+        a, b, shift = numbers[:3], numbers[3:6], numbers[6:] or [0.0, 0.0, 0.0]
+        vectors = [a, b, _cross(a, b)]
+        offset = [x - float(c) for x, c in zip(point, center, strict=True)]
+        if step.sign < 0:
+            offset = [x - t for x, t in zip(offset, shift, strict=True)]
+            turned = [_dot(vector, offset) for vector in vectors]
+        else:
+            rows = zip(*vectors, strict=True)
+            turned = [_dot(row, offset) for row in rows]
+            turned = [x + t for x, t in zip(turned, shift, strict=True)]
+        return [float(c) + x for c, x in zip(center, turned, strict=True)]
+
+
+def _shifted(point: Point, direction: np.ndarray, distance: Number) -> Point:
+    if isinstance(distance, float) and distance == 0.0:
+        return point
+    return [x + distance * float(d) for x, d in zip(point, direction, strict=True)]
+
+
+def _cosine(value: Number) -> Any:
+    return value.cos() if isinstance(value, RecordedNumber) else float(np.cos(value))
+
+
+def _sine(value: Number) -> Any:
+    return value.sin() if isinstance(value, RecordedNumber) else float(np.sin(value))

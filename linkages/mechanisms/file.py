@@ -1,0 +1,144 @@
+"""Reading a mechanism from the content of a TOML file.
+
+Two formats, told apart by their keys: ``[[joints]]``, axes in one closed configuration,
+and ``bars`` between ``[points]`` of a plane (`linkages.mechanisms.bars`).
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, TypeAlias
+
+from linkages.loop import GeometryError, check_number, quoted
+from linkages.mechanisms.bars import read_bars
+from linkages.mechanisms.joint import Joint, Motion
+from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["read_mechanism"]
+
+Content: TypeAlias = Mapping[str, Any]
+
+OF_FILE = ("name", "angles", "joints")
+OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars")
+OF_JOINT = (
+    "name",
+    "kind",
+    "bodies",
+    "point",
+    "direction",
+    "second_direction",
+    "pitch",
+    "limits",
+    "locked",
+)
+OF_VALUES = ("limits", "locked")
+UNITS = {"deg": math.pi / 180, "rad": 1.0}
+
+
+def read_mechanism(content: Content, name: str) -> Mechanism:
+    """The mechanism that the content of a TOML file describes; without a name it gets
+    this one. Raises `GeometryError` for anything wrong in it."""
+    given = content.get("name", name)
+    if not isinstance(given, str):
+        raise GeometryError("name", quoted(given), "a text in quotes")
+    if "joints" not in content:
+        _check_keys("key", content, OF_BARS)
+        return read_bars(content, given)
+    _check_keys("key", content, OF_FILE)
+    unit = _angle_unit(content)
+    tables = content["joints"]
+    if not isinstance(tables, list):
+        raise GeometryError("joints", quoted(tables), "tables [[joints]]")
+    joints = [_read_joint(k, table, unit) for k, table in enumerate(tables, start=1)]
+    return Mechanism(tuple(joints), given)
+
+
+def _angle_unit(content: Content) -> float:
+    unit = content.get("angles", "deg")
+    if not isinstance(unit, str) or unit not in UNITS:
+        allowed = '"deg", which it is where nothing is said, or "rad"'
+        raise GeometryError("angles", quoted(unit), allowed)
+    return UNITS[unit]
+
+
+def _check_keys(what: str, content: Content, allowed: tuple[str, ...]) -> None:
+    for key in content:
+        if key not in allowed:
+            near = difflib.get_close_matches(key, allowed, n=1, cutoff=0.0)[0]
+            value = f"{key!r} (the nearest is {near!r})"
+            raise GeometryError(what, value, "one of " + ", ".join(allowed))
+
+
+# --- one joint ------------------------------------------------------------------------
+
+
+def _read_joint(number: int, table: object, unit: float) -> Joint:
+    """A joint from its table; angles are in this ``unit``, in rad."""
+    if not isinstance(table, Mapping):
+        raise GeometryError(f"joints[{number}]", quoted(table), "a table")
+    name = table.get("name")
+    if name is None:
+        raise GeometryError(f"name of joints[{number}]", "a missing key", "a text")
+    _check_keys(f"key of joint {name}", table, OF_JOINT)
+    for key in ("kind", "bodies"):
+        if key not in table:
+            what = f"{key} of joint {name}"
+            raise GeometryError(what, "a missing key", "given for every joint")
+    geometry = {
+        key: table[key] for key in OF_JOINT if key in table and key not in OF_VALUES
+    }
+    joint = Joint(**geometry)
+    motions = joint.motions * (len(joint.bodies) - 1)
+    limits = _read_limits(name, table.get("limits"), motions, unit)
+    locked = _read_locked(name, table.get("locked"), motions, unit)
+    return replace(joint, limits=limits, locked=locked)
+
+
+def _read_limits(
+    name: str, given: object, motions: tuple[Motion, ...], unit: float
+) -> tuple[tuple[float, float] | None, ...]:
+    if given is None:
+        return ()
+    what = f"limits of joint {name}"
+    allowed = "a list [low, high], one for each variable"
+    rows = list(given) if isinstance(given, list) else []
+    if len(motions) == 1 and not any(isinstance(row, list) for row in rows):
+        rows = [rows]
+    if len(rows) != len(motions):
+        raise GeometryError(what, quoted(given), allowed)
+    limits = []
+    for row, motion in zip(rows, motions, strict=True):
+        if not isinstance(row, list) or len(row) != 2:
+            raise GeometryError(what, quoted(given), allowed)
+        low, high = _in_rad(what, row, motion, unit)
+        limits.append((low, high))
+    return tuple(limits)
+
+
+def _read_locked(
+    name: str, given: object, motions: tuple[Motion, ...], unit: float
+) -> tuple[float, ...]:
+    if given is None:
+        return ()
+    what = f"locked of joint {name}"
+    values = given if isinstance(given, list) else [given]
+    if len(values) != len(motions):
+        allowed = f"{len(motions)} numbers" if len(motions) != 1 else "a number"
+        raise GeometryError(what, quoted(given), allowed)
+    pairs = zip(values, motions, strict=True)
+    return tuple(_in_rad(what, [value], motion, unit)[0] for value, motion in pairs)
+
+
+def _in_rad(
+    what: str, values: Iterable[object], motion: Motion, unit: float
+) -> list[float]:
+    """Numbers of a file in rad, where the motion is a turn; lengths as they are."""
+    numbers = []
+    for value in values:
+        check_number(what, value)
+        factor = unit if motion.is_turn else 1.0
+        numbers.append(factor * float(value))  # type: ignore[arg-type]
+    return numbers

@@ -1,0 +1,329 @@
+"""Joints of a mechanism: kinds as data, each a list of elementary motions.
+
+A joint is given in one closed configuration of the mechanism, the reference
+configuration, where all joint variables are 0. Lengths are in the user's unit, angles
+in radians.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from linkages.loop import GeometryError, check_number, quoted
+
+__all__ = ["Joint", "JointKind", "Limits", "Motion", "Vector"]
+
+Vector: TypeAlias = tuple[float, float, float]
+# The least and the largest value of a variable.
+Limits: TypeAlias = tuple[float, float]
+
+
+class JointKind(StrEnum):
+    """What a joint lets two bodies do to each other."""
+
+    REVOLUTE = "revolute"
+    PRISMATIC = "prismatic"
+    CYLINDRICAL = "cylindrical"
+    HELICAL = "helical"
+    UNIVERSAL = "universal"
+    SPHERICAL = "spherical"
+    PLANAR = "planar"
+    RIGID = "rigid"
+
+
+class _Needs(NamedTuple):
+    """Which keys a kind of joint needs, and those that it may have besides."""
+
+    required: tuple[str, ...]
+    optional: tuple[str, ...] = ()
+
+
+# `point` may stand anywhere: it says where to draw a joint that needs none.
+NEEDS = {
+    JointKind.REVOLUTE: _Needs(("point", "direction")),
+    JointKind.PRISMATIC: _Needs(("direction",), ("point",)),
+    JointKind.CYLINDRICAL: _Needs(("point", "direction")),
+    JointKind.HELICAL: _Needs(("point", "direction", "pitch")),
+    JointKind.UNIVERSAL: _Needs(("point", "direction", "second_direction")),
+    JointKind.SPHERICAL: _Needs(("point",)),
+    JointKind.PLANAR: _Needs(("direction",), ("point", "second_direction")),
+    JointKind.RIGID: _Needs((), ("point",)),
+}
+GEOMETRY = ("point", "direction", "second_direction", "pitch")
+
+
+class Motion(NamedTuple):
+    """An elementary motion: a turn about an axis through ``point`` (3,) along the unit
+    vector ``direction`` (3,) that advances by so much a radian, or, without a turn, a
+    slide along it. ``part`` is what the variable is called in a joint of several."""
+
+    part: str
+    is_turn: bool
+    direction: np.ndarray
+    point: np.ndarray
+    advance: float = 0.0
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint between two bodies, or between more on one axis.
+
+    The variables are those of every body after the first one with respect to the first
+    one. ``point`` and ``direction`` give the axis, the direction of a slide, or the
+    normal of a planar joint, ``second_direction`` the second axis of a universal joint
+    or the first slide of a planar one, ``pitch`` the advance of a helical joint in a
+    full turn. ``limits`` and ``locked`` have one entry a variable, None where there is
+    none, in radians and in the unit of length. Raises `GeometryError` for anything that
+    is no joint.
+    """
+
+    name: str
+    kind: JointKind
+    bodies: tuple[str, ...]
+    point: Vector | None = None
+    direction: Vector | None = None
+    second_direction: Vector | None = None
+    pitch: float | None = None
+    limits: tuple[Limits | None, ...] = ()
+    locked: tuple[float | None, ...] = ()
+
+    def __post_init__(self) -> None:
+        _check_name(self.name)
+        object.__setattr__(self, "kind", _checked_kind(self))
+        object.__setattr__(self, "bodies", _checked_bodies(self))
+        for key in ("point", "direction", "second_direction"):
+            value = getattr(self, key)
+            if value is not None:
+                vector = _checked_vector(f"{key} of joint {self.name}", value)
+                object.__setattr__(self, key, vector)
+        _check_needs(self)
+        for key in ("direction", "second_direction"):
+            _check_direction(self, key)
+        if self.pitch is not None:
+            check_number(f"pitch of joint {self.name}", self.pitch)
+        _check_second_direction(self)
+        limits = _checked_limits(self)
+        object.__setattr__(self, "limits", limits)
+        object.__setattr__(self, "locked", _checked_locks(self, limits))
+
+    @property
+    def place(self) -> np.ndarray:
+        """Where the joint is (3,); the origin where no point is given."""
+        return np.array(self.point or (0.0, 0.0, 0.0))
+
+    @property
+    def motions(self) -> tuple[Motion, ...]:
+        """The elementary motions of one body with respect to the first one, in their
+        order; those of a spherical joint are its own, and none stand here."""
+        return _MOTIONS[self.kind](self)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """What every variable is called within the joint, empty where it is the only
+        one."""
+        motions = self.motions
+        parts = []
+        for body in self.bodies[1:]:
+            for motion in motions:
+                words = [body] if len(self.bodies) > 2 else []
+                if len(motions) > 1:
+                    words.append(motion.part)
+                parts.append(".".join(words))
+        return tuple(parts)
+
+    @property
+    def freedoms(self) -> int:
+        """How many freedoms the joint has, with nothing locked."""
+        if self.kind is JointKind.SPHERICAL:
+            return 3 * (len(self.bodies) - 1)
+        return len(self.parts)
+
+
+# --- motions --------------------------------------------------------------------------
+
+
+def _unit(vector: Sequence[float] | None) -> np.ndarray:
+    array = np.array(vector, dtype=float)
+    largest = np.abs(array).max()
+    scaled = array / largest
+    unit: np.ndarray = scaled / np.linalg.norm(scaled)
+    return unit
+
+
+def _turn(joint: Joint) -> tuple[Motion, ...]:
+    return (Motion("turn", True, _unit(joint.direction), joint.place),)
+
+
+def _slide(joint: Joint) -> tuple[Motion, ...]:
+    return (Motion("slide", False, _unit(joint.direction), joint.place, 1.0),)
+
+
+def _turn_and_slide(joint: Joint) -> tuple[Motion, ...]:
+    return _turn(joint) + _slide(joint)
+
+
+def _screw(joint: Joint) -> tuple[Motion, ...]:
+    assert joint.pitch is not None
+    advance = joint.pitch / (2 * math.pi)
+    return (Motion("turn", True, _unit(joint.direction), joint.place, advance),)
+
+
+def _two_turns(joint: Joint) -> tuple[Motion, ...]:
+    second = _unit(joint.second_direction)
+    return (
+        Motion("first", True, _unit(joint.direction), joint.place),
+        Motion("second", True, second, joint.place),
+    )
+
+
+def _plane(joint: Joint) -> tuple[Motion, ...]:
+    """Two slides and a turn: any motion in the plane, without a singular place."""
+    normal = _unit(joint.direction)
+    along = joint.second_direction
+    if along is None:
+        along = tuple(np.eye(3)[np.argmin(np.abs(normal))])
+    inside = np.array(along) - (np.array(along) @ normal) * normal
+    first = _unit(inside.tolist())
+    second = np.cross(normal, first)
+    return (
+        Motion("x", False, first, joint.place, 1.0),
+        Motion("y", False, second, joint.place, 1.0),
+        Motion("turn", True, normal, joint.place),
+    )
+
+
+def _nothing(joint: Joint) -> tuple[Motion, ...]:
+    return ()
+
+
+_MOTIONS = {
+    JointKind.REVOLUTE: _turn,
+    JointKind.PRISMATIC: _slide,
+    JointKind.CYLINDRICAL: _turn_and_slide,
+    JointKind.HELICAL: _screw,
+    JointKind.UNIVERSAL: _two_turns,
+    JointKind.SPHERICAL: _nothing,
+    JointKind.PLANAR: _plane,
+    JointKind.RIGID: _nothing,
+}
+
+
+# --- checks ---------------------------------------------------------------------------
+
+
+def _check_name(name: object) -> None:
+    if not isinstance(name, str) or not name.strip():
+        raise GeometryError("name of a joint", quoted(name), "a text in quotes")
+
+
+def _checked_kind(joint: Joint) -> JointKind:
+    try:
+        return JointKind(joint.kind)
+    except ValueError:
+        kinds = ", ".join(JointKind)
+        what = f"kind of joint {joint.name}"
+        raise GeometryError(what, quoted(joint.kind), f"one of {kinds}") from None
+
+
+def _checked_bodies(joint: Joint) -> tuple[str, ...]:
+    what = f"bodies of joint {joint.name}"
+    given = joint.bodies
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise GeometryError(what, quoted(given), "a list of two names or more")
+    bodies = tuple(given)
+    for body in bodies:
+        if not isinstance(body, str) or not body.strip():
+            raise GeometryError(what, quoted(body), "names, texts in quotes")
+    if len(bodies) < 2:
+        raise GeometryError(what, list(bodies), "two names or more")
+    for body in bodies:
+        if bodies.count(body) > 1:
+            raise GeometryError(what, list(bodies), f"different; {body} stands twice")
+    return bodies
+
+
+def _checked_vector(what: str, row: object) -> Vector:
+    allowed = "a vector [x, y, z]"
+    if isinstance(row, str) or not isinstance(row, Iterable):
+        raise GeometryError(what, quoted(row), allowed)
+    coordinates = list(row)
+    if len(coordinates) != 3:
+        raise GeometryError(what, coordinates, allowed)
+    for k, coordinate in enumerate(coordinates, start=1):
+        check_number(f"{what}[{k}]", coordinate)
+    x, y, z = (float(coordinate) for coordinate in coordinates)
+    return (x, y, z)
+
+
+def _check_needs(joint: Joint) -> None:
+    required, optional = NEEDS[joint.kind]
+    for key in required:
+        if getattr(joint, key) is None:
+            allowed = f"given, as joint {joint.name} is {joint.kind}"
+            raise GeometryError(
+                f"{key} of joint {joint.name}", "a missing key", allowed
+            )
+    for key in GEOMETRY:
+        value = getattr(joint, key)
+        if value is not None and key not in required + optional:
+            allowed = f"left out, as joint {joint.name} is {joint.kind}"
+            raise GeometryError(f"{key} of joint {joint.name}", value, allowed)
+
+
+def _check_direction(joint: Joint, key: str) -> None:
+    direction = getattr(joint, key)
+    if direction is not None and not np.any(np.array(direction)):
+        what = f"{key} of joint {joint.name}"
+        raise GeometryError(what, list(direction), "of a length other than zero")
+
+
+def _check_second_direction(joint: Joint) -> None:
+    if joint.direction is None or joint.second_direction is None:
+        return
+    sine = np.linalg.norm(
+        np.cross(_unit(joint.direction), _unit(joint.second_direction))
+    )
+    if sine < 1e-9:
+        what = f"second_direction of joint {joint.name}"
+        value = list(joint.second_direction)
+        raise GeometryError(what, value, "not parallel to its direction")
+
+
+def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
+    count = len(joint.parts)
+    limits = tuple(joint.limits) or (None,) * count
+    what = f"limits of joint {joint.name}"
+    if len(limits) != count:
+        raise GeometryError(f"number of {what}", len(limits), f"{count}")
+    for pair in limits:
+        if pair is None:
+            continue
+        for value in pair:
+            check_number(what, value)
+        if not pair[0] < pair[1]:
+            raise GeometryError(what, list(pair), "a smaller number and a larger one")
+    return limits
+
+
+def _checked_locks(
+    joint: Joint, limits: tuple[Limits | None, ...]
+) -> tuple[float | None, ...]:
+    count = len(joint.parts)
+    locked = tuple(joint.locked) or (None,) * count
+    what = f"locked of joint {joint.name}"
+    if len(locked) != count:
+        allowed = f"{count}, one for each variable"
+        raise GeometryError(f"number of values of {what}", len(locked), allowed)
+    for value, pair in zip(locked, limits, strict=True):
+        if value is None:
+            continue
+        check_number(what, value)
+        if pair is not None and not pair[0] <= value <= pair[1]:
+            raise GeometryError(what, value, f"within the limits {list(pair)}")
+    return locked

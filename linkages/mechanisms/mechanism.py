@@ -1,0 +1,281 @@
+"""A mechanism: bodies and the joints between them, in one closed configuration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from linkages.loop import GeometryError, check_number, quoted
+from linkages.mechanisms.joint import Joint, JointKind, Limits, Motion, Vector
+
+if TYPE_CHECKING:
+    # networkx takes long to import
+    import networkx as nx
+
+__all__ = ["Mechanism", "Pair", "Variable"]
+
+FRAMES = ("frame", "ground", "base", "world")  # names of the body that is drawn at rest
+
+
+class Variable(NamedTuple):
+    """A joint variable: its ``label`` ("J1", or "C1.slide" in a joint of several), the
+    name of its ``joint``, the ``motion``, and what it may be."""
+
+    label: str
+    joint: str
+    motion: Motion
+    limits: Limits | None
+    locked: float | None
+
+
+class Pair(NamedTuple):
+    """Two bodies that a joint joins: ``moved`` moves with respect to ``base`` by the
+    variables of these numbers, one after the other, or freely about ``center``."""
+
+    joint: str
+    base: str
+    moved: str
+    variables: tuple[int, ...]
+    center: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Bodies, joined by ``joints`` that are given in one closed configuration.
+
+    ``is_planar``: it was given in a plane, so that a body has three freedoms for
+    Grübler's count.
+    Raises `GeometryError` where a joint is named twice, a body hangs on one joint only,
+    or the bodies do not hang together.
+    """
+
+    joints: tuple[Joint, ...]
+    name: str = field(default="", compare=False)
+    is_planar: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "joints", _checked_joints(self.joints))
+        _check_graph(self)
+
+    # --- bodies -----------------------------------------------------------------------
+
+    @cached_property
+    def bodies(self) -> tuple[str, ...]:
+        """The names of the bodies, in the order in which joints name them."""
+        names = [body for joint in self.joints for body in joint.bodies]
+        return tuple(dict.fromkeys(names))
+
+    @property
+    def frame(self) -> str:
+        """The body that is drawn at rest: one called "frame", "ground", "base" or
+        "world", else the first."""
+        for name in FRAMES:
+            if name in self.bodies:
+                return name
+        return self.bodies[0]
+
+    def graph(self) -> nx.MultiGraph:
+        """The bodies as nodes; an edge for every pair that a joint joins, its key the
+        pair's number, with the ``joint`` and its ``kind``."""
+        import networkx as nx
+
+        kinds = {joint.name: joint.kind.value for joint in self.joints}
+        graph = nx.MultiGraph(name=self.name)
+        graph.add_nodes_from(self.bodies)
+        for number, pair in enumerate(self.pairs):
+            kind = kinds[pair.joint]
+            graph.add_edge(
+                pair.base, pair.moved, key=number, joint=pair.joint, kind=kind
+            )
+        return graph
+
+    # --- joints -----------------------------------------------------------------------
+
+    def joint(self, name: str) -> Joint:
+        """The joint of this name; raises `GeometryError`."""
+        for joint in self.joints:
+            if joint.name == name:
+                return joint
+        names = ", ".join(joint.name for joint in self.joints)
+        raise GeometryError("joint", quoted(name), f"one of {names}")
+
+    @cached_property
+    def variables(self) -> tuple[Variable, ...]:
+        """The variables of all joints but the spherical ones, in the order of the
+        joints."""
+        variables = []
+        for joint in self.joints:
+            motions = joint.motions * (len(joint.bodies) - 1)
+            rows = zip(joint.parts, motions, joint.limits, joint.locked, strict=True)
+            for part, motion, limits, locked in rows:
+                label = f"{joint.name}.{part}" if part else joint.name
+                variables.append(Variable(label, joint.name, motion, limits, locked))
+        return tuple(variables)
+
+    @cached_property
+    def pairs(self) -> tuple[Pair, ...]:
+        """The pairs of bodies that joints join: k - 1 for a joint of k bodies."""
+        pairs = []
+        first = 0
+        for joint in self.joints:
+            count = len(joint.motions)
+            is_spherical = joint.kind is JointKind.SPHERICAL
+            center = joint.place if is_spherical else None
+            for body in joint.bodies[1:]:
+                numbers = tuple(range(first, first + count))
+                pairs.append(Pair(joint.name, joint.bodies[0], body, numbers, center))
+                first += count
+        return tuple(pairs)
+
+    @property
+    def independent_loops(self) -> int:
+        """How many closed loops are independent of each other."""
+        return len(self.pairs) - len(self.bodies) + 1
+
+    @property
+    def gruebler(self) -> int:
+        """Grübler's count: the freedoms of the joints that are not locked, less six for
+        every independent loop, or three in a plane. Only the rank tells the true
+        mobility."""
+        freedoms = sum(joint.freedoms for joint in self.joints)
+        locked = sum(variable.locked is not None for variable in self.variables)
+        of_body = 3 if self.is_planar else 6
+        return freedoms - locked - of_body * self.independent_loops
+
+    @property
+    def extent(self) -> float:
+        """The largest distance of coordinates of joints; 1 where all are at one
+        point."""
+        places = np.array([joint.place for joint in self.joints])
+        return float(np.ptp(places, axis=0).max()) or 1.0
+
+    # --- other mechanisms -------------------------------------------------------------
+
+    def with_locks(self, values: Mapping[str, float]) -> Mechanism:
+        """The mechanism with variables, by label, locked at ``values`` (rad and unit of
+        length); raises `GeometryError` for a label that it does not have."""
+        labels = [variable.label for variable in self.variables]
+        for label in values:
+            if label not in labels:
+                raise GeometryError(
+                    "lock", quoted(label), f"one of {', '.join(labels)}"
+                )
+        joints = [_locked(joint, values) for joint in self.joints]
+        return replace(self, joints=tuple(joints))
+
+    def scaled(self, factor: float) -> Mechanism:
+        """The mechanism with all lengths times ``factor``."""
+        joints = [_scaled(joint, factor) for joint in self.joints]
+        return replace(self, joints=tuple(joints))
+
+    def mirrored(self) -> Mechanism:
+        """The mirror image in the plane z = 0; turns change their sign."""
+        joints = [_mirrored(joint) for joint in self.joints]
+        return replace(self, joints=tuple(joints))
+
+    def __repr__(self) -> str:
+        kinds = [joint.kind.value for joint in self.joints]
+        counts = [f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds)]
+        return (
+            f"{self.name or 'Mechanism'}: {len(self.bodies)} bodies, "
+            f"{len(self.joints)} joints ({', '.join(counts)}), "
+            f"{self.independent_loops} independent loops"
+        )
+
+
+# --- other mechanisms -----------------------------------------------------------------
+
+
+def _labels(joint: Joint) -> list[str]:
+    return [f"{joint.name}.{part}" if part else joint.name for part in joint.parts]
+
+
+def _locked(joint: Joint, values: Mapping[str, float]) -> Joint:
+    pairs = zip(_labels(joint), joint.locked, strict=True)
+    locked = tuple(values.get(label, value) for label, value in pairs)
+    return replace(joint, locked=locked)
+
+
+def _scaled(joint: Joint, factor: float) -> Joint:
+    check_number("factor", factor)
+    if not factor > 0:
+        raise GeometryError("factor", factor, "positive")
+    factors = [1.0 if motion.is_turn else factor for motion in joint.motions]
+    factors *= len(joint.bodies) - 1
+    limits = [
+        None if pair is None else (one * pair[0], one * pair[1])
+        for one, pair in zip(factors, joint.limits, strict=True)
+    ]
+    locked = [
+        None if value is None else one * value
+        for one, value in zip(factors, joint.locked, strict=True)
+    ]
+    point = joint.point
+    return replace(
+        joint,
+        point=None if point is None else tuple(factor * np.array(point)),
+        pitch=None if joint.pitch is None else factor * joint.pitch,
+        limits=tuple(limits),
+        locked=tuple(locked),
+    )
+
+
+def _mirrored(joint: Joint) -> Joint:
+    """A joint in the mirror: a turn about the mirrored direction has the other sense,
+    so that the direction is turned round as well; slides go with theirs."""
+    x, y, z = joint.place
+    turns = joint.kind not in (JointKind.PRISMATIC, JointKind.PLANAR)
+    sign = -1.0 if turns else 1.0
+
+    def reflected(vector: Vector | None) -> Vector | None:
+        if vector is None:
+            return None
+        return (sign * vector[0], sign * vector[1], -sign * vector[2])
+
+    return replace(
+        joint,
+        point=None if joint.point is None else (x, y, -z),
+        direction=reflected(joint.direction),
+        second_direction=reflected(joint.second_direction),
+        pitch=None if joint.pitch is None else -joint.pitch,
+    )
+
+
+# --- checks ---------------------------------------------------------------------------
+
+
+def _checked_joints(joints: object) -> tuple[Joint, ...]:
+    if isinstance(joints, str) or not isinstance(joints, Iterable):
+        raise GeometryError("joints", quoted(joints), "a list of joints")
+    checked = tuple(joints)
+    for joint in checked:
+        if not isinstance(joint, Joint):
+            raise GeometryError("joints", repr(joint), "a list of joints")
+    names = [joint.name for joint in checked]
+    for name in names:
+        if names.count(name) > 1:
+            raise GeometryError("name of a joint", quoted(name), "given once")
+    if len(checked) < 2:
+        raise GeometryError("number of joints", len(checked), "two or more")
+    return checked
+
+
+def _check_graph(mechanism: Mechanism) -> None:
+    import networkx as nx
+
+    graph = mechanism.graph()
+    parts = [sorted(part) for part in nx.connected_components(graph)]
+    if len(parts) > 1:
+        parts.sort(key=lambda part: mechanism.bodies.index(part[0]))
+        far = ", ".join(parts[1])
+        allowed = f"joined to {parts[0][0]} by a chain of joints"
+        raise GeometryError("bodies", far, allowed)
+    for body in mechanism.bodies:
+        if graph.degree(body) < 2:
+            joint = next(j.name for j in mechanism.joints if body in j.bodies)
+            allowed = "two joints or more on every body"
+            raise GeometryError(f"body {body}", f"one joint only, {joint},", allowed)

@@ -1,0 +1,100 @@
+"""Displacements as unit dual quaternions over numbers of any kind.
+
+A motor (w, x, y, z; w', x', y', z') is the rotation w + x i + y j + z k, and w' to z'
+half the translation times it. Numbers that are zero without depending on an unknown
+stay so: the equations of planar and spherical chains come out short.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+__all__ = ["IDENTITY", "Motor", "product", "rotated_about", "slide", "turn"]
+
+Number: TypeAlias = Any
+Quaternion: TypeAlias = tuple[Number, Number, Number, Number]
+Point: TypeAlias = list[Number]
+
+
+class Motor(NamedTuple):
+    """A displacement: ``real`` is the rotation, ``dual`` half the translation times
+    it."""
+
+    real: Quaternion
+    dual: Quaternion
+
+
+IDENTITY = Motor((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+
+
+def turn(
+    direction: np.ndarray,
+    moment: np.ndarray,
+    cosine: Number,
+    sine: Number,
+    advance: Number = 0.0,
+) -> Motor:
+    """The turn about the line of unit ``direction`` (3,) and ``moment`` (3,) by an angle
+    whose half has this ``cosine`` and ``sine``, with an ``advance`` along it."""
+    half = 0.5 * advance
+    real = (cosine, *(sine * float(d) for d in direction))
+    dual = [-half * sine]
+    for d, m in zip(direction, moment, strict=True):
+        dual.append(sine * float(m) + half * cosine * float(d))
+    return Motor(real, tuple(dual))
+
+
+def slide(direction: np.ndarray, distance: Number) -> Motor:
+    """The translation by a ``distance`` along the unit vector ``direction`` (3,)."""
+    half = 0.5 * distance
+    return Motor((1.0, 0.0, 0.0, 0.0), (0.0, *(half * float(d) for d in direction)))
+
+
+def product(first: Motor, second: Motor) -> Motor:
+    """The displacement that does the ``second`` one first, in fixed axes."""
+    one = _quaternion_product(first.real, second.dual)
+    other = _quaternion_product(first.dual, second.real)
+    dual = tuple(a + b for a, b in zip(one, other, strict=True))
+    return Motor(_quaternion_product(first.real, second.real), dual)
+
+
+def _quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
+    return (
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+        a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0],
+    )
+
+
+def rotated_about(
+    point: Point,
+    direction: np.ndarray,
+    center: np.ndarray,
+    cosine: Number,
+    sine: Number,
+) -> Point:
+    """A ``point`` (3,) turned about the axis through ``center`` (3,) along the unit
+    vector ``direction`` (3,), by an angle with this ``cosine`` and ``sine``."""
+    x, y, z = direction
+    along = np.outer(direction, direction)
+    across = np.eye(3) - along
+    turned = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    offsets = [one - float(c) for one, c in zip(point, center, strict=True)]
+    result = []
+    for row in range(3):
+        kept = _combination(along[row], offsets)
+        first = _combination(across[row], offsets)
+        second = _combination(turned[row], offsets)
+        result.append(float(center[row]) + kept + cosine * first + sine * second)
+    return result
+
+
+def _combination(weights: np.ndarray, numbers: Point) -> Number:
+    total: Number = 0.0
+    for weight, number in zip(weights, numbers, strict=True):
+        if weight != 0.0:
+            total = total + float(weight) * number
+    return total

@@ -1,0 +1,174 @@
+"""Where the bodies of a mechanism are."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from linkages.mechanisms.displacements import displacement_of, transforms, turns
+from linkages.mechanisms.rods import Rod
+from linkages.mechanisms.structure import Structure
+
+__all__ = ["Poses", "rotation_vectors"]
+
+SMALL = 1e-12  # sine below which two directions are parallel
+
+
+class Poses:
+    """The displacements of all bodies of a mechanism with a ``structure`` from the
+    reference configuration, the frame at rest. Lengths are in the user's unit."""
+
+    def __init__(self, structure: Structure):
+        self.structure = structure
+        self.mechanism = structure.mechanism
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Homogeneous transforms (k, b, 4, 4) of the b bodies at configurations (k, n),
+        in the unknowns of the structure."""
+        bodies = self.mechanism.bodies
+        poses = np.tile(np.eye(4), (len(points), len(bodies), 1, 1))
+        for origin, goal, number, sign in self._tree:
+            motion = self._displacement(points, number)
+            if sign < 0:
+                motion = _inverse(motion)
+            poses[:, goal] = poses[:, origin] @ motion
+        for rod in self.structure.rods:
+            self._place_rod(poses, points, rod)
+        frame = bodies.index(self.mechanism.frame)
+        from_frame: np.ndarray = _inverse(poses[:, frame])[:, None] @ poses
+        return from_frame
+
+    def rotations(self, points: np.ndarray, number: int) -> np.ndarray:
+        """The rotations (k, 3, 3) of the moved body of a pair with respect to its
+        base."""
+        bodies = self.mechanism.bodies
+        pair = self.mechanism.pairs[number]
+        poses = self.at(points)
+        base = poses[:, bodies.index(pair.base), :3, :3]
+        moved = poses[:, bodies.index(pair.moved), :3, :3]
+        rotations: np.ndarray = np.swapaxes(base, 1, 2) @ moved
+        return rotations
+
+    @cached_property
+    def _tree(self) -> list[tuple[int, int, int, int]]:
+        """Steps (from body, to body, across pair, sign) that reach every body but the
+        idle ones, from one that is not."""
+        pairs = self.structure.tree_pairs
+        idle = {body for rod in self.structure.rods for body in rod.bodies}
+        steps = []
+        reached = [min(set(range(len(self.mechanism.bodies))) - idle)]
+        for body in reached:  # it grows on the way
+            for number, ends in pairs.items():
+                for here, there, sign in (
+                    (ends.base, ends.moved, 1),
+                    (ends.moved, ends.base, -1),
+                ):
+                    if here == body and there not in reached:
+                        steps.append((here, there, number, sign))
+                        reached.append(there)
+        return steps
+
+    def _displacement(self, points: np.ndarray, number: int) -> np.ndarray:
+        """The transform (k, 4, 4) of the moved body of a pair with respect to its
+        base."""
+        result = np.tile(np.eye(4), (len(points), 1, 1))
+        columns = list(self.structure.embedded.get(number, ()))
+        if columns:
+            a, b = points[:, columns[:3]], points[:, columns[3:6]]
+            rotation = np.stack([a, b, np.cross(a, b)], axis=-1)
+            center = self.structure.center(number)
+            result[:, :3, :3] = rotation
+            result[:, :3, 3] = center - rotation @ center
+            if len(columns) > 6:
+                result[:, :3, 3] += points[:, columns[6:]] * self.structure.unit
+            return result
+        for variable in self.structure.variables_of(number):
+            motion = self.mechanism.variables[variable].motion
+            values = self.structure.values(points, variable)
+            result = result @ transforms(motion, values)
+        return result
+
+    def _place_rod(self, poses: np.ndarray, points: np.ndarray, rod: Rod) -> None:
+        """Fill in the ``poses`` (k, b, 4, 4) of the bodies of a rod at configurations
+        (k, n), turned as little as can be."""
+        centers = [self.structure.center(pair) for pair in rod.pairs]
+        places = [
+            poses[:, body, :3, :3] @ center + poses[:, body, :3, 3]
+            for body, center in zip(rod.ends, centers, strict=True)
+        ]
+        now = places[1] - places[0]
+        now = now / np.linalg.norm(now, axis=1)[:, None]
+        if rod.leg is not None:  # beyond length 0 it points the other way
+            slide = self.structure.values(points, rod.leg.variable)
+            now = now * np.sign(rod.length + rod.leg.sign * slide)[:, None]
+        inside = self._inside(rod)
+        holder = self._holder(rod, 1)
+        far = (inside[holder] @ np.append(centers[1], 1.0))[:3]
+        along = (far - centers[0]) / np.linalg.norm(far - centers[0])
+        rotation = _shortest_rotations(along, now)
+        starts = [centers[0], far]
+        for part, start, place in zip(rod.parts, starts, places, strict=True):
+            pose = np.tile(np.eye(4), (len(poses), 1, 1))
+            pose[:, :3, :3] = rotation
+            pose[:, :3, 3] = place - rotation @ start
+            for body in part:
+                poses[:, body] = pose @ inside[body]
+
+    def _holder(self, rod: Rod, end: int) -> int:
+        """The body of a rod that its first or second spherical joint holds."""
+        pair = self.mechanism.pairs[rod.pairs[end]]
+        names = (pair.base, pair.moved)
+        numbers = [self.mechanism.bodies.index(name) for name in names]
+        return next(number for number in numbers if number in rod.parts[end])
+
+    def _inside(self, rod: Rod) -> dict[int, np.ndarray]:
+        """The displacements (4, 4) of the bodies of a rod with respect to the one that
+        its first joint holds, slides at 0."""
+        bodies = self.mechanism.bodies
+        inside = {self._holder(rod, 0): np.eye(4)}
+        pending = list(rod.inner)
+        while pending:
+            number = pending.pop(0)
+            pair = self.mechanism.pairs[number]
+            base, moved = bodies.index(pair.base), bodies.index(pair.moved)
+            is_slide = rod.leg is not None and rod.leg.variable in pair.variables
+            step = np.eye(4) if is_slide else displacement_of(self.mechanism, number)
+            if base in inside:
+                inside.setdefault(moved, inside[base] @ step)
+            elif moved in inside:
+                inside[base] = inside[moved] @ np.linalg.inv(step)
+            else:
+                pending.append(number)
+        return inside
+
+
+def rotation_vectors(rotations: np.ndarray) -> np.ndarray:
+    """Rotation vectors (k, 3), rad, of rotations (k, 3, 3)."""
+    from scipy.spatial.transform import Rotation
+
+    vectors: np.ndarray = Rotation.from_matrix(rotations).as_rotvec()
+    return vectors
+
+
+def _shortest_rotations(start: np.ndarray, goals: np.ndarray) -> np.ndarray:
+    """The smallest rotations (k, 3, 3) that turn a unit vector (3,) to ``goals``
+    (k, 3)."""
+    rotations = []
+    for goal in goals:
+        axis = np.cross(start, goal)
+        sine, cosine = float(np.linalg.norm(axis)), float(start @ goal)
+        if sine < SMALL:
+            axis = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
+        axis = axis / np.linalg.norm(axis)
+        rotations.append(turns(axis, np.array([np.arctan2(sine, cosine)]))[0])
+    return np.array(rotations).reshape(-1, 3, 3)
+
+
+def _inverse(transforms: np.ndarray) -> np.ndarray:
+    """The inverses of displacements (k, 4, 4)."""
+    result = np.tile(np.eye(4), (len(transforms), 1, 1))
+    transposed = np.swapaxes(transforms[:, :3, :3], 1, 2)
+    result[:, :3, :3] = transposed
+    result[:, :3, 3] = -np.einsum("kij,kj->ki", transposed, transforms[:, :3, 3])
+    return result

@@ -1,0 +1,119 @@
+"""Joint variables of a mechanism, read from the unknowns of its equations."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TypeAlias
+
+import numpy as np
+
+from bifurc.torus import wrap
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.poses import Poses, rotation_vectors
+from linkages.mechanisms.single_loop import SingleLoop, as_single_loop
+from linkages.mechanisms.structure import Structure
+
+__all__ = ["JointVariables", "Readout"]
+
+# A number for a joint of one variable, a list for another one: rad, the user's unit.
+JointVariables: TypeAlias = dict[str, float | list[float]]
+
+
+class Readout:
+    """The variables of a ``mechanism`` at configurations of its atlas.
+
+    The unknowns of an atlas are those of its `Structure`, or the joint angles of a
+    `SingleLoop` where it is one.
+    """
+
+    def __init__(self, mechanism: Mechanism):
+        self.mechanism = mechanism
+        self.structure = Structure(mechanism)
+
+    @cached_property
+    def single_loop(self) -> SingleLoop | None:
+        """The loop that the atlas is of; None where it is of a `MechanismClosure`."""
+        return as_single_loop(self.structure)
+
+    def unknowns(self, points: np.ndarray) -> np.ndarray:
+        """Configurations (k, n) of the atlas in the unknowns of the structure."""
+        single = self.single_loop
+        if single is None:
+            return points
+        turned: np.ndarray = single.signs * (points - single.reference)
+        unknowns = np.zeros_like(turned)
+        columns = [self.structure.column_of[number] for number in single.variables]
+        unknowns[:, columns] = turned
+        return unknowns
+
+    def labels(self) -> list[str]:
+        """What every variable is called, in the order of the joints; those of a
+        spherical joint are not among them."""
+        return [variable.label for variable in self.mechanism.variables]
+
+    def label_of_unknown(self, index: int) -> str:
+        """What the unknown of this index of the atlas is called."""
+        single = self.single_loop
+        if single is None:
+            return self.structure.unknowns[index].label
+        return self.mechanism.variables[int(single.variables[index])].label
+
+    def values(self, points: np.ndarray) -> np.ndarray:
+        """The values (k, v) of all variables at configurations (k, n) of an atlas, rad
+        and the user's unit, as they stand, without regard to periods."""
+        unknowns = self.unknowns(np.atleast_2d(points))
+        columns = [
+            self.structure.values(unknowns, number)
+            for number in range(len(self.mechanism.variables))
+        ]
+        return np.array(columns, dtype=float).reshape(len(columns), -1).T
+
+    def wrapped(self, point: np.ndarray) -> np.ndarray:
+        """The values (v,) at one configuration (n,), angles between -pi and pi."""
+        return wrap(self.values(point[None])[0], self.periods)
+
+    @cached_property
+    def periods(self) -> np.ndarray:
+        """The periods (v,) of the variables, inf where there is none."""
+        periods = np.full(len(self.mechanism.variables), np.inf)
+        for unknown in self.structure.unknowns:
+            if unknown.variable >= 0:
+                periods[unknown.variable] = unknown.period
+        return periods
+
+    def limits(self) -> dict[str, tuple[float, float]]:
+        """The limits within which variables are followed, by label, in rad and the
+        user's unit; angles without limits are left out."""
+        limits = {}
+        for unknown in self.structure.unknowns:
+            if unknown.variable >= 0 and np.isfinite(unknown.high):
+                unit = 1.0 if unknown.is_angle else self.structure.unit
+                limits[unknown.label] = (unit * unknown.low, unit * unknown.high)
+        return limits
+
+    def variables(self, point: np.ndarray) -> JointVariables:
+        """The variables of every joint at one configuration (n,) of an atlas; those of
+        a spherical joint are its rotation vectors. A rigid joint has none."""
+        values = self.wrapped(point)
+        by_joint: dict[str, list[float]] = {}
+        for number, pair in enumerate(self.mechanism.pairs):
+            numbers = [float(values[k]) for k in pair.variables]
+            if pair.center is not None:
+                unknowns = self.unknowns(point[None])
+                rotations = self._poses.rotations(unknowns, number)
+                numbers = rotation_vectors(rotations)[0].tolist()
+            by_joint.setdefault(pair.joint, []).extend(numbers)
+        result: JointVariables = {}
+        for joint, numbers in by_joint.items():
+            if numbers:
+                result[joint] = numbers[0] if len(numbers) == 1 else numbers
+        return result
+
+    @cached_property
+    def _poses(self) -> Poses:
+        return Poses(self.structure)
+
+    def poses(self, points: np.ndarray) -> np.ndarray:
+        """The transforms (k, b, 4, 4) of all bodies at configurations (k, n) of an
+        atlas, from the reference configuration, the frame at rest."""
+        return self._poses.at(self.unknowns(np.atleast_2d(points)))

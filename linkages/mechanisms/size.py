@@ -1,0 +1,113 @@
+"""How large a mechanism is: lengths that hang on no choice of points on its axes."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["Size"]
+
+ROUNDING = 1e-12  # of the spread of the points: a distance that is none
+# freedoms of the point of a joint: along its axis, or anywhere
+ALONG = (JointKind.REVOLUTE, JointKind.CYLINDRICAL, JointKind.HELICAL)
+ANYWHERE = (JointKind.PRISMATIC, JointKind.PLANAR, JointKind.RIGID)
+
+
+class _Span(NamedTuple):
+    """Two joints, by number, on one body."""
+
+    body: str
+    first: int
+    second: int
+
+
+class Size:
+    """The lengths of a mechanism's bodies.
+
+    Every joint is represented by the point of its axis that makes all bodies together
+    as short as can be (least squares). The point of a slide is anywhere.
+    """
+
+    def __init__(self, mechanism: Mechanism):
+        self.mechanism = mechanism
+
+    @property
+    def characteristic_length(self) -> float:
+        """The mean distance of joints on one body, of those that are apart; where all
+        meet in a point, that of the points that are given; 1 where these do as well."""
+        distances = self._distances(self.points)
+        if len(distances):
+            return float(distances.mean())
+        distances = self._distances(self._given)
+        return float(distances.mean()) if len(distances) else 1.0
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """A point (k, 3) for each of the k joints."""
+        joints = self.mechanism.joints
+        bases = [_free_directions(joint) for joint in joints]
+        starts = np.cumsum([0, *(len(basis) for basis in bases)])
+        rows, columns = 3 * len(self._spans), int(starts[-1])
+        matrix = np.zeros((rows, columns))
+        gaps = np.zeros(rows)
+        for k, span in enumerate(self._spans):
+            row = slice(3 * k, 3 * k + 3)
+            for joint, sign in ((span.first, 1.0), (span.second, -1.0)):
+                free = slice(starts[joint], starts[joint + 1])
+                matrix[row, free] += sign * bases[joint].T
+            gaps[row] = self._given[span.second] - self._given[span.first]
+        shifts = np.linalg.lstsq(matrix, gaps, rcond=None)[0]
+        points = self._given.copy()
+        for joint, basis in enumerate(bases):
+            points[joint] += shifts[starts[joint] : starts[joint + 1]] @ basis
+        return points
+
+    @cached_property
+    def body_lengths(self) -> dict[str, float]:
+        """The largest distance of two joints on each body; the characteristic length
+        where they all meet."""
+        lengths = dict.fromkeys(self.mechanism.bodies, 0.0)
+        if not len(self._distances(self.points)):
+            return dict.fromkeys(lengths, self.characteristic_length)
+        for span in self._spans:
+            gap = self.points[span.first] - self.points[span.second]
+            distance = float(np.linalg.norm(gap))
+            lengths[span.body] = max(lengths[span.body], distance)
+        return lengths
+
+    @cached_property
+    def _given(self) -> np.ndarray:
+        return np.array([joint.place for joint in self.mechanism.joints])
+
+    @cached_property
+    def _spans(self) -> list[_Span]:
+        spans = []
+        for body in self.mechanism.bodies:
+            joints = self.mechanism.joints
+            here = [k for k, joint in enumerate(joints) if body in joint.bodies]
+            spans += [_Span(body, *two) for two in combinations(here, 2)]
+        return spans
+
+    def _distances(self, points: np.ndarray) -> np.ndarray:
+        """The distances of joints on one body that are apart."""
+        spread = float(np.ptp(self._given, axis=0).max())
+        first = points[[span.first for span in self._spans]]
+        second = points[[span.second for span in self._spans]]
+        distances = np.linalg.norm(first - second, axis=1)
+        apart: np.ndarray = distances[distances > ROUNDING * spread]
+        return apart
+
+
+def _free_directions(joint: Joint) -> np.ndarray:
+    """Unit vectors (k, 3) along which the point of a joint may be chosen."""
+    if joint.kind in ANYWHERE:
+        return np.eye(3)
+    if joint.kind in ALONG:
+        return joint.motions[0].direction[None]
+    return np.empty((0, 3))

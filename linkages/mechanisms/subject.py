@@ -1,0 +1,73 @@
+"""A mechanism as values that JSON can hold, and back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from bifurc.atlas import Atlas
+from linkages.labels import NoLinkageError
+from linkages.loop import GeometryError
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["joint_values", "mechanism_from", "mechanism_of", "mechanism_subject"]
+
+
+def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
+    """The ``subject`` of an atlas of a mechanism."""
+    joints = [joint_values(joint) for joint in mechanism.joints]
+    values = {"joints": joints, "is_planar": mechanism.is_planar}
+    return {"name": mechanism.name, "mechanism": values}
+
+
+def mechanism_of(atlas: Atlas) -> Mechanism | None:
+    """The mechanism that an atlas is of; None where it is of a loop that was given as
+    such, or of something else. Raises `NoLinkageError` where it is damaged."""
+    values = atlas.subject.get("mechanism")
+    if values is None:
+        return None
+    try:
+        return mechanism_from(values, str(atlas.subject.get("name", "")))
+    except GeometryError as error:
+        raise NoLinkageError(str(error)) from None
+
+
+def joint_values(joint: Joint) -> dict[str, Any]:
+    """A joint in values that JSON can hold: angles in rad, lengths in the user's unit;
+    without the keys that say nothing."""
+    values: dict[str, Any] = {
+        "name": joint.name,
+        "kind": joint.kind.value,
+        "bodies": list(joint.bodies),
+    }
+    for key in ("point", "direction", "second_direction"):
+        vector = getattr(joint, key)
+        if vector is not None:
+            values[key] = list(vector)
+    if joint.pitch is not None:
+        values["pitch"] = joint.pitch
+    if any(pair is not None for pair in joint.limits):
+        values["limits"] = [
+            None if pair is None else list(pair) for pair in joint.limits
+        ]
+    if any(value is not None for value in joint.locked):
+        values["locked"] = list(joint.locked)
+    return values
+
+
+def mechanism_from(given: object, name: str) -> Mechanism:
+    """The mechanism of the values that `mechanism_subject` gave; raises `GeometryError`
+    for others."""
+    values = given.get("joints") if isinstance(given, dict) else None
+    if not isinstance(values, list) or not all(isinstance(v, dict) for v in values):
+        raise GeometryError("joints", repr(values), "a list of joints")
+    joints = []
+    for value in values:
+        try:
+            limits = [None if p is None else tuple(p) for p in value.get("limits", [])]
+            others = {key: v for key, v in value.items() if key != "limits"}
+            joints.append(Joint(**{**others, "limits": tuple(limits)}))
+        except TypeError as error:
+            raise GeometryError("joint", repr(value), f"a joint: {error}") from None
+    assert isinstance(given, dict)
+    return Mechanism(tuple(joints), name, bool(given.get("is_planar", False)))

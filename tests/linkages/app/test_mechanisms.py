@@ -1,0 +1,178 @@
+"""Mechanisms on the command line: maps, JSON, files, locks, and what is refused."""
+
+import json
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from bifurc.files.dataset import load_atlas
+from linkages.app.cli import main
+from linkages.app.commands.map_command import write_numbers
+from linkages.linkage import load
+from linkages.mapping import map_linkage
+from linkages.mechanisms.subject import mechanism_of
+
+SLIDER_CRANK = """
+name = "slider-crank"
+[[joints]]
+name = "J1"
+kind = "revolute"
+bodies = ["frame", "crank"]
+point = [0, 0, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "J2"
+kind = "revolute"
+bodies = ["crank", "rod"]
+point = [60, 80, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "J3"
+kind = "revolute"
+bodies = ["rod", "slider"]
+point = [120, 0, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "J4"
+kind = "prismatic"
+bodies = ["frame", "slider"]
+direction = [1, 0, 0]
+"""
+FIVE_BAR = """
+fixed = ["A", "E"]
+bars = [["A", "B"], ["B", "C"], ["C", "D"], ["D", "E"]]
+[points]
+A = [0, 0]
+B = [0.3, 1.1]
+C = [1.4, 1.9]
+D = [2.6, 1.0]
+E = [2.2, 0]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("slider_crank.toml").write_text(SLIDER_CRANK, encoding="utf-8")
+    Path("five_bar.toml").write_text(FIVE_BAR, encoding="utf-8")
+    return tmp_path
+
+
+def run(*arguments, code=0):
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == code, result.output
+    return result
+
+
+def test_the_json_document_of_a_mechanism_has_variables_by_joint_name(folder):
+    document = json.loads(run("map", "slider_crank.toml", "--json").stdout)
+    assert document["linkage"] == {"name": "slider-crank"}
+    assert (document["mobility"], document["gruebler"]) == (1, -2)
+    first, second = document["bifurcations"]
+    for bifurcation in (first, second):
+        assert list(bifurcation["variables"]) == ["J1", "J2", "J3", "J4"]
+        # at the crank's pivot, in the unit of the file
+        assert bifurcation["variables"]["J4"] == pytest.approx(-120.0)
+        assert bifurcation["theta"] == list(bifurcation["variables"].values())
+    crank, turning = document["forms"]
+    assert crank["ranges"]["J4"]["low"] == pytest.approx(-320.0)
+    assert crank["ranges"]["J4"]["high"] == pytest.approx(80.0)
+    assert crank["ranges"]["J1"]["turns"] == 1
+    assert crank["still_joints"] == [] and crank["bodies_as_one"] == []
+    assert turning["still_joints"] == ["J2", "J4"]
+    assert turning["bodies_as_one"] == [["frame", "slider"], ["crank", "rod"]]
+    mechanism = document["mechanism"]
+    assert mechanism["bodies"] == ["frame", "crank", "rod", "slider"]
+    assert mechanism["variables"][3]["unit"] == "length"
+    assert mechanism["variables"][3]["limits"] == [-640.0, 640.0]
+    (loop,) = mechanism["loops"]
+    assert (loop["constraints"], loop["redundant"]) == (6, 3)
+    assert {point["variable"] for point in document["dead_points"]} == {"J4"}
+
+
+def test_a_loop_keeps_its_document_and_has_two_counts_more(folder):
+    document = json.loads(run("map", "bennett", "--json").stdout)
+    assert (document["mobility"], document["gruebler"]) == (1, -2)
+    assert "mechanism" not in document
+    assert "variables" not in document["forms"][0]
+
+
+def test_the_summary_names_joints_limits_and_counts(folder):
+    output = run("map", "slider_crank.toml").stdout
+    assert "Followed within limits: J4 from -640 to 640." in output
+    assert "Mobility 1; Grübler's count is -2." in output
+    assert "J1, J2, J3, J4 (deg, lengths)" in output
+    assert "frame = slider, crank = rod" in output
+
+
+def test_locks_are_in_degrees_and_make_forms_of_a_surface(folder):
+    document = json.loads(
+        run("map", "five_bar.toml", "--lock", "A=20", "--json").stdout
+    )
+    assert document["mobility"] == 1
+    assert document["gruebler"] == 1
+    for form in document["forms"]:
+        assert form["variables"]["A"] == pytest.approx(0.3490658503988659)
+        assert "A" in form["still_joints"]
+
+
+def test_a_driver_holds_as_many_joints_as_it_takes_and_says_which(folder):
+    result = run("map", "five_bar.toml", "--drive", "A", "--json")
+    assert "also held where they are in the reference configuration: B" in result.stderr
+    document = json.loads(result.stdout)
+    assert document["mobility"] == 1
+    assert document["mechanism"]["variables"][1]["locked"] == 0.0
+
+
+def test_files_of_a_mechanism_can_be_read_again(folder):
+    Path("out").mkdir()
+    written = write_numbers(map_linkage(load("slider_crank.toml")), Path("out"))
+    assert [path.name for path in written] == [
+        "atlas.nc",
+        "graph.graphml",
+        "summary.txt",
+    ]
+    atlas = load_atlas("out/atlas.nc")
+    mechanism = mechanism_of(atlas)
+    assert [joint.name for joint in mechanism.joints] == ["J1", "J2", "J3", "J4"]
+    output = run("route", "out/atlas.nc", "Form 1", "Form 2").stdout
+    assert "turn J1" in output and "2 legs" in output
+
+
+def test_singular_points_are_confirmed_in_many_digits(folder):
+    output = run("map", "slider_crank.toml", "--digits", "40").stdout
+    assert "Confirmation at 40 digits" in output
+    assert output.count("quadratic") >= 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("identify", "slider_crank.toml"), "it is a mechanism"),
+        (("view", "slider_crank.toml", "--no-open"), "it is a mechanism"),
+        (("tolerance", "slider_crank.toml"), "it is a mechanism"),
+        (("clearance", "slider_crank.toml", "--diameter", "1"), "it is a mechanism"),
+        (("export", "slider_crank.toml", "--to", "x.glb"), "it is a mechanism"),
+        (("verify", "slider_crank.toml"), "slider_crank.toml"),
+        (("map", "slider_crank.toml", "--lock", "J9=1"), "one of J1, J2, J3, J4"),
+        (("map", "slider_crank.toml", "--lock", "J1"), "of the form key=value"),
+        (("map", "slider_crank.toml", "--lock", "J1=x"), "--lock J1"),
+        (("map", "five_bar.toml", "--lock", "A=1", "--lock", "A=2"), "given twice"),
+        (("map", "slider_crank.toml", "--drive", "J9"), "joint variables J1"),
+        (("map", "bennett", "--lock", "1=40"), "takes a mechanism"),
+        (("map", "slider_crank.toml", "--param", "a=1"), "left out with a file"),
+    ],
+)
+def test_what_a_mechanism_cannot_do_is_said_in_one_line(folder, arguments, message):
+    before = set(Path().iterdir())
+    result = run(*arguments, code=2)
+    assert message in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+    assert set(Path().iterdir()) == before
+
+
+def test_all_joints_locked_leave_nothing_to_map(folder):
+    locks = [word for joint in "ABCDE" for word in ("--lock", f"{joint}=0")]
+    result = run("map", "five_bar.toml", *locks, code=2)
+    assert "one is left to move" in result.stderr

@@ -1,0 +1,150 @@
+"""Mechanisms in TOML files: what is read, and what is refused."""
+
+import numpy as np
+import pytest
+
+import linkages
+from linkages.file import LinkageFileError
+
+JOINT = """
+[[joints]]
+name = "{name}"
+kind = "revolute"
+bodies = {bodies}
+point = {point}
+direction = [0, 0, 1]
+"""
+
+
+def four_bar(extra="", head=""):
+    rows = [
+        ("A", '["frame", "crank"]', "[0, 0, 0]"),
+        ("B", '["crank", "coupler"]', "[0, 1, 0]"),
+        ("C", '["coupler", "rocker"]', "[2, 1.5, 0]"),
+    ]
+    text = head
+    for name, bodies, point in rows:
+        text += JOINT.format(name=name, bodies=bodies, point=point)
+    last = JOINT.format(name="D", bodies='["rocker", "frame"]', point="[2, 0, 0]")
+    return text + last + extra
+
+
+BARS = """
+name = "triangle on a hinge"
+fixed = ["A", "B"]
+bars = [["A", "C"], ["B", "D"], ["C", "D"{length}]]
+[points]
+A = [0, 0]
+B = [2, 0]
+C = [0, 1]
+D = [2, 1.5]
+"""
+
+
+def read(tmp_path, text):
+    path = tmp_path / "mechanism.toml"
+    path.write_text(text, encoding="utf-8")
+    return linkages.load(path)
+
+
+def test_joints_are_read_with_limits_and_locks_in_degrees(tmp_path):
+    mechanism = read(tmp_path, four_bar("limits = [-90, 45]\nlocked = 30\n"))
+    assert mechanism.name == "mechanism"
+    assert [joint.name for joint in mechanism.joints] == list("ABCD")
+    assert np.allclose(mechanism.joints[3].limits, [(-np.pi / 2, np.pi / 4)])
+    assert np.allclose(mechanism.joints[3].locked, np.pi / 6)
+    mechanism = read(tmp_path, four_bar("locked = 1.5\n", 'angles = "rad"\n'))
+    assert mechanism.joints[3].locked == (1.5,)
+
+
+def test_a_joint_of_several_variables_has_lists_of_limits_and_locks(tmp_path):
+    extra = "limits = [[-90, 90], [-2, 2]]\nlocked = [45, 0.5]\n"
+    text = four_bar(extra)
+    text = text[: text.rindex("revolute")] + text[text.rindex("revolute") :].replace(
+        "revolute", "cylindrical", 1
+    )
+    joint = read(tmp_path, text).joints[3]
+    assert np.allclose(joint.limits, [(-np.pi / 2, np.pi / 2), (-2, 2)])
+    assert np.allclose(joint.locked, (np.pi / 4, 0.5))
+
+
+def test_bars_are_bodies_and_points_are_joints(tmp_path):
+    mechanism = read(tmp_path, BARS.format(length=""))
+    assert mechanism.bodies == ("frame", "A-C", "B-D", "C-D")
+    assert [joint.name for joint in mechanism.joints] == list("ABCD")
+    assert mechanism.gruebler == 1
+
+
+def test_lengths_that_do_not_fit_the_points_are_assembled_first(tmp_path):
+    mechanism = read(tmp_path, BARS.format(length=", 2.5"))
+    c, d = (np.array(mechanism.joint(name).point) for name in "CD")
+    assert abs(np.linalg.norm(c - d) - 2.5) < 1e-15
+    assert abs(np.linalg.norm(c) - 1.0) < 1e-15
+    assert abs(np.linalg.norm(d - [2, 0, 0]) - 1.5) < 1e-15
+
+
+def test_a_point_on_a_bar_is_rigid_with_it_and_so_is_one_on_the_frame(tmp_path):
+    text = """
+fixed = ["A", "B"]
+bars = [["A", "a"], ["B", "b"], ["a", "b"], ["M", "m"]]
+[points]
+A = [0, 0]
+B = [2, 0]
+a = [0.5, 1]
+b = [2.5, 1]
+[points_on_bars]
+M = ["A", "B", [0.5, 0.25]]
+m = ["a", "b", [0.5, 0.25]]
+"""
+    mechanism = read(tmp_path, text)
+    assert mechanism.joint("M").bodies == ("frame", "M-m")
+    assert mechanism.joint("m").bodies == ("a-b", "M-m")
+    assert np.allclose(mechanism.joint("m").point, (1.5, 1.5, 0))
+
+
+MALFORMED = {
+    "joints = 3\n": r"joints: 3 is not allowed.* tables",
+    "joints = []\n": r"number of joints: 0",
+    "joints = [1]\n": r"joints\[1\]: 1 .* a table",
+    four_bar("axis = 1\n"): r"key of joint D: 'axis' .* one of name, kind",
+    four_bar("", "lengths = [1]\n"): r"key: 'lengths' .* one of name, angles, joints",
+    four_bar("", 'angles = "turns"\n'): r'angles: "turns" .* "deg"',
+    four_bar("", "name = 3\n"): r"name: 3 .* text",
+    four_bar("locked = [1, 2]\n"): r"locked of joint D: \[1, 2\] .* a number",
+    four_bar('locked = "x"\n'): r'locked of joint D: "x" .* number',
+    four_bar("limits = 3\n"): r"limits of joint D: 3 .* \[low, high\]",
+    four_bar("limits = [1, 2, 3]\n"): r"limits of joint D: .* \[low, high\]",
+    four_bar().replace('kind = "revolute"\n', "", 1): r"kind of joint A: a missing key",
+    four_bar().replace('name = "A"\n', ""): r"name of joints\[1\]: a missing key",
+    four_bar().replace("[2, 1.5, 0]", "[2, 1.5]"): r"point of joint C: \[2, 1.5\]",
+    four_bar().replace('"rocker", "frame"', '"rocker", "wall"'): r"body .* one joint",
+    'bars = [["A", "B"]]\n': r"points: None .* table",
+    "[points]\nA = [0, 0]\n": r"bars: None .* list of bars",
+    BARS.format(length=", -1"): r"length of bars\[3\]: -1.0 .* positive",
+    BARS.format(length=", 9"): r"length of bar C-D: 9.0 .* misses its length by",
+    BARS.format(length="").replace('"B", "D"', '"B", "X"'): r'bars\[2\]: "X" .* one of',
+    BARS.format(length="").replace('"B", "D"', '"B", "B"'): r"bars\[2\]: .* two points",
+    BARS.format(length="").replace('"B", "D"', '"C", "A"'): r"bars\[2\]: .* once",
+    BARS.format(length="").replace('["A", "B"]', '["A", "Q"]'): r'fixed: "Q" .* one of',
+    BARS.format(length="").replace('["A", "B"]', '["A", "A"]'): r'fixed: "A" .* once',
+    BARS.format(length="").replace("D = [2, 1.5]", "D = [2]"): r"point D: \[2\] .* two",
+    BARS.format(length="") + "E = [1, 1]\n": r"point E: on no bar",
+    BARS.format(length="").replace('], ["C", "D"]', ", 3, 4]"): r"bars\[2\]: ",
+    BARS.format(length="").replace(', ["C", "D"]', ""): r"body .*: one joint only",
+    BARS.format(length="") + '[points_on_bars]\nP = ["A", "D", [0, 1]]\n': (
+        r"points_on_bars P: A and D .* there is none between"
+    ),
+    BARS.format(length="") + '[points_on_bars]\nP = ["A", "D"]\n': (
+        r"points_on_bars P: "
+    ),
+    BARS.format(length="") + '[points_on_bars]\nP = ["A", "Z", [0, 1]]\n': (
+        r'points_on_bars P: "Z" .* stands before'
+    ),
+}
+
+
+@pytest.mark.parametrize("number", range(len(MALFORMED)))
+def test_a_malformed_file_is_refused_by_name_and_value(number, tmp_path):
+    text, message = list(MALFORMED.items())[number]
+    with pytest.raises(LinkageFileError, match=message):
+        read(tmp_path, text)

@@ -1,0 +1,256 @@
+"""Maps of mechanisms whose forms and singular points are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import linkages
+from bifurc.atlas import Atlas
+from bifurc.branch import Outcome
+from bifurc.search.settings import SearchSettings
+from bifurc.singular.point import Kind
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.readout import Readout
+from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.test_poses import platform
+
+FEW = SearchSettings(starts=60)
+Z = (0, 0, 1)
+
+
+def slider_crank(rod=1.0, height=0.0):
+    """Crank 1 and a rod; the slider's line passes the crank's pivot at a height."""
+    slider = np.sqrt(rod**2 - (0.8 - height) ** 2) + 0.6
+    return Mechanism(
+        (
+            Joint("J1", "revolute", ("frame", "crank"), (0, 0, 0), Z),
+            Joint("J2", "revolute", ("crank", "rod"), (0.6, 0.8, 0), Z),
+            Joint("J3", "revolute", ("rod", "slider"), (slider, height, 0), Z),
+            Joint("J4", "prismatic", ("frame", "slider"), direction=(1, 0, 0)),
+        ),
+        "slider-crank",
+    )
+
+
+def rccc():
+    """Bennett's axes with one revolute and three cylindrical joints."""
+    joints = cases()["Bennett geometry with joints CRCR"]["joints"]
+    return [
+        Joint(**{**joint, "kind": "cylindrical" if i else "revolute"})
+        for i, joint in enumerate(joints)
+    ]
+
+
+def counts(atlas: Atlas):
+    """Numbers of forms, of points by kind, dimensions of surfaces, assemblies."""
+    kinds = sorted((point.kind for point in atlas.points), key=str)
+    dimensions = sorted({surface.dimension for surface in atlas.surfaces})
+    return len(atlas.forms), kinds, dimensions, len(atlas.rigid)
+
+
+def lengths(atlas: Atlas):
+    """Lengths of all forms, in order."""
+    return sorted(form.branch.length for form in atlas.forms)
+
+
+# Norton, Design of Machinery (2012): the change point of an in-line slider-crank
+def test_an_in_line_slider_crank_with_equal_links_has_a_change_point():
+    atlas = linkages.map_linkage(slider_crank(), settings=FEW)
+    assert counts(atlas) == (2, [Kind.BIFURCATION] * 2, [], 0)
+    readout = Readout(slider_crank())
+    for point in atlas.bifurcations:
+        assert readout.variables(point.point.u)["J4"] == pytest.approx(-1.2, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("rod", "height", "forms"), [(1.0, 0.05, 1), (1.1, 0.0, 2), (0.9, 0.0, 2)]
+)
+def test_beside_the_change_point_nothing_meets(rod, height, forms):
+    atlas = linkages.map_linkage(slider_crank(rod, height), settings=FEW)
+    assert counts(atlas) == (forms, [], [], 0)
+    assert all(form.branch.closed for form in atlas.forms)
+    assert all(form.certificate.status.value == "certified" for form in atlas.forms)
+
+
+KNOWN = {
+    "three equal parallel cranks, pivots on a line": (1, [Kind.RANK_DROP] * 2, [], 0),
+    "K(2,3)": (2, [], [], 0),
+    "Dixon I, K(3,3)": (8, [], [], 0),
+    "Miura-ori, one vertex (spherical 4R)": (3, [Kind.BIFURCATION] * 3, [], 0),
+    "spatial RPRP, unequal distances (control)": (0, [], [], 1),
+    "planar slider-crank RRRP": (2, [], [], 0),
+    "CCC loop, general axes": (0, [], [], 2),
+    "Bennett geometry with joints CRRR": (1, [], [], 0),
+    "Bennett geometry with joints CRCR": (2, [Kind.BIFURCATION] * 2, [], 0),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_map_of_a_known_mechanism(name):
+    mechanism = mechanism_of_case(cases()[name])
+    atlas = linkages.map_linkage(mechanism, settings=replace(FEW, starts=120))
+    assert counts(atlas) == KNOWN[name]
+
+
+MOBILE = [
+    "network of four Bennett linkages",
+    "L-shape network of three Bennett linkages",
+    "two RRR chains in one plane (degenerate Sarrus)",
+    "parallelogram lattice 2 x 2",
+]
+
+
+@pytest.mark.parametrize("name", MOBILE)
+def test_more_freedoms_are_counted(name):
+    case = cases()[name]
+    settings = SearchSettings(starts=10, charts=0)
+    atlas = linkages.map_linkage(mechanism_of_case(case), settings=settings)
+    assert {surface.dimension for surface in atlas.surfaces} == {case["mobility"]}
+    assert not atlas.forms
+
+
+# Peaucellier 1864: where A and C coincide, D is free; and B and D may coincide instead
+# Sarrus 1853: equal links fold flat, and then both chains turn freely
+MEETING_A_SURFACE = {
+    "Peaucellier-Lipkin inversor": (2, 0, 4),
+    "Sarrus with a P joint between base and platform": (2, 2, 4),
+}
+
+
+@pytest.mark.parametrize("name", MEETING_A_SURFACE)
+def test_forms_meet_a_surface_where_links_fold(name):
+    mechanism = mechanism_of_case(cases()[name])
+    settings = SearchSettings(starts=60, charts=0, certify=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings)
+    kinds = [point.kind for point in atlas.points]
+    forms, bifurcations, changes = MEETING_A_SURFACE[name]
+    assert len(atlas.forms) == forms
+    assert kinds.count(Kind.BIFURCATION) == bifurcations
+    assert kinds.count(Kind.DIMENSION_CHANGE) == changes
+    assert {surface.dimension for surface in atlas.surfaces} == {2}
+
+
+def test_the_inversor_draws_a_straight_line():
+    mechanism = mechanism_of_case(cases()["Peaucellier-Lipkin inversor"])
+    settings = SearchSettings(starts=60, charts=0, certify=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings)
+    readout = Readout(mechanism)
+    end = np.append(mechanism.joint("D").point, 1.0)
+    spreads = []
+    for form in atlas.forms:
+        poses = readout.poses(form.branch.sample(100))
+        places = poses[:, mechanism.bodies.index("A-D")] @ end
+        spreads.append(np.ptp(places[:, 0]))
+    assert min(spreads) < 1e-12
+    assert max(spreads) > 0.1
+
+
+def test_a_form_that_reaches_the_limit_of_a_slide_ends_there():
+    mechanism = mechanism_of_case(
+        cases()["spatial RPRP, equal distances and opposite slopes"]
+    )
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    (form,) = atlas.forms
+    assert form.branch.outcome is Outcome.LEFT_REGION
+    ends = Readout(mechanism).values(form.branch(np.array([0.0, form.branch.length])))
+    limits = Readout(mechanism).limits()["P2"]
+    assert np.abs(ends[:, [1, 3]]).max(axis=1) == pytest.approx(limits[1], rel=1e-9)
+
+
+def test_a_platform_has_assemblies_with_its_legs_locked_and_forms_with_one_free():
+    locked = linkages.map_linkage(platform(), settings=FEW)
+    assert not locked.forms
+    assert len(locked.rigid) % 2 == 0
+    assert len(locked.rigid)
+    one_free = platform((None, *(0.0,) * 5))
+    atlas = linkages.map_linkage(one_free, settings=FEW)
+    assert {form.rank for form in atlas.forms} == {9}
+    assert one_free.gruebler == 7  # of them 6 idle
+
+
+def test_the_smallest_reconfigurable_linkage_with_slides():
+    """The Bennett form, another one, and two lines of pure sliding that meet both."""
+    mechanism = Mechanism(tuple(rccc()))
+    settings = SearchSettings(starts=60, certify=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings)
+    assert len(atlas.forms) == 4
+    closed = [form for form in atlas.forms if form.branch.closed]
+    assert len(closed) == 2
+    assert [len(point.passes) for point in atlas.bifurcations] == [3, 3]
+    readout = Readout(mechanism)
+    slides = [
+        np.abs(readout.values(form.branch.sample(200))[:, [2, 4, 6]]).max()
+        for form in closed
+    ]
+    assert min(slides) < 1e-12  # on the Bennett form nothing slides
+    assert max(slides) == pytest.approx(2.17, abs=0.01)
+
+
+# --- the same atlas, however the mechanism is given -----------------------------------
+
+
+def relabelled(mechanism):
+    """Joints in another order, other names, and every other joint turned round."""
+    joints = []
+    for number, joint in enumerate(mechanism.joints[::-1]):
+        bodies = tuple(f"body {body}" for body in joint.bodies)
+        if number % 2 and len(bodies) == 2:
+            bodies = bodies[::-1]
+        joints.append(replace(joint, name=f"joint {number}", bodies=bodies))
+    return Mechanism(tuple(joints), is_planar=mechanism.is_planar)
+
+
+def rebased(mechanism):
+    """The same in another frame, with other points of the axes."""
+    rng = np.random.default_rng(8)
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    turn *= np.linalg.det(turn)
+    joints = []
+    for joint in mechanism.joints:
+        along = np.zeros(3) if joint.direction is None else np.array(joint.direction)
+        place = joint.place + rng.normal() * along
+        changes = {"point": turn @ place + [5.0, -3.0, 2.0]}
+        if joint.direction is not None:
+            changes["direction"] = 3.0 * turn @ along
+        joints.append(replace(joint, **changes))
+    return Mechanism(tuple(joints))
+
+
+WAYS = {
+    "relabelled": relabelled,
+    "rebased": rebased,
+    "mirrored": Mechanism.mirrored,
+    "small": lambda mechanism: mechanism.scaled(1e-3),
+    "large": lambda mechanism: mechanism.scaled(1e3),
+}
+SAME = {
+    "slider-crank": slider_crank(),
+    "CRCR": mechanism_of_case(cases()["Bennett geometry with joints CRCR"]),
+    "cranks": mechanism_of_case(
+        cases()["three equal parallel cranks, pivots on a line"]
+    ),
+    "RPRP": mechanism_of_case(
+        cases()["spatial RPRP, equal distances and opposite slopes"]
+    ),
+    "platform": platform((None, *(0.0,) * 5)),
+}
+
+
+@pytest.mark.parametrize("name", SAME)
+@pytest.mark.parametrize("way", WAYS)
+def test_the_atlas_is_the_same_however_the_mechanism_is_given(name, way):
+    settings = SearchSettings(starts=60, certify=False)
+    expected = linkages.map_linkage(SAME[name], settings=settings)
+    atlas = linkages.map_linkage(WAYS[way](SAME[name]), settings=settings, seed=1)
+    assert counts(atlas) == counts(expected)
+    if name not in ("platform",):  # an embedded rotation is measured in the frame
+        assert np.allclose(lengths(atlas), lengths(expected), rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_seed_does_not_matter(seed):
+    atlas = linkages.map_linkage(SAME["CRCR"], settings=FEW, seed=seed)
+    assert counts(atlas) == (2, [Kind.BIFURCATION] * 2, [], 0)
+    assert np.allclose(lengths(atlas), [12.861517, 20.497342], atol=1e-5)

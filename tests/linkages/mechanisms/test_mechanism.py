@@ -1,0 +1,128 @@
+"""Joints and mechanisms as data: what they hold, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from linkages.loop import GeometryError
+from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.mechanism import Mechanism
+
+Z = (0, 0, 1)
+
+
+def revolute(name, bodies, x, y=0.0):
+    return Joint(name, "revolute", bodies, point=(x, y, 0), direction=Z)
+
+
+def four_bar():
+    return Mechanism(
+        (
+            revolute("A", ("frame", "crank"), 0),
+            revolute("B", ("crank", "coupler"), 0, 1),
+            revolute("C", ("coupler", "rocker"), 2, 1.5),
+            revolute("D", ("rocker", "frame"), 2),
+        )
+    )
+
+
+def test_kinds_have_the_freedoms_of_the_textbooks():
+    full = {"point": (0, 0, 0), "direction": Z}
+    two = ("a", "b")
+    joints = [
+        Joint("J", "revolute", two, **full),
+        Joint("J", "prismatic", two, direction=Z),
+        Joint("J", "cylindrical", two, **full),
+        Joint("J", "helical", two, **full, pitch=0.1),
+        Joint("J", "universal", two, **full, second_direction=(1, 0, 0)),
+        Joint("J", "spherical", two, point=(0, 0, 0)),
+        Joint("J", "planar", two, direction=Z),
+        Joint("J", "rigid", two),
+    ]
+    assert [joint.kind for joint in joints] == list(JointKind)
+    assert [joint.freedoms for joint in joints] == [1, 1, 2, 1, 2, 3, 3, 0]
+
+
+def test_a_joint_of_three_bodies_is_two_revolutes():
+    joint = revolute("J", ("frame", "crank", "rod"), 0)
+    assert joint.parts == ("crank", "rod")
+    assert joint.freedoms == 2
+
+
+def test_the_graph_has_a_node_a_body_and_an_edge_a_pair():
+    graph = four_bar().graph()
+    assert set(graph) == {"frame", "crank", "coupler", "rocker"}
+    assert {data["joint"] for _, _, data in graph.edges(data=True)} == set("ABCD")
+
+
+def test_locks_are_named_and_counted():
+    locked = four_bar().with_locks({"A": 0.3})
+    assert four_bar().gruebler == -2
+    assert locked.gruebler == -3
+    with pytest.raises(GeometryError, match=r'lock: "Q" .* one of A, B, C, D'):
+        four_bar().with_locks({"Q": 1.0})
+
+
+def test_scaling_and_mirroring_there_and_back_change_nothing():
+    mechanism = Mechanism(
+        (
+            Joint("H", "helical", ("a", "b"), (1, 2, 3), (0, 1, 2), pitch=0.5),
+            Joint("C", "cylindrical", ("b", "a"), (1, 0, 3), Z, locked=(0.1, 2.0)),
+        )
+    )
+    back = mechanism.scaled(4.0).scaled(0.25).mirrored().mirrored()
+    assert np.allclose(back.joints[0].point, (1, 2, 3))
+    assert back.joints[1].locked == (0.1, 2.0)
+    assert mechanism.scaled(4.0).joints[1].locked == (0.1, 8.0)
+    assert mechanism.scaled(4.0).joints[0].pitch == 2.0
+
+
+def changed(**changes):
+    """The four-bar with other values of joint B."""
+    joints = list(four_bar().joints)
+    joints[1] = replace(joints[1], **changes)
+    return Mechanism(tuple(joints))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"kind": "hinge"}, r'kind of joint B: "hinge" .* revolute, prismatic'),
+        ({"name": "A"}, r'name of a joint: "A" .* given once'),
+        ({"name": " "}, r"name of a joint"),
+        ({"bodies": ("crank",)}, r"bodies of joint B: \['crank'\] .* two names"),
+        ({"bodies": ("crank", "crank")}, r"different; crank stands twice"),
+        ({"bodies": "crank"}, r"bodies of joint B"),
+        ({"bodies": ("crank", 3)}, r"bodies of joint B: 3"),
+        ({"direction": (0, 0, 0)}, r"direction of joint B: .* other than zero"),
+        ({"direction": None}, r"direction of joint B: a missing key .* revolute"),
+        ({"point": (1, 2)}, r"point of joint B: \[1, 2\] .* vector"),
+        ({"point": (1, 2, float("nan"))}, r"point of joint B\[3\]: nan .* finite"),
+        ({"pitch": 0.1}, r"pitch of joint B: 0.1 .* left out"),
+        ({"limits": ((1.0, 0.0),)}, r"limits of joint B: \[1.0, 0.0\] .* smaller"),
+        ({"limits": ((0.0, 1.0),) * 2}, r"number of limits of joint B: 2 .* 1"),
+        ({"locked": (0.1, 0.2)}, r"number of values of locked of joint B: 2"),
+        ({"limits": ((0.0, 1.0),), "locked": (2.0,)}, r"locked of joint B: 2.0"),
+        ({"bodies": ("crank", "arm")}, r"body arm: one joint only, B"),
+        ({"kind": "universal"}, r"second_direction of joint B: a missing key"),
+        (
+            {"kind": "universal", "second_direction": Z},
+            r"second_direction of joint B: .* not parallel",
+        ),
+    ],
+)
+def test_what_is_wrong_is_named_with_its_value(changes, message):
+    with pytest.raises(GeometryError, match=message):
+        changed(**changes)
+
+
+def test_bodies_that_do_not_hang_together_are_named():
+    second = [
+        replace(
+            joint, name=f"{joint.name}2", bodies=tuple(f"{b}2" for b in joint.bodies)
+        )
+        for joint in four_bar().joints
+    ]
+    with pytest.raises(GeometryError, match=r"bodies: coupler2, .* joined to"):
+        Mechanism((*four_bar().joints, *second))
