@@ -20,7 +20,8 @@ public:
         : is_tall_(rows >= columns),
           work_(std::max(rows, columns), std::min(rows, columns)),
           rows_of_r_(work_.columns(), work_.columns()),
-          squares_(work_.columns()) {}
+          squares_(work_.columns()),
+          columns_(work_.columns()) {}
 
     // The singular values of ``matrix``, the largest first; not numbers where an entry is none.
     void of(View<const double> matrix, Vector<double> values) {
@@ -40,12 +41,48 @@ public:
         std::sort(values.begin(), values.end(), std::greater<>());
     }
 
+    // The rate of singular value ``number``, counted from 0, of the matrix that was taken apart last,
+    // where it changes by ``change``: l^T change r with its singular vectors. 0 for a value of 0, which
+    // has none; its square does not change at first order.
+    double rate(Index number, View<const double> matrix, View<const double> change) const {
+        const Index row = row_of(number);
+        const double size = length(rows_of_r_.row(row));
+        if (!(size > 0.0)) return 0.0;
+        // the row of R is the singular vector that is as long as it, its entries pivoted
+        std::vector<double> vector(columns_.size());
+        for (std::size_t k = 0; k < columns_.size(); ++k) vector[columns_[k]] = rows_of_r_(row, k) / size;
+        // the other one is the image of this one
+        double image_of_change = 0.0, square = 0.0;
+        const Index others = is_tall_ ? matrix.rows : matrix.columns;
+        for (Index i = 0; i < others; ++i) {
+            double image = 0.0, moved = 0.0;
+            for (std::size_t j = 0; j < vector.size(); ++j) {
+                const Index k = static_cast<Index>(j);
+                image += (is_tall_ ? matrix(i, k) : matrix(k, i)) * vector[j];
+                moved += (is_tall_ ? change(i, k) : change(k, i)) * vector[j];
+            }
+            image_of_change += image * moved;
+            square += image * image;
+        }
+        return image_of_change / std::sqrt(square);
+    }
+
 private:
+    // The row of R that is singular value ``number``.
+    Index row_of(Index number) const {
+        std::vector<Index> order(rows_of_r_.rows());
+        for (Index i = 0; i < rows_of_r_.rows(); ++i) order[i] = i;
+        std::sort(order.begin(), order.end(),
+                  [&](Index i, Index j) { return squared_length(rows_of_r_.row(i)) > squared_length(rows_of_r_.row(j)); });
+        return order[number];
+    }
+
     static constexpr int most_sweeps = 40;
 
     // R of a QR with column pivoting, by Householder reflections.
     void triangularise() {
         const Index rows = work_.rows(), columns = work_.columns();
+        for (Index k = 0; k < columns; ++k) columns_[k] = k;
         for (Index k = 0; k < columns; ++k) {
             pivot(k);
             double square = 0.0;
@@ -80,6 +117,7 @@ private:
             }
         }
         if (best == k) return;
+        std::swap(columns_[k], columns_[best]);
         for (Index i = 0; i < work_.rows(); ++i) std::swap(work_(i, k), work_(i, best));
         for (Index i = 0; i < k; ++i) std::swap(rows_of_r_(i, k), rows_of_r_(i, best));
     }
@@ -116,6 +154,7 @@ private:
     bool is_tall_;
     Matrix<double> work_, rows_of_r_;
     std::vector<double> squares_;
+    std::vector<Index> columns_;  // of the matrix, in the order of the columns of R
 };
 
 }  // namespace bifurc
