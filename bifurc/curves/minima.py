@@ -15,9 +15,10 @@ import numpy as np
 
 from bifurc import _core
 from bifurc.branch import Branch
-from bifurc.curves.monitor import NODES, Profile, singular_values
+from bifurc.curves.monitor import NODES, Profile
 from bifurc.decisions import is_level, stands_out
 from bifurc.numerics.roots import bracketed_roots
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
 __all__ = ["Minima", "singular_value_minima", "stand_out"]
