@@ -75,14 +75,29 @@ nb::object passes(const Curve& curve, const VectorIn<double>& point, double with
     return out.release();
 }
 
+// As many matrices (k, m, n) from number ``begin`` on as `SingularValues` takes at a time, one below
+// the other.
+View<const double> matrices_from(const CubeIn<double>& matrices, Index begin) {
+    const auto count = static_cast<Index>(matrices.shape(0)), m = static_cast<Index>(matrices.shape(1)),
+               n = static_cast<Index>(matrices.shape(2));
+    return {matrices.data() + begin * m * n, m * std::min(SingularValues::lanes, count - begin), n};
+}
+
+// As many rows.
+View<double> rows_from(View<double> table, Index begin) {
+    return {table.data + begin * table.columns, std::min(SingularValues::lanes, table.rows - begin), table.columns};
+}
+
 nb::object singular_values(const CubeIn<double>& matrices) {
     const auto count = static_cast<Index>(matrices.shape(0)), m = static_cast<Index>(matrices.shape(1)),
                n = static_cast<Index>(matrices.shape(2));
     Array<double> out({count, std::min(m, n)});
     {
         nb::gil_scoped_release release;
-        SingularValues values(m, n);
-        for (Index i = 0; i < count; ++i) values.of({matrices.data() + i * m * n, m, n}, out.matrix().row(i));
+        SingularValues decomposition(m, n);
+        for (Index begin = 0; begin < count; begin += SingularValues::lanes) {
+            decomposition.of(matrices_from(matrices, begin), rows_from(out.matrix(), begin));
+        }
     }
     return out.release();
 }
@@ -99,12 +114,15 @@ nb::tuple singular_value_rates(const CubeIn<double>& matrices, const CubeIn<doub
     {
         nb::gil_scoped_release release;
         SingularValues decomposition(m, n);
-        std::vector<double> all(std::min(m, n));
-        for (Index i = 0; i < count; ++i) {
-            const View<const double> matrix{matrices.data() + i * m * n, m, n};
-            decomposition.of(matrix, all);
-            values.data()[i] = all[number];
-            rates.data()[i] = decomposition.rate(number, matrix, {changes.data() + i * m * n, m, n});
+        Matrix<double> all(count, std::min(m, n));
+        for (Index begin = 0; begin < count; begin += SingularValues::lanes) {
+            decomposition.of(matrices_from(matrices, begin), rows_from(all, begin));
+            const Index end = std::min(count, begin + SingularValues::lanes);
+            for (Index i = begin; i < end; ++i) {
+                const View<const double> matrix{matrices.data() + i * m * n, m, n};
+                values.data()[i] = all(i, number);
+                rates.data()[i] = decomposition.rate(i - begin, number, matrix, {changes.data() + i * m * n, m, n});
+            }
         }
     }
     return nb::make_tuple(values.release(), rates.release());

@@ -275,3 +275,13 @@ def test_arrays_of_another_size_are_refused():
         _core.singular_value_rates(np.zeros((2, 3, 3)), np.zeros((2, 3, 4)), 0)
     with pytest.raises(ValueError, match="do not fit"):
         _core.singular_value_rates(np.zeros((2, 3, 3)), np.zeros((2, 3, 3)), 3)
+
+
+def test_a_matrix_has_the_same_singular_values_alone_and_among_others():
+    matrices = np.random.default_rng(4).normal(size=(11, 6, 5))
+    matrices[3] = 0.0
+    matrices[6, 0, 0] = np.nan
+    together = _core.singular_values(matrices)
+    alone = [_core.singular_values(matrix[None])[0] for matrix in matrices]
+    assert np.array_equal(together, alone, equal_nan=True)
+    assert np.isnan(together[6]).all() and np.isfinite(together[5]).all()
