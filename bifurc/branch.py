@@ -109,11 +109,11 @@ class Branch:
     def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
         """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of
         a closed curve."""
-        check_whole("derivative", derivative, 0)
+        if derivative != 0:
+            check_whole("derivative", derivative, 0)
         s = np.asarray(s, dtype=float)
-        flat = s.ravel()
-        points = self._curve.evaluate(flat, derivative)
-        return points.reshape(*s.shape, self.n)
+        points = self._curve.evaluate(s.ravel(), derivative)
+        return points if s.ndim == 1 else points.reshape(*s.shape, self.n)
 
     def arclengths(self, count: int) -> np.ndarray:
         """``count`` equally spaced arclengths; a closed curve's last one stops short of

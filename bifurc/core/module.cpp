@@ -1,6 +1,7 @@
 // The Python module bifurc._core.
 #include <string>
 
+#include "bifurc/core/brackets.hpp"
 #include "bifurc/core/curve.hpp"
 #include "bifurc/core/eigenvalues.hpp"
 #include "bifurc/core/inverse.hpp"
@@ -74,16 +75,69 @@ nb::object passes(const Curve& curve, const VectorIn<double>& point, double with
     return out.release();
 }
 
+// As many matrices (k, m, n) from number ``begin`` on as `SingularValues` takes at a time, one below
+// the other.
+View<const double> matrices_from(const CubeIn<double>& matrices, Index begin) {
+    const auto count = static_cast<Index>(matrices.shape(0)), m = static_cast<Index>(matrices.shape(1)),
+               n = static_cast<Index>(matrices.shape(2));
+    return {matrices.data() + begin * m * n, m * std::min(SingularValues::lanes, count - begin), n};
+}
+
+// As many rows.
+View<double> rows_from(View<double> table, Index begin) {
+    return {table.data + begin * table.columns, std::min(SingularValues::lanes, table.rows - begin), table.columns};
+}
+
 nb::object singular_values(const CubeIn<double>& matrices) {
     const auto count = static_cast<Index>(matrices.shape(0)), m = static_cast<Index>(matrices.shape(1)),
                n = static_cast<Index>(matrices.shape(2));
     Array<double> out({count, std::min(m, n)});
     {
         nb::gil_scoped_release release;
-        SingularValues values(m, n);
-        for (Index i = 0; i < count; ++i) values.of({matrices.data() + i * m * n, m, n}, out.matrix().row(i));
+        SingularValues decomposition(m, n);
+        for (Index begin = 0; begin < count; begin += SingularValues::lanes) {
+            decomposition.of(matrices_from(matrices, begin), rows_from(out.matrix(), begin));
+        }
     }
     return out.release();
+}
+
+// (values (k), rates (k)) of singular value ``number`` of each matrix, counted from 0, where the
+// matrices change by ``changes``
+nb::tuple singular_value_rates(const CubeIn<double>& matrices, const CubeIn<double>& changes, int number) {
+    const auto count = static_cast<Index>(matrices.shape(0)), m = static_cast<Index>(matrices.shape(1)),
+               n = static_cast<Index>(matrices.shape(2));
+    const bool fits = changes.shape(0) == matrices.shape(0) && changes.shape(1) == matrices.shape(1) &&
+                      changes.shape(2) == matrices.shape(2) && 0 <= number && number < std::min(m, n);
+    if (!fits) throw nb::value_error("the arrays of matrices and of their changes do not fit each other");
+    Array<double> values({count}), rates({count});
+    {
+        nb::gil_scoped_release release;
+        SingularValues decomposition(m, n);
+        Matrix<double> all(count, std::min(m, n));
+        for (Index begin = 0; begin < count; begin += SingularValues::lanes) {
+            decomposition.of(matrices_from(matrices, begin), rows_from(all, begin));
+            const Index end = std::min(count, begin + SingularValues::lanes);
+            for (Index i = begin; i < end; ++i) {
+                const View<const double> matrix{matrices.data() + i * m * n, m, n};
+                values.data()[i] = all(i, number);
+                rates.data()[i] = decomposition.rate(i - begin, number, matrix, {changes.data() + i * m * n, m, n});
+            }
+        }
+    }
+    return nb::make_tuple(values.release(), rates.release());
+}
+
+// What `Brackets` gives with as many numbers as there are brackets.
+template <auto method>
+nb::object numbers_of(const Brackets& brackets) {
+    Array<double> out({brackets.count()});
+    (brackets.*method)(out.vector());
+    return out.release();
+}
+
+void check_count(const VectorIn<double>& numbers, Index count) {
+    if (static_cast<Index>(numbers.size()) != count) throw nb::value_error("there must be a number for each bracket");
 }
 
 nb::tuple determinants_and_inverses(const CubeIn<double>& matrices) {
@@ -149,9 +203,31 @@ NB_MODULE(_core, module) {
         .def("nearest", &nearest, "points"_a, "within"_a)
         .def("turning_points", &turning_points, "unknown"_a)
         .def("passes", &passes, "point"_a, "within"_a, "same"_a);
+    nb::class_<Brackets>(module, "Brackets")
+        .def(
+            "__init__",
+            [](Brackets* place, const VectorIn<double>& low, const VectorIn<double>& high,
+               const VectorIn<double>& at_low, const VectorIn<double>& at_high, double tolerance) {
+                for (const VectorIn<double>& numbers : {high, at_low, at_high}) {
+                    check_count(numbers, static_cast<Index>(low.size()));
+                }
+                new (place) Brackets(numpy::view(low), numpy::view(high), numpy::view(at_low), numpy::view(at_high),
+                                     tolerance);
+            },
+            "low"_a, "high"_a, "at_low"_a, "at_high"_a, "tolerance"_a)
+        .def("points", &numbers_of<&Brackets::points>)
+        .def(
+            "narrow",
+            [](Brackets& brackets, const VectorIn<double>& values) {
+                check_count(values, brackets.count());
+                return brackets.narrow(numpy::view(values));
+            },
+            "values"_a)
+        .def("roots", &numbers_of<&Brackets::roots>);
     module.def("determinants_and_inverses", &determinants_and_inverses, "matrices"_a);
     module.def("foot_on_piece", &foot_of_point, "piece"_a, "point"_a, "periods"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
+    module.def("singular_value_rates", &singular_value_rates, "matrices"_a, "changes"_a, "number"_a);
     module.def("eigenvalues", &eigenvalues, "matrix"_a);
     bifurc::python::bind_tape(module);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,40 +15,101 @@ namespace bifurc {
 // QR with column pivoting, then one-sided Jacobi rotations on the rows of R, which are graded by
 // then: two or three sweeps are enough. Small singular values come out to high relative accuracy,
 // and the same on every processor (Drmac and Veselic 2008; Golub and Van Loan 2013, 8.6.3).
+//
+// A rotation waits for its square roots and quotients; those of four matrices are taken abreast,
+// which changes no bit.
 class SingularValues {
 public:
+    static constexpr Index lanes = 4;
+
     SingularValues(Index rows, Index columns)
         : is_tall_(rows >= columns),
           work_(std::max(rows, columns), std::min(rows, columns)),
           rows_of_r_(work_.columns(), work_.columns()),
-          squares_(work_.columns()) {}
+          squares_(work_.columns()),
+          columns_(lanes, work_.columns()) {}
 
-    // The singular values of ``matrix``, the largest first; not numbers where an entry is none.
-    void of(View<const double> matrix, Vector<double> values) {
-        double largest = 0.0;  // by which all is divided: squares are not to underflow
+    // The singular values of up to four matrices (count * rows, columns), one below the other: a row
+    // (count, min(rows, columns)) for each, the largest first; not numbers where an entry is none.
+    void of(View<const double> matrices, View<double> values) {
+        const Index count = values.rows;
+        const Index rows = is_tall_ ? work_.rows() : work_.columns();
+        std::array<double, lanes> units{};
+        for (Index lane = 0; lane < count; ++lane) {
+            const double* const begin = matrices.data + lane * rows * matrices.columns;
+            units[lane] = triangularise({begin, rows, matrices.columns}, lane);
+        }
+        for (Index lane = count; lane < lanes; ++lane) clear(lane);
+        for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+            if (!rotate_all()) break;
+        }
+        for (Index i = 0; i < rows_of_r_.rows(); ++i) squares_[i] = squared_lengths(i);
+        for (Index lane = 0; lane < count; ++lane) {
+            const Vector<double> row = values.row(lane);
+            for (Index i = 0; i < rows_of_r_.rows(); ++i) row[i] = units[lane] * std::sqrt(squares_[i][lane]);
+            std::sort(row.begin(), row.end(), std::greater<>());
+        }
+    }
+
+    // The rate of singular value ``number``, counted from 0, of matrix ``lane`` of those that were taken
+    // apart last, where it changes by ``change``: l^T change r with its singular vectors. 0 for a value
+    // of 0, which has none; its square does not change at first order.
+    double rate(Index lane, Index number, View<const double> matrix, View<const double> change) const {
+        const Index row = row_of(number, lane);
+        const double size = std::sqrt(squares_[row][lane]);
+        if (!(size > 0.0)) return 0.0;
+        // the row of R is the singular vector that is as long as it, its entries pivoted
+        std::vector<double> vector(columns_.columns());
+        for (Index k = 0; k < columns_.columns(); ++k) vector[columns_(lane, k)] = rows_of_r_(row, k)[lane] / size;
+        // the other one is the image of this one
+        double image_of_change = 0.0, square = 0.0;
+        const Index others = is_tall_ ? matrix.rows : matrix.columns;
+        for (Index i = 0; i < others; ++i) {
+            double image = 0.0, moved = 0.0;
+            for (std::size_t j = 0; j < vector.size(); ++j) {
+                const Index k = static_cast<Index>(j);
+                image += (is_tall_ ? matrix(i, k) : matrix(k, i)) * vector[j];
+                moved += (is_tall_ ? change(i, k) : change(k, i)) * vector[j];
+            }
+            image_of_change += image * moved;
+            square += image * image;
+        }
+        return image_of_change / std::sqrt(square);
+    }
+
+private:
+    using Four = std::array<double, lanes>;
+    static constexpr int most_sweeps = 40;
+
+    // The row of R that is singular value ``number`` of a lane.
+    Index row_of(Index number, Index lane) const {
+        std::vector<Index> order(rows_of_r_.rows());
+        for (Index i = 0; i < rows_of_r_.rows(); ++i) order[i] = i;
+        std::sort(order.begin(), order.end(), [&](Index i, Index j) { return squares_[i][lane] > squares_[j][lane]; });
+        return order[number];
+    }
+
+    void clear(Index lane) {
+        for (Index i = 0; i < rows_of_r_.rows(); ++i) {
+            for (Index k = 0; k < rows_of_r_.columns(); ++k) rows_of_r_(i, k)[lane] = 0.0;
+        }
+    }
+
+    // R of a QR with column pivoting, by Householder reflections, for one lane. All is divided by the
+    // largest entry, which is given back: squares are not to underflow.
+    double triangularise(View<const double> matrix, Index lane) {
+        double largest = 0.0;
         for (Index i = 0; i < matrix.rows; ++i) {
             for (double entry : matrix.row(i)) largest = std::max(largest, std::abs(entry));
         }
         const double unit = largest > 0.0 ? largest : 1.0;
-        for (Index i = 0; i < work_.rows(); ++i) {
-            for (Index j = 0; j < work_.columns(); ++j) work_(i, j) = (is_tall_ ? matrix(i, j) : matrix(j, i)) / unit;
-        }
-        triangularise();
-        for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-            if (!rotate_all()) break;
-        }
-        for (Index i = 0; i < rows_of_r_.rows(); ++i) values[i] = unit * length(rows_of_r_.row(i));
-        std::sort(values.begin(), values.end(), std::greater<>());
-    }
-
-private:
-    static constexpr int most_sweeps = 40;
-
-    // R of a QR with column pivoting, by Householder reflections.
-    void triangularise() {
         const Index rows = work_.rows(), columns = work_.columns();
+        for (Index i = 0; i < rows; ++i) {
+            for (Index j = 0; j < columns; ++j) work_(i, j) = (is_tall_ ? matrix(i, j) : matrix(j, i)) / unit;
+        }
+        for (Index k = 0; k < columns; ++k) columns_(lane, k) = k;
         for (Index k = 0; k < columns; ++k) {
-            pivot(k);
+            pivot(k, lane);
             double square = 0.0;
             for (Index i = k; i < rows; ++i) square += work_(i, k) * work_(i, k);
             const double norm = std::sqrt(square);
@@ -62,13 +124,14 @@ private:
                     for (Index i = k + 1; i < rows; ++i) work_(i, j) += share * work_(i, k);
                 }
             }
-            for (Index j = 0; j < columns; ++j) rows_of_r_(k, j) = j > k ? work_(k, j) : 0.0;
-            rows_of_r_(k, k) = diagonal;
+            for (Index j = 0; j < columns; ++j) rows_of_r_(k, j)[lane] = j > k ? work_(k, j) : 0.0;
+            rows_of_r_(k, k)[lane] = diagonal;
         }
+        return unit;
     }
 
     // Brings the column that is longest from row k on to place k.
-    void pivot(Index k) {
+    void pivot(Index k, Index lane) {
         Index best = k;
         double largest = -1.0;
         for (Index j = k; j < work_.columns(); ++j) {
@@ -80,13 +143,24 @@ private:
             }
         }
         if (best == k) return;
+        std::swap(columns_(lane, k), columns_(lane, best));
         for (Index i = 0; i < work_.rows(); ++i) std::swap(work_(i, k), work_(i, best));
-        for (Index i = 0; i < k; ++i) std::swap(rows_of_r_(i, k), rows_of_r_(i, best));
+        for (Index i = 0; i < k; ++i) std::swap(rows_of_r_(i, k)[lane], rows_of_r_(i, best)[lane]);
+    }
+
+    // Of row i, in every lane.
+    Four squared_lengths(Index i) const {
+        Four total{};
+        for (Index k = 0; k < rows_of_r_.columns(); ++k) {
+            const Four entries = rows_of_r_(i, k);
+            for (Index lane = 0; lane < lanes; ++lane) total[lane] += entries[lane] * entries[lane];
+        }
+        return total;
     }
 
     // One rotation for every pair of rows; whether any was needed.
     bool rotate_all() {
-        for (Index i = 0; i < rows_of_r_.rows(); ++i) squares_[i] = squared_length(rows_of_r_.row(i));
+        for (Index i = 0; i < rows_of_r_.rows(); ++i) squares_[i] = squared_lengths(i);
         bool has_turned = false;
         for (Index i = 0; i + 1 < rows_of_r_.rows(); ++i) {
             for (Index j = i + 1; j < rows_of_r_.rows(); ++j) has_turned = rotate(i, j) || has_turned;
@@ -94,28 +168,54 @@ private:
         return has_turned;
     }
 
+    // Turns rows i and j to right angles, in the lanes where they are not.
     bool rotate(Index i, Index j) {
-        const Vector<double> p = rows_of_r_.row(i), q = rows_of_r_.row(j);
-        double gamma = 0.0;
-        for (std::size_t k = 0; k < p.size(); ++k) gamma += p[k] * q[k];
-        const double orthogonal = std::numeric_limits<double>::epsilon() * std::sqrt(squares_[i] * squares_[j]);
-        if (!(std::abs(gamma) > orthogonal)) return false;
-        const double zeta = (squares_[j] - squares_[i]) / (2.0 * gamma);
-        const double tangent = std::copysign(1.0, zeta) / (std::abs(zeta) + std::sqrt(1.0 + zeta * zeta));
-        const double cosine = 1.0 / std::sqrt(1.0 + tangent * tangent), sine = cosine * tangent;
+        const Vector<Four> p = rows_of_r_.row(i), q = rows_of_r_.row(j);
+        Four gamma{};
         for (std::size_t k = 0; k < p.size(); ++k) {
-            const double turned = cosine * p[k] - sine * q[k];
-            q[k] = sine * p[k] + cosine * q[k];
-            p[k] = turned;
+            for (Index lane = 0; lane < lanes; ++lane) gamma[lane] += p[k][lane] * q[k][lane];
         }
-        squares_[i] = squared_length(p);
-        squares_[j] = squared_length(q);
+        Four cosine, sine;
+        std::array<bool, lanes> turns;
+        for (Index lane = 0; lane < lanes; ++lane) {
+            const double orthogonal =
+                std::numeric_limits<double>::epsilon() * std::sqrt(squares_[i][lane] * squares_[j][lane]);
+            turns[lane] = std::abs(gamma[lane]) > orthogonal;
+        }
+        const bool has_turned = turns[0] || turns[1] || turns[2] || turns[3];
+        if (!has_turned) return false;
+        for (Index lane = 0; lane < lanes; ++lane) {
+            const double zeta = (squares_[j][lane] - squares_[i][lane]) / (2.0 * gamma[lane]);
+            const double tangent = std::copysign(1.0, zeta) / (std::abs(zeta) + std::sqrt(1.0 + zeta * zeta));
+            cosine[lane] = 1.0 / std::sqrt(1.0 + tangent * tangent);
+            sine[lane] = cosine[lane] * tangent;
+        }
+        for (Index lane = 0; lane < lanes; ++lane) {
+            if (turns[lane]) continue;
+            cosine[lane] = 1.0;
+            sine[lane] = 0.0;
+        }
+        Four first{}, second{};
+        for (std::size_t k = 0; k < p.size(); ++k) {
+            for (Index lane = 0; lane < lanes; ++lane) {
+                const double turned = cosine[lane] * p[k][lane] - sine[lane] * q[k][lane];
+                const double other = sine[lane] * p[k][lane] + cosine[lane] * q[k][lane];
+                p[k][lane] = turned;
+                q[k][lane] = other;
+                first[lane] += turned * turned;
+                second[lane] += other * other;
+            }
+        }
+        squares_[i] = first;
+        squares_[j] = second;
         return true;
     }
 
     bool is_tall_;
-    Matrix<double> work_, rows_of_r_;
-    std::vector<double> squares_;
+    Matrix<double> work_;
+    Matrix<Four> rows_of_r_;
+    std::vector<Four> squares_;
+    Matrix<Index> columns_;  // of the matrix of a lane, in the order of the columns of R
 };
 
 }  // namespace bifurc

@@ -17,11 +17,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from bifurc.curves.monitor import singular_values
 from bifurc.decisions import is_shaky
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 from bifurc.singular.sphere import section
 

@@ -13,10 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.branch import Branch
-from bifurc.curves.monitor import NODES, Profile, singular_values
+from bifurc.curves.monitor import NODES, Profile
 from bifurc.decisions import is_level, stands_out
 from bifurc.numerics.roots import bracketed_roots
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
 __all__ = ["Minima", "singular_value_minima", "stand_out"]
@@ -227,12 +229,9 @@ def _values_and_slopes(
     rows = np.concatenate([points, points + along, points - along])
     jacobians = problem.jacobians(rows) / problem.magnitude
     here, after, before = np.split(jacobians, 3)
-    left, values, right = np.linalg.svd(here, full_matrices=False)
     change = (after - before) / (2 * step)
-    from_left = left[:, None, :, rank - 1]  # (k, 1, m)
-    from_right = right[:, rank - 1, :, None]  # (k, n, 1)
-    slopes = from_left @ change @ from_right
-    return _ValuesAndSlopes(values[:, rank - 1], slopes[:, 0, 0])
+    values, slopes = _core.singular_value_rates(here, change, rank - 1)
+    return _ValuesAndSlopes(values, slopes)
 
 
 # --- valleys and the walls beside them ------------------------------------------------

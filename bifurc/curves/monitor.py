@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.decisions import is_zero_along, stands_still, unit_over_rounding
 from bifurc.numerics.roots import bracketed_roots
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
 __all__ = [
@@ -24,7 +24,6 @@ __all__ = [
     "largest_rates",
     "profile_branch",
     "roots_along",
-    "singular_values",
 ]
 
 COUNT = 16
@@ -51,17 +50,6 @@ class Profile:
     def smallest(self) -> np.ndarray:
         """The smallest regular singular value (p, k)."""
         return self.values[..., self.rank - 1]
-
-
-def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """Singular values (..., n) of F' at points (..., n), over the problem's magnitude,
-    padded with zeros."""
-    flat = points.reshape(-1, points.shape[-1])
-    jacobians = problem.jacobians(flat) / problem.magnitude
-    values = _core.singular_values(jacobians)
-    out = np.zeros((len(flat), problem.n))
-    out[:, : values.shape[1]] = values[:, : problem.n]
-    return out.reshape(points.shape)
 
 
 def profile_branch(problem: Problem, branch: Branch) -> Profile:

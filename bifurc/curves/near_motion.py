@@ -19,7 +19,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.jumps import repeats_itself
 from bifurc.curves.misclosure import largest_of, misclosures
-from bifurc.curves.monitor import NODES, singular_values
+from bifurc.curves.monitor import NODES
 from bifurc.curves.valley import correct_to_valley
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import (
@@ -31,6 +31,7 @@ from bifurc.decisions import (
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.numerics.roots import bracketed_roots
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
 __all__ = ["NearMotionTrace", "trace_near_motion"]

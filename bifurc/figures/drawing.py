@@ -11,10 +11,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
+from matplotlib.textpath import text_to_path
 from matplotlib.ticker import MultipleLocator
 
 from bifurc.atlas import Atlas
+from bifurc.figures.panels import fix_names_of_axes
 from bifurc.figures.planes import (
     Plane,
     Scale,
@@ -22,7 +25,7 @@ from bifurc.figures.planes import (
     cut_to_frame,
     place_in_frame,
 )
-from bifurc.figures.style import Mark, Style, form_style, mark_of
+from bifurc.figures.style import RC, Mark, Style, form_style, mark_of
 
 __all__ = [
     "LegendSize",
@@ -36,6 +39,10 @@ __all__ = [
 ]
 
 NAME_WIDTH = 24  # letters of a line of the legend
+LETTER_SIZE = RC["legend.fontsize"]
+HANDLE_LENGTH = 3.2  # of the line beside a name, over the size of a letter
+HANDLE_GAP = 0.8  # between the two, over the same
+LEGEND_GAP = 0.2  # at both sides of the legend, in inches
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
 
@@ -73,6 +80,7 @@ def draw_forms(
         axes.set_ylim(-vertical.half, vertical.half)
     if horizontal.is_periodic and vertical.is_periodic:
         axes.set_box_aspect(1)
+        fix_names_of_axes(axes)
     axes.grid(True)
     for spine in axes.spines.values():
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
@@ -114,10 +122,13 @@ def draw_marks(
         _draw_surface(axes, plane, surface.samples)
     for solution in atlas.rigid:
         _draw_assembly(axes, plane.copies(solution), settings.mark_size or 5.5)
+    spots: dict[Mark, list[np.ndarray]] = {}
     for point in atlas.points:
         symbol, usual_size = mark_of(point.kind)
         mark = Mark(symbol, settings.mark_size or usual_size)
-        _draw_singular_point(axes, plane.copies(point.point.u), mark)
+        spots.setdefault(mark, []).append(plane.copies(point.point.u))
+    for mark, places in spots.items():
+        _draw_singular_points(axes, np.concatenate(places), mark)
 
 
 def _draw_surface(axes: Axes, plane: Plane, samples: np.ndarray) -> None:
@@ -137,7 +148,7 @@ def _draw_assembly(axes: Axes, spots: np.ndarray, size: float) -> None:
     )
 
 
-def _draw_singular_point(axes: Axes, spots: np.ndarray, mark: Mark) -> None:
+def _draw_singular_points(axes: Axes, spots: np.ndarray, mark: Mark) -> None:
     axes.plot(
         spots[:, 0],
         spots[:, 1],
@@ -154,13 +165,25 @@ def _draw_singular_point(axes: Axes, spots: np.ndarray, mark: Mark) -> None:
 # --- the legend -----------------------------------------------------------------------
 
 
-def draw_legend(figure: Figure, atlas: Atlas) -> None:
-    """Names of the forms and of the marks, at the right of the figure."""
+def draw_legend(figure: Figure, atlas: Atlas, edge: float) -> None:
+    """Names of the forms and of the marks, at the right of the figure, ``edge`` (inches)
+    below its top."""
     entries = _form_entries(atlas) + _mark_entries(atlas)
-    if entries:
-        figure.legend(
-            handles=entries, loc="outside right upper", frameon=False, handlelength=3.2
-        )
+    if not entries:
+        return
+    width, height = figure.get_size_inches()
+    left = 1 - (legend_size(atlas).width - LEGEND_GAP) / width
+    top = 1 - edge / height
+    figure.legend(
+        handles=entries,
+        loc="upper left",
+        bbox_to_anchor=(left, top),
+        borderpad=0,
+        borderaxespad=0,
+        handlelength=HANDLE_LENGTH,
+        handletextpad=HANDLE_GAP,
+        frameon=False,
+    )
 
 
 def _form_entries(atlas: Atlas) -> list[Line2D]:
@@ -217,10 +240,15 @@ class LegendSize(NamedTuple):
 
 
 def legend_size(atlas: Atlas) -> LegendSize:
-    """Room that the legend of an atlas takes."""
+    """Room that the legend of an atlas takes, with the gaps beside it."""
     lines = [line for name in _wrapped_names(atlas) for line in name.splitlines()]
-    longest = max(len(line) for line in [RIGID_LABEL, *lines])
-    return LegendSize(0.75 + 0.072 * longest, 0.17 * (len(lines) + 4))
+    letters = FontProperties(size=LETTER_SIZE)
+    longest = 0.0
+    for line in [RIGID_LABEL, *lines]:
+        width, _, _ = text_to_path.get_text_width_height_descent(line, letters, False)
+        longest = max(longest, width)
+    points = longest + LETTER_SIZE * (HANDLE_LENGTH + HANDLE_GAP)
+    return LegendSize(points / 72 + 2 * LEGEND_GAP, 0.17 * (len(lines) + 4))
 
 
 def _wrapped_names(atlas: Atlas) -> list[str]:

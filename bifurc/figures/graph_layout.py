@@ -18,6 +18,9 @@ __all__ = ["GraphEdge", "GraphLayout", "lay_out_graph"]
 REACH = 1.9  # distance between neighbouring forms, in inches
 BOW = 0.34  # between neighbouring edges of the same two forms, in inches
 EDGE_POINTS = 41
+LAYOUT_STEPS = 1000  # at most; a step of the layout of twelve forms takes 40 us
+LAYOUT_STILL = 1e-5  # of the length of an edge: a step that moves nothing farther
+TINY = 1e-12  # of the same: places that coincide
 LABEL_PLACES = (20, 16, 24, 13, 27)  # along the points of an edge, the best first
 CLEARANCE = 0.35  # between a name of an edge and other names, in inches
 
@@ -79,9 +82,9 @@ def _component_places(graph: nx.Graph, names: list[str]) -> np.ndarray:
     k = len(names)
     if k <= 2:
         return np.stack([REACH * np.arange(k), np.zeros(k)], axis=1)
-    places = nx.kamada_kawai_layout(graph, pos=_circle(graph, names[0]))
-    spots = np.array([places[name] for name in names])
-    spots = _laid_flat(spots - spots.mean(axis=0))
+    circle = _circle(graph, names[0])
+    start = np.array([circle[name] for name in names])
+    spots = _laid_flat(_majorized(start, _path_lengths(graph, names)))
     lengths = []
     for a, b in graph.edges:
         if a != b:
@@ -89,6 +92,34 @@ def _component_places(graph: nx.Graph, names: list[str]) -> np.ndarray:
                 np.linalg.norm(spots[names.index(a)] - spots[names.index(b)])
             )
     return np.asarray(spots * (REACH / np.mean(lengths)))
+
+
+def _path_lengths(graph: nx.Graph, names: list[str]) -> np.ndarray:
+    """Numbers of edges (k, k) between each two nodes of a connected graph."""
+    lengths = dict(nx.all_pairs_shortest_path_length(graph))
+    return np.array([[lengths[a][b] for b in names] for a in names], dtype=float)
+
+
+def _majorized(places: np.ndarray, lengths: np.ndarray) -> np.ndarray:
+    """Places (k, 2) about the origin whose distances come as near to the ``lengths``
+    (k, k) as they can, from ``places`` (k, 2) on.
+
+    The squares of the relative differences are summed (Kamada and Kawai 1989). Each
+    step solves the linear equations of Gansner, Koren and North (2004) and lessens
+    that sum.
+    """
+    k = len(places)
+    weights = 1.0 / (lengths + np.eye(k)) ** 2 * (1 - np.eye(k))
+    inverse = np.linalg.pinv(np.diag(weights.sum(axis=1)) - weights)
+    for _ in range(LAYOUT_STEPS):
+        gaps = places[:, None] - places
+        distances = np.linalg.norm(gaps, axis=-1) + np.eye(k)
+        pulls = weights * lengths / np.maximum(distances, TINY)
+        step = inverse @ np.sum(pulls[..., None] * gaps, axis=1) - places
+        places = places + step
+        if np.abs(step).max() < LAYOUT_STILL:
+            break
+    return np.asarray(places - places.mean(axis=0))
 
 
 def _circle(graph: nx.Graph, first: str) -> dict[str, tuple[float, float]]:

@@ -91,7 +91,8 @@ def label_points(axes: Axes, atlas: Atlas, plane: Plane) -> None:
     and other names leave room."""
     figure = axes.figure.get_figure(root=True)
     assert figure is not None
-    figure.draw_without_rendering()  # for the layout to be what it will be
+    axes.apply_aspect()  # its place and its limits are now what they will be
+    axes.autoscale_view()
     scale = 72.0 / figure.dpi
     labels = _labels(atlas, plane)
     page = _page(axes, scale)

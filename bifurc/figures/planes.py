@@ -151,9 +151,9 @@ def _shifts(x: np.ndarray, scale: Scale) -> np.ndarray:
     if not scale.is_periodic:
         return np.zeros(1)
     period = 2 * scale.half
-    low = np.round(x.min() / period)
-    high = np.round(x.max() / period)
-    return np.asarray(-period * np.arange(low - 1, high + 2))
+    low = np.ceil(x.min() / period - 0.5 - ON_EDGE)
+    high = np.floor(x.max() / period + 0.5 + ON_EDGE)
+    return np.asarray(-period * np.arange(low, high + 1))
 
 
 def _inside(points: np.ndarray, half: np.ndarray) -> np.ndarray:
@@ -164,15 +164,16 @@ def _inside(points: np.ndarray, half: np.ndarray) -> np.ndarray:
     # a copy that touches the frame in a point only is not drawn
     shortest = 1e-7 * np.where(np.isfinite(half), half, 0.0).min()
     lengths = np.maximum(leave - enter, 0.0) * np.linalg.norm(step, axis=1)
-    rows: list[np.ndarray] = []
-    previous = -2
-    for i in np.flatnonzero(lengths > shortest).tolist():
-        if i != previous + 1 or enter[i] > 0:
-            rows.append(np.full(2, np.nan))
-            rows.append(start[i] + enter[i] * step[i])
-        rows.append(start[i] + leave[i] * step[i])
-        previous = i
-    return np.array(rows).reshape(-1, 2)
+    drawn = np.flatnonzero(lengths > shortest)
+    rows = np.full(
+        (len(drawn), 3, 2), np.nan
+    )  # a break, where it enters, where it ends
+    rows[:, 1] = start[drawn] + enter[drawn, None] * step[drawn]
+    rows[:, 2] = start[drawn] + leave[drawn, None] * step[drawn]
+    begins = np.ones(len(drawn), dtype=bool)
+    begins[1:] = (np.diff(drawn) > 1) | (enter[drawn[1:]] > 0)
+    is_needed = np.stack([begins, begins, np.ones_like(begins)], axis=1)
+    return np.asarray(rows[is_needed])
 
 
 def _crossings(

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
@@ -30,7 +30,9 @@ from bifurc.figures.drawing import (
 )
 from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.labels import label_points
-from bifurc.figures.planes import choose_plane, plane_of
+from bifurc.figures.panels import Margins, make_panels
+from bifurc.figures.planes import choose_plane, plane_of, scale_of
+from bifurc.figures.rendering import render
 from bifurc.figures.singular_values import plot_singular_values
 from bifurc.figures.style import RC
 from bifurc.files.atomic import replace_file
@@ -45,6 +47,16 @@ __all__ = [
 
 SMALL_PANEL = PanelSettings(line_width=1.4, mark_size=3.5)
 RESOLUTION = 140  # dots per inch of the files
+
+# In inches.
+FRAME_SIDE = 4.3  # of the transition map
+PANEL_SIDE = 1.6  # of the small panels
+TICKS = 0.75  # room for ticks, their labels and the name of an axis, at its left
+WIDE_TICKS = 1.0  # the same where these are not angles in degrees
+TICKS_BELOW = 0.5  # the same below it
+EDGE = 0.15  # beside a frame where nothing stands
+COLUMN_EDGE = 0.1  # between a panel and the room for the ticks of the next one
+ROW_GAP = 0.3
 
 
 def plot_transition_map(
@@ -63,14 +75,17 @@ def plot_transition_map(
     else:
         horizontal, vertical = _indices(atlas, joints, count=2)
         plane = plane_of(atlas, horizontal, vertical)
-    legend = legend_size(atlas)
-    size = (4.9 + legend.width, max(4.9, legend.height))
     with rc_context(RC):
-        figure = figure or Figure(figsize=size, layout="constrained")
-        axes = figure.subplots()
+        legend = legend_size(atlas)
+        height = max(FRAME_SIDE + TICKS_BELOW + EDGE, legend.height)
+        ticks = _room_for_ticks(atlas)
+        size = (ticks + FRAME_SIDE + legend.width, height)
+        figure = figure or Figure(figsize=size)
+        margins = Margins(ticks, legend.width, TICKS_BELOW, EDGE)
+        (axes,) = make_panels(figure, 1, 1, margins)
         draw_forms(axes, atlas, plane)
         draw_marks(axes, atlas, plane)
-        draw_legend(figure, atlas)
+        draw_legend(figure, atlas, EDGE)
         note_emptiness(axes, atlas)
         label_points(axes, atlas, plane)
     return figure
@@ -88,13 +103,17 @@ def plot_joint_angles(
     others = [i for i in range(len(atlas.names)) if i != first] or [first]
     columns = min(len(others), 3 if len(others) <= 9 else 4)
     rows = -(-len(others) // columns)
-    legend = legend_size(atlas)
-    size = (2.3 * columns + legend.width, max(2.2 * rows + 0.4, legend.height))
     with rc_context(RC):
-        figure = figure or Figure(figsize=size, layout="compressed")
-        panels = figure.subplots(rows, columns, squeeze=False).flat
-        for axes in panels[len(others) :]:
-            axes.set_visible(False)
+        legend = legend_size(atlas)
+        inner_height = rows * PANEL_SIDE + (rows - 1) * ROW_GAP
+        height = max(inner_height + TICKS_BELOW + EDGE, legend.height)
+        ticks = _room_for_ticks(atlas)
+        column_gap = COLUMN_EDGE + ticks
+        inner_width = columns * PANEL_SIDE + (columns - 1) * column_gap
+        size = (ticks + inner_width + legend.width, height)
+        figure = figure or Figure(figsize=size)
+        margins = Margins(ticks, legend.width, TICKS_BELOW, EDGE, column_gap, ROW_GAP)
+        panels = make_panels(figure, len(others), columns, margins)
         for k, other in enumerate(others):
             axes = panels[k]
             plane = plane_of(atlas, first, other)
@@ -106,9 +125,15 @@ def plot_joint_angles(
             if has_panel_below:
                 axes.set_xlabel("")
                 axes.tick_params(labelbottom=False)
-        draw_legend(figure, atlas)
+        draw_legend(figure, atlas, EDGE)
         note_emptiness(panels[0], atlas)
     return figure
+
+
+def _room_for_ticks(atlas: Atlas) -> float:
+    """Width of ticks, their labels and the name of an axis, in inches."""
+    is_angle = [scale_of(atlas, i).half == 180.0 for i in range(len(atlas.names))]
+    return TICKS if all(is_angle) else WIDE_TICKS
 
 
 def _indices(atlas: Atlas, joints: Sequence[int], count: int) -> list[int]:
@@ -130,13 +155,6 @@ FIGURES: dict[str, Callable[[Atlas], Figure]] = {
     "form_graph": plot_form_graph,
 }
 
-# What `Figure.savefig` takes for each ending: no dates, no names of programs, so that
-# the same atlas gives the same bytes.
-FILE_OPTIONS: dict[str, dict[str, Any]] = {
-    "png": {"metadata": {"Software": None}, "pil_kwargs": {"compress_level": 2}},
-    "svg": {"metadata": {"Date": None, "Creator": None}},
-}
-
 
 def save_figures(atlas: Atlas, folder: str | os.PathLike[str]) -> list[Path]:
     """Paths of the four figures just written into an existing ``folder``, as PNG and
@@ -147,17 +165,13 @@ def save_figures(atlas: Atlas, folder: str | os.PathLike[str]) -> list[Path]:
     """
     paths = []
     for name, plot in FIGURES.items():
-        figure = plot(atlas)
-        for ending in FILE_OPTIONS:
+        with rc_context(RC):
+            rendering = render(plot(atlas), RESOLUTION)
+        for ending, content in rendering._asdict().items():
             path = Path(folder) / f"{name}.{ending}"
-            paths.append(_save_figure(figure, path, ending))
-            figure.set_layout_engine("none")  # the layout of the first drawing stays
+            paths.append(replace_file(path, partial(_write, content)))
     return paths
 
 
-def _save_figure(figure: Figure, path: Path, ending: str) -> Path:
-    def write(part: Path) -> None:
-        with rc_context(RC):
-            figure.savefig(part, format=ending, dpi=RESOLUTION, **FILE_OPTIONS[ending])
-
-    return replace_file(path, write)
+def _write(content: bytes, path: Path) -> None:
+    path.write_bytes(content)

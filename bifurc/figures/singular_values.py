@@ -13,11 +13,13 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 
 from bifurc.atlas import Atlas, Event, Form
 from bifurc.figures.drawing import draw_curve, note_emptiness
+from bifurc.figures.panels import Margins, fix_names_of_axes, make_panels
 from bifurc.figures.style import RC, Style, form_style
 
 __all__ = ["plot_singular_values"]
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+MARGINS = Margins(0.85, 0.2, 0.6, 0.45, between_columns=0.3, between_rows=0.75)
 STEEP = 1.3  # values of neighbours over each other, above which points are put between
 SAME_LABEL = 0.05  # of the length of a form: points that are closer share a label
 
@@ -50,29 +52,13 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
     size = (4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4)
     with rc_context(RC):
         figure = figure or Figure(figsize=size)
-        panels = figure.subplots(rows, columns, squeeze=False, sharey=True).flat
-        _set_margins(figure, rows, columns)
-        for axes in panels[count:]:
-            axes.set_visible(False)
+        panels = make_panels(figure, count, columns, MARGINS, has_common_ordinate=True)
         for i in range(len(atlas.forms)):
             _draw_form(panels[i], atlas, i, limits)
         figure.supxlabel(f"arclength{_unit(atlas)}", fontsize=9)
         figure.supylabel("singular value", fontsize=9)
         note_emptiness(panels[0], atlas)
     return figure
-
-
-def _set_margins(figure: Figure, rows: int, columns: int) -> None:
-    """Margins in inches: no layout engine need measure the text."""
-    width, height = figure.get_size_inches()
-    figure.subplots_adjust(
-        left=0.85 / width,
-        right=1 - 0.2 / width,
-        bottom=0.6 / height,
-        top=1 - 0.45 / height,
-        wspace=0.3 / (width / columns - 0.3),
-        hspace=0.75 / (height / rows - 0.75),
-    )
 
 
 def _unit(atlas: Atlas) -> str:
@@ -111,8 +97,9 @@ def _draw_form(axes: Axes, atlas: Atlas, index: int, limits: _Range) -> None:
     axes.set(yscale="log", ylim=limits, xlim=(0.0, form.branch.length))
     axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
     axes.yaxis.set_minor_locator(NullLocator())
+    fix_names_of_axes(axes)
     pad = 14 if stops else 6
-    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=pad)
+    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=pad, y=1.0)
     axes.grid(True)
 
 

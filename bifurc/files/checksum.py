@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
-import xarray as xr
 
 __all__ = ["checksum"]
 
 
-def checksum(dataset: xr.Dataset, attributes: Iterable[str]) -> int:
-    """CRC-32 of the values of all variables and of the named ``attributes``.
+def checksum(
+    values: Mapping[str, np.ndarray],
+    attributes: Mapping[str, object],
+    names: Iterable[str],
+) -> int:
+    """CRC-32 of the values of all variables and of the attributes called ``names``.
 
     It is the same before a dataset is written and after it is read.
     """
     total = 0
-    for name in sorted(map(str, dataset.variables)):
+    for name in sorted(values):
         total = zlib.crc32(name.encode(), total)
-        total = zlib.crc32(_content(dataset[name].values), total)
-    for name in attributes:
-        total = zlib.crc32(str(dataset.attrs.get(name)).encode(), total)
+        total = zlib.crc32(_content(values[name]), total)
+    for name in names:
+        total = zlib.crc32(str(attributes.get(name)).encode(), total)
     return total
 
 

@@ -5,16 +5,14 @@
 
 from __future__ import annotations
 
-import errno
 import os
 from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from bifurc.atlas import Atlas, Provenance
 from bifurc.checks import check_type
@@ -32,6 +30,7 @@ from bifurc.files.layout import (
     dataset_frame,
 )
 from bifurc.files.near_motion_layout import NEAR_MOTIONS, read_near_motion
+from bifurc.files.netcdf import write_netcdf
 from bifurc.files.point_layout import (
     DEAD_POINTS,
     NEAR_MISSES,
@@ -43,8 +42,12 @@ from bifurc.files.point_layout import (
 from bifurc.files.seal import append_seal, is_seal_broken
 from bifurc.files.surface_layout import SURFACES, read_surface
 from bifurc.files.table import JOINT, Frame, make_variable
+from bifurc.files.variable import Attribute, Variable
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness, Level
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
@@ -64,9 +67,6 @@ NEEDED_ATTRIBUTES = (
     "subject",
 )
 
-Attribute: TypeAlias = str | int | float
-
-
 # --- files ----------------------------------------------------------------------------
 
 
@@ -76,18 +76,18 @@ def save_atlas(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
     There is never a half-written file under ``path``. Raises `OSError` that names
     ``path`` where it cannot be written.
     """
-    dataset = to_dataset(atlas)
+    check_type("atlas", atlas, Atlas)
+    frame = atlas_frame(atlas)
+    variables = _variables(atlas, frame)
+    attributes = _attributes(atlas, frame)
     now = datetime.now(UTC).isoformat(timespec="seconds")
-    dataset.attrs["date_created"] = now
-    dataset.attrs["history"] = f"{now} written by {dataset.attrs['source']}"
-    dataset.attrs[CHECKSUM] = checksum(dataset, NEEDED_ATTRIBUTES)
+    attributes["date_created"] = now
+    attributes["history"] = f"{now} written by {attributes['source']}"
+    values = {name: variable.values for name, variable in variables.items()}
+    attributes[CHECKSUM] = checksum(values, attributes, NEEDED_ATTRIBUTES)
 
     def write(part: Path) -> None:
-        try:
-            dataset.to_netcdf(part, engine="netcdf4", format="NETCDF4")
-        except RuntimeError as error:  # the library's word for a full disk
-            reason = f"it cannot be written ({error})"
-            raise OSError(errno.EIO, reason) from error
+        write_netcdf(part, variables, attributes)
         append_seal(part)
 
     return replace_file(path, write)
@@ -99,6 +99,8 @@ def load_atlas(path: str | os.PathLike[str]) -> Atlas:
     Raises `FileNotFoundError`, and `AtlasFileError` for a file that is damaged, is not
     NetCDF or holds no atlas.
     """
+    import xarray as xr
+
     source = Path(path)
     if not source.exists():
         raise FileNotFoundError(f"{source}: there is no such file")
@@ -124,7 +126,9 @@ def _check_sum(dataset: xr.Dataset, source: str) -> None:
     expected = dataset.attrs.get(CHECKSUM)
     if expected is None:
         return
-    if not np.array_equal(expected, checksum(dataset, NEEDED_ATTRIBUTES)):
+    values = {str(name): dataset[name].values for name in dataset.variables}
+    found = checksum(values, dataset.attrs, NEEDED_ATTRIBUTES)
+    if not np.array_equal(expected, found):
         raise AtlasFileError(
             source,
             "its values are not those that were written: the file is damaged, or was "
@@ -145,14 +149,29 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
     Entries of ``atlas.subject`` become variables along ``joint`` and attributes
     called ``linkage_...``.
     """
+    import xarray as xr
+
     check_type("atlas", atlas, Atlas)
     frame = atlas_frame(atlas)
-    variables: dict[str, xr.Variable] = {}
+    no_value_is_missing = {"_FillValue": None}
+    variables = {
+        name: xr.Variable(
+            variable.dimensions,
+            variable.values,
+            variable.attributes,
+            encoding=no_value_is_missing,
+        )
+        for name, variable in _variables(atlas, frame).items()
+    }
+    return xr.Dataset(variables, attrs=_attributes(atlas, frame))
+
+
+def _variables(atlas: Atlas, frame: Frame) -> dict[str, Variable]:
+    """All variables by their names."""
+    variables: dict[str, Variable] = {}
     for table in TABLES:
         variables |= table.variables(atlas, frame)
-    variables |= _subject_variables(atlas, frame)
-    attributes = _attributes(atlas, frame) | _subject_attributes(atlas)
-    return xr.Dataset(variables, attrs=attributes)
+    return variables | _subject_variables(atlas, frame)
 
 
 def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
@@ -186,6 +205,7 @@ def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
         "missed_probability": float(atlas.completeness.missed_probability),
         "provenance": to_text(asdict(provenance)),
         "subject": to_text(dict(atlas.subject)),
+        **_subject_attributes(atlas),
     }
 
 
@@ -205,7 +225,7 @@ def _subject_attributes(atlas: Atlas) -> dict[str, Attribute]:
     }
 
 
-def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
+def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, Variable]:
     """What the subject says with one number for each unknown."""
     variables = {}
     for key, value in atlas.subject.items():
@@ -225,6 +245,8 @@ def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
 def from_dataset(dataset: xr.Dataset) -> Atlas:
     """The atlas that `to_dataset` stored; raises `AtlasFileError` that says what is
     missing or wrong."""
+    import xarray as xr
+
     check_type("dataset", dataset, xr.Dataset)
     _check_format(dataset, "dataset")
     return _read(dataset, "dataset")

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from bifurc.files.table import Column, Frame, Record, Table, count_name
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["missing_variables", "table_faults"]
 

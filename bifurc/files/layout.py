@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from bifurc.atlas import Atlas
 from bifurc.files.form_layout import FORMS
@@ -13,6 +12,9 @@ from bifurc.files.near_motion_layout import NEAR_MOTIONS
 from bifurc.files.point_layout import DEAD_POINTS, NEAR_MISSES, POINTS
 from bifurc.files.surface_layout import SURFACES
 from bifurc.files.table import JOINT, UNIT, Column, Frame, Table
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["ASSEMBLIES", "TABLES", "UNKNOWNS", "atlas_frame", "dataset_frame"]
 

@@ -11,13 +11,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from bifurc.atlas import Atlas
+from bifurc.files.variable import Variable
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = [
     "JOINT",
@@ -156,7 +159,7 @@ class Table(Generic[Record]):
             names = [column.entries, *column.dimensions]
         return tuple(frame.name(name) for name in names)
 
-    def variables(self, atlas: Atlas, frame: Frame) -> dict[str, xr.Variable]:
+    def variables(self, atlas: Atlas, frame: Frame) -> dict[str, Variable]:
         """The variables of an atlas by their names."""
         records = self.records(atlas)
         variables = {}
@@ -171,11 +174,13 @@ class Table(Generic[Record]):
             )
             if column.entries:
                 counts = np.array([len(cell) for cell in cells], dtype=int)
-                variable = make_variable(
-                    (self.owner,), counts, f"number of {column.entries} entries"
+                attributes = {
+                    "long_name": f"number of {column.entries} entries",
+                    "sample_dimension": column.entries,
+                }
+                variables[count_name(column.entries)] = Variable(
+                    (self.owner,), counts, attributes
                 )
-                variable.attrs["sample_dimension"] = column.entries
-                variables[count_name(column.entries)] = variable
         return variables
 
     def rows(self, dataset: xr.Dataset, frame: Frame) -> list[Row]:
@@ -199,10 +204,9 @@ def count_name(dimension: str) -> str:
 
 def make_variable(
     dimensions: tuple[str, ...], values: np.ndarray, long_name: str, units: str = ""
-) -> xr.Variable:
-    """A variable with its long name and its units; no value stands for a missing
-    one."""
+) -> Variable:
+    """A variable with its long name and its units."""
     attributes = {"long_name": long_name}
     if units:
         attributes["units"] = units
-    return xr.Variable(dimensions, values, attributes, encoding={"_FillValue": None})
+    return Variable(dimensions, values, attributes)

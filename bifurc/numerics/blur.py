@@ -13,7 +13,8 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.decisions import is_without_equation, may_be_scaled_down
-from bifurc.numerics.null_spaces import decompose, null_spaces
+from bifurc.numerics.null_spaces import decompose
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
 __all__ = [
@@ -56,7 +57,7 @@ def known_to(
     if problem.n < 2 or not len(points):
         return distances
     if values is None:
-        values, _ = null_spaces(problem, points)
+        values = singular_values(problem, points)
     sigma = values[:, problem.n - 2]
     is_clear = ~may_be_scaled_down(sigma)
     distances[is_clear] = ROUNDING / sigma[is_clear]

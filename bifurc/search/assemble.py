@@ -18,10 +18,11 @@ from bifurc.atlas import (
 )
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
-from bifurc.curves.monitor import dead_points, singular_values
+from bifurc.curves.monitor import dead_points
 from bifurc.curves.near_miss import near_miss_value
 from bifurc.decisions import closes_to_rounding, is_faint
 from bifurc.numerics.blur import change_by_rounding
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.canonical_course import wrapped_periods
 from bifurc.search.canonical_order import (

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.curves.monitor import singular_values
 from bifurc.decisions import closes_to_rounding, is_blurred
 from bifurc.numerics.null_spaces import decompose
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
 __all__ = ["IsolatedSolution", "polished"]

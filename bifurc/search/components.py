@@ -10,7 +10,7 @@ import numpy as np
 from bifurc.atlas import Surface
 from bifurc.decisions import is_same_point, may_be_null
 from bifurc.limits import Deadline
-from bifurc.numerics.null_spaces import null_spaces
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
@@ -211,7 +211,7 @@ def singular_points_of(
 def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
     """Numbers (k,) of the charts at which the smallest regular singular value is small
     and smaller than at all neighbours, the smallest first."""
-    sigma = null_spaces(problem, charts.centers)[0][:, -NULLITY]
+    sigma = singular_values(problem, charts.centers)[:, -NULLITY]
     lowest_beside = np.full(len(charts), np.inf)
     one, other = charts.neighbours.T
     np.minimum.at(lowest_beside, one, sigma[other])

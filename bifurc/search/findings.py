@@ -11,7 +11,7 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
-from bifurc.curves.monitor import Profile, singular_values
+from bifurc.curves.monitor import Profile
 from bifurc.curves.near_motion import NearMotionTrace
 from bifurc.curves.near_surface import NearSurface
 from bifurc.decisions import (
@@ -22,6 +22,7 @@ from bifurc.decisions import (
     may_be_weak,
 )
 from bifurc.numerics.blur import same_reach
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.components import Components
 from bifurc.search.seed_fates import Fate, SeedFate

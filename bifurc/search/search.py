@@ -14,7 +14,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.misclosure import largest_misclosure
-from bifurc.curves.monitor import Profile, profile_branch, singular_values
+from bifurc.curves.monitor import Profile, profile_branch
 from bifurc.curves.near_motion import trace_near_motion
 from bifurc.curves.near_surface import near_surfaces
 from bifurc.decisions import (
@@ -36,6 +36,7 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.blur import blur_along, distance_to_singular
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.assembly import polished
 from bifurc.search.canonical_course import canonical_course

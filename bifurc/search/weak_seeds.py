@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.curves.monitor import singular_values
 from bifurc.decisions import (
     is_start_solved,
     is_without_equation,
@@ -22,6 +21,7 @@ from bifurc.decisions import (
 from bifurc.numerics.blur import ROUNDING
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import decompose
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 

@@ -10,6 +10,7 @@ probed.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -186,14 +187,17 @@ def _probe(
     return _Probes(ends, coordinates, loss)
 
 
+@cache
 def _probe_directions(k: int) -> np.ndarray:
-    """Unit vectors (2 k + 2, k): both ways along axes turned at random, and two
-    more."""
+    """Unit vectors (2 k + 2, k), always the same: both ways along axes turned at
+    random, and two more."""
     rng = np.random.default_rng(k)
     axes, _ = np.linalg.qr(rng.normal(size=(k, k)))
     extra = rng.normal(size=(2, k))
     extra /= np.linalg.norm(extra, axis=1)[:, None]
-    return np.concatenate([axes, -axes, extra])
+    directions = np.concatenate([axes, -axes, extra])
+    directions.setflags(write=False)
+    return directions
 
 
 def _dimension_from_ends(

@@ -21,8 +21,8 @@ from bifurc.decisions import (
     is_same_half_branch,
 )
 from bifurc.numerics.directions import unit_vectors
-from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.roots import bracketed_roots
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 
@@ -333,7 +333,7 @@ def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
     A curve may be shaky, and a solution of higher nullity on it; the dimension of the
     nearby solutions decides.
     """
-    sigma, _ = null_spaces(problem, points)
+    sigma = singular_values(problem, points)
     is_of_higher_nullity = is_null(sigma[:, -2])
     candidates = np.flatnonzero(is_of_higher_nullity)
     stride = max(1, len(candidates) // MOST_TESTED)

@@ -13,7 +13,7 @@ import numpy as np
 from bifurc import torus
 
 if TYPE_CHECKING:
-    # it takes a quarter of a second to import, and most maps have no surface
+    # it takes longer to import than NumPy, and most maps have no surface
     from scipy.spatial import cKDTree
 
 __all__ = ["ChartAtlas", "Covering"]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.monitor import singular_values
+from bifurc.numerics.singular_values import singular_values
 from linkages.catalogue import entry
 from linkages.closed_forms.closed_form import ClosedForm
 from linkages.closed_forms.comparison import compare

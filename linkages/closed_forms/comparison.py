@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.monitor import roots_along, singular_values
+from bifurc.curves.monitor import roots_along
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from linkages.closed_forms.closed_form import ClosedForm
 

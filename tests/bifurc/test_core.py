@@ -239,3 +239,49 @@ def test_a_march_ends_where_its_curve_closes():
     before = reached - 2 * bound.radii[-1]
     assert before < branch.length < reached
     assert np.array_equal(bound.pieces, free.pieces[: len(bound.pieces)])
+
+
+@pytest.mark.parametrize("shape", [(6, 6), (6, 4), (3, 5), (1, 2)])
+def test_rates_of_singular_values_are_their_differences(shape):
+    rng = np.random.default_rng(3)
+    matrices = rng.normal(size=(20, *shape))
+    changes = rng.normal(size=(20, *shape))
+    step = 1e-6
+    for number in range(min(shape)):
+        values, rates = _core.singular_value_rates(matrices, changes, number)
+        after = np.linalg.svd(matrices + step * changes, compute_uv=False)
+        before = np.linalg.svd(matrices - step * changes, compute_uv=False)
+        expected = np.linalg.svd(matrices, compute_uv=False)[:, number]
+        slopes = (after - before)[:, number] / (2 * step)
+        assert np.allclose(values, expected, rtol=1e-13)
+        assert np.allclose(rates, slopes, atol=1e-7)
+
+
+def test_a_singular_value_of_zero_has_no_rate():
+    values, rates = _core.singular_value_rates(
+        np.diag([2.0, 0.0])[None], np.ones((1, 2, 2)), 1
+    )
+    assert values[0] == rates[0] == 0.0
+
+
+def test_arrays_of_another_size_are_refused():
+    three, two = np.zeros(3), np.ones(2)
+    with pytest.raises(ValueError, match="for each bracket"):
+        _core.Brackets(three, three, three, two, 1e-15)
+    brackets = _core.Brackets(three, three + 1, three - 1, three + 1, 1e-15)
+    with pytest.raises(ValueError, match="for each bracket"):
+        brackets.narrow(two)
+    with pytest.raises(ValueError, match="do not fit"):
+        _core.singular_value_rates(np.zeros((2, 3, 3)), np.zeros((2, 3, 4)), 0)
+    with pytest.raises(ValueError, match="do not fit"):
+        _core.singular_value_rates(np.zeros((2, 3, 3)), np.zeros((2, 3, 3)), 3)
+
+
+def test_a_matrix_has_the_same_singular_values_alone_and_among_others():
+    matrices = np.random.default_rng(4).normal(size=(11, 6, 5))
+    matrices[3] = 0.0
+    matrices[6, 0, 0] = np.nan
+    together = _core.singular_values(matrices)
+    alone = [_core.singular_values(matrix[None])[0] for matrix in matrices]
+    assert np.array_equal(together, alone, equal_nan=True)
+    assert np.isnan(together[6]).all() and np.isfinite(together[5]).all()

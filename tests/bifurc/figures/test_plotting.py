@@ -151,11 +151,11 @@ def test_a_file_that_cannot_be_written_is_named(parallelogram: Atlas, tmp_path) 
 def test_a_figure_that_is_interrupted_leaves_no_part_of_itself(
     parallelogram: Atlas, tmp_path, monkeypatch
 ) -> None:
-    def interrupted(self: Figure, part: Path, **options: object) -> None:
+    def interrupted(content: bytes, part: Path) -> None:
         part.write_bytes(b"half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Figure, "savefig", interrupted)
+    monkeypatch.setattr("bifurc.figures.plotting._write", interrupted)
     with pytest.raises(KeyboardInterrupt):
         save_figures(parallelogram, tmp_path)
     assert list(tmp_path.iterdir()) == []

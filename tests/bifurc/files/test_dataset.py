@@ -148,11 +148,11 @@ def test_an_interrupted_run_leaves_the_old_file_and_nothing_else(
     path = save_atlas(atlas, tmp_path / "atlas.nc")
     before = path.read_bytes()
 
-    def interrupted(self: xr.Dataset, target: Path, **options: object) -> None:
+    def interrupted(target: Path, *content: object) -> None:
         target.write_bytes(b"half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", interrupted)
+    monkeypatch.setattr("bifurc.files.dataset.write_netcdf", interrupted)
     with pytest.raises(KeyboardInterrupt):
         save_atlas(atlas, path)
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
@@ -399,16 +399,38 @@ def test_a_disk_that_is_full_for_netcdf_is_told_with_the_name_of_the_file(
     path = save_atlas(atlas, tmp_path / "atlas.nc")
     before = path.read_bytes()
 
-    def full(self: xr.Dataset, target: Path, **options: object) -> None:
-        target.write_bytes(b"half")
+    def full(*arguments: object) -> None:
         raise RuntimeError("NetCDF: HDF error")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", full)
+    monkeypatch.setattr("bifurc.files.netcdf._write_variable", full)
     with pytest.raises(OSError, match=r"cannot be written.*atlas\.nc") as caught:
         save_atlas(atlas, path)
     assert caught.value.errno == errno.EIO
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_file_has_the_layout_that_xarray_gives_to_the_dataset(
+    atlas: Atlas, tmp_path
+) -> None:
+    save_atlas(atlas, tmp_path / "ours.nc")
+    to_dataset(atlas).to_netcdf(tmp_path / "theirs.nc", engine="netcdf4")
+    with (
+        netCDF4.Dataset(tmp_path / "ours.nc") as ours,
+        netCDF4.Dataset(tmp_path / "theirs.nc") as theirs,
+    ):
+        assert set(ours.variables) == set(theirs.variables)
+        assert set(theirs.ncattrs()) < set(ours.ncattrs())
+        for name in theirs.variables:
+            assert layout(ours[name]) == layout(theirs[name])
+            np.testing.assert_array_equal(ours[name][...], theirs[name][...])
+        for name in theirs.ncattrs():
+            assert type(ours.getncattr(name)) is type(theirs.getncattr(name))
+
+
+def layout(variable: netCDF4.Variable) -> tuple[object, ...]:
+    attributes = {name: variable.getncattr(name) for name in variable.ncattrs()}
+    return variable.dtype, variable.dimensions, variable.shape, attributes
 
 
 def test_a_folder_in_place_of_the_file_is_named(atlas: Atlas, tmp_path) -> None:

@@ -27,3 +27,22 @@ def test_a_steep_function_is_bisected():
 
 def test_no_brackets_give_no_roots():
     assert bracketed_roots(np.sin, np.empty(0), np.empty(0)).shape == (0,)
+
+
+def test_the_method_is_that_of_scipy():
+    from scipy.optimize.elementwise import find_root
+
+    def function(x):
+        return np.cos(x) - 0.3 * x**3
+
+    low, high = np.array([-1.0, 0.0, 0.5]), np.array([2.0, 3.0, 9.0])
+    evaluations = []
+
+    def counted(x):
+        evaluations.append(len(x))
+        return function(x)
+
+    roots = bracketed_roots(counted, low, high)
+    theirs = find_root(function, (low, high))
+    assert np.allclose(roots, theirs.x, rtol=1e-14)
+    assert len(evaluations) <= theirs.nfev.max() + 2

@@ -139,6 +139,19 @@ def test_json_loads_nothing_that_it_does_not_need():
     assert result.stderr.splitlines()[-1] == "[]"
 
 
+def test_files_and_figures_load_neither_xarray_nor_scipy_optimize(tmp_path):
+    """Each takes longer to import than a map takes."""
+    script = (
+        "import sys, linkages.app.cli as c; c.main(['map', 'special-double-subtractive-goldberg', '--out', sys.argv[1]], standalone_mode=False)\n"
+        "heavy = ('xarray', 'pandas', 'scipy.optimize', 'matplotlib.pyplot', 'sympy')\n"
+        "print([m for m in heavy if m in sys.modules], file=sys.stderr)"
+    )
+    command = [sys.executable, "-c", script, str(tmp_path)]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert result.stderr.splitlines()[-1] == "[]"
+    assert (tmp_path / "form_graph.png").exists()
+
+
 def test_json_speaks_of_radians_joints_from_1_and_relative_residuals():
     document = json.loads(
         bifurc("map", "special-double-subtractive-goldberg", "--json").stdout

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.monitor import singular_values
 from bifurc.numerics.null_spaces import null_vector
+from bifurc.numerics.singular_values import singular_values
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import locate_singular_point
 from linkages import _core

@@ -1,0 +1,21 @@
+"""Singular values of F'."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bifurc import _core
+from bifurc.problem import Problem
+
+__all__ = ["singular_values"]
+
+
+def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Singular values (..., n) of F' at points (..., n), over the problem's magnitude,
+    padded with zeros."""
+    flat = points.reshape(-1, points.shape[-1])
+    jacobians = problem.jacobians(flat) / problem.magnitude
+    values = _core.singular_values(jacobians)
+    out = np.zeros((len(flat), problem.n))
+    out[:, : values.shape[1]] = values[:, : problem.n]
+    return out.reshape(points.shape)
