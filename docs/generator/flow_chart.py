@@ -1,0 +1,118 @@
+"""Flow charts from the left to the right, written in Mermaid, as SVG.
+
+Mermaid itself is a script of some megabytes that is fetched when a page is opened; of
+its language this reads what the pages need: boxes ``A["text<br/>text"]`` and chains
+``A --> B --> C``.
+"""
+
+from __future__ import annotations
+
+import re
+from html import escape
+from itertools import pairwise
+from typing import NamedTuple
+
+import networkx as nx
+
+__all__ = ["Chart", "chart_svg", "read_chart"]
+
+BOX = re.compile(r'(\w+)\["(.*?)"\]')
+HEIGHT, LINE = 46, 16  # px: of a box, and of a line of text
+LETTER, MARGIN = 7.2, 12  # px: width of a letter of 12 px, and room beside a text
+GAP, ROW = 34, 62  # px: between columns, and from row to row
+
+
+class Chart(NamedTuple):
+    """The lines of text in each box, by its key, and the arrows between boxes."""
+
+    texts: dict[str, list[str]]
+    arrows: list[tuple[str, str]]
+
+
+class Box(NamedTuple):
+    """Where a box stands: its left upper corner and its width, px."""
+
+    x: float
+    y: float
+    width: float
+
+
+def read_chart(text: str) -> Chart:
+    """The chart that ``text`` describes; raises `ValueError` for a line that is no
+    chain."""
+    head, *lines = [line.strip() for line in text.strip().splitlines()]
+    if head != "graph LR":
+        raise ValueError(f"a flow chart begins with {head!r}; it must be 'graph LR'")
+    texts: dict[str, list[str]] = {}
+    arrows = []
+    for line in lines:
+        for key, words in BOX.findall(line):
+            texts[key] = words.split("<br/>")
+        keys = [key.strip() for key in BOX.sub(r"\1", line).split("-->")]
+        if not all(re.fullmatch(r"\w+", key) for key in keys):
+            raise ValueError(f"a line of a flow chart is {line!r}, which is no chain")
+        arrows += list(pairwise(keys))
+    for arrow in arrows:
+        for key in arrow:
+            texts.setdefault(key, [key])
+    return Chart(texts, arrows)
+
+
+def chart_svg(chart: Chart) -> str:
+    """The chart as an SVG element in the colour of the text around it."""
+    places = _places(chart)
+    width = max(box.x + box.width for box in places.values()) + 1
+    height = max(box.y for box in places.values()) + HEIGHT + 1
+    arrows = "".join(_arrow(places[a], places[b]) for a, b in chart.arrows)
+    boxes = "".join(_box(places[key], lines) for key, lines in chart.texts.items())
+    return (
+        f'<svg class="flow-chart" viewBox="-1 -1 {width + 1:g} {height + 1:g}"'
+        f' width="{width:g}" role="img" aria-label="flow chart">'
+        f"{arrows}{boxes}</svg>"
+    )
+
+
+def _places(chart: Chart) -> dict[str, Box]:
+    """A column for each step from the first boxes, in it the boxes one below the
+    other, centred."""
+    graph = nx.DiGraph(chart.arrows)
+    columns = [list(column) for column in nx.topological_generations(graph)]
+    tallest = max(len(column) for column in columns)
+    places = {}
+    x = 0.0
+    for column in columns:
+        column.sort(key=list(chart.texts).index)
+        widths = [_text_width(chart.texts[key]) for key in column]
+        top = (tallest - len(column)) * ROW / 2
+        for i, key in enumerate(column):
+            places[key] = Box(x, top + i * ROW, max(widths))
+        x += max(widths) + GAP
+    return places
+
+
+def _text_width(lines: list[str]) -> float:
+    return LETTER * max(len(line) for line in lines) + 2 * MARGIN
+
+
+def _box(box: Box, lines: list[str]) -> str:
+    x = box.x + box.width / 2
+    first = box.y + HEIGHT / 2 - LINE * (len(lines) - 1) / 2
+    texts = "".join(
+        f'<text x="{x:g}" y="{first + LINE * i:g}">{escape(line)}</text>'
+        for i, line in enumerate(lines)
+    )
+    rectangle = (
+        f'<rect x="{box.x:g}" y="{box.y:g}" width="{box.width:g}" '
+        f'height="{HEIGHT}" rx="6"/>'
+    )
+    return rectangle + texts
+
+
+def _arrow(start: Box, end: Box) -> str:
+    """A curve from the right of a box to the left of another, and its tip."""
+    x1, y1 = start.x + start.width, start.y + HEIGHT / 2
+    x2, y2 = end.x, end.y + HEIGHT / 2
+    middle = (x1 + x2) / 2
+    line = f"M{x1:g} {y1:g}C{middle:g} {y1:g} {middle:g} {y2:g} {x2 - 6:g} {y2:g}"
+    tip = f"M{x2:g} {y2:g}l-7 -4v8z"
+    return f'<path class="arrow" d="{line}"/><path class="tip" d="{tip}"/>'
