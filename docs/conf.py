@@ -107,4 +107,4 @@ html_theme_options = {
     "footer_end": [],
 }
 html_context = {"default_mode": "auto"}
-html_sidebars = {"index": [], "catalogue": [], "changes": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "catalogue": [], "changes": []}

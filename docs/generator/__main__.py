@@ -1,7 +1,7 @@
 """The steps of `make docs` that are not Sphinx's.
 
-    python -m docs.generator sources    # gather all pages in build/docs
-    python -m docs.generator links      # look for dead links in out/site
+python -m docs.generator sources    # gather all pages in build/docs
+python -m docs.generator links      # look for dead links in out/site
 """
 
 from __future__ import annotations

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
@@ -17,6 +20,8 @@ from linkages.scene import Scene, breadth, clearance, make_scene
 
 __all__ = ["clearest_configuration", "draw_linkage", "drawing_of", "map_of"]
 
+MARGIN = 0.05  # inches
+LETTER = 0.12  # inches around the place of a number
 SAMPLES = 100  # configurations of each form that are looked at
 
 
@@ -34,16 +39,30 @@ def draw_linkage(atlas: Atlas, name: str, folder: Path) -> None:
     """Write both pictures of the linkage called ``name`` to ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     drawing = draw_configuration(loop_of(atlas), clearest_configuration(atlas))
-    _save(drawing, folder / drawing_of(name))
-    _save(plot_transition_map(atlas), folder / map_of(name))
+    _save(drawing, folder / drawing_of(name), _extent(drawing))
+    _save(plot_transition_map(atlas), folder / map_of(name), "tight")
 
 
-def _save(figure: Figure, path: Path) -> None:
-    """Write a figure without the empty space around what it shows."""
+def _save(figure: Figure, path: Path, extent: Bbox | Literal["tight"]) -> None:
+    """Write the part of a figure within ``extent`` (inches), with a small margin."""
     with rc_context(RC):
         figure.savefig(
-            path, bbox_inches="tight", pad_inches=0.05, metadata={"Date": None}
+            path, bbox_inches=extent, pad_inches=MARGIN, metadata={"Date": None}
         )
+
+
+def _extent(drawing: Figure) -> Bbox:
+    """Where there is something on a drawing in space, which is centred in a cube:
+    inches, with room for the numbers of the joints."""
+    drawing.draw_without_rendering()
+    axes: Any = drawing.axes[0]  # Axes3D, whose artists have no types
+    lines = [np.array(line.get_data_3d()) for line in axes.lines]
+    numbers = [np.array(text.get_position_3d())[:, None] for text in axes.texts]
+    places = np.concatenate(lines + numbers, axis=1)
+    x, y, _ = proj_transform(*places, axes.get_proj())
+    pixels = axes.transData.transform(np.column_stack([x, y]))
+    inches = drawing.dpi_scale_trans.inverted().transform(pixels)
+    return Bbox([inches.min(axis=0), inches.max(axis=0)]).padded(LETTER)
 
 
 def clearest_configuration(atlas: Atlas) -> np.ndarray:
@@ -54,9 +73,7 @@ def clearest_configuration(atlas: Atlas) -> np.ndarray:
     def room(theta: np.ndarray) -> float:
         return _room(make_scene(loop, theta))
 
-    samples = [
-        theta for form in atlas.forms for theta in form.branch.sample(SAMPLES)
-    ]
+    samples = [theta for form in atlas.forms for theta in form.branch.sample(SAMPLES)]
     for surface in atlas.surfaces:
         samples += list(surface.samples[:SAMPLES])
     samples += list(atlas.rigid)

@@ -51,7 +51,7 @@ def _resolve(
     if public is None or public == node["reftarget"]:
         return None
     domain = env.domains["py"]
-    return domain.resolve_xref(  # type: ignore[return-value]
+    return domain.resolve_xref(
         env, node["refdoc"], app.builder, "obj", public, node, contnode
     )
 

@@ -81,8 +81,8 @@ def _family_path(family: ModuleType) -> str:
 def _family_title(family: ModuleType) -> tuple[str, str]:
     """The title of a family, and what its docstring says besides in one sentence."""
     words = " ".join((family.__doc__ or "").split("\n\n")[0].split())
-    title, mark, rest = re.fullmatch(r"(.*?)(?:([:,]) (.*)|\.)", words).groups()
-    return title, rest or ""
+    title, *rest = re.split("[:,] ", words, maxsplit=1)
+    return title.rstrip("."), "".join(rest)
 
 
 def _family_page(family: ModuleType) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import ast
 import re
-from pathlib import Path
 
 from docs.generator.places import ROOT
 
@@ -97,8 +96,3 @@ def _escaped(text: str) -> str:
         else:
             parts[i] = re.sub(r"([*|_])", r"\\\1", part)
     return "".join(parts)
-
-
-def write_order(path: Path) -> str:
-    """The key by which the gallery sorts a script."""
-    return f"{path.stem not in RUN} {path.stem}"
