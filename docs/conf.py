@@ -96,13 +96,7 @@ html_theme_options = {
     "collapse_navigation": False,
     "pygments_light_style": "tango",
     "pygments_dark_style": "monokai",
-    "secondary_sidebar_items": {
-        "**": ["page-toc"],
-        "linkages/*": [],  # room for the linkage beside its map
-        "families/*": [],
-        "catalogue": [],
-        "index": [],
-    },
+    "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],
     "footer_end": [],
 }

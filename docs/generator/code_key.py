@@ -14,25 +14,27 @@ from docs.generator.places import DOCS, ROOT
 
 __all__ = ["code_key", "key_of"]
 
-FOLDERS = (ROOT / "bifurc", ROOT / "linkages", ROOT / "studies", DOCS / "generator")
+FOLDERS = (ROOT / "bifurc", ROOT / "linkages", ROOT / "studies")
+# of the generator, what records and pictures are made by; pages are written each time
+MODULES = ("exploration.py", "linkage_record.py", "pictures.py", "study_scripts.py")
 ENDINGS = frozenset({".py", ".hpp", ".cpp", ".js", ".json"})
 LIBRARIES = ("matplotlib", "numpy", "scipy", "sympy")
 
 
 @cache
 def code_key() -> str:
-    """The key of the packages, the studies, the generator, and the libraries that they
-    rest on."""
+    """The key of the packages, the studies, and the libraries that they rest on."""
     versions = [f"{name} {version(name)}" for name in LIBRARIES]
     return key_of([sys.version, *versions, *_sources()])
 
 
 def _sources() -> Iterable[str]:
+    paths = [DOCS / "generator" / name for name in MODULES]
     for folder in FOLDERS:
-        for path in sorted(folder.rglob("*")):
-            if path.suffix in ENDINGS:
-                yield path.relative_to(ROOT).as_posix()
-                yield _digest(path)
+        paths += [path for path in folder.rglob("*") if path.suffix in ENDINGS]
+    for path in sorted(paths):
+        yield path.relative_to(ROOT).as_posix()
+        yield _digest(path)
 
 
 def _digest(path: Path) -> str:

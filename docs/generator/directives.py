@@ -99,8 +99,9 @@ class FlowChart(Raw):
         return self.html(f'<div class="flow-chart-room">{chart_svg(chart)}</div>')
 
 
-def setup(app: Sphinx) -> None:
+def setup(app: Sphinx) -> dict[str, bool]:
     """Add the directives."""
     app.add_directive("linkage", LinkageView)
     app.add_directive("linkage-gallery", LinkageGallery)
     app.add_directive("mermaid", FlowChart)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -28,6 +28,7 @@ def _escape(
     lines[:] = [escape_marks(line) for line in lines]
 
 
-def setup(app: Sphinx) -> None:
+def setup(app: Sphinx) -> dict[str, bool]:
     """Read docstrings so."""
     app.connect("autodoc-process-docstring", _escape)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
