@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import bifurc
-from docs.generator.places import EXTRA, SCRIPTS
+from docs.generator.places import EXTRA, NO_PICTURE, SCRIPTS
 from docs.generator.sources import STUDIES
 from docs.generator.study_scripts import RUN
 from docs.generator.written_pictures import WrittenPictures
@@ -34,7 +34,7 @@ source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 root_doc = "index"
 templates_path = ["templates"]
 highlight_language = "none"
-pygments_style = "friendly"
+smartquotes = False  # two hyphens are an option of a command
 
 # --- Markdown ---
 myst_enable_extensions = ["colon_fence", "dollarmath"]
@@ -66,6 +66,8 @@ sphinx_gallery_conf = {
     "gallery_dirs": [STUDIES],
     "filename_pattern": "|".join(rf"/{name}\.py" for name in sorted(RUN)),
     "ignore_pattern": r"/out/",
+    "default_thumb_file": str(NO_PICTURE),
+    "within_subsection_order": "docs.generator.study_scripts.study_order",
     "image_scrapers": (WrittenPictures(),),
     "reset_modules": (),
     "abort_on_example_error": True,
@@ -94,9 +96,12 @@ html_theme_options = {
     "show_nav_level": 1,
     "navigation_depth": 3,
     "collapse_navigation": False,
-    "pygments_light_style": "tango",
-    "pygments_dark_style": "monokai",
-    "secondary_sidebar_items": ["page-toc"],
+    # the list of sections at the right, where tables and pictures need no room
+    "secondary_sidebar_items": {
+        "*": ["page-toc"],
+        "reference/**": ["page-toc"],
+        "tutorials/*": ["page-toc"],
+    },
     "footer_start": ["copyright"],
     "footer_end": [],
 }

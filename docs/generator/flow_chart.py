@@ -1,4 +1,4 @@
-"""Flow charts from the left to the right, written in Mermaid, as SVG.
+"""Flow charts written in Mermaid, drawn from the top down as SVG.
 
 Mermaid itself is a script of some megabytes that is fetched when a page is opened; of
 its language this reads what the pages need: boxes ``A["text<br/>text"]`` and chains
@@ -19,7 +19,7 @@ __all__ = ["Chart", "chart_svg", "read_chart"]
 BOX = re.compile(r'(\w+)\["(.*?)"\]')
 HEIGHT, LINE = 46, 16  # px: of a box, and of a line of text
 LETTER, MARGIN = 7.2, 12  # px: width of a letter of 12 px, and room beside a text
-GAP, ROW = 34, 62  # px: between columns, and from row to row
+GAP, STEP = 16, 74  # px: between the boxes of a row, and from row to row
 
 
 class Chart(NamedTuple):
@@ -73,20 +73,20 @@ def chart_svg(chart: Chart) -> str:
 
 
 def _places(chart: Chart) -> dict[str, Box]:
-    """A column for each step from the first boxes, in it the boxes one below the
-    other, centred."""
+    """A row for each step from the first boxes, in it the boxes beside each other,
+    centred."""
     graph = nx.DiGraph(chart.arrows)
-    columns = [list(column) for column in nx.topological_generations(graph)]
-    tallest = max(len(column) for column in columns)
+    rows = [list(row) for row in nx.topological_generations(graph)]
+    for row in rows:
+        row.sort(key=list(chart.texts).index)
+    lengths = [sum(_text_width(chart.texts[key]) + GAP for key in row) for row in rows]
     places = {}
-    x = 0.0
-    for column in columns:
-        column.sort(key=list(chart.texts).index)
-        widths = [_text_width(chart.texts[key]) for key in column]
-        top = (tallest - len(column)) * ROW / 2
-        for i, key in enumerate(column):
-            places[key] = Box(x, top + i * ROW, max(widths))
-        x += max(widths) + GAP
+    for i, (row, length) in enumerate(zip(rows, lengths, strict=True)):
+        x = (max(lengths) - length) / 2
+        for key in row:
+            width = _text_width(chart.texts[key])
+            places[key] = Box(x, i * STEP, width)
+            x += width + GAP
     return places
 
 
@@ -109,10 +109,10 @@ def _box(box: Box, lines: list[str]) -> str:
 
 
 def _arrow(start: Box, end: Box) -> str:
-    """A curve from the right of a box to the left of another, and its tip."""
-    x1, y1 = start.x + start.width, start.y + HEIGHT / 2
-    x2, y2 = end.x, end.y + HEIGHT / 2
-    middle = (x1 + x2) / 2
-    line = f"M{x1:g} {y1:g}C{middle:g} {y1:g} {middle:g} {y2:g} {x2 - 6:g} {y2:g}"
-    tip = f"M{x2:g} {y2:g}l-7 -4v8z"
+    """A curve from the bottom of a box to the top of another, and its tip."""
+    x1, y1 = start.x + start.width / 2, start.y + HEIGHT
+    x2, y2 = end.x + end.width / 2, end.y
+    middle = (y1 + y2) / 2
+    line = f"M{x1:g} {y1:g}C{x1:g} {middle:g} {x2:g} {middle:g} {x2:g} {y2 - 6:g}"
+    tip = f"M{x2:g} {y2:g}l-4 -7h8z"
     return f'<path class="arrow" d="{line}"/><path class="tip" d="{tip}"/>'

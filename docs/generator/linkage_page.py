@@ -13,8 +13,6 @@ from linkages.relations import RelationKind, relations_of
 
 __all__ = ["linkage_page"]
 
-# without the list of sections at the right: room for the linkage beside its map
-WIDE = "---\nhtml_theme.sidebar_secondary.remove: true\n---"
 CONSTANTS = (
     r"In these equations $u_x$ stands for $\tan(x/2)$ and $t_i$ for "
     r"$\tan(\theta_i/2)$."
@@ -24,7 +22,6 @@ CONSTANTS = (
 def linkage_page(entry: Entry, record: LinkageRecord) -> str:
     """The page in Markdown."""
     parts = [
-        WIDE,
         f"# {plain(entry.title)}",
         f"`{entry.name}`, {record.joints} joints. {plain(entry.source)}.",
         f"```{{linkage}} {entry.name}\n```",

@@ -18,7 +18,13 @@ from linkages.app.scene_figure import draw_configuration
 from linkages.labels import loop_of
 from linkages.scene import Scene, breadth, clearance, make_scene
 
-__all__ = ["clearest_configuration", "draw_linkage", "drawing_of", "map_of"]
+__all__ = [
+    "clearest_configuration",
+    "draw_linkage",
+    "draw_no_picture",
+    "drawing_of",
+    "map_of",
+]
 
 MARGIN = 0.05  # inches
 LETTER = 0.12  # inches around the place of a number
@@ -41,6 +47,14 @@ def draw_linkage(atlas: Atlas, name: str, folder: Path) -> None:
     drawing = draw_configuration(loop_of(atlas), clearest_configuration(atlas))
     _save(drawing, folder / drawing_of(name), _extent(drawing))
     _save(plot_transition_map(atlas), folder / map_of(name), "tight")
+
+
+def draw_no_picture(path: Path) -> None:
+    """Write the picture that stands for a study that is not run."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure = Figure(figsize=(4, 2.8))
+    figure.text(0.5, 0.5, "code and text", ha="center", va="center", color="0.5")
+    figure.savefig(path, dpi=100)
 
 
 def _save(figure: Figure, path: Path, extent: Bbox | Literal["tight"]) -> None:

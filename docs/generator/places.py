@@ -8,6 +8,7 @@ from pathlib import Path
 __all__ = [
     "DOCS",
     "EXTRA",
+    "NO_PICTURE",
     "PICTURES",
     "RECORDS",
     "ROOT",
@@ -23,6 +24,7 @@ BUILD = ROOT / "build" / "docs"
 SOURCE = BUILD / "source"  # all pages, as Sphinx reads them
 RECORDS = BUILD / "records"  # what was found of each linkage
 SCRIPTS = BUILD / "scripts"  # the studies, as sphinx-gallery reads them
+NO_PICTURE = BUILD / "no_picture.png"  # in the gallery, of a study that is not run
 EXTRA = BUILD / "extra"  # files that Sphinx copies to the site as they are
 PICTURES = EXTRA / "pictures"
 VIEWER = EXTRA / "viewer"

@@ -13,7 +13,8 @@ from docs.generator.exploration import explore_catalogue
 from docs.generator.linkage_page import linkage_page
 from docs.generator.linkage_record import LinkageRecord
 from docs.generator.markdown import plain
-from docs.generator.places import DOCS, ROOT, SCRIPTS, SOURCE
+from docs.generator.pictures import draw_no_picture
+from docs.generator.places import DOCS, NO_PICTURE, ROOT, SCRIPTS, SOURCE
 from docs.generator.study_scripts import HEADER, gallery_script, study_names
 from docs.generator.text_files import keep_only, remove_folder, write_texts
 from linkages.catalogue import catalogue, families
@@ -108,6 +109,7 @@ def _gather_studies() -> None:
     forgotten, as it knows of the scripts alone."""
     scripts = {f"{name}.py": gallery_script(name) for name in study_names()}
     scripts["GALLERY_HEADER.rst"] = HEADER
+    draw_no_picture(NO_PICTURE)
     keep_only(SCRIPTS, set(scripts), besides=frozenset({"out"}))
     write_texts(SCRIPTS, scripts)
     key = SOURCE / KEY

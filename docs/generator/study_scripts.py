@@ -8,7 +8,7 @@ import re
 
 from docs.generator.places import ROOT
 
-__all__ = ["RUN", "gallery_script", "study_names"]
+__all__ = ["RUN", "gallery_script", "study_names", "study_order"]
 
 # Studies that the build of the site runs, a few seconds each. The others take minutes,
 # or measure times, which belong to a machine: their code and text are shown alone.
@@ -41,7 +41,13 @@ def study_names() -> list[str]:
         for path in sorted((ROOT / "studies").glob("*.py"))
         if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
     ]
-    return sorted(names, key=lambda name: name not in RUN)
+    return sorted(names, key=study_order)
+
+
+def study_order(script: str) -> tuple[bool, str]:
+    """The key by which the gallery sorts its scripts: those that are run first."""
+    name = script.removesuffix(".py")
+    return name not in RUN, name
 
 
 def gallery_script(name: str) -> str:

@@ -24,8 +24,8 @@ def test_a_chart_is_an_svg_with_a_box_for_each_key():
     drawing = tree.fromstring(chart_svg(read_chart(TEXT)))
     assert len(drawing.findall("rect")) == 3
     assert [text.text for text in drawing.findall("text")][-1] == "a < b"
-    lefts = [float(box.get("x")) for box in drawing.findall("rect")]
-    assert lefts == sorted(set(lefts))  # a column each
+    tops = [float(box.get("y")) for box in drawing.findall("rect")]
+    assert tops == sorted(set(tops))  # a row each
 
 
 @pytest.mark.parametrize("text", ["graph TD\n A --> B", "graph LR\n A --> B -.- C"])
