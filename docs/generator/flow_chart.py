@@ -73,17 +73,13 @@ def chart_svg(chart: Chart) -> str:
 
 
 def _places(chart: Chart) -> dict[str, Box]:
-    """A row for each step from the first boxes, in it the boxes beside each other,
-    centred."""
+    """A row for each step from the first boxes, in it the boxes beside each other, from
+    the left, where a narrow page begins."""
     graph = nx.DiGraph(chart.arrows)
-    rows = [list(row) for row in nx.topological_generations(graph)]
-    for row in rows:
-        row.sort(key=list(chart.texts).index)
-    lengths = [sum(_text_width(chart.texts[key]) + GAP for key in row) for row in rows]
     places = {}
-    for i, (row, length) in enumerate(zip(rows, lengths, strict=True)):
-        x = (max(lengths) - length) / 2
-        for key in row:
+    for i, row in enumerate(nx.topological_generations(graph)):
+        x = 0.0
+        for key in sorted(row, key=list(chart.texts).index):
             width = _text_width(chart.texts[key])
             places[key] = Box(x, i * STEP, width)
             x += width + GAP
