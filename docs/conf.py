@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import bifurc
-from docs.generator.places import EXTRA, NO_PICTURE, SCRIPTS
+from docs.generator.places import DOCS, EXTRA, NO_PICTURE, SCRIPTS
 from docs.generator.sources import STUDIES
 from docs.generator.study_scripts import RUN
 from docs.generator.written_pictures import WrittenPictures
@@ -32,7 +32,7 @@ extensions = [
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 root_doc = "index"
-templates_path = ["templates"]
+templates_path = [str(DOCS / "templates")]
 highlight_language = "none"
 smartquotes = False  # two hyphens are an option of a command
 

@@ -53,8 +53,7 @@ def draw_no_picture(path: Path) -> None:
     """Write the picture that stands for a study that is not run."""
     path.parent.mkdir(parents=True, exist_ok=True)
     figure = Figure(figsize=(4, 2.8))
-    words = {"ha": "center", "va": "center", "color": "0.5", "fontsize": 26}
-    figure.text(0.5, 0.5, "code and text", **words)
+    figure.text(0.5, 0.5, "code and text", ha="center", color="0.5", fontsize=26)
     figure.savefig(path, dpi=100)
 
 
