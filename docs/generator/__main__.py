@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import click
 
-from docs.generator.links import dead_links
+from docs.generator.links import dead_links, fetched_from_afar
 from docs.generator.places import SITE
 from docs.generator.sources import gather_sources
 
@@ -26,13 +26,14 @@ def sources() -> None:
 
 @main.command("links")
 def links() -> None:
-    """Look for links of the built site that lead nowhere; exit code 1 with any."""
-    dead = dead_links(SITE)
+    """Look for links of the built site that lead nowhere, and for what its pages would
+    fetch from other hosts; exit code 1 with any."""
+    dead = dead_links(SITE) + fetched_from_afar(SITE)
     for link in dead:
         click.echo(link, err=True)
     if dead:
         raise SystemExit(1)
-    click.echo("no dead links")
+    click.echo("no dead links, nothing fetched from other hosts")
 
 
 if __name__ == "__main__":

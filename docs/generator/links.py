@@ -6,14 +6,13 @@ was written as HTML, and asks for every file and every anchor.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-__all__ = ["DeadLink", "dead_links"]
+__all__ = ["DeadLink", "dead_links", "fetched_from_afar"]
 
 ATTRIBUTES = frozenset({"href", "src", "data-page"})
 PARTS = "_static"  # a folder of the site: parts of pages stand there, not pages
@@ -30,12 +29,13 @@ class DeadLink(NamedTuple):
 
 
 class _Page(HTMLParser):
-    """The anchors of a page, and where it leads."""
+    """The anchors of a page, where it leads, and what it fetches when it is opened."""
 
     def __init__(self) -> None:
         super().__init__()
         self.anchors: set[str] = set()
         self.targets: set[str] = set()
+        self.fetched: set[str] = set()
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         for name, value in attrs:
@@ -45,6 +45,8 @@ class _Page(HTMLParser):
                 self.anchors.add(value)
             elif name in ATTRIBUTES:
                 self.targets.add(value)
+                if name == "src" or tag == "link":
+                    self.fetched.add(value)
 
 
 @cache
@@ -92,10 +94,12 @@ def _leads_somewhere(path: Path, target: str) -> bool:
     return anchor in _page(goal).anchors
 
 
-def external_targets(site: Path) -> Iterable[str]:
-    """Addresses that the pages of ``site`` would fetch when they are opened: scripts,
-    pictures and styles of other hosts."""
-    for path in _pages(site):
-        for target in _page(path).targets:
-            if urlsplit(target).netloc:
-                yield target
+def fetched_from_afar(site: Path) -> list[DeadLink]:
+    """Scripts, styles and pictures that pages of ``site`` fetch from other hosts: none
+    of them is there without a network."""
+    return [
+        DeadLink(path.relative_to(site).as_posix(), target)
+        for path in _pages(site)
+        for target in sorted(_page(path).fetched)
+        if urlsplit(target).netloc
+    ]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from docs.generator.links import DeadLink, dead_links
+from docs.generator.links import DeadLink, dead_links, fetched_from_afar
 
 
 @pytest.fixture
@@ -36,3 +36,10 @@ def test_the_page_of_a_button_is_looked_for(site):
 def test_other_sites_are_not_asked(site):
     (site / "f.html").write_text('<a href="https://toml.io/x#y">x</a>')
     assert dead_links(site) == []
+
+
+def test_what_is_fetched_from_other_hosts_is_seen(site):
+    address = "https://example.org/x.js"
+    (site / "g.html").write_text(f'<a href="{address}">x</a>')
+    (site / "h.html").write_text(f'<script src="{address}"></script>')
+    assert fetched_from_afar(site) == [DeadLink("h.html", address)]
