@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html import escape
+from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -15,6 +16,9 @@ from docs.generator.pictures import drawing_of, map_of
 from linkages.catalogue import catalogue
 
 __all__ = ["FlowChart", "LinkageGallery", "LinkageView", "setup", "view_html"]
+
+
+GENERATOR = sorted(Path(__file__).parent.glob("*.py"))
 
 
 def view_html(name: str, counts: str, root: str) -> str:
@@ -42,7 +46,9 @@ class Raw(SphinxDirective):
     """A directive that writes HTML."""
 
     def html(self, text: str) -> list[nodes.Node]:
-        """The nodes of some HTML."""
+        """The nodes of some HTML; a page is read again when the generator changes."""
+        for module in GENERATOR:
+            self.env.note_dependency(str(module))
         return [nodes.raw("", text, format="html")]
 
     @property
