@@ -74,15 +74,18 @@ def chart_svg(chart: Chart) -> str:
 
 def _places(chart: Chart) -> dict[str, Box]:
     """A row for each step from the first boxes, in it the boxes beside each other, from
-    the left, where a narrow page begins."""
-    graph = nx.DiGraph(chart.arrows)
+    the left, where a narrow page begins. Boxes alone in their row are of one width."""
+    rows = list(nx.topological_generations(nx.DiGraph(chart.arrows)))
+    widths = {key: _text_width(lines) for key, lines in chart.texts.items()}
+    alone = [row[0] for row in rows if len(row) == 1]
+    widest = max((widths[key] for key in alone), default=0.0)
+    widths.update(dict.fromkeys(alone, widest))
     places = {}
-    for i, row in enumerate(nx.topological_generations(graph)):
+    for i, row in enumerate(rows):
         x = 0.0
         for key in sorted(row, key=list(chart.texts).index):
-            width = _text_width(chart.texts[key])
-            places[key] = Box(x, i * STEP, width)
-            x += width + GAP
+            places[key] = Box(x, i * STEP, widths[key])
+            x += widths[key] + GAP
     return places
 
 
