@@ -6,7 +6,7 @@ LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
   zero_offset_line_symmetric_bricard first_reconfigurable_bricard
 
-.PHONY: map test test-fragile test-processors lint studies bench dist viewer chromium clean
+.PHONY: map test test-fragile test-processors lint studies bench docs dist viewer chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -41,6 +41,13 @@ studies: .venv/ready  ## every study, each into out/NAME
 bench: .venv/ready  ## a short, fixed set of benchmarks, with versions and machine, into out/bench.json
 	mkdir -p out
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.bench --out out/bench.json
+
+# Linkages are mapped anew where parameters or code have changed; nothing is fetched, and no page fetches anything.
+docs: .venv/ready  ## the site, into out/site; fails on any warning and any dead link
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m docs.generator sources
+	OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg $(BIN)/python -m sphinx -q -W --keep-going -n -j auto -b html -c docs \
+	  build/docs/source out/site
+	$(BIN)/python -m docs.generator links
 
 dist: .venv/ready  ## sdist and wheel into dist/
 	$(BIN)/python -m pip install --quiet build
