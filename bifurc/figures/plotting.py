@@ -9,7 +9,7 @@ for the colour-blind) and by line style (safe in print).
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,7 @@ __all__ = [
     "plot_joint_angles",
     "plot_singular_values",
     "plot_transition_map",
+    "save_figure",
     "save_figures",
 ]
 
@@ -138,24 +139,32 @@ FILE_OPTIONS: dict[str, dict[str, Any]] = {
 }
 
 
-def save_figures(atlas: Atlas, folder: str | os.PathLike[str]) -> list[Path]:
+def save_figures(
+    atlas: Atlas,
+    folder: str | os.PathLike[str],
+    others: Mapping[str, Callable[[Atlas], Figure]] | None = None,
+) -> list[Path]:
     """Paths of the four figures just written into an existing ``folder``, as PNG and
-    SVG each.
+    SVG each; ``others`` are drawn in place of those of the same name.
 
     The same atlas gives the same bytes. There is never a half-written file. Raises
     `OSError` that names the file that cannot be written.
     """
     paths = []
-    for name, plot in FIGURES.items():
+    for name, plot in {**FIGURES, **(others or {})}.items():
         figure = plot(atlas)
         for ending in FILE_OPTIONS:
             path = Path(folder) / f"{name}.{ending}"
-            paths.append(_save_figure(figure, path, ending))
+            paths.append(save_figure(figure, path))
             figure.set_layout_engine("none")  # the layout of the first drawing stays
     return paths
 
 
-def _save_figure(figure: Figure, path: Path, ending: str) -> Path:
+def save_figure(figure: Figure, path: Path) -> Path:
+    """The path of a figure just written, as PNG or SVG by the ending of its name, whole
+    or not at all; the same figure gives the same bytes. Raises `OSError`."""
+    ending = path.suffix.removeprefix(".")
+
     def write(part: Path) -> None:
         with rc_context(RC):
             figure.savefig(part, format=ending, dpi=RESOLUTION, **FILE_OPTIONS[ending])

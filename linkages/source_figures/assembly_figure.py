@@ -18,6 +18,7 @@ from linkages.source_figures.drawing import (
     SMALL,
     Look,
     best_look,
+    clarity,
     draw_assembly,
 )
 from linkages.source_figures.graph_drawing import draw_graph
@@ -29,6 +30,7 @@ SLANT = np.array([1.0, 0.37])  # a direction on paper that no line is across
 
 PANEL = 2.9  # width and height of a panel, in inches
 MOST_COLUMNS = 4
+CHOICES = 20  # configurations along a form, of which the clearest is drawn
 
 
 def draw(source: SourceFigure) -> Figure:
@@ -36,7 +38,7 @@ def draw(source: SourceFigure) -> Figure:
     content = source.content
     panels = content["panels"]
     grid = _grid(content)
-    assemblies = [assembly_of(panel) for panel in panels]
+    assemblies = [_clearest(panel) for panel in panels]
     looks = [best_look(assembly) for assembly in assemblies]
     if content.get("same_look"):
         looks = [looks[0]] * len(panels)
@@ -63,6 +65,17 @@ def draw(source: SourceFigure) -> Figure:
         if panel.get("transversal"):
             _draw_transversal(below, assembly, look)
     return grid.figure
+
+
+def _clearest(panel: Mapping[str, Any]) -> Assembly:
+    """The assembly of a panel; where the panel names no configuration, in that of
+    several along the form that is clearest."""
+    if "linkage" not in panel or "at" in panel or "part" in panel:
+        return assembly_of(panel)
+    places = (np.arange(CHOICES) + 0.5) / CHOICES
+    assemblies = [assembly_of({**panel, "part": float(part)}) for part in places]
+    merits = np.round([clarity(assembly) for assembly in assemblies], 9)
+    return assemblies[int(np.argmax(merits))]
 
 
 @dataclass(frozen=True)

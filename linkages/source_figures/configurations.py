@@ -31,7 +31,6 @@ __all__ = [
 SAMPLES = 720  # of a form, between which a given angle is looked for
 CHOICES = 48  # configurations among which the clearest is chosen
 CLEAR_ENOUGH = 0.99  # of the clearest: the first such one is taken
-NEWTON_STEPS = 8
 TURN = 2 * np.pi
 
 

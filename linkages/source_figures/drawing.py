@@ -18,6 +18,7 @@ __all__ = [
     "Look",
     "Pen",
     "best_look",
+    "clarity",
     "clearest_of",
     "common_look",
     "draw_assembly",
@@ -26,6 +27,7 @@ __all__ = [
 ]
 
 DIRECTIONS = 240  # from which an assembly is looked at
+FEW = 5  # every such direction, where many assemblies are compared
 REACH = 0.2  # of the extent: half the drawn length of an axis beyond its links
 LINK_COLORS = {Role.KEPT: "#0072B2", Role.COMMON: "0.55", Role.REMOVED: "0.55"}
 LINK_DASHES = {Role.KEPT: "-", Role.COMMON: "-", Role.REMOVED: (0, (3, 2))}
@@ -58,6 +60,15 @@ def best_look(assembly: Assembly) -> Look:
     """The look in which joints lie furthest apart from each other and from links, and
     no axis is seen end on."""
     return common_look([assembly])
+
+
+def clarity(assembly: Assembly) -> float:
+    """How clear an assembly is when it is seen from where it is clearest, of a few
+    directions."""
+    outline = _outline(assembly)
+    up = np.array([0.0, 0.0, 1.0])
+    looks = [look_along(near, up) for near in _spiral()[::FEW]]
+    return max(_clarity(outline, look) for look in looks)
 
 
 def common_look(assemblies: Sequence[Assembly]) -> Look:
@@ -128,7 +139,7 @@ def _clarity(outline: _Outline, look: Look) -> float:
     free = min(free, 1.0)
     seen = np.linalg.norm(directions @ plane, axis=1).min()
     spread = np.linalg.svd(spots - spots.mean(axis=0), compute_uv=False)[-1] / size
-    return float(4 * apart + 4 * free + 0.5 * spread + min(seen, 0.5))
+    return float(4 * apart + 4 * free + spread + min(seen, 0.5))
 
 
 def _to_segments(spots: np.ndarray, segments: np.ndarray) -> np.ndarray:
@@ -182,16 +193,17 @@ def draw_assembly(
     filled: tuple[str, ...] = (),
     unnumbered: tuple[str, ...] = (),
     pen: Pen = LARGE,
+    reach: float = REACH,
 ) -> None:
     """Draw an assembly; ``filled`` joints are solid dots, ``unnumbered`` ones bear no
-    number."""
+    number; axes are drawn to ``reach`` of the extent beyond their links."""
     look = look or best_look(assembly)
     plane = np.stack([look.right, look.up], axis=1)
     joints = {name: assembly.joint(name) for name in assembly.axes}
     points = np.array(list(joints.values()))
     centre = points.mean(axis=0)
     extent = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-12)
-    axis_ends = _draw_axes(axes, assembly, plane, REACH * extent, pen)
+    axis_ends = _draw_axes(axes, assembly, plane, reach * extent, pen)
     depths = []
     for bar in assembly.bars:
         depths.append(float((bar.ends.mean(axis=0) - centre) @ look.near) / extent)

@@ -13,7 +13,10 @@ from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES
 __all__ = ["draw_graph", "places_of"]
 
 SHORTEST = 0.2  # of a drawn link: the least distance of a joint on it from its ends
+APART = 0.55  # joints inside the ring, at least, where the ring has radius 1
+PUSHES = 20
 FRACTIONS = np.array([0.5, 0.4, 0.6, 0.3, 0.7])  # of a link, where its name may stand
+BESIDE = 0.13  # from a link of the ring to its name
 ENOUGH = 0.35  # room for a name, where the ring has radius 1
 FURTHEST = 1.45  # of a drawn link: how far beyond it a joint is drawn
 
@@ -33,7 +36,8 @@ def places_of(assembly: Assembly, ring: tuple[str, ...]) -> dict[str, np.ndarray
         places[name] = begin + _drawn_fraction(seat) * (places[seat.last] - begin)
     inner = [name for name in assembly.axes if name not in places]
     if inner:
-        places.update(_in_the_middle(assembly, inner, places))
+        middles = _in_the_middle(assembly, inner, places)
+        places.update(_pushed_apart(middles))
     return places
 
 
@@ -60,6 +64,26 @@ def _in_the_middle(
     return dict(zip(inner, solved, strict=True))
 
 
+def _pushed_apart(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The places with those that are too close moved away from each other; those that
+    are one move up and down."""
+    out = {name: place.copy() for name, place in places.items()}
+    names = list(out)
+    for _ in range(PUSHES):
+        for i, first in enumerate(names):
+            for second in names[i + 1 :]:
+                gap = out[first] - out[second]
+                distance = float(np.linalg.norm(gap))
+                if distance >= APART:
+                    continue
+                is_one = distance < 1e-6
+                direction = np.array([0.0, 1.0]) if is_one else gap / distance
+                push = 0.5 * (APART - distance) * direction
+                out[first] += push
+                out[second] -= push
+    return out
+
+
 def draw_graph(
     axes: Axes,
     assembly: Assembly,
@@ -82,7 +106,11 @@ def draw_graph(
             linewidth=1.4 if bar.role is Role.REMOVED else 2.2,
             zorder=1,
         )
-        if bar.label:
+        if not bar.label:
+            continue
+        if bar.first in ring and bar.last in ring and bar.role is not Role.REMOVED:
+            _name_outside(axes, ends, bar.label)
+        else:
             taken.append(_name_link(axes, ends, bar.label, np.array(taken)))
     for name, place in places.items():
         is_named = name not in unnumbered
@@ -111,9 +139,23 @@ def draw_graph(
         axes.text(*middle, letter, ha="center", va="center", fontsize=11, zorder=4)
     axes.set_aspect("equal")
     spots = np.array(list(places.values()))
-    half = max(1.25, float(np.abs(spots).max()) + 0.2)
+    half = max(1.5, float(np.abs(spots).max()) + 0.2)
     axes.set(xlim=(-half, half), ylim=(-half, half))
     axes.set_axis_off()
+
+
+def _name_outside(axes: Axes, ends: np.ndarray, label: str) -> None:
+    """The name of a link of the ring, beside it."""
+    middle = ends.mean(axis=0)
+    away = middle / max(float(np.linalg.norm(middle)), 1e-9)
+    sides = {-1: "right", 0: "center", 1: "left"}
+    axes.text(
+        *(middle + BESIDE * away),
+        label,
+        ha=sides[int(np.sign(away[0]) * (abs(away[0]) > 0.3))],
+        va="center",
+        fontsize=7.5,
+    )
 
 
 def _name_link(

@@ -20,12 +20,14 @@ from linkages.source_figures.assembly import (
     turn,
 )
 from linkages.source_figures.construction import assembly_of
-from linkages.source_figures.drawing import best_look, common_look, draw_assembly
+from linkages.source_figures.drawing import draw_assembly, look_along
 from linkages.source_figures.table import SourceFigure
 
 __all__ = ["chain_assembly", "draw", "ray_angles"]
 
 UP = np.array([0.0, 0.0, 1.0])
+OBLIQUE = look_along(np.array([0.75, -1.0, 0.6]), UP)
+REACH = 0.9  # of the extent: how far the axes of a chain are drawn
 ARC = 0.3  # radius of an arc, in the unit of the chain
 ARC_POINTS = 30
 STUB = 0.75  # length of a ray that shows a direction
@@ -88,17 +90,31 @@ def _draw_chain(axes: Axes, content: Mapping[str, Any]) -> None:
     if content.get("replaced"):
         for place, bar in enumerate(assembly.bars[:-1]):
             assembly.bars[place] = Bar(bar.first, bar.last, bar.ends, "", Role.COMMON)
-    look = best_look(assembly)
+    look = OBLIQUE
     plane = np.stack([look.right, look.up], axis=1)
-    draw_assembly(axes, assembly, look, unnumbered=tuple(names))
+    draw_assembly(axes, assembly, look, unnumbered=tuple(names), reach=REACH)
+    points = np.array([assembly.joint(name) for name in names])
+    centre = points.mean(axis=0) @ plane
     for bar in assembly.bars:
         pair = _subscript(f"{bar.first}{bar.last}")
-        _write(axes, bar.ends.mean(axis=0) @ plane, f"$a_{{{pair}}}$", (0, 8))
+        _write_beside(axes, bar.ends @ plane, f"$a_{{{pair}}}$", centre)
         _draw_twist(axes, assembly, bar, f"$\\alpha_{{{pair}}}$", plane)
     for name in names:
         _name_axis(axes, assembly, name, plane)
     _draw_turns(axes, assembly, content, plane)
     axes.margins(0.12)
+
+
+def _write_beside(
+    axes: Axes, ends: np.ndarray, text: str, centre: np.ndarray
+) -> None:
+    """A text beside the middle of a line (2, 2), on the side away from ``centre``."""
+    along = ends[1] - ends[0]
+    across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
+    middle = ends.mean(axis=0)
+    if across @ (middle - centre) < 0:
+        across = -across
+    _write(axes, middle, text, tuple(11 * across))
 
 
 def _subscript(text: str) -> str:
@@ -109,8 +125,10 @@ def _name_axis(axes: Axes, assembly: Assembly, name: str, plane: np.ndarray) -> 
     """The name of an axis beyond its arrow, and of its offset."""
     offset = assembly.offset(name)
     direction = assembly.axes[name].direction
-    tip = (offset[1] + 0.42 * direction) @ plane
-    _write(axes, tip, f"$z_{{{_subscript(name)}}}$", (0, 6))
+    points = np.array([assembly.joint(other) for other in assembly.axes])
+    extent = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
+    tip = (offset[1] + 1.15 * REACH * extent * direction) @ plane
+    _write(axes, tip, f"$z_{{{_subscript(name)}}}$", (0, 0))
     axes.plot(*tip, alpha=0)
 
 
@@ -134,15 +152,17 @@ def _draw_turns(
             axes.plot(*ray.T, color=RAY_COLOR, linestyle=(0, (3, 2)), linewidth=1.0)
             kink = content.get("kink")
             label = f"${kink}$" if kink else f"$\\theta_{{{name}}}$"
-            arc = _arc(start, along, axis.direction, np.radians(angle))
+            arc = _arc(start, along, axis.direction, np.radians(angle), 1.4 * ARC)
             _draw_arc(axes, arc, label, plane)
         if offset:
-            middle = (start - 0.5 * offset * axis.direction) @ plane
+            ends = np.stack([start - offset * axis.direction, start]) @ plane
             distance = content.get("distance")
             label = f"${distance}$" if distance else f"$R_{{{name}}}$"
-            _write(axes, middle, label, (10, 0))
+            _write_beside(axes, ends, label, assembly.bars[number].ends[1] @ plane)
         if number == 0 and angle:
             foot = start - offset * axis.direction
+            ends = np.stack([foot, start]) @ plane
+            axes.plot(*ends.T, color=ARC_COLOR, linewidth=2.6, zorder=3)
             ends = np.stack([foot - STUB * along, foot]) @ plane
             axes.plot(*ends.T, color=RAY_COLOR, linewidth=1.6)
             _write(axes, ends[0], f"$x_{{{name}}}$", (-8, 0))
@@ -164,11 +184,15 @@ def _draw_twist(
 
 
 def _arc(
-    centre: np.ndarray, start: np.ndarray, axis: np.ndarray, angle: float
+    centre: np.ndarray,
+    start: np.ndarray,
+    axis: np.ndarray,
+    angle: float,
+    radius: float = ARC,
 ) -> np.ndarray:
     """Points (k, 3) of an arc about an axis, from the direction ``start``."""
     angles = np.linspace(0.0, angle, ARC_POINTS)
-    return np.array([centre + ARC * turn(start, axis, a) for a in angles])
+    return np.array([centre + radius * turn(start, axis, a) for a in angles])
 
 
 def _draw_arc(axes: Axes, arc: np.ndarray, label: str, plane: np.ndarray) -> None:
@@ -212,17 +236,18 @@ def _draw_links(content: Mapping[str, Any]) -> Figure:
         chain_assembly([[length, twist, 0.0, 0.0]], ["2", "3"])
         for length, twist, _ in links
     ]
-    look = common_look(assemblies)
+    look = OBLIQUE
     plane = np.stack([look.right, look.up], axis=1)
     figure = Figure(figsize=(2.5 * len(links), 2.6), layout="constrained")
     panels = figure.subplots(1, len(links))
     for axes, assembly, (_, _, label) in zip(panels, assemblies, links, strict=True):
-        draw_assembly(axes, assembly, look)
+        draw_assembly(axes, assembly, look, reach=REACH)
         bar = assembly.bars[0]
         _draw_small_twist(axes, assembly, bar, plane)
-        _write(axes, bar.ends.mean(axis=0) @ plane, f"b/{label}", (0, 9))
+        below = bar.ends.mean(axis=0) @ plane - np.array([0.0, 1.0])
+        _write_beside(axes, bar.ends @ plane, f"b/{label}", below)
         axes.set_title(f"twist {label}", fontsize=9)
-        axes.set(xlim=(-0.6, 1.0), ylim=(-0.6, 0.6))
+        axes.set(xlim=(-0.6, 1.0), ylim=(-0.7, 0.8))
         axes.set_aspect("equal", adjustable="datalim")
     return figure
 

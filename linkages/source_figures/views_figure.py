@@ -38,7 +38,7 @@ def draw_views(source: SourceFigure) -> Figure:
     names = [str(i + 1) for i in range(loop.n)]
     assembly = loop_assembly(loop, theta, names, [""] * loop.n)
     centre, line = symmetry_line(assembly, loop.n)
-    figure = Figure(figsize=(7.4, 3.9))
+    figure = Figure(figsize=(7.4, 3.3))
     front, top = figure.subplots(1, 2)
     figure.subplots_adjust(left=0.02, right=0.98, bottom=0.02, top=0.92)
     look = _front(assembly, line)

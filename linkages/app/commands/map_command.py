@@ -11,6 +11,7 @@ import click
 from bifurc.limits import HeldInterrupt
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
+    JointNumbers,
     SearchOptions,
     json_option,
     out_option,
@@ -21,6 +22,7 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
+    from linkages.app.files import FigureAxes
 
 __all__ = ["map_command"]
 
@@ -42,6 +44,18 @@ __all__ = ["map_command"]
         "and show how many of the map's agree."
     ),
 )
+@click.option(
+    "--axes",
+    type=JointNumbers(2, 3),
+    metavar="I,J[,K]",
+    help="Draw the transition map over these two or three joints; needs --out.",
+)
+@click.option(
+    "--against",
+    type=JointNumbers(1, 1),
+    metavar="I",
+    help="Draw the singular values against this joint; needs --out.",
+)
 @param_option
 @search_options
 @verbose_option
@@ -52,6 +66,8 @@ def map_command(
     as_json: bool,
     no_certify: bool,
     digits: int | None,
+    axes: tuple[int, ...] | None,
+    against: tuple[int, ...] | None,
     verbose: bool,
     search: SearchOptions,
 ) -> None:
@@ -62,6 +78,7 @@ def map_command(
     Examples:
       bifurc map bennett --param alpha=70 --param beta=30
       bifurc map special-double-subtractive-goldberg --out out
+      bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map my_linkage.toml --json > map.json
       bifurc map special-double-subtractive-goldberg --digits 50
     """
@@ -75,11 +92,13 @@ def map_command(
         raise CommandError(
             "--digits: it has no place in the JSON document; leave out --json"
         )
+    require_out(out, axes=axes, against=against)
     if verbose:
         say_more()
     if out is not None:
         require_folder(out)
     chosen = choose_linkage(linkage, parameters)
+    over = figure_axes(chosen.loop.n, axes, against)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlas = explore_linkage(chosen, replace(search, certify=not no_certify))
@@ -92,7 +111,7 @@ def map_command(
 
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
-        paths += draw_figures(atlas, out)
+        paths += draw_figures(atlas, out, over)
         paths.append(write_map_page(atlas, out))
         names = ", ".join(path.name for path in paths)
         click.echo(f"wrote {names} to {out}", err=True)
@@ -139,10 +158,34 @@ def write_map_page(atlas: Atlas, out: Path) -> Path:
         return write_page(document, out / "map.html")
 
 
-def draw_figures(atlas: Atlas, out: Path) -> list[Path]:
+def require_out(out: Path | None, **options: tuple[int, ...] | None) -> None:
+    """Raise `CommandError` for options of figures where no figure is written."""
+    for name, value in options.items():
+        if value is not None and out is None:
+            raise CommandError(f"--{name}: figures are only drawn with --out DIR")
+
+
+def figure_axes(
+    joints: int, axes: tuple[int, ...] | None, against: tuple[int, ...] | None
+) -> FigureAxes:
+    """What the figures of a linkage with so many joints are drawn over; raises
+    `CommandError` for numbers of other joints."""
+    from linkages.app.files import FigureAxes
+
+    for name, numbers in (("axes", axes), ("against", against)):
+        for number in numbers or ():
+            if number > joints:
+                raise CommandError(
+                    f"--{name}: there is no joint {number}; "
+                    f"the joints are numbered from 1 to {joints}"
+                )
+    return FigureAxes(axes or (), against[0] if against else None)
+
+
+def draw_figures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
     """The paths of the figures, just written to ``out``."""
     from linkages.app.files import write_figures
     from linkages.app.output import writing_to
 
     with writing_to(out):
-        return write_figures(atlas, out)
+        return write_figures(atlas, out, over)

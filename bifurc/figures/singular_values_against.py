@@ -1,0 +1,95 @@
+"""The picture of the singular values against one unknown."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bifurc.atlas import Atlas
+from bifurc.errors import ProblemError
+from bifurc.figures.drawing import note_emptiness
+from bifurc.figures.planes import Scale, place_in_frame, scale_of
+from bifurc.figures.style import RC, form_style
+
+__all__ = ["plot_singular_values_against"]
+
+LOWEST = 1e-16  # of the largest value: what is drawn of a zero
+DECADES = 5  # at least, on the vertical axis
+PLAIN = Scale(1.0, np.inf, "")
+
+
+def plot_singular_values_against(
+    atlas: Atlas, unknown: int, figure: Figure | None = None
+) -> Figure:
+    """The regular singular values of each form against one unknown, numbered from 1, on
+    a logarithmic scale, in one panel a form.
+
+    The smallest is drawn strongly; bifurcations are dashed lines with their names, near
+    misses triangles. Raises `ProblemError` where there is no such unknown.
+    """
+    n = len(atlas.names)
+    if not 1 <= unknown <= n:
+        allowed = f"one of the unknowns, numbered from 1 to {n}"
+        raise ProblemError("unknown", unknown, allowed)
+    count = max(len(atlas.forms), 1)
+    columns = 1 if count == 1 else 2 if count <= 8 else 3
+    rows = -(-count // columns)
+    scale = scale_of(atlas, unknown - 1)
+    with rc_context(RC):
+        size = (4.6 * columns if count > 1 else 6.4, 2.5 * rows + 0.4)
+        figure = figure or Figure(figsize=size, layout="constrained")
+        panels = figure.subplots(rows, columns, squeeze=False, sharey=True).flat
+        for axes in panels[count:]:
+            axes.set_visible(False)
+        for i in range(len(atlas.forms)):
+            _draw_form(panels[i], atlas, i, unknown - 1, scale)
+        figure.supxlabel(scale.label, fontsize=9)
+        figure.supylabel("singular value", fontsize=9)
+        note_emptiness(panels[0], atlas)
+    return figure
+
+
+def _draw_form(axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale) -> None:
+    form = atlas.forms[index]
+    style = form_style(index)
+    s = form.profile.arclength.ravel()
+    values = form.profile.values.reshape(len(s), -1)[:, : form.rank]
+    top = float(values.max())
+    shown = _shown(form.branch(s)[:, unknown], scale)
+    jumps = np.flatnonzero(np.abs(np.diff(shown)) > scale.half) + 1
+    x = np.insert(shown, jumps, np.nan)
+    y = np.insert(np.maximum(values, LOWEST * top), jumps, np.nan, axis=0)
+    axes.plot(x, y[:, :-1], color="0.75", linewidth=0.8, zorder=1)
+    axes.plot(x, y[:, -1], color=style.color, linewidth=1.6, zorder=2)
+    smallest = top * 10.0**-DECADES
+    for point in atlas.points:
+        if any(form_index == index for form_index, _ in point.passes):
+            angle = _shown(point.point.u[[unknown]], scale)[0]
+            axes.axvline(angle, color="0.35", linewidth=0.8, linestyle=(0, (3, 2)))
+            axes.annotate(
+                point.name,
+                (angle, 1.0),
+                (0, 2),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                ha="center",
+                fontsize=8,
+            )
+    for event in atlas.near_misses:
+        if event.form == index:
+            angle = _shown(event.u[[unknown]], scale)[0]
+            axes.plot(angle, event.value, "v", color="black", markersize=4, zorder=4)
+            smallest = min(smallest, event.value / 10)
+    axes.set(yscale="log", ylim=(smallest, 2 * top))
+    if scale.is_periodic:
+        axes.set_xlim(-scale.half, scale.half)
+    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=14)
+    axes.grid(True)
+
+
+def _shown(values: np.ndarray, scale: Scale) -> np.ndarray:
+    """Values (k,) of an unknown as they are shown, periodic ones within the frame."""
+    pairs = np.stack([values, np.zeros_like(values)], axis=1)
+    return np.asarray(place_in_frame(pairs, (scale, PLAIN))[:, 0])
