@@ -4,7 +4,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
-  zero_offset_line_symmetric_bricard first_reconfigurable_bricard
+  zero_offset_line_symmetric_bricard first_reconfigurable_bricard wohlhart_translator
 
 .PHONY: map test test-fragile test-processors lint studies gallery bench dist viewer chromium clean
 

@@ -51,7 +51,9 @@ def plot_singular_values_against(
     return figure
 
 
-def _draw_form(axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale) -> None:
+def _draw_form(
+    axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale
+) -> None:
     form = atlas.forms[index]
     style = form_style(index)
     s = form.profile.arclength.ravel()

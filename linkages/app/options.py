@@ -60,7 +60,7 @@ class NumberRange(click.FloatRange):
         return number
 
 
-class JointNumbers(click.ParamType):
+class JointNumbers(click.ParamType[tuple[int, ...]]):
     """Numbers of different joints, from 1, separated by commas: ``least`` to ``most``
     of them, as a tuple."""
 

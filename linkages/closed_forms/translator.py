@@ -26,6 +26,7 @@ from linkages.loop import GeometryError
 __all__ = [
     "Stroke",
     "StrokeAngles",
+    "contact_angle",
     "joint_axes",
     "joint_centres",
     "meeting_points",
@@ -36,7 +37,6 @@ __all__ = [
 ]
 
 THIRD = np.pi / 3
-SIXTH_TURN_COSINE = 0.5
 
 
 class Stroke(StrEnum):
@@ -72,7 +72,7 @@ def stroke_angles(alpha: float, stroke: Stroke, count: int = 181) -> StrokeAngle
     if stroke is Stroke.SHORT:
         half_sum = np.linspace(-THIRD, THIRD, count)
         half_gap = _arc_cosine((1 - (1 + c) * np.cos(half_sum)) / (1 - c))
-    elif c >= -SIXTH_TURN_COSINE:
+    elif alpha <= 2 * THIRD:
         half_gap = np.linspace(-THIRD, THIRD, count)
         half_sum = _arc_cosine((1 - (1 - c) * np.cos(half_gap)) / (1 + c))
     else:
@@ -84,6 +84,16 @@ def stroke_angles(alpha: float, stroke: Stroke, count: int = 181) -> StrokeAngle
 def _arc_cosine(cosine: np.ndarray) -> np.ndarray:
     """The angle (k,), 0 to pi, of a cosine that rounding may have taken beyond 1."""
     return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def contact_angle(alpha: float) -> float | None:
+    """The angle theta (rad) on the long stroke at which O2, O4 and O6 coincide, so that
+    thin links touch; None for twists between 60 and 120 degrees, where they never
+    do."""
+    if THIRD < alpha < 2 * THIRD:
+        return None
+    sine = 0.5 / abs(float(np.cos(alpha)))
+    return float(2 * np.arcsin(min(sine, 1.0)))
 
 
 def plane_distance(

@@ -111,6 +111,11 @@ class Assembly:
         ends = np.array([heights.min(), heights.max()])
         return np.asarray(feet[0] + ends[:, None] * direction)
 
+    def remove(self, name: str) -> None:
+        """Take a joint away, and the links to it."""
+        del self.axes[name]
+        self.bars = [bar for bar in self.bars if name not in (bar.first, bar.last)]
+
     def twist(self, bar: Bar) -> float:
         """Angle (rad) between the axes that a link joins, from 0 to pi."""
         first = self.axes[bar.first].direction

@@ -52,8 +52,10 @@ class BasicLink(NamedTuple):
 
 def assembly_of(panel: Mapping[str, Any]) -> Assembly:
     """The assembly that a panel of a figure describes."""
+    links: dict[str, BasicLink]
     if "network" in panel:
-        assembly, links = network_assembly(panel)
+        assembly = network_assembly(panel)
+        links = {}
     else:
         loop = linkage_of(panel).loop
         names = panel.get("names", [str(i + 1) for i in range(loop.n)])
@@ -128,9 +130,7 @@ def basic_links(
     return known
 
 
-def _add_parameters(
-    known: dict[str, BasicLink], content: Mapping[str, Any]
-) -> None:
+def _add_parameters(known: dict[str, BasicLink], content: Mapping[str, Any]) -> None:
     """The basic links whose twists are parameters of the linkage, of one ratio of sine
     and length."""
     family = entry(content["linkage"])
@@ -150,9 +150,7 @@ def _add_parameters(
 # --- steps ----------------------------------------------------------------------------
 
 
-def _add_joint(
-    assembly: Assembly, line: str, links: Mapping[str, BasicLink]
-) -> None:
+def _add_joint(assembly: Assembly, line: str, links: Mapping[str, BasicLink]) -> None:
     """Add the joint that a line of words describes; raises `ValueError` for words that
     describe none."""
     name, how, *words = line.split()

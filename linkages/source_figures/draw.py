@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from matplotlib import rc_context
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from bifurc.figures.style import RC
 from linkages.source_figures import (
@@ -54,7 +55,7 @@ def _add_caption(figure: Figure, caption: str) -> None:
     share = extra / (height + extra)
     figure.set_size_inches(width, height + extra)
     engine = figure.get_layout_engine()
-    if engine is None:
+    if not isinstance(engine, ConstrainedLayoutEngine):
         for axes in figure.axes:
             x, y, w, h = axes.get_position(original=True).bounds
             axes.set_position((x, share + y * (1 - share), w, h * (1 - share)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -24,6 +24,7 @@ __all__ = [
     "draw_assembly",
     "look_along",
     "symmetry_line",
+    "write_at",
 ]
 
 DIRECTIONS = 240  # from which an assembly is looked at
@@ -280,6 +281,12 @@ def _draw_link(
     )
 
 
+def write_at(axes: Axes, spot: np.ndarray, text: str, **style: Any) -> None:
+    """Write a text on a spot (2,), in the middle unless the style says otherwise."""
+    x, y = spot.tolist()
+    axes.text(x, y, text, **{"ha": "center", "va": "center", **style})
+
+
 def _number_joints(
     axes: Axes,
     spots: dict[str, np.ndarray],
@@ -307,6 +314,4 @@ def _number_joints(
         assert best is not None
         taken.append(best[1][None])
         axes.plot(*best[1], alpha=0)  # the frame holds the number
-        axes.text(
-            *best[1], name, fontsize=pen.text, ha="center", va="center", zorder=6
-        )
+        write_at(axes, best[1], name, fontsize=pen.text, zorder=6)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from linkages.source_figures.assembly import Assembly, Role, Seat
-from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES
+from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES, write_at
 
 __all__ = ["draw_graph", "places_of"]
 
@@ -125,18 +125,10 @@ def draw_graph(
         )
         if is_named:
             color = "white" if name in filled else "black"
-            axes.text(
-                *place,
-                name,
-                ha="center",
-                va="center",
-                fontsize=7.5,
-                color=color,
-                zorder=4,
-            )
+            write_at(axes, place, name, fontsize=7.5, color=color, zorder=4)
     for letter, joints in letters:
         middle = np.mean([places[name] for name in joints], axis=0)
-        axes.text(*middle, letter, ha="center", va="center", fontsize=11, zorder=4)
+        write_at(axes, middle, letter, fontsize=11, zorder=4)
     axes.set_aspect("equal")
     spots = np.array(list(places.values()))
     half = max(1.5, float(np.abs(spots).max()) + 0.2)
@@ -149,13 +141,8 @@ def _name_outside(axes: Axes, ends: np.ndarray, label: str) -> None:
     middle = ends.mean(axis=0)
     away = middle / max(float(np.linalg.norm(middle)), 1e-9)
     sides = {-1: "right", 0: "center", 1: "left"}
-    axes.text(
-        *(middle + BESIDE * away),
-        label,
-        ha=sides[int(np.sign(away[0]) * (abs(away[0]) > 0.3))],
-        va="center",
-        fontsize=7.5,
-    )
+    side = sides[int(np.sign(away[0]) * (abs(away[0]) > 0.3))]
+    write_at(axes, middle + BESIDE * away, label, ha=side, fontsize=7.5)
 
 
 def _name_link(
@@ -166,13 +153,6 @@ def _name_link(
     places = ends[0] + FRACTIONS[:, None] * (ends[1] - ends[0])
     room = np.linalg.norm(places[:, None] - taken, axis=2).min(axis=1)
     place = places[int(np.argmax(np.round(np.minimum(room, ENOUGH), 6)))]
-    axes.text(
-        *place,
-        label,
-        ha="center",
-        va="center",
-        fontsize=7.5,
-        zorder=2,
-        bbox={"boxstyle": "square,pad=0.12", "facecolor": "white", "linewidth": 0},
-    )
+    box = {"boxstyle": "square,pad=0.12", "facecolor": "white", "linewidth": 0}
+    write_at(axes, place, label, fontsize=7.5, zorder=2, bbox=box)
     return np.asarray(place)

@@ -20,7 +20,7 @@ from linkages.source_figures.assembly import (
     turn,
 )
 from linkages.source_figures.construction import assembly_of
-from linkages.source_figures.drawing import draw_assembly, look_along
+from linkages.source_figures.drawing import draw_assembly, look_along, write_at
 from linkages.source_figures.table import SourceFigure
 
 __all__ = ["chain_assembly", "draw", "ray_angles"]
@@ -48,16 +48,16 @@ def draw(source: SourceFigure) -> Figure:
         figure.subplots(1, len(panels), squeeze=False)[0], panels, strict=True
     ):
         _draw_chain(axes, panel)
-        axes.set_title(panel.get("title", "") if "panels" in content else "", fontsize=9)
+        axes.set_title(
+            panel.get("title", "") if "panels" in content else "", fontsize=9
+        )
     return figure
 
 
 # --- chains ---------------------------------------------------------------------------
 
 
-def chain_assembly(
-    rows: Sequence[Sequence[float]], names: Sequence[str]
-) -> Assembly:
+def chain_assembly(rows: Sequence[Sequence[float]], names: Sequence[str]) -> Assembly:
     """A chain of axes: each row has length, twist, offset and angle of a link, in
     degrees; the first link leaves along the x axis turned by its angle."""
     assembly = Assembly()
@@ -105,16 +105,14 @@ def _draw_chain(axes: Axes, content: Mapping[str, Any]) -> None:
     axes.margins(0.12)
 
 
-def _write_beside(
-    axes: Axes, ends: np.ndarray, text: str, centre: np.ndarray
-) -> None:
+def _write_beside(axes: Axes, ends: np.ndarray, text: str, centre: np.ndarray) -> None:
     """A text beside the middle of a line (2, 2), on the side away from ``centre``."""
     along = ends[1] - ends[0]
     across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
     middle = ends.mean(axis=0)
     if across @ (middle - centre) < 0:
         across = -across
-    _write(axes, middle, text, tuple(11 * across))
+    _write(axes, middle, text, 11 * across)
 
 
 def _subscript(text: str) -> str:
@@ -128,7 +126,7 @@ def _name_axis(axes: Axes, assembly: Assembly, name: str, plane: np.ndarray) -> 
     points = np.array([assembly.joint(other) for other in assembly.axes])
     extent = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
     tip = (offset[1] + 1.15 * REACH * extent * direction) @ plane
-    _write(axes, tip, f"$z_{{{_subscript(name)}}}$", (0, 0))
+    _write(axes, tip, f"$z_{{{_subscript(name)}}}$", np.zeros(2))
     axes.plot(*tip, alpha=0)
 
 
@@ -165,7 +163,7 @@ def _draw_turns(
             axes.plot(*ends.T, color=ARC_COLOR, linewidth=2.6, zorder=3)
             ends = np.stack([foot - STUB * along, foot]) @ plane
             axes.plot(*ends.T, color=RAY_COLOR, linewidth=1.6)
-            _write(axes, ends[0], f"$x_{{{name}}}$", (-8, 0))
+            _write(axes, ends[0], f"$x_{{{name}}}$", np.array([-8.0, 0.0]))
 
 
 def _draw_twist(
@@ -202,20 +200,20 @@ def _draw_arc(axes: Axes, arc: np.ndarray, label: str, plane: np.ndarray) -> Non
     chord = (spots[0] + spots[-1]) / 2
     outwards = middle - chord
     size = max(float(np.linalg.norm(outwards)), 1e-9)
-    _write(axes, middle, label, tuple(9 * outwards / size), ARC_COLOR)
+    _write(axes, middle, label, 9 * outwards / size, ARC_COLOR)
 
 
 def _write(
     axes: Axes,
     spot: np.ndarray,
     text: str,
-    shift: Sequence[float],
+    shift: np.ndarray,
     color: str = "black",
 ) -> None:
     axes.annotate(
         text,
-        tuple(spot),
-        tuple(shift),
+        (float(spot[0]), float(spot[1])),
+        (float(shift[0]), float(shift[1])),
         textcoords="offset points",
         ha="center",
         va="center",
@@ -300,7 +298,7 @@ def _draw_rays(content: Mapping[str, Any]) -> Figure:
             xytext=(0, 0),
             arrowprops={"arrowstyle": "-|>", "color": "#0072B2", "linewidth": 1.8},
         )
-        axes.text(*(1.12 * spot), name, ha="center", va="center", fontsize=9)
+        write_at(axes, 1.12 * spot, name, fontsize=9)
     for number, (first, last, label) in enumerate(content["arcs"]):
         radius = 0.25 + 0.2 * number
         span = (angles[last] - angles[first]) % (2 * np.pi)
@@ -314,18 +312,11 @@ def _draw_rays(content: Mapping[str, Any]) -> Figure:
             arrowprops={"arrowstyle": "-|>", "color": ARC_COLOR, "linewidth": 1.0},
         )
         middle = np.array([np.cos(turns[20]), np.sin(turns[20])])
-        axes.text(
-            *((radius + 0.09) * middle),
-            f"{label} = {np.degrees(span):.1f}°",
-            ha="center",
-            va="center",
-            fontsize=8,
-            color=ARC_COLOR,
-            bbox={"boxstyle": "square,pad=0.1", "facecolor": "white", "linewidth": 0},
-        )
+        box = {"boxstyle": "square,pad=0.1", "facecolor": "white", "linewidth": 0}
+        text = f"{label} = {np.degrees(span):.1f}°"
+        spot = (radius + 0.09) * middle
+        write_at(axes, spot, text, fontsize=8, color=ARC_COLOR, bbox=box)
     axes.plot(0, 0, "o", markerfacecolor="white", markeredgecolor="black")
     axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
     axes.set_axis_off()
     return figure
-
-

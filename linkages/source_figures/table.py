@@ -112,7 +112,7 @@ class UnknownFigureError(BifurcError, KeyError):
 @cache
 def source_figures() -> dict[str, SourceFigure]:
     """Every figure by its name, in the order of the sources."""
-    figures = {}
+    figures: dict[str, SourceFigure] = {}
     folder = resources.files("linkages.source_figures") / "data"
     for file in FILES:
         text = (folder / f"{file}.toml").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from linkages.source_figures.drawing import Look, look_along
+from linkages.source_figures.drawing import Look, look_along, write_at
 from linkages.source_figures.table import SourceFigure
 
 __all__ = ["Torus", "companion_torus", "draw", "shared_turn"]
@@ -51,7 +51,7 @@ class Torus:
 
     def centre(self, sigma: float) -> np.ndarray:
         """R (3,) at the angle ``sigma`` about the axis of the torus, rad."""
-        return _rz(sigma) @ np.array([self.r, 0.0, 0.0])
+        return np.asarray(_rz(sigma) @ np.array([self.r, 0.0, 0.0]))
 
     def axis(self, sigma: float) -> np.ndarray:
         """The axis (3,) of the circle there, a unit vector."""
@@ -69,8 +69,8 @@ class Torus:
 
 def companion_torus(torus: Torus) -> Torus:
     """The other circle that makes the same surface, by the closed form of the catalogue
-    (`linkages.families.tori`): the two radii from the Bennett linkage, the angles from
-    the three other conditions, with phi the same on both circles."""
+    (`linkages.families.tori`): the two radii from the Bennett linkage, sine and cosine
+    of the angles from the conditions, and of the four signs those of one surface."""
     cosine = np.cos(torus.chi) * np.cos(torus.theta)
     sine = np.sqrt(1 - cosine**2)
     length = torus.r * abs(np.sin(torus.chi) * np.cos(torus.theta)) / sine
@@ -82,18 +82,15 @@ def companion_torus(torus: Torus) -> Torus:
     t = shift / np.cos(beta)
     r = float(np.hypot(k * np.sin(beta), t * cosine * np.sin(beta)))
     s = float(np.hypot(length, t * sine))
-    lean = torus.s * np.sin(torus.theta) * np.cos(torus.chi) / s
     sine_chi = torus.s * np.sin(torus.chi) / s
     cosine_theta = torus.r * torus.s * np.cos(torus.theta) / (r * s)
     candidates = []
     for chi in (np.arcsin(sine_chi), np.pi - np.arcsin(sine_chi)):
         for theta in (np.arccos(cosine_theta), -np.arccos(cosine_theta)):
-            gap = abs(np.sin(theta) * np.cos(chi) - lean)
-            candidates.append((float(gap), float(chi), float(theta)))
-    found = [Torus(r, s, chi, theta) for gap, chi, theta in candidates if gap < 1e-9]
+            candidates.append(Torus(r, s, float(chi), float(theta)))
     phi = np.array([POINT_ANGLE, -0.4])
-    gaps = [shared_turn(torus, other, phi)[1] for other in found]
-    return found[int(np.argmin(gaps))]
+    gaps = [shared_turn(torus, other, phi)[1] for other in candidates]
+    return candidates[int(np.argmin(gaps))]
 
 
 def shared_turn(torus: Torus, other: Torus, phi: np.ndarray) -> tuple[float, float]:
@@ -157,7 +154,7 @@ def _draw_vector(
         zorder=5,
     )
     beyond = (point + 0.8 * direction) @ plane
-    axes.text(*beyond, name, ha="center", va="center", fontsize=8.5, zorder=6)
+    write_at(axes, beyond, name, fontsize=8.5, zorder=6)
 
 
 def _draw_point(axes: Axes, point: np.ndarray, name: str, plane: np.ndarray) -> None:

@@ -16,7 +16,7 @@ from bifurc.figures.drawing import draw_forms, draw_legend, draw_marks
 from bifurc.figures.labels import label_points
 from bifurc.figures.planes import Plane, plane_of
 from linkages.loop import Loop
-from linkages.source_figures.assembly import Assembly, loop_assembly
+from linkages.source_figures.assembly import loop_assembly
 from linkages.source_figures.configurations import (
     atlas_of,
     form_named,
@@ -82,9 +82,7 @@ def _draw_form_names(axes: Axes, atlas: Atlas) -> None:
     )
 
 
-def _draw_map(
-    axes: Axes, atlas: Atlas, plane: Plane, stops: Sequence[Stop]
-) -> None:
+def _draw_map(axes: Axes, atlas: Atlas, plane: Plane, stops: Sequence[Stop]) -> None:
     draw_forms(axes, atlas, plane)
     draw_marks(axes, atlas, plane)
     if not stops:
@@ -105,7 +103,12 @@ def _draw_map(
             va="center",
             fontsize=9,
             zorder=6,
-            bbox={"boxstyle": "circle,pad=0.1", "facecolor": "white", "alpha": 0.8, "linewidth": 0},
+            bbox={
+                "boxstyle": "circle,pad=0.1",
+                "facecolor": "white",
+                "alpha": 0.8,
+                "linewidth": 0,
+            },
         )
 
 

@@ -71,9 +71,7 @@ def _angles(content: Mapping[str, Any]) -> Figure:
         for number, curve in enumerate(_closed_curves(np.radians(degrees))):
             rows = cut_to_frame(np.stack(curve, axis=1), (ROUND, ROUND))
             label = f"α = {degrees}°" if number == 0 else "_"
-            axes.plot(
-                *rows.T, color=style.color, linestyle=style.dashes, label=label
-            )
+            axes.plot(*rows.T, color=style.color, linestyle=style.dashes, label=label)
     _mark_degrees(axes, both=True)
     axes.set(xlabel="θ (deg)", ylabel="φ (deg)", box_aspect=1)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
@@ -90,9 +88,7 @@ def _height(content: Mapping[str, Any]) -> Figure:
             height = joint_centres(theta, phi, alpha)[:, 2, 2]
             rows = cut_to_frame(np.stack([theta, height], axis=1), (ROUND, PLAIN))
             label = f"α = {degrees}°" if number == 0 else "_"
-            axes.plot(
-                *rows.T, color=style.color, linestyle=style.dashes, label=label
-            )
+            axes.plot(*rows.T, color=style.color, linestyle=style.dashes, label=label)
     _mark_degrees(axes)
     axes.set(xlabel="θ (deg)", ylabel="z of O₃ / a")
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
@@ -207,9 +203,7 @@ def _draw_mechanism(axes: Axes, centres: np.ndarray, plane: np.ndarray) -> None:
     middle = spots.mean(axis=0)
     for number, spot in enumerate(spots, start=1):
         color = ODD_COLOR if number % 2 else EVEN_COLOR
-        axes.plot(
-            *spot, "o", markerfacecolor="white", markeredgecolor=color, zorder=4
-        )
+        axes.plot(*spot, "o", markerfacecolor="white", markeredgecolor=color, zorder=4)
         away = spot - middle
         away = away / max(float(np.linalg.norm(away)), 1e-9)
         axes.annotate(
@@ -228,9 +222,7 @@ def _draw_mechanism(axes: Axes, centres: np.ndarray, plane: np.ndarray) -> None:
     axes.set_axis_off()
 
 
-def _draw_plane(
-    axes: Axes, centres: np.ndarray, plane: np.ndarray, color: str
-) -> None:
+def _draw_plane(axes: Axes, centres: np.ndarray, plane: np.ndarray, color: str) -> None:
     """The triangle of three joints (3, 3), shaded."""
     axes.fill(*(centres @ plane).T, color=color, alpha=0.18, zorder=1)
 
@@ -266,9 +258,7 @@ def _axes(content: Mapping[str, Any]) -> Figure:
     axes.plot(*line.T, color="#009E73", linewidth=1.8, zorder=2)
     for name, spot in zip(("O'", "O''"), line, strict=True):
         axes.plot(*spot, "s", color="#009E73", markersize=4, zorder=4)
-        axes.annotate(
-            name, tuple(spot), (9, 4), textcoords="offset points", fontsize=9
-        )
+        axes.annotate(name, tuple(spot), (9, 4), textcoords="offset points", fontsize=9)
     _draw_mechanism(axes, centres, plane)
     return figure
 

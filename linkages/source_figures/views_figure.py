@@ -70,7 +70,9 @@ def _draw_line(
     plane = np.stack([look.right, look.up], axis=1)
     ends = (centre + np.array([[-half], [half]]) * line) @ plane
     if np.linalg.norm(ends[1] - ends[0]) < 1e-6 * half:
-        axes.plot(*ends[0], "o", color=LINE_COLOR, markersize=7, fillstyle="none", zorder=6)
+        axes.plot(
+            *ends[0], "o", color=LINE_COLOR, markersize=7, fillstyle="none", zorder=6
+        )
         axes.plot(*ends[0], ".", color=LINE_COLOR, markersize=3, zorder=6)
     else:
         axes.plot(*ends.T, color=LINE_COLOR, linestyle="-.", linewidth=1.4, zorder=6)

@@ -1,0 +1,143 @@
+"""Write docs/figures.md: every figure of the sources, how it is drawn, and how it
+compares with the source.
+
+Run as ``python -m studies.figures_page [FILE]``.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from pathlib import Path
+
+from linkages.source_figures.table import Agreement, Kind, SourceFigure, source_figures
+
+__all__ = ["PAGE", "figures_page"]
+
+PAGE = Path(__file__).parents[1] / "docs" / "figures.md"
+
+SOURCES = {
+    "thesis": "Song 2013, Kinematic study of overconstrained linkages and design of "
+    "reconfigurable mechanisms",
+    "000": "Song and Chen 2012, A family of mixed double-Goldberg 6R linkages",
+    "001": "Song and Chen 2012, A special Wohlhart's double-Goldberg 6R linkage",
+    "003": "Bil and Budniak 2014, Model of 5R spatial linkage in the geometry of tori",
+    "004": "Racila and Dahan 2010, Spatial properties of Wohlhart symmetric mechanism",
+}
+
+KINDS = {
+    Kind.ASSEMBLY: "axes and links: a graph with the names of the links, and the same "
+    "in space; removed links are dashed, shared ones grey, locked joints filled",
+    Kind.VIEWS: "a configuration from the front and from above, with its line of "
+    "symmetry",
+    Kind.MOTION: "one linkage at equal distances along a form",
+    Kind.PATHS: "joint angles against that of joint 1",
+    Kind.SINGULAR_VALUES: "all six singular values against the angle of joint 1, "
+    "linear, in the source's unit of length; dashed lines are the bifurcations of the "
+    "map, triangles its near misses",
+    Kind.TRANSITIONS: "the transition map, with lettered configurations along the "
+    "forms",
+    Kind.NOTATION: "names of lengths and angles",
+    Kind.TRANSLATOR: "Wohlhart's symmetric mechanism as a translator",
+    Kind.TORI: "circles that make tori, and linkages on them",
+}
+
+AGREEMENTS = {
+    Agreement.AGREES: "all that text and caption of the source say of the figure holds "
+    "in ours",
+    Agreement.OWN_GEOMETRY: "the same, but the source prints no numbers: the geometry "
+    "is that of the catalogue",
+    Agreement.DIFFERS: "text or caption is wrong; ours is right, and its caption says "
+    "what differs",
+}
+
+HEAD = """# Figures of the sources
+
+Every figure of the thesis and of four papers, drawn anew from the geometry:
+
+```sh
+bifurc figure --list
+bifurc figure thesis-5.2.7 --out figures
+make gallery                              # all of them, into out/gallery
+```
+
+Each is written as PNG and SVG, with its caption. What a figure shows stands in a table
+(`linkages/source_figures/data/`), how it is drawn in one module a kind. A linkage is
+taken from the catalogue, mapped, and set in a configuration; links that a construction
+removes are the common normals of the axes that they join, and a fourth joint of a
+Bennett linkage is the image of another one under the half turn about its line of
+symmetry. Tests compare every such link with the length and the twist that its name
+states. Photographs are replaced by the same linkage, drawn.
+
+The copies of the sources hold no pictures: figures are compared with their captions,
+with the text and with the numbers, not with the pictures.
+
+"""
+
+TRANSLATOR = """## The translator
+
+`python -m studies.wohlhart_translator` prints the strokes of Wohlhart's symmetric
+mechanism and draws figures 3 to 12 of Racila and Dahan (2010). Two facts found here
+make that short (`linkages/closed_forms/translator.py`, with tests against measured
+values):
+
+- The input-output equation (15) is a square: it says that cos(theta/2) cos(phi/2) -
+  cos(alpha) sin(theta/2) sin(phi/2) is 1/2 or -1/2. With half the sum s and half the
+  difference d of the angles this is (1 + cos(alpha)) cos(s) + (1 - cos(alpha)) cos(d)
+  = 1 or -1, from which every stroke follows without solving anything.
+- The root in (29), once corrected, is constant: H = 2 a |sin(theta/2) sin(phi/2)
+  sin(alpha)| / sqrt(3).
+
+Draws both strokes, since the paper does not say which.
+"""
+
+
+def figures_page() -> str:
+    """The page as Markdown."""
+    figures = list(source_figures().values())
+    parts = [HEAD, _kinds(figures), _agreements(figures)]
+    for source, title in SOURCES.items():
+        own = [figure for figure in figures if figure.name.startswith(f"{source}-")]
+        parts.append(_table(source, title, own))
+    parts.append(TRANSLATOR)
+    return "".join(parts)
+
+
+def _kinds(figures: list[SourceFigure]) -> str:
+    counts = Counter(figure.kind for figure in figures)
+    rows = ["| kind | figures | what is drawn |", "|---|---|---|"]
+    for kind, text in KINDS.items():
+        rows.append(f"| {kind} | {counts[kind]} | {text} |")
+    return "\n".join(rows) + "\n\n"
+
+
+def _agreements(figures: list[SourceFigure]) -> str:
+    counts = Counter(figure.agreement for figure in figures)
+    rows = ["| source | figures | meaning |", "|---|---|---|"]
+    for agreement, text in AGREEMENTS.items():
+        rows.append(f"| {agreement} | {counts[agreement]} | {text} |")
+    return "\n".join(rows) + "\n\n"
+
+
+def _table(source: str, title: str, figures: list[SourceFigure]) -> str:
+    rows = [
+        f"## {title}\n",
+        f"`bifurc figure {source}-NUMBER --out DIR`; {len(figures)} figures.\n",
+        "| figure | shows | kind | source | what differs, and why |",
+        "|---|---|---|---|---|",
+    ]
+    for figure in figures:
+        cells = (
+            figure.name,
+            figure.title,
+            figure.kind,
+            figure.agreement,
+            figure.remark,
+        )
+        rows.append(f"| {' | '.join(cells)} |")
+    return "\n".join(rows) + "\n\n"
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGE
+    target.write_text(figures_page(), encoding="utf-8")
