@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
 
 from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
@@ -56,8 +57,7 @@ def _draw_form(
 ) -> None:
     form = atlas.forms[index]
     style = form_style(index)
-    s = form.profile.arclength.ravel()
-    values = form.profile.values.reshape(len(s), -1)[:, : form.rank]
+    s, values = _with_zeros(atlas, index)
     top = float(values.max())
     shown = _shown(form.branch(s)[:, unknown], scale)
     jumps = np.flatnonzero(np.abs(np.diff(shown)) > scale.half) + 1
@@ -88,7 +88,28 @@ def _draw_form(
     if scale.is_periodic:
         axes.set_xlim(-scale.half, scale.half)
     axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=14)
+    if scale.half == 180.0:
+        axes.xaxis.set_major_locator(MultipleLocator(90))
     axes.grid(True)
+
+
+def _with_zeros(atlas: Atlas, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Arclengths (k,) along a form and its regular singular values (k, rank), with the
+    singular points, where the smallest is 0."""
+    form = atlas.forms[index]
+    s = form.profile.arclength.ravel()
+    values = form.profile.values.reshape(len(s), -1)[:, : form.rank]
+    zeros = [
+        place
+        for point in atlas.points
+        for number, place in point.passes
+        if number == index
+    ]
+    places = np.concatenate([s, zeros])
+    columns = [np.interp(places, s, column) for column in values.T]
+    columns[-1][len(s) :] = 0.0
+    order = np.argsort(places, kind="stable")
+    return places[order], np.stack(columns, axis=1)[order]
 
 
 def _shown(values: np.ndarray, scale: Scale) -> np.ndarray:

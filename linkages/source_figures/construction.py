@@ -92,7 +92,12 @@ def _terms(name: str) -> list[tuple[float, str]]:
 
 
 def link_value(name: str, links: Mapping[str, BasicLink]) -> BasicLink:
-    """Length and twist of a sum of basic links such as b+d."""
+    """Length and twist of a sum of basic links such as b+d; raises `ValueError` for
+    another name, and for a link that nobody knows."""
+    letters = {letter for _, letter in _terms(name)}
+    if not letters or not letters <= set(links):
+        known = ", ".join(sorted(links))
+        raise ValueError(f"no sum of the basic links {known}: {name}")
     length = sum(sign * links[letter].length for sign, letter in _terms(name))
     twist = sum(sign * links[letter].twist for sign, letter in _terms(name))
     return BasicLink(length, twist)

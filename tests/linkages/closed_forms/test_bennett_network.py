@@ -34,7 +34,8 @@ def test_the_mobility_is_three():
 def test_the_angles_of_a_bennett_linkage_follow_each_other():
     for part in range(4):
         inner = inner_angle(TWISTS, part, 0.8)
-        assert angle_for(TWISTS, part, inner) == pytest.approx(0.8, abs=1e-13)
+        gap = angle_for(TWISTS, part, inner) - 0.8
+        assert np.sin(gap / 2) == pytest.approx(0, abs=1e-13)
 
 
 def test_a_lock_at_an_odd_joint_holds_one_inner_angle_and_at_an_even_one_a_difference():

@@ -37,7 +37,9 @@ def test_the_closed_forms_give_the_42_measured_values():
     for sample in MEASURED["samples"]:
         alpha, theta, phi = angles(sample)
         centres = joint_centres(theta, phi, alpha)
-        assert plane_distance(theta, phi, alpha) == pytest.approx(sample["H_over_a"], abs=EXACT)
+        assert plane_distance(theta, phi, alpha) == pytest.approx(
+            sample["H_over_a"], abs=EXACT
+        )
         assert slide(theta) == pytest.approx(sample["b_over_a"], abs=EXACT)
         assert centres[2, 2] == pytest.approx(sample["z_O3_over_a"], abs=EXACT)
         odd = np.linalg.norm(centres[0] - centres[2])
@@ -127,7 +129,9 @@ def test_axes_pass_through_their_meeting_points():
 
 def test_thin_links_touch_where_the_even_joints_meet():
     assert contact_angle(np.radians(90)) is None
-    assert np.degrees(contact_angle(np.radians(150))) == pytest.approx(70.528779, abs=1e-6)
+    assert np.degrees(contact_angle(np.radians(150))) == pytest.approx(
+        70.528779, abs=1e-6
+    )
     assert contact_angle(np.radians(120)) == pytest.approx(np.pi, abs=1e-7)
     touch = contact_angle(np.radians(150))
     centres = joint_centres(touch, np.pi, np.radians(150))
