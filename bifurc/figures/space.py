@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
+from matplotlib.ticker import MaxNLocator, MultipleLocator
 from mpl_toolkits.mplot3d import Axes3D
 
 from bifurc import torus
@@ -104,5 +104,7 @@ def _set_frame(axes: Axes3D, scales: Sequence[Scale]) -> None:
             limit(-scale.half, scale.half)
         if scale.half == 180.0:
             line.set_major_locator(MultipleLocator(90))
+        else:
+            line.set_major_locator(MaxNLocator(5))
     axes.set_box_aspect((1, 1, 1), zoom=0.9)
     axes.view_init(elev=22, azim=-58)
