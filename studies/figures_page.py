@@ -8,11 +8,15 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
+from itertools import combinations
 from pathlib import Path
 
+import numpy as np
+
+from linkages.closed_forms.bennett_network import ring_angles
 from linkages.source_figures.table import Agreement, Kind, SourceFigure, source_figures
 
-__all__ = ["PAGE", "figures_page"]
+__all__ = ["PAGE", "figures_page", "lock_kind", "moving_joints"]
 
 PAGE = Path(__file__).parents[1] / "docs" / "figures.md"
 
@@ -92,6 +96,21 @@ Draws both strokes, since the paper does not say which.
 """
 
 
+NETWORK = """
+## Table 5.4.1 of the thesis
+
+All 28 ways to lock two joints of the network of four Bennett linkages, from its closed
+form (`linkages/closed_forms/bennett_network.py`), with twists of 35, 62, 81 and 48
+degrees. The thesis prints 4/5 for 3/5 among the odd pairs, and leaves out 1/6, 2/7 and
+3/8 of the pairs n/n+3.
+
+"""
+
+TWISTS = (35.0, 62.0, 81.0, 48.0)  # of a, b, c, d, degrees
+STEP = 1e-5  # rad, of the differences
+MOVES = 1e-6  # rate of a joint that turns, against rounding of the differences
+
+
 def figures_page() -> str:
     """The page as Markdown."""
     figures = list(source_figures().values())
@@ -100,7 +119,57 @@ def figures_page() -> str:
         own = [figure for figure in figures if figure.name.startswith(f"{source}-")]
         parts.append(_table(source, title, own))
     parts.append(TRANSLATOR)
+    parts.append(NETWORK)
+    parts.append(_lock_table())
     return "".join(parts)
+
+
+# --- table 5.4.1 ----------------------------------------------------------------------
+
+
+def moving_joints(locks: tuple[int, int]) -> tuple[int, ...]:
+    """The joints of the ring of the network, 1 to 8, that turn when two are locked."""
+    twists = dict(zip("abcd", np.radians(TWISTS), strict=True))
+    rates = _rates(twists)  # (8, 3)
+    held = rates[[joint - 1 for joint in locks]]
+    motion = rates @ np.linalg.svd(held)[2][-1]
+    return tuple(int(joint) + 1 for joint in np.flatnonzero(np.abs(motion) > MOVES))
+
+
+def _rates(twists: dict[str, float]) -> np.ndarray:
+    """Derivatives (8, 3) of the angles of the ring by those of the joints 1, 3 and 5,
+    by central differences in a configuration of no symmetry."""
+    odd = np.array([1.0, -2.0, 0.7])
+    columns = []
+    for step in STEP * np.eye(3):
+        forward = ring_angles(twists, *(odd + step))
+        back = ring_angles(twists, *(odd - step))
+        columns.append((forward - back) / (2 * STEP))
+    return np.stack(columns, axis=1)
+
+
+def lock_kind(locks: tuple[int, int]) -> str:
+    """What the network becomes with two joints locked, by the rules of table 5.4.1."""
+    first, second = locks
+    distance = min(second - first, 8 - (second - first))
+    is_odd = first % 2 == 1
+    if distance == 1 or (distance == 2 and is_odd):
+        return "generalized Goldberg 5R"
+    if distance == 2:
+        return "isomer of the generalized L-shape Goldberg 6R"
+    if distance == 3:
+        return "generalized variant of the L-shape Goldberg 6R"
+    if is_odd:
+        return "Waldron's hybrid 6R, no offset at joint 0"
+    return "generalized Wohlhart double-Goldberg 6R"
+
+
+def _lock_table() -> str:
+    rows = ["| locked | the loop | joints that turn |", "|---|---|---|"]
+    for locks in combinations(range(1, 9), 2):
+        moving = " ".join(map(str, moving_joints(locks)))
+        rows.append(f"| {locks[0]}/{locks[1]} | {lock_kind(locks)} | {moving} |")
+    return "\n".join(rows) + "\n"
 
 
 def _kinds(figures: list[SourceFigure]) -> str:

@@ -85,35 +85,38 @@ def _deviations(alpha: float, stroke: Stroke) -> np.ndarray:
     """By how much each claim (7,) fails along one stroke."""
     theta, phi = stroke_angles(alpha, stroke, COUNT)
     is_plain = np.abs(np.sin(theta) * np.sin(phi)) > AWAY
-    theta, phi = theta[is_plain], phi[is_plain]
-    closure = wohlhart_symmetric(1.0, alpha).closure_error(
-        np.stack([theta, phi] * 3, axis=-1)
-    )
+    theta = theta[is_plain]
+    phi = phi[is_plain]
+    angles = np.stack([theta, phi] * 3, axis=-1)
+    closure = wohlhart_symmetric(1.0, alpha).closure_error(angles)
+    mixed = np.sin(theta / 2) * np.cos(phi / 2)
+    mixed += np.cos(theta / 2) * np.sin(phi / 2) * np.cos(alpha)
+    root = np.hypot(np.sin(phi / 2) * np.sin(alpha), mixed)
+    gaps = (closure, *_gaps_of_planes(theta, phi, alpha), root - np.sqrt(3) / 2)
+    return np.array([np.abs(gap).max() for gap in gaps])
+
+
+def _gaps_of_planes(
+    theta: np.ndarray, phi: np.ndarray, alpha: float
+) -> tuple[np.ndarray, ...]:
+    """By how much what is said of the planes, of O'O'', b and H fails, (k,) each."""
     centres = joint_centres(theta, phi, alpha)
-    odd, even = centres[:, 0::2], centres[:, 1::2]
-    odd_normal, even_normal = _normal(odd), _normal(even)
+    odd = centres[:, 0::2]
+    even = centres[:, 1::2]
+    odd_normal = _normal(odd)
     side = np.linalg.norm(odd[:, 1] - odd[:, 0], axis=1)
     ends = meeting_points(theta, phi, alpha)
     line = ends[0] - ends[1]
     line = line / np.linalg.norm(line, axis=1, keepdims=True)
-    middle = odd.mean(axis=1)
-    radius = np.linalg.norm(odd[:, 0] - middle, axis=1)
+    radius = np.linalg.norm(odd[:, 0] - odd.mean(axis=1), axis=1)
     height = np.abs(np.sum((even[:, 0] - odd[:, 0]) * odd_normal, axis=1))
-    root = np.hypot(
-        np.sin(phi / 2) * np.sin(alpha),
-        np.sin(theta / 2) * np.cos(phi / 2)
-        + np.cos(theta / 2) * np.sin(phi / 2) * np.cos(alpha),
-    )
-    gaps = (
-        closure,
-        np.linalg.norm(np.cross(odd_normal, even_normal), axis=1),
+    return (
+        np.linalg.norm(np.cross(odd_normal, _normal(even)), axis=1),
         side - 2 * np.abs(np.cos(theta / 2)),
         np.linalg.norm(np.cross(odd_normal, line), axis=1),
         np.abs(2 / np.sqrt(3) - slide(theta)) - radius,
         plane_distance(theta, phi, alpha) - height,
-        root - np.sqrt(3) / 2,
     )
-    return np.array([np.abs(gap).max() for gap in gaps])
 
 
 def _normal(triangle: np.ndarray) -> np.ndarray:

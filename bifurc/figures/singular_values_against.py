@@ -65,32 +65,49 @@ def _draw_form(
     y = np.insert(np.maximum(values, LOWEST * top), jumps, np.nan, axis=0)
     axes.plot(x, y[:, :-1], color="0.75", linewidth=0.8, zorder=1)
     axes.plot(x, y[:, -1], color=style.color, linewidth=1.6, zorder=2)
-    smallest = top * 10.0**-DECADES
-    for point in atlas.points:
-        if any(form_index == index for form_index, _ in point.passes):
-            angle = _shown(point.point.u[[unknown]], scale)[0]
-            axes.axvline(angle, color="0.35", linewidth=0.8, linestyle=(0, (3, 2)))
-            axes.annotate(
-                point.name,
-                (angle, 1.0),
-                (0, 2),
-                xycoords=("data", "axes fraction"),
-                textcoords="offset points",
-                ha="center",
-                fontsize=8,
-            )
-    for event in atlas.near_misses:
-        if event.form == index:
-            angle = _shown(event.u[[unknown]], scale)[0]
-            axes.plot(angle, event.value, "v", color="black", markersize=4, zorder=4)
-            smallest = min(smallest, event.value / 10)
-    axes.set(yscale="log", ylim=(smallest, 2 * top))
+    _name_points(axes, atlas, index, unknown, scale)
+    least = _draw_near_misses(axes, atlas, index, unknown, scale)
+    axes.set(yscale="log", ylim=(min(least / 10, top * 10.0**-DECADES), 2 * top))
     if scale.is_periodic:
         axes.set_xlim(-scale.half, scale.half)
-    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=14)
     if scale.half == 180.0:
         axes.xaxis.set_major_locator(MultipleLocator(90))
+    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=14)
     axes.grid(True)
+
+
+def _name_points(
+    axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale
+) -> None:
+    """Dashed lines at the singular points of a form, their names above the panel."""
+    for point in atlas.points:
+        if not any(number == index for number, _ in point.passes):
+            continue
+        x = _shown(point.point.u[[unknown]], scale)[0]
+        axes.axvline(x, color="0.35", linewidth=0.8, linestyle=(0, (3, 2)))
+        axes.annotate(
+            point.name,
+            (x, 1.0),
+            (0, 2),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            ha="center",
+            fontsize=8,
+        )
+
+
+def _draw_near_misses(
+    axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale
+) -> float:
+    """The least value of the near misses of a form, which are drawn as triangles; inf
+    where there is none."""
+    least = np.inf
+    for event in atlas.near_misses:
+        if event.form == index:
+            x = _shown(event.u[[unknown]], scale)[0]
+            axes.plot(x, event.value, "v", color="black", markersize=4, zorder=4)
+            least = min(least, event.value)
+    return float(least)
 
 
 def _with_zeros(atlas: Atlas, index: int) -> tuple[np.ndarray, np.ndarray]:

@@ -3,9 +3,8 @@ links, and the same in space."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -22,7 +21,7 @@ from linkages.source_figures.drawing import (
     draw_assembly,
 )
 from linkages.source_figures.graph_drawing import draw_graph
-from linkages.source_figures.table import SourceFigure
+from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["draw", "transversal_points"]
 
@@ -67,7 +66,7 @@ def draw(source: SourceFigure) -> Figure:
     return grid.figure
 
 
-def _clearest(panel: Mapping[str, Any]) -> Assembly:
+def _clearest(panel: Content) -> Assembly:
     """The assembly of a panel; where the panel names no configuration, in that of
     several along the form that is clearest."""
     if "linkage" not in panel or "at" in panel or "part" in panel:
@@ -100,7 +99,7 @@ class Grid:
         return self.cells[2 * band, column], self.cells[2 * band + 1, column]
 
 
-def _grid(content: Mapping[str, Any]) -> Grid:
+def _grid(content: Content) -> Grid:
     """Empty axes for all panels of a figure."""
     count = len(content["panels"])
     has_graph = content.get("graph", True)
@@ -171,7 +170,7 @@ def transversal_points(assembly: Assembly) -> np.ndarray:
     return np.array(points)
 
 
-def _ring(panel: Mapping[str, Any], names: tuple[str, ...]) -> tuple[str, ...]:
+def _ring(panel: Content, names: tuple[str, ...]) -> tuple[str, ...]:
     """The joints that stand on a circle: all numbered ones, unless the panel says
     others."""
     if "ring" in panel:
@@ -179,7 +178,7 @@ def _ring(panel: Mapping[str, Any], names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name for name in names if name.isdigit() and name != "0")
 
 
-def _letters(panel: Mapping[str, Any]) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def _letters(panel: Content) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Letters of parts of the graph, with the joints that they stand between."""
     return tuple(
         (letter, tuple(joints.split()))

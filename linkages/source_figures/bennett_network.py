@@ -4,7 +4,6 @@ the links to joint 0 in the middle."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from linkages.source_figures.assembly import (
     fourth_joint,
     loop_assembly,
 )
+from linkages.source_figures.table import Content
 
 __all__ = ["network_assembly"]
 
@@ -28,7 +28,7 @@ RING = ("1", "2", "3", "4", "5", "6", "7", "8")
 SPOKES = (("2", "c"), ("4", "b"), ("6", "d"), ("8", "a"))
 
 
-def network_assembly(panel: Mapping[str, Any]) -> Assembly:
+def network_assembly(panel: Content) -> Assembly:
     """The network that a panel describes.
 
     ``twists`` are those of a, b, c, d in degrees, ``odd`` the angles at the joints 1, 3
@@ -48,7 +48,7 @@ def network_assembly(panel: Mapping[str, Any]) -> Assembly:
     return assembly
 
 
-def _angles(twists: Mapping[str, float], panel: Mapping[str, Any]) -> np.ndarray:
+def _angles(twists: Mapping[str, float], panel: Content) -> np.ndarray:
     """Joint angles (8,), rad, with the even joints straight that are to be."""
     odd = [float(np.radians(angle)) for angle in panel["odd"]]
     for part, joint in enumerate(("2", "4")):

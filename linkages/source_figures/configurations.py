@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +15,7 @@ from linkages.entry import ParameterKind
 from linkages.linkage import Linkage, load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.source_figures.table import Content
 
 __all__ = [
     "atlas_of",
@@ -34,7 +33,7 @@ CLEAR_ENOUGH = 0.99  # of the clearest: the first such one is taken
 TURN = 2 * np.pi
 
 
-def linkage_of(content: Mapping[str, Any]) -> Linkage:
+def linkage_of(content: Content) -> Linkage:
     """The linkage that a figure names, angles of its ``parameters`` in degrees."""
     name = content["linkage"]
     family = entry(name)
@@ -46,12 +45,12 @@ def linkage_of(content: Mapping[str, Any]) -> Linkage:
     return load(name, **values)
 
 
-def loop_of_content(content: Mapping[str, Any]) -> Loop:
+def loop_of_content(content: Content) -> Loop:
     """The loop of the linkage that a figure names."""
     return linkage_of(content).loop
 
 
-def atlas_of(content: Mapping[str, Any]) -> Atlas:
+def atlas_of(content: Content) -> Atlas:
     """The transition map of the linkage that a figure names, without certificates."""
     parameters = tuple(sorted(content.get("parameters", {}).items()))
     return _atlas(content["linkage"], parameters)
@@ -111,7 +110,7 @@ def _root(branch: Branch, index: int, angle: float, low: float, high: float) -> 
     return s
 
 
-def configuration(content: Mapping[str, Any]) -> np.ndarray:
+def configuration(content: Content) -> np.ndarray:
     """The joint angles (n,), rad, of the configuration that a figure names.
 
     ``form`` names the form; ``at`` = [joint, degrees, number] the place where a joint

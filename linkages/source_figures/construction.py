@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from linkages.source_figures.assembly import (
 )
 from linkages.source_figures.bennett_network import network_assembly
 from linkages.source_figures.configurations import configuration, linkage_of
+from linkages.source_figures.table import Content
 
 __all__ = ["BasicLink", "assembly_of", "basic_links", "link_text", "link_value"]
 
@@ -50,7 +51,7 @@ class BasicLink(NamedTuple):
     twist: float
 
 
-def assembly_of(panel: Mapping[str, Any]) -> Assembly:
+def assembly_of(panel: Content) -> Assembly:
     """The assembly that a panel of a figure describes."""
     links: dict[str, BasicLink]
     if "network" in panel:
@@ -104,7 +105,7 @@ def link_value(name: str, links: Mapping[str, BasicLink]) -> BasicLink:
 
 
 def basic_links(
-    loop: Loop, labels: Sequence[str], content: Mapping[str, Any]
+    loop: Loop, labels: Sequence[str], content: Content
 ) -> dict[str, BasicLink]:
     """Every basic link of a linkage by its letter.
 
@@ -135,7 +136,7 @@ def basic_links(
     return known
 
 
-def _add_parameters(known: dict[str, BasicLink], content: Mapping[str, Any]) -> None:
+def _add_parameters(known: dict[str, BasicLink], content: Content) -> None:
     """The basic links whose twists are parameters of the linkage, of one ratio of sine
     and length."""
     family = entry(content["linkage"])

@@ -134,13 +134,13 @@ def _clarity(outline: _Outline, look: Look) -> float:
     spots = points @ plane
     size = max(float(np.linalg.norm(points - points.mean(axis=0), axis=1).max()), 1e-12)
     first, second = np.triu_indices(len(spots), 1)
-    apart = np.linalg.norm(spots[first] - spots[second], axis=1).min() / size
+    gap = np.linalg.norm(spots[first] - spots[second], axis=1).min() / size
     to_links = _to_segments(spots, segments @ plane)
     free = np.where(is_own, np.inf, to_links).min() / size
     free = min(free, 1.0)
     seen = np.linalg.norm(directions @ plane, axis=1).min()
     spread = np.linalg.svd(spots - spots.mean(axis=0), compute_uv=False)[-1] / size
-    return float(4 * apart + 4 * free + spread + min(seen, 0.5))
+    return float(4 * gap + 4 * free + spread + min(seen, 0.5))
 
 
 def _to_segments(spots: np.ndarray, segments: np.ndarray) -> np.ndarray:
@@ -205,25 +205,19 @@ def draw_assembly(
     centre = points.mean(axis=0)
     extent = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-12)
     axis_ends = _draw_axes(axes, assembly, plane, reach * extent, pen)
-    depths = []
     for bar in assembly.bars:
-        depths.append(float((bar.ends.mean(axis=0) - centre) @ look.near) / extent)
-    for bar, depth in zip(assembly.bars, depths, strict=True):
+        depth = float((bar.ends.mean(axis=0) - centre) @ look.near) / extent
         _draw_link(axes, bar.ends @ plane, bar.role, 3 + 0.4 * depth, pen)
-    for name in assembly.axes:
+    for name, point in joints.items():
+        depth = float((point - centre) @ look.near) / extent
         offset = assembly.offset(name) @ plane
-        depth = float((joints[name] - centre) @ look.near) / extent
-        color = OFFSET_COLOR
-        axes.plot(*offset.T, color=color, linewidth=pen.link, zorder=3 + 0.4 * depth)
         axes.plot(
-            *(joints[name] @ plane),
-            "o",
-            markersize=pen.dot,
-            markerfacecolor="black" if name in filled else "white",
-            markeredgecolor="black",
-            markeredgewidth=0.9,
-            zorder=5,
+            *offset.T,
+            color=OFFSET_COLOR,
+            linewidth=pen.link,
+            zorder=3 + 0.4 * depth,
         )
+        _draw_joint(axes, point @ plane, name in filled, pen)
     lines = [bar.ends @ plane for bar in assembly.bars]
     lines += axis_ends
     numbered = [name for name in assembly.axes if name not in unnumbered]
@@ -262,6 +256,18 @@ def _draw_axes(
         axes.plot(*spots.T, alpha=0)  # the frame holds the whole axis
         drawn.append(spots)
     return drawn
+
+
+def _draw_joint(axes: Axes, spot: np.ndarray, is_filled: bool, pen: Pen) -> None:
+    axes.plot(
+        *spot,
+        "o",
+        markersize=pen.dot,
+        markerfacecolor="black" if is_filled else "white",
+        markeredgecolor="black",
+        markeredgewidth=0.9,
+        zorder=5,
+    )
 
 
 def _draw_link(

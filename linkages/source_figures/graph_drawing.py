@@ -13,7 +13,7 @@ from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES, write_at
 __all__ = ["draw_graph", "places_of"]
 
 SHORTEST = 0.2  # of a drawn link: the least distance of a joint on it from its ends
-APART = 0.55  # joints inside the ring, at least, where the ring has radius 1
+SEPARATION = 0.55  # joints inside the ring, at least, where the ring has radius 1
 PUSHES = 20
 FRACTIONS = np.array([0.5, 0.4, 0.6, 0.3, 0.7])  # of a link, where its name may stand
 BESIDE = 0.13  # from a link of the ring to its name
@@ -37,7 +37,7 @@ def places_of(assembly: Assembly, ring: tuple[str, ...]) -> dict[str, np.ndarray
     inner = [name for name in assembly.axes if name not in places]
     if inner:
         middles = _in_the_middle(assembly, inner, places)
-        places.update(_pushed_apart(middles))
+        places.update(_separated(middles))
     return places
 
 
@@ -64,7 +64,7 @@ def _in_the_middle(
     return dict(zip(inner, solved, strict=True))
 
 
-def _pushed_apart(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _separated(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The places with those that are too close moved away from each other; those that
     are one move up and down."""
     out = {name: place.copy() for name, place in places.items()}
@@ -74,11 +74,11 @@ def _pushed_apart(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
             for second in names[i + 1 :]:
                 gap = out[first] - out[second]
                 distance = float(np.linalg.norm(gap))
-                if distance >= APART:
+                if distance >= SEPARATION:
                     continue
                 is_one = distance < 1e-6
                 direction = np.array([0.0, 1.0]) if is_one else gap / distance
-                push = 0.5 * (APART - distance) * direction
+                push = 0.5 * (SEPARATION - distance) * direction
                 out[first] += push
                 out[second] -= push
     return out
@@ -113,19 +113,8 @@ def draw_graph(
         else:
             taken.append(_name_link(axes, ends, bar.label, np.array(taken)))
     for name, place in places.items():
-        is_named = name not in unnumbered
-        axes.plot(
-            *place,
-            "o",
-            markersize=14 if is_named else 5,
-            markerfacecolor="black" if name in filled else "white",
-            markeredgecolor="black",
-            markeredgewidth=1.0,
-            zorder=3,
-        )
-        if is_named:
-            color = "white" if name in filled else "black"
-            write_at(axes, place, name, fontsize=7.5, color=color, zorder=4)
+        text = "" if name in unnumbered else name
+        _draw_joint(axes, place, text, name in filled)
     for letter, joints in letters:
         middle = np.mean([places[name] for name in joints], axis=0)
         write_at(axes, middle, letter, fontsize=11, zorder=4)
@@ -134,6 +123,21 @@ def draw_graph(
     half = max(1.5, float(np.abs(spots).max()) + 0.2)
     axes.set(xlim=(-half, half), ylim=(-half, half))
     axes.set_axis_off()
+
+
+def _draw_joint(axes: Axes, place: np.ndarray, text: str, is_filled: bool) -> None:
+    """A joint as a circle with its name in it, a small one without a name."""
+    axes.plot(
+        *place,
+        "o",
+        markersize=14 if text else 5,
+        markerfacecolor="black" if is_filled else "white",
+        markeredgecolor="black",
+        markeredgewidth=1.0,
+        zorder=3,
+    )
+    color = "white" if is_filled else "black"
+    write_at(axes, place, text, fontsize=7.5, color=color, zorder=4)
 
 
 def _name_outside(axes: Axes, ends: np.ndarray, label: str) -> None:

@@ -3,8 +3,7 @@ several positions, and a joint seen along its axis."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,7 +20,7 @@ from linkages.source_figures.assembly import (
 )
 from linkages.source_figures.construction import assembly_of
 from linkages.source_figures.drawing import draw_assembly, look_along, write_at
-from linkages.source_figures.table import SourceFigure
+from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["chain_assembly", "draw", "ray_angles"]
 
@@ -81,7 +80,7 @@ def chain_assembly(rows: Sequence[Sequence[float]], names: Sequence[str]) -> Ass
     return assembly
 
 
-def _draw_chain(axes: Axes, content: Mapping[str, Any]) -> None:
+def _draw_chain(axes: Axes, content: Content) -> None:
     rows = content["chain"]
     names = content["names"][: len(rows) + 1]
     assembly = chain_assembly(rows, names)
@@ -131,39 +130,49 @@ def _name_axis(axes: Axes, assembly: Assembly, name: str, plane: np.ndarray) -> 
 
 
 def _draw_turns(
-    axes: Axes, assembly: Assembly, content: Mapping[str, Any], plane: np.ndarray
+    axes: Axes, assembly: Assembly, content: Content, plane: np.ndarray
 ) -> None:
     """The angle and the offset at every joint between two links of the chain; at the
     first joint, the direction of the link before it."""
-    rows = content["chain"]
     names = content["names"]
     along = np.array([1.0, 0.0, 0.0])
-    for number, (_, _, offset, angle) in enumerate(rows):
+    for number, (_, _, offset, angle) in enumerate(content["chain"]):
         axis = assembly.axes[names[number]]
         if number > 0:
             before = assembly.bars[number - 1].ends
             along = (before[1] - before[0]) / np.linalg.norm(before[1] - before[0])
         start = assembly.bars[number].ends[0]
+        foot = start - offset * axis.direction
         name = _subscript(names[number])
         if angle:
+            label = content.get("kink", f"\\theta_{{{name}}}")
             ray = np.stack([start, start + STUB * along]) @ plane
             axes.plot(*ray.T, color=RAY_COLOR, linestyle=(0, (3, 2)), linewidth=1.0)
-            kink = content.get("kink")
-            label = f"${kink}$" if kink else f"$\\theta_{{{name}}}$"
             arc = _arc(start, along, axis.direction, np.radians(angle), 1.4 * ARC)
-            _draw_arc(axes, arc, label, plane)
+            _draw_arc(axes, arc, f"${label}$", plane)
         if offset:
-            ends = np.stack([start - offset * axis.direction, start]) @ plane
-            distance = content.get("distance")
-            label = f"${distance}$" if distance else f"$R_{{{name}}}$"
-            _write_beside(axes, ends, label, assembly.bars[number].ends[1] @ plane)
-        if number == 0 and angle:
-            foot = start - offset * axis.direction
+            label = content.get("distance", f"R_{{{name}}}")
             ends = np.stack([foot, start]) @ plane
-            axes.plot(*ends.T, color=ARC_COLOR, linewidth=2.6, zorder=3)
-            ends = np.stack([foot - STUB * along, foot]) @ plane
-            axes.plot(*ends.T, color=RAY_COLOR, linewidth=1.6)
-            _write(axes, ends[0], f"$x_{{{name}}}$", np.array([-8.0, 0.0]))
+            away = assembly.bars[number].ends[1] @ plane
+            _write_beside(axes, ends, f"${label}$", away)
+        if number == 0 and angle:
+            _draw_first_direction(axes, foot, along, start, name, plane)
+
+
+def _draw_first_direction(
+    axes: Axes,
+    foot: np.ndarray,
+    along: np.ndarray,
+    start: np.ndarray,
+    name: str,
+    plane: np.ndarray,
+) -> None:
+    """The link that comes to the first joint of a chain, and the offset there."""
+    offset = np.stack([foot, start]) @ plane
+    axes.plot(*offset.T, color=ARC_COLOR, linewidth=2.6, zorder=3)
+    ends = np.stack([foot - STUB * along, foot]) @ plane
+    axes.plot(*ends.T, color=RAY_COLOR, linewidth=1.6)
+    _write(axes, ends[0], f"$x_{{{name}}}$", np.array([-8.0, 0.0]))
 
 
 def _draw_twist(
@@ -227,7 +236,7 @@ def _write(
 # --- one link, and a joint ------------------------------------------------------------
 
 
-def _draw_links(content: Mapping[str, Any]) -> Figure:
+def _draw_links(content: Content) -> Figure:
     """One link with several twists, seen from the same side."""
     links = content["links"]
     assemblies = [
@@ -264,7 +273,7 @@ def _draw_small_twist(
     axes.plot(*(points @ plane).T, color=ARC_COLOR, linewidth=1.2, zorder=6)
 
 
-def ray_angles(content: Mapping[str, Any]) -> dict[str, float]:
+def ray_angles(content: Content) -> dict[str, float]:
     """The angle (rad) of each ray at a joint about its axis, from the first ray: a ray
     is the direction of the link between two joints."""
     panel = {key: content[key] for key in ("linkage", "form") if key in content}
@@ -284,7 +293,7 @@ def ray_angles(content: Mapping[str, Any]) -> dict[str, float]:
     }
 
 
-def _draw_rays(content: Mapping[str, Any]) -> Figure:
+def _draw_rays(content: Content) -> Figure:
     """The directions of the links at a joint, along its axis, with the angles between
     them."""
     angles = ray_angles(content)
@@ -300,23 +309,28 @@ def _draw_rays(content: Mapping[str, Any]) -> Figure:
         )
         write_at(axes, 1.12 * spot, name, fontsize=9)
     for number, (first, last, label) in enumerate(content["arcs"]):
-        radius = 0.25 + 0.2 * number
         span = (angles[last] - angles[first]) % (2 * np.pi)
         turns = angles[first] + np.linspace(0.0, span, 60)
-        x, y = radius * np.cos(turns), radius * np.sin(turns)
-        axes.plot(x, y, color=ARC_COLOR, linewidth=1.2)
-        axes.annotate(
-            "",
-            xy=(x[-1], y[-1]),
-            xytext=(x[-3], y[-3]),
-            arrowprops={"arrowstyle": "-|>", "color": ARC_COLOR, "linewidth": 1.0},
+        _draw_span(
+            axes, turns, 0.25 + 0.2 * number, f"{label} = {np.degrees(span):.1f}°"
         )
-        middle = np.array([np.cos(turns[20]), np.sin(turns[20])])
-        box = {"boxstyle": "square,pad=0.1", "facecolor": "white", "linewidth": 0}
-        text = f"{label} = {np.degrees(span):.1f}°"
-        spot = (radius + 0.09) * middle
-        write_at(axes, spot, text, fontsize=8, color=ARC_COLOR, bbox=box)
     axes.plot(0, 0, "o", markerfacecolor="white", markeredgecolor="black")
     axes.set(xlim=(-1.3, 1.3), ylim=(-1.3, 1.3), aspect="equal")
     axes.set_axis_off()
     return figure
+
+
+def _draw_span(axes: Axes, turns: np.ndarray, radius: float, text: str) -> None:
+    """An arc about the origin through angles (k,), rad, with an arrow and its name."""
+    x = radius * np.cos(turns)
+    y = radius * np.sin(turns)
+    axes.plot(x, y, color=ARC_COLOR, linewidth=1.2)
+    axes.annotate(
+        "",
+        xy=(x[-1], y[-1]),
+        xytext=(x[-3], y[-3]),
+        arrowprops={"arrowstyle": "-|>", "color": ARC_COLOR, "linewidth": 1.0},
+    )
+    spot = (radius + 0.09) * np.array([np.cos(turns[20]), np.sin(turns[20])])
+    box = {"boxstyle": "square,pad=0.1", "facecolor": "white", "linewidth": 0}
+    write_at(axes, spot, text, fontsize=8, color=ARC_COLOR, bbox=box)

@@ -3,9 +3,8 @@ input-output curves of the sources."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +16,7 @@ from bifurc.figures.planes import Scale, curve_points, cut_to_frame
 from bifurc.figures.style import form_style
 from bifurc.torus import wrap
 from linkages.source_figures.configurations import atlas_of, form_named, places_at
-from linkages.source_figures.table import SourceFigure
+from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["draw", "joints_alike"]
 
@@ -50,14 +49,14 @@ def draw(source: SourceFigure) -> Figure:
     return figure
 
 
-def _forms(atlas: Atlas, content: Mapping[str, Any]) -> Sequence[Form]:
+def _forms(atlas: Atlas, content: Content) -> Sequence[Form]:
     names = content.get("forms", [])
     if not names:
         return atlas.forms
     return [form_named(atlas, name) for name in names]
 
 
-def _draw_form(axes: Axes, form: Form, content: Mapping[str, Any]) -> None:
+def _draw_form(axes: Axes, form: Form, content: Content) -> None:
     turns = content.get("turns", 1)
     scales = (
         Scale(DEGREES, 180.0 * turns, "θ₁ (deg)"),

@@ -10,12 +10,13 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, TypeAlias
 
 from bifurc.errors import BifurcError
 
 __all__ = [
     "Agreement",
+    "Content",
     "Kind",
     "SourceFigure",
     "UnknownFigureError",
@@ -34,6 +35,7 @@ FILES = (
     "paper_003",
     "paper_004",
 )
+Content: TypeAlias = Mapping[str, Any]  # a table of TOML, as its kind reads it
 NEAREST = 3  # figures that are named where there is none of that name
 
 
@@ -85,7 +87,7 @@ class SourceFigure:
     title: str
     agreement: Agreement
     remark: str = ""
-    content: Mapping[str, Any] = field(default_factory=dict, compare=False)
+    content: Content = field(default_factory=dict, compare=False)
 
     @property
     def caption(self) -> str:

@@ -3,16 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from linkages.source_figures.drawing import Look, look_along, write_at
-from linkages.source_figures.table import SourceFigure
+from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["Torus", "companion_torus", "draw", "shared_turn"]
 
@@ -71,6 +70,19 @@ def companion_torus(torus: Torus) -> Torus:
     """The other circle that makes the same surface, by the closed form of the catalogue
     (`linkages.families.tori`): the two radii from the Bennett linkage, sine and cosine
     of the angles from the conditions, and of the four signs those of one surface."""
+    r, s = _companion_radii(torus)
+    chi = float(np.arcsin(torus.s * np.sin(torus.chi) / s))
+    theta = float(np.arccos(torus.r * torus.s * np.cos(torus.theta) / (r * s)))
+    signs = ((chi, theta), (chi, -theta), (np.pi - chi, theta), (np.pi - chi, -theta))
+    candidates = [Torus(r, s, *angles) for angles in signs]
+    phi = np.array([POINT_ANGLE, -0.4])
+    gaps = [shared_turn(torus, other, phi)[1] for other in candidates]
+    return candidates[int(np.argmin(gaps))]
+
+
+def _companion_radii(torus: Torus) -> tuple[float, float]:
+    """The radii r and s of the companion: those of the Bennett linkage on the torus,
+    with the shift of its pins."""
     cosine = np.cos(torus.chi) * np.cos(torus.theta)
     sine = np.sqrt(1 - cosine**2)
     length = torus.r * abs(np.sin(torus.chi) * np.cos(torus.theta)) / sine
@@ -81,16 +93,7 @@ def companion_torus(torus: Torus) -> Torus:
     beta = np.arctan(np.sqrt(square))
     t = shift / np.cos(beta)
     r = float(np.hypot(k * np.sin(beta), t * cosine * np.sin(beta)))
-    s = float(np.hypot(length, t * sine))
-    sine_chi = torus.s * np.sin(torus.chi) / s
-    cosine_theta = torus.r * torus.s * np.cos(torus.theta) / (r * s)
-    candidates = []
-    for chi in (np.arcsin(sine_chi), np.pi - np.arcsin(sine_chi)):
-        for theta in (np.arccos(cosine_theta), -np.arccos(cosine_theta)):
-            candidates.append(Torus(r, s, float(chi), float(theta)))
-    phi = np.array([POINT_ANGLE, -0.4])
-    gaps = [shared_turn(torus, other, phi)[1] for other in candidates]
-    return candidates[int(np.argmin(gaps))]
+    return r, float(np.hypot(length, t * sine))
 
 
 def shared_turn(torus: Torus, other: Torus, phi: np.ndarray) -> tuple[float, float]:
@@ -179,7 +182,7 @@ def _finish(axes: Axes, title: str) -> None:
     axes.set_axis_off()
 
 
-def _point(torus: Torus, content: Mapping[str, Any]) -> Figure:
+def _point(torus: Torus, content: Content) -> Figure:
     """One point S by each of the two circles through it."""
     figure = Figure(figsize=(9.0, 4.4), layout="constrained")
     other = companion_torus(torus)
@@ -199,7 +202,7 @@ def _point(torus: Torus, content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _variants(torus: Torus, content: Mapping[str, Any]) -> Figure:
+def _variants(torus: Torus, content: Content) -> Figure:
     """The 4R linkage Q, R1, S, R2 with either circle of each of the two radii: one and
     its mirror image in the plane of Q, phi reversed with it."""
     figure = Figure(figsize=(9.0, 8.6), layout="constrained")
@@ -226,7 +229,7 @@ def _variants(torus: Torus, content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-CHARTS: dict[str, Callable[[Torus, Mapping[str, Any]], Figure]] = {
+CHARTS: dict[str, Callable[[Torus, Content], Figure]] = {
     "point": _point,
     "variants": _variants,
 }

@@ -3,9 +3,9 @@ lettered as in the sources."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from string import ascii_lowercase
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,7 +23,7 @@ from linkages.source_figures.configurations import (
     loop_of_content,
 )
 from linkages.source_figures.drawing import SMALL, common_look, draw_assembly
-from linkages.source_figures.table import SourceFigure
+from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["Stop", "draw", "tour_of"]
 
@@ -132,7 +132,7 @@ def _draw_stops(panels: list[Axes], loop: Loop, stops: Sequence[Stop]) -> None:
 # --- the tour -------------------------------------------------------------------------
 
 
-def tour_of(atlas: Atlas, content: Mapping[str, Any]) -> list[Stop]:
+def tour_of(atlas: Atlas, content: Content) -> list[Stop]:
     """Three configurations on each form of a tour, and after each the bifurcation to
     the next one; where the tour is not ``open`` it comes back to its first form."""
     forms = [form_named(atlas, name) for name in content["tour"]]

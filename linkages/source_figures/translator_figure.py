@@ -3,8 +3,7 @@ sections 3 and 4)."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -24,7 +23,7 @@ from linkages.closed_forms.translator import (
     upright,
 )
 from linkages.source_figures.drawing import look_along
-from linkages.source_figures.table import SourceFigure
+from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["draw"]
 
@@ -63,7 +62,7 @@ def _closed_curves(alpha: float) -> list[tuple[np.ndarray, np.ndarray]]:
     return out
 
 
-def _angles(content: Mapping[str, Any]) -> Figure:
+def _angles(content: Content) -> Figure:
     """phi against theta."""
     figure, axes = _one_panel(5.4, 4.2)
     for index, degrees in enumerate(content["twists"]):
@@ -78,7 +77,7 @@ def _angles(content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _height(content: Mapping[str, Any]) -> Figure:
+def _height(content: Content) -> Figure:
     """The coordinate z of O3 against theta."""
     figure, axes = _one_panel()
     for index, degrees in enumerate(content["twists"]):
@@ -95,7 +94,7 @@ def _height(content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _distances(content: Mapping[str, Any]) -> Figure:
+def _distances(content: Content) -> Figure:
     """H against theta and against b, for several lengths of links."""
     (degrees,) = content["twists"]
     figure = Figure(figsize=(9.4, 3.9), layout="constrained")
@@ -111,7 +110,7 @@ def _distances(content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _distances_by_twist(content: Mapping[str, Any]) -> Figure:
+def _distances_by_twist(content: Content) -> Figure:
     """H against b, for several twists."""
     (length,) = content["lengths"]
     figure, axes = _one_panel()
@@ -167,7 +166,7 @@ def _mark_degrees(axes: Axes, both: bool = False) -> None:
 # --- drawings -------------------------------------------------------------------------
 
 
-def _configuration(content: Mapping[str, Any], degrees: float) -> np.ndarray:
+def _configuration(content: Content, degrees: float) -> np.ndarray:
     """Angles theta and phi (2,), rad, of the short stroke where theta is ``degrees``;
     that is a straight function of where on the stroke it is, to be turned round."""
     (twist,) = content["twists"]
@@ -176,7 +175,7 @@ def _configuration(content: Mapping[str, Any], degrees: float) -> np.ndarray:
 
 
 def _bodies(
-    content: Mapping[str, Any], degrees: float
+    content: Content, degrees: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Joint centres (6, 3), upright, directions of the axes (6, 3), and O', O'' (2, 3)
     in a configuration."""
@@ -231,7 +230,7 @@ def _paper(look: tuple[np.ndarray, ...]) -> np.ndarray:
     return np.stack([look[0], look[1]], axis=1)
 
 
-def _planes(content: Mapping[str, Any]) -> Figure:
+def _planes(content: Content) -> Figure:
     """The mechanism with both triangles."""
     figure, axes = _one_panel(5.4, 4.2)
     centres, _, _ = _bodies(content, content["theta"])
@@ -242,7 +241,7 @@ def _planes(content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _axes(content: Mapping[str, Any]) -> Figure:
+def _axes(content: Content) -> Figure:
     """The mechanism with its axes and the line on which they meet."""
     figure, axes = _one_panel(5.4, 5.2)
     centres, _, meetings = _bodies(content, content["theta"])
@@ -263,7 +262,7 @@ def _axes(content: Mapping[str, Any]) -> Figure:
     return figure
 
 
-def _disposition(content: Mapping[str, Any]) -> Figure:
+def _disposition(content: Content) -> Figure:
     """The mechanism over the three lines on which O1, O3, O5 slide, with H and b."""
     figure, axes = _one_panel(6.0, 4.4)
     centres, _, _ = _bodies(content, content["theta"])
@@ -313,17 +312,17 @@ def _draw_slide_of_first(axes: Axes, first: np.ndarray, plane: np.ndarray) -> No
     )
 
 
-def _above(content: Mapping[str, Any]) -> Figure:
+def _above(content: Content) -> Figure:
     """Several configurations from above."""
     return _row(content, ABOVE)
 
 
-def _positions(content: Mapping[str, Any]) -> Figure:
+def _positions(content: Content) -> Figure:
     """Several configurations, seen obliquely."""
     return _row(content, OBLIQUE)
 
 
-def _row(content: Mapping[str, Any], look: tuple[np.ndarray, ...]) -> Figure:
+def _row(content: Content, look: tuple[np.ndarray, ...]) -> Figure:
     angles = content["thetas"]
     plane = _paper(look)
     figure = Figure(figsize=(2.75 * len(angles), 2.9), layout="constrained")
@@ -337,7 +336,7 @@ def _row(content: Mapping[str, Any], look: tuple[np.ndarray, ...]) -> Figure:
     return figure
 
 
-CHARTS: dict[str, Callable[[Mapping[str, Any]], Figure]] = {
+CHARTS: dict[str, Callable[[Content], Figure]] = {
     "angles": _angles,
     "height": _height,
     "planes": _planes,
