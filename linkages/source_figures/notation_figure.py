@@ -95,7 +95,7 @@ def _draw_chain(axes: Axes, content: Content) -> None:
     points = np.array([assembly.joint(name) for name in names])
     centre = points.mean(axis=0) @ plane
     for bar in assembly.bars:
-        pair = _subscript(f"{bar.first}{bar.last}")
+        pair = f"{bar.first}{bar.last}"
         _write_beside(axes, bar.ends @ plane, f"$a_{{{pair}}}$", centre)
         _draw_twist(axes, assembly, bar, f"$\\alpha_{{{pair}}}$", plane)
     for name in names:
@@ -114,10 +114,6 @@ def _write_beside(axes: Axes, ends: np.ndarray, text: str, centre: np.ndarray) -
     _write(axes, middle, text, 11 * across)
 
 
-def _subscript(text: str) -> str:
-    return text.replace("''", "{''}").replace("'", "'")
-
-
 def _name_axis(axes: Axes, assembly: Assembly, name: str, plane: np.ndarray) -> None:
     """The name of an axis beyond its arrow, and of its offset."""
     offset = assembly.offset(name)
@@ -125,7 +121,7 @@ def _name_axis(axes: Axes, assembly: Assembly, name: str, plane: np.ndarray) -> 
     points = np.array([assembly.joint(other) for other in assembly.axes])
     extent = float(np.linalg.norm(points - points.mean(axis=0), axis=1).max())
     tip = (offset[1] + 1.15 * REACH * extent * direction) @ plane
-    _write(axes, tip, f"$z_{{{_subscript(name)}}}$", np.zeros(2))
+    _write(axes, tip, f"$z_{{{name}}}$", np.zeros(2))
     axes.plot(*tip, alpha=0)
 
 
@@ -143,7 +139,7 @@ def _draw_turns(
             along = (before[1] - before[0]) / np.linalg.norm(before[1] - before[0])
         start = assembly.bars[number].ends[0]
         foot = start - offset * axis.direction
-        name = _subscript(names[number])
+        name = names[number]
         if angle:
             label = content.get("kink", f"\\theta_{{{name}}}")
             ray = np.stack([start, start + STUB * along]) @ plane

@@ -15,6 +15,7 @@ from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.figures.drawing import draw_forms, draw_legend, draw_marks
 from bifurc.figures.labels import label_points
 from bifurc.figures.planes import Plane, plane_of
+from bifurc.figures.style import form_style
 from linkages.loop import Loop
 from linkages.source_figures.assembly import loop_assembly
 from linkages.source_figures.configurations import (
@@ -33,10 +34,12 @@ SNAPSHOT = 1.45  # width and height, in inches
 
 
 class Stop(NamedTuple):
-    """A configuration (n,) of a tour, and the form or the bifurcation where it is."""
+    """A configuration (n,) of a tour, the form or the bifurcation where it is, and
+    which of both."""
 
     theta: np.ndarray
     place: str
+    is_bifurcation: bool
 
 
 def draw(source: SourceFigure) -> Figure:
@@ -72,8 +75,6 @@ def draw(source: SourceFigure) -> Figure:
 
 def _draw_form_names(axes: Axes, atlas: Atlas) -> None:
     """The names of the forms below the map, by the lines that it has for them."""
-    from bifurc.figures.style import form_style
-
     for index, form in enumerate(atlas.forms):
         style = form_style(index)
         axes.plot([], [], color=style.color, linestyle=style.dashes, label=form.name)
@@ -90,8 +91,7 @@ def _draw_map(axes: Axes, atlas: Atlas, plane: Plane, stops: Sequence[Stop]) -> 
         return
     for letter, stop in zip(ascii_lowercase, stops, strict=False):
         spot = plane.spot(stop.theta)
-        is_bifurcation = stop.place.startswith("B")
-        if not is_bifurcation:
+        if not stop.is_bifurcation:
             axes.plot(*spot, "o", color="black", markersize=3, zorder=5)
         inwards = -np.sign(np.where(np.abs(spot) > 150, spot, -1.0))
         axes.annotate(
@@ -147,9 +147,10 @@ def tour_of(atlas: Atlas, content: Content) -> list[Stop]:
         begin = meetings[number - 1]
         end = meetings[number]
         for s in _along(atlas, form, begin, end):
-            stops.append(Stop(form.branch(s), form.name.split(" (")[0]))
+            name = form.name.split(" (")[0]
+            stops.append(Stop(form.branch(s), name, is_bifurcation=False))
         if end is not None:
-            stops.append(Stop(end.point.u, end.name))
+            stops.append(Stop(end.point.u, end.name, is_bifurcation=True))
     return stops
 
 

@@ -172,7 +172,7 @@ def test_a_tour_goes_round_the_four_forms_through_flat_bifurcations(name):
     for number, stop in enumerate(stops):
         assert loop.closure_error(stop.theta) < 1e-9
         is_flat = np.abs(np.sin(stop.theta)).max() < 1e-6
-        assert is_flat == (number % 4 == 3)
+        assert is_flat == (number % 4 == 3) == stop.is_bifurcation
 
 
 def test_the_tour_of_the_reconfigurable_linkage_ends_on_form_ii():
@@ -182,6 +182,7 @@ def test_the_tour_of_the_reconfigurable_linkage_ends_on_form_ii():
     assert len(stops) == 11
     assert places[0] == "Form I"
     assert places[4].startswith("Bennett")
+    assert not stops[4].is_bifurcation
     assert places[-1] == "Form II"
 
 
