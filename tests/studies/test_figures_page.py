@@ -24,7 +24,7 @@ def test_every_figure_has_a_row_and_every_kind_its_words():
 STILL = {(1, 2): 3, (2, 3): 1, (3, 4): 5, (4, 5): 3, (5, 6): 7, (6, 7): 5, (7, 8): 1, (1, 8): 7, (1, 3): 2, (3, 5): 4, (5, 7): 6, (1, 7): 8}  # fmt: skip
 
 
-@pytest.mark.parametrize("locks", combinations(range(1, 9), 2))
+@pytest.mark.parametrize("locks", list(combinations(range(1, 9), 2)))
 def test_two_locks_leave_a_5r_or_a_6r_linkage(locks):
     still = {*locks}
     if locks in STILL:
