@@ -4,9 +4,9 @@ PYTHON ?= python3
 BIN := .venv/bin
 LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
-  zero_offset_line_symmetric_bricard first_reconfigurable_bricard
+  zero_offset_line_symmetric_bricard first_reconfigurable_bricard wohlhart_translator
 
-.PHONY: map test test-fragile test-processors lint studies bench docs dist viewer chromium clean
+.PHONY: map test test-fragile test-processors lint studies gallery bench docs dist viewer chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -37,6 +37,9 @@ lint: .venv/ready  ## ruff and mypy
 
 studies: .venv/ready  ## every study, each into out/NAME
 	for name in $(STUDIES); do $(BIN)/python -m studies.$$name --out out/$$name || exit 1; done
+
+gallery: .venv/ready  ## every figure of the sources, drawn from the geometry, into out/gallery
+	$(BIN)/bifurc figure all --out out/gallery
 
 bench: .venv/ready  ## a short, fixed set of benchmarks, with versions and machine, into out/bench.json
 	mkdir -p out

@@ -16,7 +16,7 @@ from bifurc.files.atomic import replace_files
 from linkages.app.files import write_data, write_figures
 from linkages.app.summary import make_summary
 
-__all__ = ["Claim", "Redrawing", "angles_along", "largest"]
+__all__ = ["Claim", "Redrawing", "angles_along", "judge", "largest"]
 
 HOLDS = 1e-9  # rad
 
@@ -62,7 +62,7 @@ class Redrawing:
         to a folder."""
         out.mkdir(parents=True, exist_ok=True)
         atlas = self.compute()
-        sentences = "\n".join(_judge(claim) for claim in self.claims(atlas))
+        sentences = "\n".join(judge(claim) for claim in self.claims(atlas))
         summary = f"{make_summary(atlas)}\n\nWhat the source says\n{sentences}"
         click.echo(summary)
         paths = write_data(atlas, out, summary)
@@ -91,7 +91,8 @@ def largest(deviations: np.ndarray) -> float:
     return float(np.abs(deviations).max())
 
 
-def _judge(claim: Claim) -> str:
+def judge(claim: Claim) -> str:
+    """A line that says whether a claim holds, and how well."""
     if claim.deviation == 0:
         verdict = "holds"
     elif claim.deviation < HOLDS:

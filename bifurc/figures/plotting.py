@@ -9,7 +9,7 @@ for the colour-blind) and by line style (safe in print).
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -42,6 +42,7 @@ __all__ = [
     "plot_joint_angles",
     "plot_singular_values",
     "plot_transition_map",
+    "save_figure",
     "save_figures",
 ]
 
@@ -156,20 +157,38 @@ FIGURES: dict[str, Callable[[Atlas], Figure]] = {
 }
 
 
-def save_figures(atlas: Atlas, folder: str | os.PathLike[str]) -> list[Path]:
+def save_figures(
+    atlas: Atlas,
+    folder: str | os.PathLike[str],
+    others: Mapping[str, Callable[[Atlas], Figure]] | None = None,
+) -> list[Path]:
     """Paths of the four figures just written into an existing ``folder``, as PNG and
-    SVG each.
+    SVG each; ``others`` are drawn in place of those of the same name.
 
     The same atlas gives the same bytes. There is never a half-written file. Raises
     `OSError` that names the file that cannot be written.
     """
     paths = []
-    for name, plot in FIGURES.items():
+    for name, plot in {**FIGURES, **(others or {})}.items():
         with rc_context(RC):
-            rendering = render(plot(atlas), RESOLUTION)
-        for ending, content in rendering._asdict().items():
-            path = Path(folder) / f"{name}.{ending}"
-            paths.append(replace_file(path, partial(_write, content)))
+            figure = plot(atlas)
+        paths += save_figure(figure, Path(folder) / name)
+    return paths
+
+
+def save_figure(figure: Figure, stem: Path) -> list[Path]:
+    """The paths of a figure just written as PNG and as SVG, each ``stem`` with its
+    ending.
+
+    The same figure gives the same bytes; a file is written whole or not at all. Raises
+    `OSError` that names the file that cannot be written.
+    """
+    with rc_context(RC):
+        rendering = render(figure, RESOLUTION)
+    paths = []
+    for ending, content in rendering._asdict().items():
+        path = stem.with_name(f"{stem.name}.{ending}")
+        paths.append(replace_file(path, partial(_write, content)))
     return paths
 
 

@@ -13,6 +13,7 @@ import click
 from bifurc.errors import BifurcError
 from linkages.app.commands.clearance_command import clearance_command
 from linkages.app.commands.export_command import export_command
+from linkages.app.commands.figure_command import figure_command
 from linkages.app.commands.identify_command import identify_command
 from linkages.app.commands.list_command import list_command
 from linkages.app.commands.map_command import map_command
@@ -126,6 +127,7 @@ for command in (
     identify_command,
     map_command,
     view_command,
+    figure_command,
     route_command,
     export_command,
     clearance_command,

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
 
-__all__ = ["prepare_folder", "write_data", "write_figures"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["FigureAxes", "prepare_folder", "write_data", "write_figures"]
 
 
 def prepare_folder(folder: Path) -> None:
@@ -33,9 +40,51 @@ def write_data(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
     return replace_files(folder, write)
 
 
-def write_figures(atlas: Atlas, folder: Path) -> list[Path]:
+@dataclass(frozen=True)
+class FigureAxes:
+    """What figures are drawn over: two or three unknowns for the transition map, one
+    for the singular values, each numbered from 1; the usual ones where nothing is
+    said."""
+
+    transition_map: tuple[int, ...] = ()
+    singular_values: int | None = None
+
+
+USUAL_AXES = FigureAxes()
+
+
+def write_figures(
+    atlas: Atlas, folder: Path, over: FigureAxes = USUAL_AXES
+) -> list[Path]:
     """The paths of the figures, just written to ``folder``, all or none; raises
     `OSError`."""
-    from bifurc.figures.plotting import save_figures
+    from bifurc.figures import plotting
 
-    return replace_files(folder, lambda stage: save_figures(atlas, stage))
+    others = _figures_over(over)
+    return replace_files(
+        folder, lambda stage: plotting.save_figures(atlas, stage, others)
+    )
+
+
+def _figures_over(over: FigureAxes) -> dict[str, Callable[[Atlas], Figure]]:
+    """The figures that are drawn over other unknowns than usual."""
+    others: dict[str, Callable[[Atlas], Figure]] = {}
+    if len(over.transition_map) == 2:
+        from bifurc.figures.plotting import plot_transition_map
+
+        others["transition_map"] = partial(
+            plot_transition_map, joints=over.transition_map
+        )
+    if len(over.transition_map) == 3:
+        from bifurc.figures.space import plot_map_in_space
+
+        others["transition_map"] = partial(
+            plot_map_in_space, unknowns=over.transition_map
+        )
+    if over.singular_values is not None:
+        from bifurc.figures.singular_values_against import plot_singular_values_against
+
+        others["singular_values"] = partial(
+            plot_singular_values_against, unknown=over.singular_values
+        )
+    return others

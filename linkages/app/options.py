@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "SEED",
+    "JointNumbers",
     "NumberRange",
     "SearchOptions",
     "form_option",
@@ -57,6 +58,41 @@ class NumberRange(click.FloatRange):
             allowed = self._describe_range()
             self.fail(f"{value} is not a finite number in {allowed}.", param, ctx)
         return number
+
+
+class JointNumbers(click.ParamType[tuple[int, ...]]):
+    """Numbers of different joints, from 1, separated by commas: ``least`` to ``most``
+    of them, as a tuple."""
+
+    name = "joints"
+
+    def __init__(self, least: int, most: int):
+        self.least = least
+        self.most = most
+
+    def convert(
+        self,
+        value: str | tuple[int, ...],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> tuple[int, ...]:
+        """The numbers that a text lists; raises `click.BadParameter`."""
+        if isinstance(value, tuple):
+            return value
+        words = value.split(",")
+        numbers = [int(word) for word in words if word.strip().isdecimal()]
+        is_list = len(numbers) == len(words) == len(set(numbers)) and 0 not in numbers
+        if not is_list or not self.least <= len(words) <= self.most:
+            how_many = f"{self.least} to {self.most} joints"
+            if self.least == self.most == 1:
+                how_many = "one joint"
+            self.fail(
+                f"{value!r} does not name {how_many}; write numbers from 1, "
+                "all different, with commas between them.",
+                param,
+                ctx,
+            )
+        return tuple(numbers)
 
 
 STARTS = click.IntRange(1, MOST_STARTS)

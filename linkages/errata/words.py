@@ -12,8 +12,11 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from linkages.catalogue import entry
+from linkages.closed_forms.bennett_network import ring_angles, ring_loop
+from linkages.closed_forms.translator import Stroke, contact_angle, stroke_angles
 from linkages.construction.constructions import ending_with, superpose
 from linkages.construction.link import Link, bennett_links, closed_chain
+from linkages.errata.erratum import HOLDS
 from linkages.families.mixed_double_goldberg import Kind, Order, double_goldberg_type
 from linkages.identification.identify import identify
 from linkages.linkage import load
@@ -23,6 +26,7 @@ from linkages.mapping import map_linkage
 __all__ = ["WORDS", "WordErratum"]
 
 THESIS = "Song 2013"
+PAPER = "Racila and Dahan 2010"
 MEMBERS = 12  # random linkages that a general statement is held against
 TRIES = 200  # draws among which these are looked for
 
@@ -101,6 +105,41 @@ def _bakers_variants() -> str:
     return "; ".join(texts)
 
 
+def _locked_triple() -> str:
+    """With the joints 1 and 3 of the network of four Bennett linkages held, joint 2
+    does not turn either, and joint 5 is free."""
+    twists = dict(zip("abcd", np.radians([35, 62, 81, 48]), strict=True))
+    angles = np.linspace(0.0, 2 * np.pi, 361)
+    ring = np.array([ring_angles(twists, 1.0, -2.0, angle) for angle in angles])
+    gap = ring_loop(twists).closure_error(ring).max()
+    second = np.ptp(np.unwrap(ring[:, 1]))
+    is_free = gap < HOLDS and second < HOLDS
+    if not is_free:
+        return f"closure {gap:.1e}, joint 2 turns by {second:.1e}"
+    return "joints 1, 2, 3 stand still through a full turn of joint 5"
+
+
+def _end_of_the_long_stroke() -> str:
+    """Where the strokes of the translator with a twist of 150 degrees end."""
+    texts = []
+    for stroke in Stroke:
+        theta, phi = stroke_angles(np.radians(150), stroke)
+        end = np.round(np.degrees([theta[-1], phi[-1]])).astype(int) + 0
+        texts.append(f"{stroke}: theta = {end[0]}, phi = {end[1]} deg")
+    return "; ".join(texts)
+
+
+def _continuous_twists() -> str:
+    """The twists, of some, at which the translator turns without contact of thin
+    links."""
+    free = [
+        twist
+        for twist in (75, 90, 105, 115, 125, 150)
+        if contact_angle(float(np.radians(twist))) is None
+    ]
+    return "none of O2, O4, O6 meet at " + ", ".join(map(str, free)) + " deg"
+
+
 def _basic_links() -> tuple[Link, ...]:
     """Links a, b, c, d of one Bennett ratio."""
     alpha, beta, gamma, delta = np.radians([66, 50, 28, 83])
@@ -168,5 +207,26 @@ WORDS: tuple[WordErratum, ...] = (
         "(a) gives the L-shape linkages, (b) the serial ones",
         "(a) is the serial network, (b) the L-shape one, as in the caption",
         lambda: "the caption contradicts the text",
+    ),
+    WordErratum(
+        THESIS,
+        "section 5.4.5",
+        "a third lock on the network makes it immobile",
+        "for 52 of the 56 triples; 1/2/3, 3/4/5, 5/6/7 and 7/8/1 keep mobility 1",
+        _locked_triple,
+    ),
+    WordErratum(
+        PAPER,
+        "section 4",
+        "in the final position theta = 120 deg and all joints are in the plane",
+        "on the short stroke, and on the long one for twists up to 120 deg",
+        _end_of_the_long_stroke,
+    ),
+    WordErratum(
+        PAPER,
+        "section 2",
+        "90 deg is the only twist with a continuous movement",
+        "thin links only meet beyond 120 and below 60 deg",
+        _continuous_twists,
     ),
 )

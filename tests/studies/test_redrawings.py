@@ -6,7 +6,7 @@ from importlib import import_module
 import pytest
 from click.testing import CliRunner
 
-from studies.redrawing import HOLDS, Claim, _judge
+from studies.redrawing import HOLDS, Claim, judge
 
 STUDIES = {
     "special_wohlhart_double_goldberg": "figure_5_4",
@@ -37,4 +37,4 @@ def test_a_study_prints_its_tables_and_writes_its_figure(tmp_path):
 
 
 def test_a_claim_that_does_not_hold_is_said_not_to():
-    assert "is off by 0.3" in _judge(Claim("all is well", 0.3))
+    assert "is off by 0.3" in judge(Claim("all is well", 0.3))

@@ -11,6 +11,7 @@ import click
 from bifurc.limits import HeldInterrupt
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
+    JointNumbers,
     SearchOptions,
     json_option,
     out_option,
@@ -21,6 +22,9 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
+    from linkages.app.files import FigureAxes
+    from linkages.linkage import Linkage
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["map_command"]
 
@@ -61,6 +65,18 @@ __all__ = ["map_command"]
         "others; says which."
     ),
 )
+@click.option(
+    "--axes",
+    type=JointNumbers(2, 3),
+    metavar="I,J[,K]",
+    help="Draw the transition map over these two or three joints; needs --out.",
+)
+@click.option(
+    "--against",
+    type=JointNumbers(1, 1),
+    metavar="I",
+    help="Draw the singular values against this joint; needs --out.",
+)
 @param_option
 @search_options
 @verbose_option
@@ -73,6 +89,8 @@ def map_command(
     as_json: bool,
     no_certify: bool,
     digits: int | None,
+    axes: tuple[int, ...] | None,
+    against: tuple[int, ...] | None,
     verbose: bool,
     search: SearchOptions,
 ) -> None:
@@ -83,6 +101,7 @@ def map_command(
     Examples:
       bifurc map bennett --param alpha=70 --param beta=30
       bifurc map special-double-subtractive-goldberg --out out
+      bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map my_linkage.toml --json > map.json
       bifurc map five_bar.toml --lock J1=40
       bifurc map special-double-subtractive-goldberg --digits 50
@@ -99,6 +118,7 @@ def map_command(
         raise CommandError(
             "--digits: it has no place in the JSON document; leave out --json"
         )
+    require_out(out, axes=axes, against=against)
     if verbose:
         say_more()
     if out is not None:
@@ -107,6 +127,7 @@ def map_command(
     inputs = with_inputs(linkage, chosen, locks, driver)
     for note in inputs.notes:
         click.echo(note, err=True)
+    over = figure_axes(inputs.mechanism, axes, against)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlas = explore_linkage(
@@ -121,7 +142,7 @@ def map_command(
 
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
-        paths += draw_figures(atlas, out)
+        paths += draw_figures(atlas, out, over)
         if is_of_loop(atlas):
             paths.append(write_map_page(atlas, out))
         names = ", ".join(path.name for path in paths)
@@ -169,10 +190,50 @@ def write_map_page(atlas: Atlas, out: Path) -> Path:
         return write_page(document, out / "map.html")
 
 
-def draw_figures(atlas: Atlas, out: Path) -> list[Path]:
+def require_out(out: Path | None, **options: tuple[int, ...] | None) -> None:
+    """Raise `CommandError` for options of figures where no figure is written."""
+    for name, value in options.items():
+        if value is not None and out is None:
+            raise CommandError(f"--{name}: figures are only drawn with --out DIR")
+
+
+def figure_axes(
+    mechanism: Linkage | Mechanism,
+    axes: tuple[int, ...] | None,
+    against: tuple[int, ...] | None,
+) -> FigureAxes:
+    """What the figures of a mechanism are drawn over; raises `CommandError` for numbers
+    of joints that it does not have."""
+    from linkages.app.files import FigureAxes
+
+    if axes is None and against is None:
+        return FigureAxes()
+    joints = count_unknowns(mechanism)
+    for name, numbers in (("axes", axes), ("against", against)):
+        for number in numbers or ():
+            if number > joints:
+                raise CommandError(
+                    f"--{name}: there is no joint {number}; "
+                    f"the joints are numbered from 1 to {joints}"
+                )
+    return FigureAxes(axes or (), against[0] if against else None)
+
+
+def count_unknowns(mechanism: Linkage | Mechanism) -> int:
+    """How many unknowns the equations of a mechanism have."""
+    from linkages.linkage import Linkage
+
+    if isinstance(mechanism, Linkage):
+        return mechanism.loop.n
+    from linkages.mechanisms.closure import MechanismClosure
+
+    return MechanismClosure(mechanism).n
+
+
+def draw_figures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
     """The paths of the figures, just written to ``out``."""
     from linkages.app.files import write_figures
     from linkages.app.output import writing_to
 
     with writing_to(out):
-        return write_figures(atlas, out)
+        return write_figures(atlas, out, over)

@@ -78,7 +78,7 @@ def test_an_interrupt_while_a_file_is_written_leaves_no_half_of_it(
 ):
     import bifurc.figures.plotting
 
-    def half(atlas, folder):
+    def half(atlas, folder, others):
         (folder / "transition_map.png").write_bytes(b"half")
         raise KeyboardInterrupt
 

@@ -1,0 +1,110 @@
+"""The picture of the transition map in three unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+from mpl_toolkits.mplot3d import Axes3D
+
+from bifurc import torus
+from bifurc.atlas import Atlas
+from bifurc.errors import ProblemError
+from bifurc.figures.drawing import draw_legend, legend_size
+from bifurc.figures.planes import Scale, curve_points, scale_of
+from bifurc.figures.style import RC, form_style, mark_of
+
+__all__ = ["plot_map_in_space"]
+
+
+def plot_map_in_space(
+    atlas: Atlas, unknowns: Sequence[int], figure: Figure | None = None
+) -> Figure:
+    """The forms in the space of three unknowns, numbered from 1, with the singular
+    points marked and named; angles in degrees, on the torus.
+
+    Raises `ProblemError` for numbers that are not three of the unknowns.
+    """
+    n = len(atlas.names)
+    is_three = len(unknowns) == len(set(unknowns)) == 3
+    if not is_three or not all(1 <= number <= n for number in unknowns):
+        allowed = f"3 of the unknowns, numbered from 1 to {n}"
+        raise ProblemError("unknowns", list(unknowns), allowed)
+    indices = [number - 1 for number in unknowns]
+    scales = [scale_of(atlas, index) for index in indices]
+    legend = legend_size(atlas)
+    with rc_context(RC):
+        size = (5.6 + legend.width, max(5.2, legend.height))
+        figure = figure or Figure(figsize=size, layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.add_subplot(projection="3d", proj_type="ortho")
+        _draw_forms(axes, atlas, indices, scales)
+        _draw_points(axes, atlas, indices, scales)
+        _set_frame(axes, scales)
+        draw_legend(figure, atlas)
+    return figure
+
+
+def _shown(points: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """Points (k, 3) as they are shown, periodic unknowns within the frame."""
+    periods = np.array([2 * scale.half for scale in scales])
+    factors = np.array([scale.factor for scale in scales])
+    return np.asarray(torus.wrap(points * factors, periods))
+
+
+def _draw_forms(
+    axes: Axes3D, atlas: Atlas, indices: Sequence[int], scales: Sequence[Scale]
+) -> None:
+    """Every form, with breaks where it leaves the frame."""
+    half = np.array([scale.half for scale in scales])
+    for i, form in enumerate(atlas.forms):
+        points = curve_points(form.branch)
+        if not len(points):
+            continue
+        shown = _shown(points[:, list(indices)], scales)
+        is_jump = np.any(np.abs(np.diff(shown, axis=0)) > half, axis=1)
+        rows = np.insert(shown, np.flatnonzero(is_jump) + 1, np.nan, axis=0)
+        style = form_style(i)
+        axes.plot(*rows.T, color=style.color, linestyle=style.dashes, linewidth=1.6)
+
+
+def _draw_points(
+    axes: Axes3D, atlas: Atlas, indices: Sequence[int], scales: Sequence[Scale]
+) -> None:
+    """Singular points with their names, and isolated solutions."""
+    for point in atlas.points:
+        spot = _shown(point.point.u[None, list(indices)], scales)[0]
+        mark = mark_of(point.kind)
+        axes.plot(
+            *spot[:, None],
+            marker=mark.symbol,
+            markersize=mark.size,
+            markerfacecolor="white",
+            markeredgecolor="black",
+            zorder=4,
+        )
+        axes.text(*spot, f"  {point.name}", fontsize=8.5, fontweight="bold", zorder=5)
+    for solution in atlas.rigid:
+        spot = _shown(solution[None, list(indices)], scales)[0]
+        axes.plot(*spot[:, None], "x", color="0.3", markersize=4)
+
+
+def _set_frame(axes: Axes3D, scales: Sequence[Scale]) -> None:
+    """Names, ticks and limits of the three axes."""
+    labels = (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel)
+    limits = (axes.set_xlim, axes.set_ylim, axes.set_zlim)
+    lines = (axes.xaxis, axes.yaxis, axes.zaxis)
+    for scale, label, limit, line in zip(scales, labels, limits, lines, strict=True):
+        label(scale.label)
+        if scale.is_periodic:
+            limit(-scale.half, scale.half)
+        if scale.half == 180.0:
+            line.set_major_locator(MultipleLocator(90))
+        else:
+            line.set_major_locator(MaxNLocator(5))
+    axes.set_box_aspect((1, 1, 1), zoom=0.9)
+    axes.view_init(elev=22, azim=-58)

@@ -1,0 +1,4 @@
+"""The figures of the sources, drawn from the geometry.
+
+``data`` holds what each figure shows, one table a source; a module draws each kind.
+"""

@@ -1,0 +1,162 @@
+"""Assemblies as graphs: the loop on a circle, joints on links where they stand there,
+all others in the middle of their neighbours (Tutte 1963), links with their names."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+from matplotlib.axes import Axes
+
+from linkages.source_figures.assembly import Assembly, Role, Seat
+from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES, write_at
+
+__all__ = ["draw_graph", "places_of"]
+
+SHORTEST = 0.2  # of a drawn link: the least distance of a joint on it from its ends
+SEPARATION = 0.55  # joints inside the ring, at least, where the ring has radius 1
+PUSHES = 20
+FRACTIONS = np.array([0.5, 0.4, 0.6, 0.3, 0.7])  # of a link, where its name may stand
+BESIDE = 0.13  # from a link of the ring to its name
+ENOUGH = 0.35  # room for a name, where the ring has radius 1
+FURTHEST = 1.45  # of a drawn link: how far beyond it a joint is drawn
+
+
+def places_of(assembly: Assembly, ring: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Where each joint stands (2,): those of the ``ring`` on a circle, those with a seat
+    on their link, every other one in the middle of its neighbours."""
+    start = np.pi / 2 + np.pi / len(ring)
+    angles = start - 2 * np.pi * np.arange(len(ring)) / len(ring)
+    places = {}
+    for name, angle in zip(ring, angles, strict=True):
+        places[name] = np.array([np.cos(angle), np.sin(angle)])
+    for name, seat in assembly.seats.items():
+        if name in places:
+            continue
+        begin = places[seat.first]
+        places[name] = begin + _drawn_fraction(seat) * (places[seat.last] - begin)
+    inner = [name for name in assembly.axes if name not in places]
+    if inner:
+        middles = _in_the_middle(assembly, inner, places)
+        places.update(_separated(middles))
+    return places
+
+
+def _drawn_fraction(seat: Seat) -> float:
+    """Where on a link a joint is drawn: beside the ends, not on them."""
+    if seat.fraction > 1:
+        return float(np.clip(seat.fraction, 1 + SHORTEST, FURTHEST))
+    return float(np.clip(seat.fraction, SHORTEST, 1 - SHORTEST))
+
+
+def _in_the_middle(
+    assembly: Assembly, inner: list[str], places: dict[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """The places of the ``inner`` joints, each in the middle of its neighbours, the
+    others standing where they are."""
+    graph = nx.Graph()
+    graph.add_nodes_from(assembly.axes)
+    graph.add_edges_from((bar.first, bar.last) for bar in assembly.bars)
+    outer = list(places)
+    laplacian = nx.laplacian_matrix(graph, nodelist=[*inner, *outer]).toarray()
+    count = len(inner)
+    pull = -laplacian[:count, count:] @ np.array([places[name] for name in outer])
+    solved = np.linalg.solve(laplacian[:count, :count], pull)
+    return dict(zip(inner, solved, strict=True))
+
+
+def _separated(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The places with those that are too close moved away from each other; those that
+    are one move up and down."""
+    out = {name: place.copy() for name, place in places.items()}
+    names = list(out)
+    for _ in range(PUSHES):
+        for i, first in enumerate(names):
+            for second in names[i + 1 :]:
+                gap = out[first] - out[second]
+                distance = float(np.linalg.norm(gap))
+                if distance >= SEPARATION:
+                    continue
+                is_one = distance < 1e-6
+                direction = np.array([0.0, 1.0]) if is_one else gap / distance
+                push = 0.5 * (SEPARATION - distance) * direction
+                out[first] += push
+                out[second] -= push
+    return out
+
+
+def draw_graph(
+    axes: Axes,
+    assembly: Assembly,
+    ring: tuple[str, ...],
+    *,
+    filled: tuple[str, ...] = (),
+    unnumbered: tuple[str, ...] = (),
+    letters: tuple[tuple[str, tuple[str, ...]], ...] = (),
+) -> None:
+    """Draw the graph of an assembly; ``letters`` name parts of it, each in the middle
+    of its joints."""
+    places = places_of(assembly, ring)
+    taken = list(places.values())  # joints, and names that stand already
+    for bar in assembly.bars:
+        ends = np.array([places[bar.first], places[bar.last]])
+        axes.plot(
+            *ends.T,
+            color=LINK_COLORS[bar.role],
+            linestyle=LINK_DASHES[bar.role],
+            linewidth=1.4 if bar.role is Role.REMOVED else 2.2,
+            zorder=1,
+        )
+        if not bar.label:
+            continue
+        if bar.first in ring and bar.last in ring and bar.role is not Role.REMOVED:
+            _name_outside(axes, ends, bar.label)
+        else:
+            taken.append(_name_link(axes, ends, bar.label, np.array(taken)))
+    for name, place in places.items():
+        text = "" if name in unnumbered else name
+        _draw_joint(axes, place, text, name in filled)
+    for letter, joints in letters:
+        middle = np.mean([places[name] for name in joints], axis=0)
+        write_at(axes, middle, letter, fontsize=11, zorder=4)
+    axes.set_aspect("equal")
+    spots = np.array(list(places.values()))
+    half = max(1.5, float(np.abs(spots).max()) + 0.2)
+    axes.set(xlim=(-half, half), ylim=(-half, half))
+    axes.set_axis_off()
+
+
+def _draw_joint(axes: Axes, place: np.ndarray, text: str, is_filled: bool) -> None:
+    """A joint as a circle with its name in it, a small one without a name."""
+    axes.plot(
+        *place,
+        "o",
+        markersize=14 if text else 5,
+        markerfacecolor="black" if is_filled else "white",
+        markeredgecolor="black",
+        markeredgewidth=1.0,
+        zorder=3,
+    )
+    color = "white" if is_filled else "black"
+    write_at(axes, place, text, fontsize=7.5, color=color, zorder=4)
+
+
+def _name_outside(axes: Axes, ends: np.ndarray, label: str) -> None:
+    """The name of a link of the ring, beside it."""
+    middle = ends.mean(axis=0)
+    away = middle / max(float(np.linalg.norm(middle)), 1e-9)
+    sides = {-1: "right", 0: "center", 1: "left"}
+    side = sides[int(np.sign(away[0]) * (abs(away[0]) > 0.3))]
+    write_at(axes, middle + BESIDE * away, label, ha=side, fontsize=7.5)
+
+
+def _name_link(
+    axes: Axes, ends: np.ndarray, label: str, taken: np.ndarray
+) -> np.ndarray:
+    """Where on its line (2,) the name of a link has just been written: where it is
+    furthest from what is ``taken`` (k, 2)."""
+    places = ends[0] + FRACTIONS[:, None] * (ends[1] - ends[0])
+    room = np.linalg.norm(places[:, None] - taken, axis=2).min(axis=1)
+    place = places[int(np.argmax(np.round(np.minimum(room, ENOUGH), 6)))]
+    box = {"boxstyle": "square,pad=0.12", "facecolor": "white", "linewidth": 0}
+    write_at(axes, place, label, fontsize=7.5, zorder=2, bbox=box)
+    return np.asarray(place)

@@ -1,0 +1,164 @@
+"""The figures of the sources: what each shows, by which kind of drawing, and whether it
+agrees with the source."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from functools import cache
+from importlib import resources
+from typing import Any, TypeAlias
+
+from bifurc.errors import BifurcError
+
+__all__ = [
+    "Agreement",
+    "Content",
+    "Kind",
+    "SourceFigure",
+    "UnknownFigureError",
+    "figure_named",
+    "source_figures",
+]
+
+FILES = (
+    "thesis_chapter_2",
+    "thesis_chapter_3",
+    "thesis_chapter_4",
+    "thesis_chapter_5",
+    "thesis_networks",
+    "paper_000",
+    "paper_001",
+    "paper_003",
+    "paper_004",
+)
+Content: TypeAlias = Mapping[str, Any]  # a table of TOML, as its kind reads it
+NEAREST = 3  # figures that are named where there is none of that name
+
+
+class Kind(StrEnum):
+    """How a figure is drawn: the module of the same name does it."""
+
+    # Joint axes and links in space, as a graph and as a drawing.
+    ASSEMBLY = "assembly"
+    # A line-symmetric configuration from the front and from above.
+    VIEWS = "views"
+    # One linkage in several configurations.
+    MOTION = "motion"
+    # Joint angles against the angle of one joint.
+    PATHS = "paths"
+    # All singular values against the angle of one joint.
+    SINGULAR_VALUES = "singular_values"
+    # The transition map with configurations along the way.
+    TRANSITIONS = "transitions"
+    # A chain of links with the names of its lengths and angles.
+    NOTATION = "notation"
+    # Wohlhart's symmetric mechanism as a translator.
+    TRANSLATOR = "translator"
+    # Circles that make tori, and the linkages on them.
+    TORI = "tori"
+
+
+class Agreement(StrEnum):
+    """How a figure compares with what the source says of it."""
+
+    # All that text and caption say of the figure holds in ours.
+    AGREES = "agrees"
+    # The same, but the source prints no geometry: ours is that of the catalogue.
+    OWN_GEOMETRY = "own geometry"
+    # Text or caption is wrong, and ours is right.
+    DIFFERS = "differs"
+
+
+@dataclass(frozen=True)
+class SourceFigure:
+    """A figure of a source.
+
+    ``name`` is what the command takes, as thesis-4.2.5, ``title`` what is seen,
+    ``remark`` what differs and why. ``content`` is what the drawing of its ``kind``
+    reads.
+    """
+
+    name: str
+    kind: Kind
+    title: str
+    agreement: Agreement
+    remark: str = ""
+    content: Content = field(default_factory=dict, compare=False)
+
+    @property
+    def caption(self) -> str:
+        """What stands below the figure."""
+        parts = [f"{self.name}: {self.title}."]
+        if self.remark:
+            parts.append(self.remark)
+        return " ".join(parts)
+
+
+class UnknownFigureError(BifurcError, KeyError):
+    """No figure of that ``name``; ``nearest`` are those most like it."""
+
+    def __init__(self, name: str, nearest: tuple[str, ...]):
+        self.name = name
+        self.nearest = nearest
+        super().__init__(name)
+
+    def __str__(self) -> str:
+        hint = ", ".join(self.nearest) if self.nearest else "see bifurc figure --list"
+        return f"no figure is called {self.name!r}; the nearest names are {hint}"
+
+
+@cache
+def source_figures() -> dict[str, SourceFigure]:
+    """Every figure by its name, in the order of the sources."""
+    figures: dict[str, SourceFigure] = {}
+    folder = resources.files("linkages.source_figures") / "data"
+    for file in FILES:
+        text = (folder / f"{file}.toml").read_text(encoding="utf-8")
+        for name, table in tomllib.loads(text).items():
+            figures[name] = _figure(name, _completed(table, figures))
+    return figures
+
+
+def _completed(
+    table: dict[str, Any], figures: Mapping[str, SourceFigure]
+) -> dict[str, Any]:
+    """The table of a figure with what it takes over from the figure that it is
+    ``like``."""
+    if "like" not in table:
+        return table
+    model = figures[table["like"]]
+    inherited = {
+        "kind": model.kind,
+        "title": model.title,
+        "agreement": model.agreement,
+        "remark": model.remark,
+        **model.content,
+    }
+    own = {key: value for key, value in table.items() if key != "like"}
+    return inherited | own
+
+
+def _figure(name: str, table: dict[str, Any]) -> SourceFigure:
+    content = dict(table)
+    return SourceFigure(
+        name,
+        Kind(content.pop("kind")),
+        content.pop("title"),
+        Agreement(content.pop("agreement")),
+        content.pop("remark", ""),
+        content,
+    )
+
+
+def figure_named(name: str) -> SourceFigure:
+    """The figure called ``name``; raises `UnknownFigureError`."""
+    figures = source_figures()
+    plain = name.strip().lower()
+    if plain in figures:
+        return figures[plain]
+    nearest = difflib.get_close_matches(plain, figures, n=NEAREST, cutoff=0.5)
+    raise UnknownFigureError(name, tuple(nearest))

@@ -1,0 +1,235 @@
+"""Figures of tori made by tilted circles, and of the linkages on them (Bil and Budniak
+2014), by their equation (2.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from linkages.source_figures.drawing import Look, look_along, write_at
+from linkages.source_figures.table import Content, SourceFigure
+
+__all__ = ["Torus", "companion_torus", "draw", "shared_turn"]
+
+LOOK = look_along(np.array([1.0, -0.8, 0.75]), np.array([0.0, 0.0, 1.0]))
+TURN = np.linspace(0.0, 2 * np.pi, 181)
+CIRCLES = 36  # of which the surface is drawn
+POINT_ANGLE = 0.9  # of S on its circle, rad
+FIRST_COLOR = "#0072B2"
+SECOND_COLOR = "#D55E00"
+
+
+def _rx(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+def _ry(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+
+
+def _rz(angle: float) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+
+@dataclass(frozen=True)
+class Torus:
+    """A circle of radius ``s`` whose centre R stands at distance ``r`` from the axis of
+    the torus, its own axis turned by ``chi`` and ``theta`` (rad)."""
+
+    r: float
+    s: float
+    chi: float
+    theta: float
+
+    def centre(self, sigma: float) -> np.ndarray:
+        """R (3,) at the angle ``sigma`` about the axis of the torus, rad."""
+        return np.asarray(_rz(sigma) @ np.array([self.r, 0.0, 0.0]))
+
+    def axis(self, sigma: float) -> np.ndarray:
+        """The axis (3,) of the circle there, a unit vector."""
+        return np.asarray(_rz(sigma) @ self._tilt()[:, 2])
+
+    def points(self, sigma: float, phi: np.ndarray) -> np.ndarray:
+        """Points (k, 3) of the circle at angles (k,), rad."""
+        flat = np.stack([np.cos(phi), np.sin(phi), np.zeros_like(phi)])
+        placed = self._tilt() @ (self.s * flat) + np.array([[self.r], [0.0], [0.0]])
+        return np.asarray((_rz(sigma) @ placed).T)
+
+    def _tilt(self) -> np.ndarray:
+        return np.asarray(_rx(self.chi) @ _ry(self.theta))
+
+
+def companion_torus(torus: Torus) -> Torus:
+    """The other circle that makes the same surface, by the closed form of the catalogue
+    (`linkages.families.tori`): the two radii from the Bennett linkage, sine and cosine
+    of the angles from the conditions, and of the four signs those of one surface."""
+    r, s = _companion_radii(torus)
+    chi = float(np.arcsin(torus.s * np.sin(torus.chi) / s))
+    theta = float(np.arccos(torus.r * torus.s * np.cos(torus.theta) / (r * s)))
+    signs = ((chi, theta), (chi, -theta), (np.pi - chi, theta), (np.pi - chi, -theta))
+    candidates = [Torus(r, s, *angles) for angles in signs]
+    phi = np.array([POINT_ANGLE, -0.4])
+    gaps = [shared_turn(torus, other, phi)[1] for other in candidates]
+    return candidates[int(np.argmin(gaps))]
+
+
+def _companion_radii(torus: Torus) -> tuple[float, float]:
+    """The radii r and s of the companion: those of the Bennett linkage on the torus,
+    with the shift of its pins."""
+    cosine = np.cos(torus.chi) * np.cos(torus.theta)
+    sine = np.sqrt(1 - cosine**2)
+    length = torus.r * abs(np.sin(torus.chi) * np.cos(torus.theta)) / sine
+    k = length / sine
+    shift = torus.r * np.sin(torus.theta) / sine**2
+    p = k**2 + shift**2 - torus.s**2
+    square = 2 * torus.s**2 / (p + np.sqrt(p**2 + 4 * shift**2 * torus.s**2))
+    beta = np.arctan(np.sqrt(square))
+    t = shift / np.cos(beta)
+    r = float(np.hypot(k * np.sin(beta), t * cosine * np.sin(beta)))
+    return r, float(np.hypot(length, t * sine))
+
+
+def shared_turn(torus: Torus, other: Torus, phi: np.ndarray) -> tuple[float, float]:
+    """The angle (rad) by which the circle of the ``other`` torus stands further about
+    the axis at the first of the angles phi (k,), and the largest distance of the
+    surfaces there, when each point has an angle of its own."""
+    ours = torus.points(0.0, phi)
+    theirs = other.points(0.0, phi)
+    turns = np.arctan2(ours[:, 1], ours[:, 0]) - np.arctan2(theirs[:, 1], theirs[:, 0])
+    gap = np.hypot(
+        np.hypot(ours[:, 0], ours[:, 1]) - np.hypot(theirs[:, 0], theirs[:, 1]),
+        ours[:, 2] - theirs[:, 2],
+    )
+    return float(turns[0]), float(gap.max())
+
+
+# --- drawings -------------------------------------------------------------------------
+
+
+def draw(source: SourceFigure) -> Figure:
+    """The drawing that the figure names."""
+    content = source.content
+    torus = Torus(*(float(content[key]) for key in ("r1", "s1", "chi1", "theta1")))
+    return CHARTS[content["chart"]](torus, content)
+
+
+def _plane(look: Look) -> np.ndarray:
+    return np.stack([look.right, look.up], axis=1)
+
+
+def _draw_surface(axes: Axes, torus: Torus, plane: np.ndarray) -> None:
+    """The torus by circles, thin."""
+    for sigma in np.linspace(0, 2 * np.pi, CIRCLES, endpoint=False):
+        spots = torus.points(sigma, TURN) @ plane
+        axes.plot(*spots.T, color="0.88", linewidth=0.6, zorder=1)
+
+
+def _draw_arm(
+    axes: Axes, torus: Torus, sigma: float, phi: float, number: int, color: str
+) -> None:
+    """The circle at one place, with the lines Q R and R S, and its axis."""
+    plane = _plane(LOOK)
+    centre = torus.centre(sigma)
+    point = torus.points(sigma, np.array([phi]))[0]
+    axes.plot(*(torus.points(sigma, TURN) @ plane).T, color=color, linewidth=1.4)
+    chain = np.stack([np.zeros(3), centre, point]) @ plane
+    axes.plot(*chain.T, color=color, linewidth=2.4, zorder=4)
+    _draw_vector(axes, centre, torus.axis(sigma), f"Z{number}1", plane)
+    _draw_point(axes, centre, f"R{number}", plane)
+
+
+def _draw_vector(
+    axes: Axes, point: np.ndarray, direction: np.ndarray, name: str, plane: np.ndarray
+) -> None:
+    ends = np.stack([point - 0.25 * direction, point + 0.65 * direction]) @ plane
+    axes.annotate(
+        "",
+        xy=tuple(ends[1]),
+        xytext=tuple(ends[0]),
+        arrowprops={"arrowstyle": "-|>", "color": "0.35", "linewidth": 1.0},
+        zorder=5,
+    )
+    beyond = (point + 0.8 * direction) @ plane
+    write_at(axes, beyond, name, fontsize=8.5, zorder=6)
+
+
+def _draw_point(axes: Axes, point: np.ndarray, name: str, plane: np.ndarray) -> None:
+    spot = point @ plane
+    axes.plot(*spot, "o", markerfacecolor="white", markeredgecolor="black", zorder=6)
+    axes.annotate(
+        name,
+        tuple(spot),
+        (9, -8),
+        textcoords="offset points",
+        fontsize=8.5,
+        zorder=7,
+        ha="center",
+        va="center",
+    )
+
+
+def _finish(axes: Axes, title: str) -> None:
+    axes.set_title(title, fontsize=9)
+    axes.set_aspect("equal")
+    axes.margins(0.04)
+    axes.set_axis_off()
+
+
+def _point(torus: Torus, content: Content) -> Figure:
+    """One point S by each of the two circles through it."""
+    figure = Figure(figsize=(9.0, 4.4), layout="constrained")
+    other = companion_torus(torus)
+    titles = ("(a) r larger than s", "(b) r smaller than s")
+    pairs = ((torus, FIRST_COLOR), (other, SECOND_COLOR))
+    plane = _plane(LOOK)
+    for number, (axes, (one, color)) in enumerate(
+        zip(figure.subplots(1, 2), pairs, strict=True), start=1
+    ):
+        _draw_surface(axes, one, plane)
+        _draw_arm(axes, one, 0.5, POINT_ANGLE, number, color)
+        _draw_vector(axes, np.zeros(3), np.array([0, 0, 1.0]), "Z", plane)
+        _draw_point(axes, np.zeros(3), "Q", plane)
+        point = one.points(0.5, np.array([POINT_ANGLE]))[0]
+        _draw_point(axes, point, "S", plane)
+        _finish(axes, titles[number - 1])
+    return figure
+
+
+def _variants(torus: Torus, content: Content) -> Figure:
+    """The 4R linkage Q, R1, S, R2 with either circle of each of the two radii: one and
+    its mirror image in the plane of Q, phi reversed with it."""
+    figure = Figure(figsize=(9.0, 8.6), layout="constrained")
+    other = companion_torus(torus)
+    plane = _plane(LOOK)
+    panels = figure.subplots(2, 2).flat
+    names = {1: "", -1: "-"}
+    combinations = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
+    for axes, (first, second) in zip(panels, combinations, strict=True):
+        one = Torus(torus.r, torus.s, first * torus.chi, torus.theta)
+        two = Torus(other.r, other.s, second * other.chi, other.theta)
+        phi_one = first * POINT_ANGLE
+        phi_two = second * POINT_ANGLE
+        _draw_surface(axes, one, plane)
+        ours = one.points(0.0, np.array([phi_one]))[0]
+        theirs = two.points(0.0, np.array([phi_two]))[0]
+        turn = np.arctan2(ours[1], ours[0]) - np.arctan2(theirs[1], theirs[0])
+        _draw_arm(axes, one, 0.0, phi_one, 1, FIRST_COLOR)
+        _draw_arm(axes, two, turn, phi_two, 2, SECOND_COLOR)
+        _draw_vector(axes, np.zeros(3), np.array([0, 0, 1.0]), "Z", plane)
+        _draw_point(axes, np.zeros(3), "Q", plane)
+        _draw_point(axes, ours, "S", plane)
+        _finish(axes, f"{names[first]}χ₁, {names[second]}χ₂")
+    return figure
+
+
+CHARTS: dict[str, Callable[[Torus, Content], Figure]] = {
+    "point": _point,
+    "variants": _variants,
+}

@@ -1,0 +1,178 @@
+"""Figures of a transition map with the linkage in configurations along its forms,
+lettered as in the sources."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from string import ascii_lowercase
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.figures.drawing import draw_forms, draw_legend, draw_marks
+from bifurc.figures.labels import label_points
+from bifurc.figures.planes import Plane, plane_of
+from bifurc.figures.style import form_style
+from linkages.loop import Loop
+from linkages.source_figures.assembly import loop_assembly
+from linkages.source_figures.configurations import (
+    atlas_of,
+    form_named,
+    loop_of_content,
+)
+from linkages.source_figures.drawing import SMALL, common_look, draw_assembly
+from linkages.source_figures.table import Content, SourceFigure
+
+__all__ = ["Stop", "draw", "tour_of"]
+
+ALONG = (0.25, 0.5, 0.75)  # of an arc: where a form is shown
+COLUMNS = 4
+SNAPSHOT = 1.45  # width and height, in inches
+
+
+class Stop(NamedTuple):
+    """A configuration (n,) of a tour, the form or the bifurcation where it is, and
+    which of both."""
+
+    theta: np.ndarray
+    place: str
+    is_bifurcation: bool
+
+
+def draw(source: SourceFigure) -> Figure:
+    """The map at the left and, where the figure has a tour, its configurations at the
+    right."""
+    content = source.content
+    atlas = atlas_of(content)
+    horizontal, vertical = content["axes"]
+    plane = plane_of(atlas, horizontal - 1, vertical - 1)
+    stops = tour_of(atlas, content) if "tour" in content else []
+    if not stops:
+        figure = Figure(figsize=(6.6, 4.9), layout="constrained")
+        axes = figure.subplots()
+        _draw_map(axes, atlas, plane, stops)
+        draw_legend(figure, atlas)
+        return figure
+    rows = -(-len(stops) // COLUMNS)
+    height = max(rows * (SNAPSHOT + 0.15), 5.4)
+    figure = Figure(figsize=(5.2 + COLUMNS * SNAPSHOT, height))
+    left = 5.0 / (5.2 + COLUMNS * SNAPSHOT)
+    axes = figure.add_axes((0.055, 0.3, left - 0.075, 0.66))
+    _draw_map(axes, atlas, plane, stops)
+    _draw_form_names(axes, atlas)
+    grid = figure.subplots(
+        rows,
+        COLUMNS,
+        squeeze=False,
+        gridspec_kw={"left": left, "right": 0.995, "bottom": 0.01, "top": 0.96},
+    )
+    _draw_stops(list(grid.flat), loop_of_content(content), stops)
+    return figure
+
+
+def _draw_form_names(axes: Axes, atlas: Atlas) -> None:
+    """The names of the forms below the map, by the lines that it has for them."""
+    for index, form in enumerate(atlas.forms):
+        style = form_style(index)
+        axes.plot([], [], color=style.color, linestyle=style.dashes, label=form.name)
+    axes.legend(
+        loc="upper left", bbox_to_anchor=(-0.05, -0.14), frameon=False, handlelength=3.2
+    )
+
+
+def _draw_map(axes: Axes, atlas: Atlas, plane: Plane, stops: Sequence[Stop]) -> None:
+    draw_forms(axes, atlas, plane)
+    draw_marks(axes, atlas, plane)
+    if not stops:
+        label_points(axes, atlas, plane)
+        return
+    for letter, stop in zip(ascii_lowercase, stops, strict=False):
+        spot = plane.spot(stop.theta)
+        if not stop.is_bifurcation:
+            axes.plot(*spot, "o", color="black", markersize=3, zorder=5)
+        inwards = -np.sign(np.where(np.abs(spot) > 150, spot, -1.0))
+        axes.annotate(
+            letter,
+            tuple(spot),
+            tuple(8 * inwards),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=9,
+            zorder=6,
+            bbox={
+                "boxstyle": "circle,pad=0.1",
+                "facecolor": "white",
+                "alpha": 0.8,
+                "linewidth": 0,
+            },
+        )
+
+
+def _draw_stops(panels: list[Axes], loop: Loop, stops: Sequence[Stop]) -> None:
+    """A drawing a configuration, all seen from the same side of the link between the
+    last joint and the first."""
+    names = [str(i + 1) for i in range(loop.n)]
+    assemblies = [
+        loop_assembly(loop, stop.theta, names, [""] * loop.n) for stop in stops
+    ]
+    look = common_look(assemblies)
+    for axes in panels:
+        axes.set_axis_off()
+    for axes, letter, stop, assembly in zip(
+        panels, ascii_lowercase, stops, assemblies, strict=False
+    ):
+        draw_assembly(axes, assembly, look, pen=SMALL)
+        axes.set_title(f"({letter}) {stop.place}", fontsize=7.5, pad=2)
+
+
+# --- the tour -------------------------------------------------------------------------
+
+
+def tour_of(atlas: Atlas, content: Content) -> list[Stop]:
+    """Three configurations on each form of a tour, and after each the bifurcation to
+    the next one; where the tour is not ``open`` it comes back to its first form."""
+    forms = [form_named(atlas, name) for name in content["tour"]]
+    is_open = content.get("open", False)
+    meetings: list[MeetingPoint | None] = []
+    for form, following in zip(forms, [*forms[1:], forms[0]], strict=True):
+        meetings.append(_meeting(atlas, form, following))
+    if is_open:
+        meetings[-1] = None
+    stops = []
+    for number, form in enumerate(forms):
+        begin = meetings[number - 1]
+        end = meetings[number]
+        for s in _along(atlas, form, begin, end):
+            name = form.name.split(" (")[0]
+            stops.append(Stop(form.branch(s), name, is_bifurcation=False))
+        if end is not None:
+            stops.append(Stop(end.point.u, end.name, is_bifurcation=True))
+    return stops
+
+
+def _meeting(atlas: Atlas, form: Form, other: Form) -> MeetingPoint | None:
+    """A bifurcation at which two forms meet."""
+    wanted = {atlas.forms.index(form), atlas.forms.index(other)}
+    for point in atlas.bifurcations:
+        if wanted <= {index for index, _ in point.passes}:
+            return point
+    return None
+
+
+def _along(
+    atlas: Atlas, form: Form, begin: MeetingPoint | None, end: MeetingPoint | None
+) -> list[float]:
+    """Arclengths on the arc of a form from one bifurcation to another; on the whole
+    form where there is only one."""
+    index = atlas.forms.index(form)
+    known = [point for point in (begin, end) if point is not None]
+    places = [dict(point.passes)[index] for point in known]
+    length = form.branch.length
+    if len(places) < 2 or places[0] == places[1]:
+        return [places[0] + part * length for part in ALONG]
+    span = (places[1] - places[0]) % length
+    return [places[0] + part * span for part in ALONG]

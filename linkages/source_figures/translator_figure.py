@@ -1,0 +1,349 @@
+"""Figures of Wohlhart's symmetric mechanism as a translator (Racila and Dahan 2010,
+sections 3 and 4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
+
+from bifurc.figures.planes import Scale, cut_to_frame
+from bifurc.figures.style import form_style
+from linkages.closed_forms.translator import (
+    Stroke,
+    joint_axes,
+    joint_centres,
+    meeting_points,
+    plane_distance,
+    slide,
+    stroke_angles,
+    upright,
+)
+from linkages.source_figures.drawing import look_along
+from linkages.source_figures.table import Content, SourceFigure
+
+__all__ = ["draw"]
+
+DEGREES = 180.0 / np.pi
+COUNT = 721
+ODD_COLOR = "#0072B2"
+EVEN_COLOR = "#D55E00"
+AXIS_COLOR = "0.5"
+DASHES = {Stroke.SHORT: "-", Stroke.LONG: (0, (6, 2))}
+ROUND = Scale(DEGREES, 180.0, "")
+PLAIN = Scale(1.0, np.inf, "")
+RING = [0, 1, 2, 3, 4, 5, 0]
+
+
+def draw(source: SourceFigure) -> Figure:
+    """The chart or the drawing that the figure names."""
+    return CHARTS[source.content["chart"]](source.content)
+
+
+def _one_panel(width: float = 6.2, height: float = 4.2) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots()
+
+
+# --- charts ---------------------------------------------------------------------------
+
+
+def _closed_curves(alpha: float) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Angles theta and phi (k,), rad, along both strokes and their mirror images, which
+    together are all of the motion."""
+    out = []
+    for stroke in Stroke:
+        theta, phi = stroke_angles(alpha, stroke, COUNT)
+        out.append((theta, phi))
+        out.append((-theta, -phi))
+    return out
+
+
+def _angles(content: Content) -> Figure:
+    """phi against theta."""
+    figure, axes = _one_panel(5.4, 4.2)
+    for index, degrees in enumerate(content["twists"]):
+        style = form_style(index)
+        for number, curve in enumerate(_closed_curves(np.radians(degrees))):
+            rows = cut_to_frame(np.stack(curve, axis=1), (ROUND, ROUND))
+            label = f"α = {degrees}°" if number == 0 else "_"
+            axes.plot(*rows.T, color=style.color, linestyle=style.dashes, label=label)
+    _mark_degrees(axes, both=True)
+    axes.set(xlabel="θ (deg)", ylabel="φ (deg)", box_aspect=1)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    return figure
+
+
+def _height(content: Content) -> Figure:
+    """The coordinate z of O3 against theta."""
+    figure, axes = _one_panel()
+    for index, degrees in enumerate(content["twists"]):
+        style = form_style(index)
+        alpha = np.radians(degrees)
+        for number, (theta, phi) in enumerate(_closed_curves(alpha)):
+            height = joint_centres(theta, phi, alpha)[:, 2, 2]
+            rows = cut_to_frame(np.stack([theta, height], axis=1), (ROUND, PLAIN))
+            label = f"α = {degrees}°" if number == 0 else "_"
+            axes.plot(*rows.T, color=style.color, linestyle=style.dashes, label=label)
+    _mark_degrees(axes)
+    axes.set(xlabel="θ (deg)", ylabel="z of O₃ / a")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    return figure
+
+
+def _distances(content: Content) -> Figure:
+    """H against theta and against b, for several lengths of links."""
+    (degrees,) = content["twists"]
+    figure = Figure(figsize=(9.4, 3.9), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for index, length in enumerate(content["lengths"]):
+        _draw_distance(left, right, degrees, length, index, f"a = {length}")
+    left.set(xlabel="θ (deg)", ylabel="H", xlim=(0, 240), ylim=(0, None))
+    left.xaxis.set_major_locator(MultipleLocator(30))
+    right.set(xlabel="b", ylabel="H", xlim=(0, None), ylim=(0, None))
+    for axes in (left, right):
+        axes.grid(True)
+    right.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    return figure
+
+
+def _distances_by_twist(content: Content) -> Figure:
+    """H against b, for several twists."""
+    (length,) = content["lengths"]
+    figure, axes = _one_panel()
+    for index, degrees in enumerate(content["twists"]):
+        _draw_distance(None, axes, degrees, length, index, f"α = {degrees}°")
+    axes.set(xlabel="b", ylabel="H", xlim=(0, None), ylim=(0, None))
+    axes.grid(True)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    return figure
+
+
+def _draw_distance(
+    by_angle: Axes | None,
+    by_slide: Axes,
+    degrees: float,
+    length: float,
+    index: int,
+    label: str,
+) -> None:
+    """H along both strokes, and where thin links touch on the long one."""
+    alpha = np.radians(degrees)
+    color = form_style(index).color
+    for stroke in Stroke:
+        theta, phi = stroke_angles(alpha, stroke, COUNT)
+        height = plane_distance(theta, phi, alpha, length)
+        charts = [(by_slide, slide(theta, length))]
+        if by_angle is not None:
+            charts.append((by_angle, DEGREES * theta))
+        touches = np.flatnonzero(phi >= np.pi)
+        for axes, x in charts:
+            axes.plot(
+                x,
+                height,
+                color=color,
+                linestyle=DASHES[stroke],
+                linewidth=1.6,
+                label=f"{label}, {stroke} stroke",
+            )
+            if len(touches) and phi[-1] > np.pi:
+                first = touches[0]
+                axes.plot(x[first], height[first], "x", color=color, markersize=7)
+
+
+def _mark_degrees(axes: Axes, both: bool = False) -> None:
+    axes.set_xlim(-180, 180)
+    axes.xaxis.set_major_locator(MultipleLocator(60))
+    if both:
+        axes.set_ylim(-180, 180)
+        axes.yaxis.set_major_locator(MultipleLocator(60))
+    axes.grid(True)
+
+
+# --- drawings -------------------------------------------------------------------------
+
+
+def _configuration(content: Content, degrees: float) -> np.ndarray:
+    """Angles theta and phi (2,), rad, of the short stroke where theta is ``degrees``;
+    that is a straight function of where on the stroke it is, to be turned round."""
+    (twist,) = content["twists"]
+    theta, phi = stroke_angles(np.radians(twist), Stroke.SHORT, 20001)
+    return np.array([np.radians(degrees), np.interp(np.radians(degrees), theta, phi)])
+
+
+def _bodies(
+    content: Content, degrees: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Joint centres (6, 3), upright, directions of the axes (6, 3), and O', O'' (2, 3)
+    in a configuration."""
+    (twist,) = content["twists"]
+    alpha = np.radians(twist)
+    theta, phi = _configuration(content, degrees)[:, None]
+    centres = joint_centres(theta, phi, alpha)[0]
+    axes = joint_axes(theta, phi, alpha)[0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        meetings = np.concatenate(meeting_points(theta, phi, alpha))
+    placed = upright(centres, centres)
+    directions = upright(centres + axes, centres) - placed
+    return placed, directions, upright(meetings, centres)
+
+
+OBLIQUE = look_along(np.array([1.0, -0.55, 0.42]), np.array([0.0, 0.0, 1.0]))
+ABOVE = look_along(np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]))
+
+
+def _draw_mechanism(axes: Axes, centres: np.ndarray, plane: np.ndarray) -> None:
+    """The six links and the joints with their names."""
+    spots = centres @ plane
+    axes.plot(*spots[RING].T, color="black", linewidth=2.2, zorder=3)
+    middle = spots.mean(axis=0)
+    for number, spot in enumerate(spots, start=1):
+        color = ODD_COLOR if number % 2 else EVEN_COLOR
+        axes.plot(*spot, "o", markerfacecolor="white", markeredgecolor=color, zorder=4)
+        away = spot - middle
+        away = away / max(float(np.linalg.norm(away)), 1e-9)
+        axes.annotate(
+            f"O{chr(0x2080 + number)}",
+            tuple(spot),
+            tuple(13 * away),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=9,
+            color=color,
+            zorder=5,
+        )
+    axes.set_aspect("equal")
+    axes.margins(0.12)
+    axes.set_axis_off()
+
+
+def _draw_plane(axes: Axes, centres: np.ndarray, plane: np.ndarray, color: str) -> None:
+    """The triangle of three joints (3, 3), shaded."""
+    axes.fill(*(centres @ plane).T, color=color, alpha=0.18, zorder=1)
+
+
+def _paper(look: tuple[np.ndarray, ...]) -> np.ndarray:
+    return np.stack([look[0], look[1]], axis=1)
+
+
+def _planes(content: Content) -> Figure:
+    """The mechanism with both triangles."""
+    figure, axes = _one_panel(5.4, 4.2)
+    centres, _, _ = _bodies(content, content["theta"])
+    plane = _paper(OBLIQUE)
+    _draw_plane(axes, centres[0::2], plane, ODD_COLOR)
+    _draw_plane(axes, centres[1::2], plane, EVEN_COLOR)
+    _draw_mechanism(axes, centres, plane)
+    return figure
+
+
+def _axes(content: Content) -> Figure:
+    """The mechanism with its axes and the line on which they meet."""
+    figure, axes = _one_panel(5.4, 5.2)
+    centres, _, meetings = _bodies(content, content["theta"])
+    plane = _paper(OBLIQUE)
+    for parity, color in ((1, EVEN_COLOR), (0, ODD_COLOR)):
+        meeting = meetings[0 if parity else 1]
+        for centre in centres[parity::2]:
+            beyond = centre - 0.15 * (meeting - centre)
+            ends = np.stack([beyond, meeting]) @ plane
+            axes.plot(*ends.T, color=color, linestyle="-.", linewidth=0.9, zorder=2)
+        _draw_plane(axes, centres[parity::2], plane, color)
+    line = meetings @ plane
+    axes.plot(*line.T, color="#009E73", linewidth=1.8, zorder=2)
+    for name, spot in zip(("O'", "O''"), line, strict=True):
+        axes.plot(*spot, "s", color="#009E73", markersize=4, zorder=4)
+        axes.annotate(name, tuple(spot), (9, 4), textcoords="offset points", fontsize=9)
+    _draw_mechanism(axes, centres, plane)
+    return figure
+
+
+def _disposition(content: Content) -> Figure:
+    """The mechanism over the three lines on which O1, O3, O5 slide, with H and b."""
+    figure, axes = _one_panel(6.0, 4.4)
+    centres, _, _ = _bodies(content, content["theta"])
+    plane = _paper(OBLIQUE)
+    _draw_slides(axes, plane)
+    _draw_plane(axes, centres[1::2], plane, EVEN_COLOR)
+    _draw_mechanism(axes, centres, plane)
+    top = centres[1::2].mean(axis=0)
+    ends = np.stack([0 * top, top]) @ plane
+    axes.annotate(
+        "",
+        xy=tuple(ends[1]),
+        xytext=tuple(ends[0]),
+        arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0},
+    )
+    axes.annotate(
+        "H", tuple(ends.mean(axis=0)), (7, 0), textcoords="offset points", fontsize=9
+    )
+    _draw_slide_of_first(axes, centres[0], plane)
+    return figure
+
+
+def _draw_slides(axes: Axes, plane: np.ndarray) -> None:
+    """The lines on which the odd joints slide, from the centre to their first place."""
+    reach = 2 / np.sqrt(3)
+    for turn in (0, 1, 2):
+        angle = turn * 2 * np.pi / 3
+        far = reach * np.array([np.cos(angle), np.sin(angle), 0.0])
+        ends = np.stack([np.zeros(3), far]) @ plane
+        axes.plot(*ends.T, color=AXIS_COLOR, linestyle="-.", linewidth=0.9, zorder=1)
+        axes.plot(*ends[1], "|", color=AXIS_COLOR, zorder=1)
+
+
+def _draw_slide_of_first(axes: Axes, first: np.ndarray, plane: np.ndarray) -> None:
+    """How far O1 has slid."""
+    start = np.array([2 / np.sqrt(3), 0.0, 0.0])
+    below = np.array([0.0, 0.0, -0.08])
+    ends = np.stack([start + below, first + below]) @ plane
+    axes.annotate(
+        "",
+        xy=tuple(ends[1]),
+        xytext=tuple(ends[0]),
+        arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0},
+    )
+    axes.annotate(
+        "b", tuple(ends.mean(axis=0)), (0, -9), textcoords="offset points", fontsize=9
+    )
+
+
+def _above(content: Content) -> Figure:
+    """Several configurations from above."""
+    return _row(content, ABOVE)
+
+
+def _positions(content: Content) -> Figure:
+    """Several configurations, seen obliquely."""
+    return _row(content, OBLIQUE)
+
+
+def _row(content: Content, look: tuple[np.ndarray, ...]) -> Figure:
+    angles = content["thetas"]
+    plane = _paper(look)
+    figure = Figure(figsize=(2.75 * len(angles), 2.9), layout="constrained")
+    panels = figure.subplots(1, len(angles))
+    for axes, degrees in zip(panels, angles, strict=True):
+        centres, _, _ = _bodies(content, degrees)
+        _draw_slides(axes, plane)
+        _draw_mechanism(axes, centres, plane)
+        axes.set_title(f"θ = {degrees}°", fontsize=9)
+        axes.set(xlim=(-1.55, 1.55), ylim=(-1.4, 1.4))
+    return figure
+
+
+CHARTS: dict[str, Callable[[Content], Figure]] = {
+    "angles": _angles,
+    "height": _height,
+    "planes": _planes,
+    "axes": _axes,
+    "disposition": _disposition,
+    "above": _above,
+    "positions": _positions,
+    "distances": _distances,
+    "distances_by_twist": _distances_by_twist,
+}

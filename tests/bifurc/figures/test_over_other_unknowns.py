@@ -1,0 +1,48 @@
+"""The figures over unknowns of the reader's choice."""
+
+import numpy as np
+import pytest
+
+from bifurc.errors import ProblemError
+from bifurc.figures.singular_values_against import plot_singular_values_against
+from bifurc.figures.space import plot_map_in_space
+
+
+def test_a_map_in_space_has_a_line_a_form_and_a_name_a_point(parallelogram):
+    figure = plot_map_in_space(parallelogram, [1, 2, 3])
+    (axes,) = figure.axes
+    lines = [line for line in axes.lines if line.get_marker() == "None"]
+    assert len(lines) == len(parallelogram.forms)
+    names = {text.get_text().strip() for text in axes.texts}
+    assert {point.name for point in parallelogram.points} <= names
+
+
+def test_lines_in_space_break_where_they_leave_the_frame(parallelogram):
+    figure = plot_map_in_space(parallelogram, [1, 2, 3])
+    for line in figure.axes[0].lines:
+        points = np.array(line.get_data_3d())
+        steps = np.abs(np.diff(points, axis=1))
+        assert not np.any(steps > 180.0)
+
+
+def test_singular_values_stand_over_the_unknown_that_is_asked_for(parallelogram):
+    figure = plot_singular_values_against(parallelogram, 2)
+    assert figure.get_supxlabel() == "θ₂ (deg)"
+    panels = [axes for axes in figure.axes if axes.get_visible()]
+    assert len(panels) == len(parallelogram.forms)
+    for axes in panels:
+        assert axes.get_xlim() == (-180, 180)
+        strong = max(axes.lines, key=lambda line: line.get_linewidth())
+        assert np.nanmin(strong.get_ydata()) < 1e-9  # it comes down to zero
+
+
+@pytest.mark.parametrize("unknowns", [[1, 2], [1, 2, 2], [0, 1, 2], [1, 2, 9]])
+def test_other_numbers_than_three_of_the_unknowns_are_refused(parallelogram, unknowns):
+    with pytest.raises(ProblemError, match="3 of the unknowns"):
+        plot_map_in_space(parallelogram, unknowns)
+
+
+@pytest.mark.parametrize("unknown", [0, 5, -1])
+def test_an_unknown_that_is_not_there_is_refused(parallelogram, unknown):
+    with pytest.raises(ProblemError, match="numbered from 1 to 3"):
+        plot_singular_values_against(parallelogram, unknown)
