@@ -217,5 +217,5 @@ def _part_names(seating: Seating, approach: PartApproach) -> str:
 
 def _part_name(part: Part, n: int) -> str:
     if part.kind is Kind.LINK:
-        return f"link {link_name(part.index, n)}"
-    return f"hinge {part.index + 1}"
+        return f"link {link_name(part.joint, n)}"
+    return f"hinge {part.joint + 1}"

@@ -48,4 +48,6 @@ def _dot(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 
 def _share(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """The fractions (...), between 0 and 1, that parts are of a whole."""
-    return np.clip(part / np.maximum(whole, TINY), 0.0, 1.0)
+    positive = np.maximum(whole, TINY)
+    shares: np.ndarray = np.clip(part, 0.0, positive) / positive
+    return shares

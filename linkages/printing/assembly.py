@@ -39,7 +39,7 @@ class Part(NamedTuple):
     """A link by the joint (from 0) that it follows, or the hinge of a joint."""
 
     kind: Kind
-    index: int
+    joint: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,5 +195,5 @@ def _is_at_one_hinge(first: _Rod, second: _Rod, n: int) -> bool:
 def _joint_of(rod: _Rod, n: int) -> int | None:
     """The joint at which a hinge or an arm is, None for a rod in between."""
     if rod.part.kind is Kind.HINGE or rod.place == FIRST_ARM:
-        return rod.part.index
-    return (rod.part.index + 1) % n if rod.place == LAST_ARM else None
+        return rod.part.joint
+    return (rod.part.joint + 1) % n if rod.place == LAST_ARM else None

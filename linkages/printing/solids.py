@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from build123d import Plane, Shape, Solid
@@ -105,7 +106,7 @@ def _plane(origin: np.ndarray, normal: np.ndarray) -> Plane:
     return Plane(origin=tuple(origin.tolist()), z_dir=tuple(normal.tolist()))
 
 
-def _one_solid(shape: Shape) -> Solid:
+def _one_solid(shape: Shape[Any]) -> Solid:
     """The only solid of a shape; raises `ArithmeticError`."""
     solids = shape.solids()
     if len(solids) != 1 or not solids[0].is_valid or solids[0].volume <= 0:
