@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import combinations
 from typing import NamedTuple
 
@@ -21,7 +21,15 @@ from linkages.links.segments import distances_by_ends
 from linkages.loop import Loop
 from linkages.printing.dimensions import Dimensions
 
-__all__ = ["Assembly", "Kind", "Part", "Seats", "link_corners", "pairs_that_may_meet"]
+__all__ = [
+    "Assembly",
+    "Kind",
+    "Part",
+    "Seats",
+    "link_corners",
+    "pairs_that_may_meet",
+    "place_segments",
+]
 
 RODS = 3  # of a link: an arm, the rod in between, an arm
 FIRST_ARM, LAST_ARM = 0, RODS - 1
@@ -112,11 +120,14 @@ class Assembly:
     def placed(self, theta: np.ndarray) -> np.ndarray:
         """The segments (..., k, 4 n, 2, 3) at joint angles (k, n), rad, in the frame of
         the last link."""
-        poses = self.loop.frames(theta)[:, 1:][:, self.frames]  # k, 4 n, 4, 4
-        rotations, translations = poses[..., :3, :3], poses[..., :3, 3]
-        turned = np.einsum("kmrx,...mex->...kmer", rotations, self.segments)
-        placed: np.ndarray = turned + translations[..., None, :]
-        return placed
+        return place_segments(self.segments, self.poses(theta))
+
+    def poses(self, theta: np.ndarray) -> np.ndarray:
+        """Poses (k, 4 n, 4, 4) of what the segments move with at joint angles (k, n),
+        rad."""
+        links = self.loop.frames(theta)[:, 1:]
+        poses: np.ndarray = links[:, self.frames]
+        return poses
 
     def clearances(self, placed: np.ndarray, pairs: np.ndarray) -> np.ndarray:
         """What is left (..., p) between the surfaces of pairs (p, 2) of segments; below
@@ -125,6 +136,14 @@ class Assembly:
         radii = self.radii[pairs].sum(axis=-1)
         clearances: np.ndarray = distances_by_ends(first, second) - radii
         return clearances
+
+
+def place_segments(segments: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """Segments (..., m, 2, 3) at poses (k, m, 4, 4), as (..., k, m, 2, 3)."""
+    rotations = np.swapaxes(poses[..., :3, :3], -1, -2)
+    turned = np.matmul(segments[..., None, :, :, :], rotations)
+    placed: np.ndarray = turned + poses[..., None, :3, 3]
+    return placed
 
 
 def link_corners(loop: Loop, dimensions: Dimensions, seats: Seats) -> np.ndarray:
@@ -165,6 +184,7 @@ def _across(way: np.ndarray, axis: np.ndarray) -> np.ndarray:
 # --- which segments are compared ------------------------------------------------------
 
 
+@cache
 def pairs_that_may_meet(n: int) -> np.ndarray:
     """Pairs (p, 2) of segments of a loop of n joints, but for those that are joined or
     turn on each other about one axis, whose distance the dimensions give."""

@@ -15,7 +15,7 @@ import numpy as np
 
 from bifurc.atlas import Form
 from linkages.loop import Loop
-from linkages.printing.assembly import Assembly, Seats
+from linkages.printing.assembly import Assembly, Seats, place_segments
 from linkages.printing.dimensions import Dimensions
 from linkages.printing.interference import PartApproach, nearest_approach
 
@@ -24,7 +24,7 @@ __all__ = ["REACHES", "Seating", "choose_seats"]
 REACHES = (0.25, 0.5, 1.0, 1.0)  # how far hinges move out, in characteristic lengths
 CANDIDATES = 400  # at random, for each range
 MOMENTS = 192  # of each form, where candidates are looked at
-CHUNK = 4  # configurations at once, after which hopeless candidates are left out
+CHUNK = 4  # configurations, and then more, after which the worse ones are left out
 BEST = 8  # candidates that are improved
 ROUNDS = 24  # of improvement
 CHILDREN = 6  # of each candidate in a round
@@ -63,17 +63,21 @@ class _Trial:
         configurations = np.vstack([theta, self.configurations])
         return _Trial(self.loop, self.dimensions, configurations, self.enough)
 
-    def clearances(self, seats: Seats, keep: int) -> np.ndarray:
-        """The least clearance (c,) of candidates, -inf for those that were left out
-        while ``keep`` better ones remained."""
+    def clearances(self, seats: Seats, keep: int, floor: float = -np.inf) -> np.ndarray:
+        """The least clearance (c,) of candidates; -inf for those that fall below a
+        ``floor``, and for those that were left out while ``keep`` better ones
+        remained."""
+        assembly = Assembly(self.loop, self.dimensions, seats)
+        poses = assembly.poses(self.configurations)
         least = np.full(len(seats.heights), np.inf)
         alive = np.arange(len(least))
-        for start in range(0, len(self.configurations), CHUNK):
-            moments = self.configurations[start : start + CHUNK]
-            assembly = Assembly(self.loop, self.dimensions, seats[alive])
-            placed = assembly.placed(moments)
+        end = 0
+        while end < len(poses) and len(alive) > 0:
+            start, end = end, 2 * end + CHUNK
+            placed = place_segments(assembly.segments[alive], poses[start:end])
             seen = assembly.clearances(placed, assembly.pairs).min(axis=(1, 2))
             least[alive] = np.minimum(least[alive], seen)
+            alive = alive[least[alive] >= floor]
             if len(alive) > keep:
                 limit = np.sort(least[alive])[-max(keep, len(alive) // 2)]
                 alive = alive[least[alive] >= min(limit, self.enough)]
@@ -172,22 +176,24 @@ def _improved(
 ) -> Seats:
     """The best candidates, the best one first, and their children as long as none is
     good enough."""
-    seats, clearances = _selected(trial, seats)
+    clearances = trial.clearances(seats, BEST)
+    seats, clearances = _best_of(seats, clearances)
     for step in np.geomspace(FIRST_STEP, LAST_STEP, ROUNDS):
         if clearances[0] >= trial.enough:
             break
         children = _children(seats, centre, reach, float(step), generator)
+        # the parents are known, and what is worse than the last of them is of no use
+        seen = trial.clearances(children, BEST, floor=float(clearances[-1]))
         family = Seats(
             np.concatenate([seats.heights, children.heights]),
             np.concatenate([seats.sides, children.sides]),
         )
-        seats, clearances = _selected(trial, family)
+        seats, clearances = _best_of(family, np.concatenate([clearances, seen]))
     return seats
 
 
-def _selected(trial: _Trial, seats: Seats) -> tuple[Seats, np.ndarray]:
+def _best_of(seats: Seats, clearances: np.ndarray) -> tuple[Seats, np.ndarray]:
     """The best candidates and their clearances, the best first."""
-    clearances = trial.clearances(seats, BEST)
     order = np.argsort(-clearances, kind="stable")[:BEST]
     return seats[order], clearances[order]
 

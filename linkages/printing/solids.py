@@ -52,9 +52,12 @@ def _make_link(corners: np.ndarray, axis: np.ndarray, dimensions: Dimensions) ->
     rods = []
     for start, end in pairwise(corners):
         rods.append(_cylinder(start, end, dimensions.rod_radius))
+    way = corners[2] - corners[1]
+    along_rod = way / np.linalg.norm(way)
+    # both poles inside rods: other programs read a sphere that is cut elsewhere wrongly
     balls = [
-        Solid.make_sphere(dimensions.elbow_radius, _plane(corner, z_axis))
-        for corner in corners[1:-1]
+        Solid.make_sphere(dimensions.elbow_radius, _plane(corner, direction))
+        for corner, direction in ((corners[1], along_rod), (corners[2], -along_rod))
     ]
     eyes, bores = [], []
     for corner, along in ((corners[0], axis), (corners[-1], z_axis)):

@@ -25,7 +25,9 @@ ORIGIN, X, Y, Z = np.zeros(3), *np.eye(3)
 )
 def test_known_distances(ends, distance, size):
     scaled = [size * end for end in ends]
-    assert segment_distances(*scaled) == pytest.approx(distance * size, abs=1e-12 * size)
+    assert segment_distances(*scaled) == pytest.approx(
+        distance * size, abs=1e-12 * size
+    )
 
 
 @pytest.mark.parametrize("lean", [0.0, 1e-14, 1e-11, 1e-9, 1e-8, 1e-7, 1e-4, 1.0])

@@ -46,7 +46,9 @@ def test_all_parts_that_meet_are_listed_the_nearest_first(form):
     meetings = find_meetings(assembly, form, 0.3)
     named = [meeting.parts for meeting in meetings]
     assert len(set(named)) == len(named)
-    links = [[part.joint for part in parts if part.kind is Kind.LINK] for parts in named]
+    links = [
+        [part.joint for part in parts if part.kind is Kind.LINK] for parts in named
+    ]
     assert [0, 2] in links  # the common normals of a Bennett linkage meet
     depths = [meeting.clearance for meeting in meetings]
     assert depths == sorted(depths)
