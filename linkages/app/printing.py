@@ -115,16 +115,22 @@ def write_parts(atlas: Atlas, form: Form, seating: Seating, out: Path) -> None:
     laid out; raises `OSError`."""
     from bifurc.files.atomic import replace_file
     from linkages.printing.files import write_step, write_stl
+    from linkages.printing.solids import make_parts
 
+    assembly = seating.assembly
+    try:
+        parts = make_parts(assembly)
+    except ArithmeticError as error:
+        raise CommandError(f"--diameter: with these sizes {error}") from None
     if out.name.lower().endswith(".stl"):
-        replace_file(out, lambda part: write_stl(seating.assembly, part))
+        replace_file(out, lambda part: write_stl(parts, part))
         return
-    n = seating.assembly.loop.n
+    n = assembly.loop.n
     names = [f"link {link_name(i, n)}" for i in range(n)]
     title = loop_of(atlas).name or "linkage"
     theta = form.branch(0.0)
     replace_file(
-        out, lambda part: write_step(seating.assembly, theta, names, title, part)
+        out, lambda part: write_step(assembly, parts, theta, names, title, part)
     )
 
 

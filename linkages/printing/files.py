@@ -13,7 +13,6 @@ from linkages.printing.assembly import Assembly
 from linkages.printing.solids import (
     PrintedParts,
     link_poses_at,
-    make_parts,
     place_solid,
 )
 
@@ -31,22 +30,23 @@ ROW = 220.0  # mm: about how wide the bed of a printer is
 
 def write_step(
     assembly: Assembly,
+    parts: PrintedParts,
     theta: np.ndarray,
     names: Sequence[str],
     title: str,
     path: Path,
 ) -> None:
     """Write all parts as they stand at joint angles (n,), rad, as named solids of an
-    assembly, mm; ``names`` are those of the links. Raises `OSError`."""
-    parts = make_parts(assembly)
+    assembly, mm: each link by its name, then its first pin and cap, which are one part
+    of the file in many places. Raises `OSError`."""
     links, hinges = link_poses_at(assembly, theta)
     children = []
     for i, name in enumerate(names):
         link = place_solid(parts.links[i], links[i])
         children.append(_labelled(link, name, COLORS[i % len(COLORS)]))
         pin, cap = place_solid(parts.pin, hinges[i]), place_solid(parts.cap, hinges[i])
-        children.append(_labelled(pin, f"pin {i + 1}", PIN_COLOR))
-        children.append(_labelled(cap, f"cap {i + 1}", PIN_COLOR))
+        children.append(_labelled(pin, "pin", PIN_COLOR))
+        children.append(_labelled(cap, "cap", PIN_COLOR))
     whole = Compound(label=title, children=children)
     try:
         export_step(whole, path, timestamp=NO_TIME)
@@ -54,11 +54,11 @@ def write_step(
         raise OSError(str(error)) from None
 
 
-def write_stl(assembly: Assembly, path: Path) -> None:
+def write_stl(parts: PrintedParts, path: Path) -> None:
     """Write all parts side by side on the plane z = 0, mm: the links in their order,
     then the pins, then the caps. Raises `OSError`."""
     corners = []
-    for solid in lay_out(make_parts(assembly)):
+    for solid in lay_out(parts):
         vertices, triangles = solid.tessellate(DEFLECTION, ANGLE)
         points = np.array([tuple(vertex) for vertex in vertices], dtype="<f4")
         corners.append(points[np.array(triangles)])
