@@ -19,7 +19,7 @@ from linkages.printing.solids import (
 __all__ = ["write_step", "write_stl"]
 
 PIN_COLOR = "#444444"
-NO_TIME = "2000-01-01T00:00:00"  # the same linkage gives the same file
+NO_TIME = "2000-01-01T00:00:00"  # the time of day is no part of a linkage
 DEFLECTION, ANGLE = 0.02, 0.2  # mm and rad: of facets from round surfaces
 SPACE = 4.0  # mm between parts that are laid out
 FACET = [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("unused", "<u2")]
