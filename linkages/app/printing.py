@@ -154,7 +154,7 @@ def describe_seating(seating: Seating) -> str:
         nearest = seating.nearest
         where = f"{np.degrees(nearest.s):.3f} deg along {nearest.form.name}"
         parts.append(
-            f"All parts keep {nearest.at_least:.3f} mm apart; nearest are "
+            f"Outside hinges parts keep {nearest.at_least:.3f} mm apart; nearest are "
             f"{_part_names(seating, nearest)}, {nearest.clearance:.3f} mm at {where}."
         )
     return "\n".join(parts)

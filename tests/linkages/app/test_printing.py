@@ -90,7 +90,7 @@ def test_parts_are_written_with_offsets_that_keep_them_apart_and_also_with_other
     result = export("bennett", "--to", out, "--offsets", "20.03,-12.42,24.67,-23.11")
     assert result.exit_code == ExitCode.DONE
     assert f"wrote {out}" in result.stderr
-    assert "All parts keep 0.3" in result.stdout
+    assert "Outside hinges parts keep 0.3" in result.stdout
     assert "link 41, link 12, cap" in result.stdout
     laid_out = out.read_bytes()
     assert int.from_bytes(laid_out[80:84], "little") * 50 + 84 == len(laid_out)
