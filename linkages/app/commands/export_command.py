@@ -15,6 +15,7 @@ from linkages.app.options import (
     search_options,
     verbose_option,
 )
+from linkages.app.print_options import PrintOptions, print_options
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["export_command"]
 
 MODEL, TABLE = ".glb", ".csv"
+LAID_OUT, ASSEMBLED = ".stl", ".step"
 FEWEST, MOST = 2, 100_000
 
 
@@ -34,7 +36,10 @@ FEWEST, MOST = 2, 100_000
     type=click.Path(path_type=Path, dir_okay=False),
     required=True,
     metavar="FILE",
-    help="The file: .glb is an animated model, .csv a table of joint angles (rad).",
+    help=(
+        "The file: .glb is an animated model, .csv a table of joint angles (rad), .stl "
+        "parts for a printer, laid out, .step the same parts assembled."
+    ),
 )
 @form_option
 @click.option(
@@ -50,8 +55,9 @@ FEWEST, MOST = 2, 100_000
     type=click.IntRange(FEWEST, MOST),
     default=361,
     show_default=True,
-    help="Configurations along each form or route.",
+    help="Configurations along each form or route, for .glb and .csv.",
 )
+@print_options
 @param_option
 @search_options
 @verbose_option
@@ -64,35 +70,111 @@ def export_command(
     parameters: tuple[str, ...],
     verbose: bool,
     search: SearchOptions,
+    printing: PrintOptions,
 ) -> None:
     """Write forms and routes of a linkage for other programs.
+
+    Printable parts are links, pins and caps, in mm. Hinges sit along their axes so
+    that no parts meet along the forms; a pin goes through the eyes of two links, and a
+    cap is glued or pressed on its end. STL has all parts side by side on the plane
+    z = 0, for a slicer to arrange; STEP has named solids where the first form begins.
 
     \b
     Examples:
       bifurc export bennett --to bennett.glb
       bifurc export altmann --form 1 --to altmann.csv --count 100
       bifurc export out/atlas.nc --route "Form I" "Bennett 4R" --to route.glb
+      bifurc export bennett --to bennett.stl --size 120 --diameter 8
     """
-    from bifurc.files.atomic import replace_file
     from linkages.app.atlas_source import loop_atlas_of
     from linkages.app.forms import require_forms
-    from linkages.app.output import require_ending, require_writable, writing_to
+    from linkages.app.output import require_ending, require_writable
     from linkages.app.status import say_more
     from linkages.app.verdict import exit_by, judge
 
     if verbose:
         say_more()
-    require_ending("--to", out, MODEL, TABLE)
+    require_ending("--to", out, MODEL, TABLE, LAID_OUT, ASSEMBLED)
+    is_printed = out.name.lower().endswith((LAID_OUT, ASSEMBLED))
+    if is_printed:
+        check_print_options(out, routes)
+    elif printing != PrintOptions():
+        raise CommandError(
+            "--diameter, --play, --wall, --size, --unit, --offsets: they have no effect "
+            f"on {out.name}, which is neither {LAID_OUT} nor {ASSEMBLED}"
+        )
     require_writable(out)
     atlas = loop_atlas_of(source, parameters, search)
     require_forms(atlas)
+    if is_printed:
+        export_parts(atlas, forms, printing, search.seed, out)
+    else:
+        export_motions(atlas, forms, routes, count, out)
+    exit_by(judge(atlas))
+
+
+def check_print_options(out: Path, routes: tuple[tuple[str, str], ...]) -> None:
+    """Raise `CommandError` where parts cannot be made, or not for routes."""
+    from linkages.app.printing import require_cad
+
+    if routes:
+        start, goal = routes[0]
+        raise CommandError(
+            f"--route {start!r} {goal!r}: it has no effect on {out.name}, whose parts "
+            "are kept apart along forms; name these with --form"
+        )
+    require_cad(out)
+
+
+def export_parts(
+    atlas: Atlas, texts: tuple[str, ...], printing: PrintOptions, seed: int, out: Path
+) -> None:
+    """Write printable parts; say where hinges sit and how near parts come.
+
+    Raises `CommandError` where parts meet: with offsets that were given after the file
+    is written, else without any.
+    """
+    from linkages.app.forms import choose_forms
+    from linkages.app.output import say, writing_to
+    from linkages.app.printing import (
+        describe_meetings,
+        describe_seating,
+        interference_error,
+        meetings_along,
+        seat_hinges,
+        write_parts,
+    )
+
+    forms = choose_forms(atlas, texts)
+    seating = seat_hinges(atlas, forms, printing, seed)
+    say(describe_seating(seating))
+    if not seating.is_apart:
+        say(describe_meetings(atlas, seating, meetings_along(seating, forms)))
+    if seating.is_apart or printing.offsets is not None:
+        with writing_to(out):
+            write_parts(atlas, forms[0], seating, out)
+        click.echo(f"wrote {out}", err=True)
+    if not seating.is_apart:
+        raise interference_error(seating, printing)
+
+
+def export_motions(
+    atlas: Atlas,
+    forms: tuple[str, ...],
+    routes: tuple[tuple[str, str], ...],
+    count: int,
+    out: Path,
+) -> None:
+    """Write the motions along forms and routes."""
+    from bifurc.files.atomic import replace_file
+    from linkages.app.output import writing_to
+
     motions = choose_motions(atlas, forms, routes, count)
     content = make_content(atlas, motions, out)
     with writing_to(out):
         replace_file(out, lambda part: part.write_bytes(content))
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
-    exit_by(judge(atlas))
 
 
 def choose_motions(
