@@ -11,6 +11,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
+from bifurc.diagrams.diagram import Diagram
 from bifurc.errors import ProblemError, RouteError
 from bifurc.html_tables import html_paragraph, html_table
 from bifurc.search.settings import SearchSettings
@@ -187,7 +188,8 @@ class Atlas:
     least, and without one the median relative residual that starts are left with; 0
     where there are forms or surfaces. ``provenance`` says
     how the atlas came about. ``subject`` says what was mapped, in values that JSON can
-    hold: whoever maps something more than equations defines it.
+    hold: whoever maps something more than equations defines it. ``diagram``: what
+    happens as a parameter changes, where one was named or events were asked for.
     """
 
     names: tuple[str, ...]
@@ -204,6 +206,7 @@ class Atlas:
     closure_gap: float = 0.0
     provenance: Provenance = field(default_factory=Provenance)
     subject: JsonObject = field(default_factory=dict)
+    diagram: Diagram | None = None
 
     # --- queries ----------------------------------------------------------------------
 
@@ -261,6 +264,7 @@ class Atlas:
         lines += _first([_point_line(self, p) for p in self.points], "singular points")
         lines += _first([_miss_line(self, e) for e in self.near_misses], "near misses")
         lines += _first([f"  {surface!r}" for surface in self.surfaces], "surfaces")
+        lines += _diagram_lines(self.diagram)
         lines.append(f"  completeness: {self.completeness.level}>")
         return "\n".join(lines)
 
@@ -350,6 +354,13 @@ def _point_line(atlas: Atlas, point: MeetingPoint) -> str:
 
 def _miss_line(atlas: Atlas, event: Event) -> str:
     return f"  near miss: {event.value:.4g} on {atlas.forms[event.form].name}"
+
+
+def _diagram_lines(diagram: Diagram | None) -> list[str]:
+    """Folds, Hopf points and events, a line each."""
+    if diagram is None:
+        return []
+    return _first([f"  {point!r}" for point in diagram.points], "points")
 
 
 def _course(branch: Branch) -> str:

@@ -679,4 +679,39 @@ is_closed_to_rounding = Decision(
     third_answer="on either side the arc is said to be not certified, and where",
 )
 
+# --- diagrams -------------------------------------------------------------------------
+
+is_on_axis = Decision(
+    "on the imaginary axis",
+    "an eigenvalue has no real part",
+    "size of its real part over the largest eigenvalue",
+    1e-12,
+    "rounding leaves 1e-15, times the condition of the eigenvalue; stiff equations have "
+    "eigenvalues down to 1e-9 of the largest",
+    third_answer="a stretch of a form on which most places show one is neutral, neither "
+    "stable nor unstable",
+)
+is_real_crossing = Decision(
+    "real crossing",
+    "the eigenvalue that crosses the imaginary axis is real, and there is no Hopf point",
+    "its imaginary part over the largest eigenvalue",
+    1e-7,
+    "two eigenvalues that meet on the real axis are exact to half the digits",
+)
+is_fold_of_crossing = Decision(
+    "turning branch",
+    "a parameter turns back at a crossing of branches, and not at a fold beside it",
+    "distance from the crossing over the scale, less the error of the crossing",
+    1e-6,
+    "both are exact to 1e-8 where they are one; a fold beside a crossing is as far from "
+    "it as its branch is bent",
+)
+is_event = Decision(
+    "event",
+    "a function takes the value where its difference to it changes sign",
+    "the difference there over the largest one next to it",
+    1e-6,
+    "next to a root it is rounding; at a pole it is larger than anywhere near",
+)
+
 TABLE = decisions_in(globals())

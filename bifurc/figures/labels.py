@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.figures.planes import Plane, copies_in_frame
 
-__all__ = ["label_points"]
+__all__ = ["label_points", "label_spots"]
 
 REACH = 11.0  # from a mark to its name
 REACH_FACTORS = (1.0, 1.5, 2.2)
@@ -22,6 +23,7 @@ DIRECTIONS = [
 ]
 MARK_HALF = np.full(2, 3.5)  # half the sides of what a mark covers
 SPACING = 3.0  # of points on a line by which it is seen what a name covers
+SAME_MARK = 2.0  # pixels: marks that are closer share a name
 SAME_SPOT = 0.01  # of the frame: points that are closer share a name
 
 # What a name costs in a place, over one point of a curve that it covers.
@@ -89,16 +91,41 @@ class _Label(NamedTuple):
 def label_points(axes: Axes, atlas: Atlas, plane: Plane) -> None:
     """Names beside the singular points, one label for those on one spot, where curves
     and other names leave room."""
+    labels = _labels(atlas, plane)
+    marks = [
+        copy for label in labels for copy in copies_in_frame(label.spot, plane.scales)
+    ]
+    _draw_labels(axes, labels, marks)
+
+
+def label_spots(axes: Axes, names: Sequence[str], spots: Sequence[np.ndarray]) -> None:
+    """Names beside marks on ``spots`` (2,), where curves and other names leave room;
+    marks on one spot share a name."""
+    labels: list[_Label] = []
+    for name, spot in zip(names, spots, strict=True):
+        place = _on_page(axes, spot, 1.0)
+        for k, label in enumerate(labels):
+            gap = place - _on_page(axes, label.spot, 1.0)
+            if np.abs(gap).max() < SAME_MARK:
+                labels[k] = _Label(f"{label.text}, {name}", label.spot)
+                break
+        else:
+            labels.append(_Label(name, spot))
+    _draw_labels(axes, labels, spots)
+
+
+def _draw_labels(
+    axes: Axes, labels: Sequence[_Label], marks: Sequence[np.ndarray]
+) -> None:
+    """Names beside the marks on spots (2,) of the plane."""
     figure = axes.figure.get_figure(root=True)
     assert figure is not None
     axes.apply_aspect()  # its place and its limits are now what they will be
     axes.autoscale_view()
     scale = 72.0 / figure.dpi
-    labels = _labels(atlas, plane)
     page = _page(axes, scale)
-    for label in labels:
-        for copy in copies_in_frame(label.spot, plane.scales):
-            page.boxes.append(_Box(_on_page(axes, copy, scale), MARK_HALF))
+    for spot in marks:
+        page.boxes.append(_Box(_on_page(axes, spot, scale), MARK_HALF))
     for label in labels:
         mark = _on_page(axes, label.spot, scale)
         half = np.array([2.8 * len(label.text) + 1, 4.5])

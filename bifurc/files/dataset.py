@@ -17,8 +17,17 @@ import numpy as np
 from bifurc.atlas import Atlas, Provenance
 from bifurc.checks import check_type
 from bifurc.curves.continuation import TraceSettings
+from bifurc.diagrams.diagram import Diagram
 from bifurc.files.atomic import replace_file
 from bifurc.files.checksum import checksum
+from bifurc.files.diagram_layout import (
+    BRANCHINGS,
+    DIAGRAM_POINTS,
+    STRETCHES,
+    read_branching,
+    read_diagram_point,
+    read_stretch,
+)
 from bifurc.files.errors import AtlasFileError
 from bifurc.files.faults import missing_variables, table_faults
 from bifurc.files.form_layout import FORMS, read_form
@@ -52,7 +61,7 @@ if TYPE_CHECKING:
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
 FORMAT = "bifurc atlas"
-FORMAT_VERSION = 5
+FORMAT_VERSION = 6
 CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 
@@ -65,6 +74,8 @@ NEEDED_ATTRIBUTES = (
     "missed_probability",
     "provenance",
     "subject",
+    "has_diagram",
+    "parameter",
 )
 
 # --- files ----------------------------------------------------------------------------
@@ -206,6 +217,8 @@ def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
         "provenance": to_text(asdict(provenance)),
         "subject": to_text(dict(atlas.subject)),
         **_subject_attributes(atlas),
+        "has_diagram": int(atlas.diagram is not None),
+        "parameter": atlas.diagram.parameter if atlas.diagram else "",
     }
 
 
@@ -316,6 +329,18 @@ def _make_atlas(dataset: xr.Dataset, frame: Frame) -> Atlas:
         closure_gap=float(attributes["closure_gap"]),
         provenance=_read_provenance(str(attributes["provenance"])),
         subject=mapping_from_text(str(attributes["subject"])),
+        diagram=_read_diagram(dataset, frame),
+    )
+
+
+def _read_diagram(dataset: xr.Dataset, frame: Frame) -> Diagram | None:
+    if not int(dataset.attrs["has_diagram"]):
+        return None
+    return Diagram(
+        parameter=str(dataset.attrs["parameter"]),
+        points=tuple(map(read_diagram_point, DIAGRAM_POINTS.rows(dataset, frame))),
+        stretches=tuple(map(read_stretch, STRETCHES.rows(dataset, frame))),
+        branchings=tuple(map(read_branching, BRANCHINGS.rows(dataset, frame))),
     )
 
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Provenance
 from bifurc.checks import check_callable, check_type
+from bifurc.diagrams.events import EventRequests, events_of
+from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
@@ -33,6 +36,8 @@ def explore(
     seed: int = 0,
     seeds: Seeds | None = None,
     progress: Callable[[str, int], None] | None = None,
+    parameter: str | None = None,
+    events: EventRequests | None = None,
 ) -> Atlas:
     """All solution curves of a problem, all singular points on them, nothing twice.
 
@@ -42,7 +47,9 @@ def explore(
     become further starts. ``progress`` is called with what was found and how many.
     Ctrl-C ends the search early: the atlas holds what was found, and its provenance
     says so. When the budget of time is used up, the completeness and the provenance say
-    so. Raises `ProblemError` for settings or a seed that cannot be used.
+    so. With a ``parameter``, the name of an unknown, or ``events``, functions of the
+    unknowns, the atlas holds a diagram; see `diagram_of`. Raises `ProblemError` for
+    settings or a seed that cannot be used.
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, SearchSettings)
@@ -57,6 +64,9 @@ def explore(
         raise ProblemError(
             "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
         )
+    if parameter is not None:
+        parameter_index(problem.names, parameter)
+    events_of({} if events is None else events, problem.names)
     began = time.perf_counter()
     search = Search(problem, settings, progress)
     interrupted = False
@@ -80,4 +90,7 @@ def explore(
         equations=problem.equations,
         seconds=time.perf_counter() - began,
     )
-    return assemble_atlas(problem, search.findings, provenance)
+    atlas = assemble_atlas(problem, search.findings, provenance)
+    if parameter is None and not events:
+        return atlas
+    return replace(atlas, diagram=diagram_of(problem, atlas, parameter, events))

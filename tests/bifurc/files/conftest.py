@@ -9,6 +9,15 @@ import numpy as np
 import pytest
 
 from bifurc.atlas import Atlas, Event, NearMotion, Surface
+from bifurc.diagrams.diagram import (
+    Branching,
+    BranchingKind,
+    Diagram,
+    DiagramPoint,
+    PointKind,
+    Stability,
+    Stretch,
+)
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
@@ -85,6 +94,22 @@ def atlas() -> Atlas:
         ),
         subject=linkage,
         near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5, error=1e-20),),
+        diagram=Diagram(
+            "y",
+            (
+                DiagramPoint(
+                    "F1", PointKind.FOLD, 1, 1 / 3, np.array([0.1, -0.0]), 7.0
+                ),
+                DiagramPoint(
+                    "E1", PointKind.EVENT, 0, 0.0, np.zeros(2), -1e-300, "a name"
+                ),
+            ),
+            (
+                Stretch(0, 0.0, 2 / 3, Stability.UNSTABLE, 2),
+                Stretch(1, 0.1, 7.0, Stability.UNKNOWN, -1),
+            ),
+            (Branching(1, BranchingKind.SUBCRITICAL),),
+        ),
         dead_points=(
             Event(0, 2 / 3, np.array([0.3, -0.0]), index=1),
             Event(1, 0.0, np.zeros(2), index=0),

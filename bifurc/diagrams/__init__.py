@@ -1,0 +1,1 @@
+"""An atlas seen along one of its unknowns, the parameter."""

@@ -1,0 +1,82 @@
+"""How branches cross at a singular point, seen along a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.curves.monitor import largest_rates
+from bifurc.decisions import stands_still
+from bifurc.diagrams.diagram import BranchingKind, Stretch
+from bifurc.singular.point import Kind
+
+__all__ = ["TurningPass", "branching_kind"]
+
+SAME_CUT = 1e-12  # of a length: a stretch ends at the very arclength of a pass
+
+
+class TurningPass(NamedTuple):
+    """A pass of form number ``form`` at arclength ``s`` at which the parameter turns
+    back; ``bend`` is its second derivative in the arclength."""
+
+    form: int
+    s: float
+    bend: float
+
+
+def branching_kind(
+    atlas: Atlas,
+    parameter: int,
+    point: MeetingPoint,
+    turning: Sequence[TurningPass],
+    stretches: Sequence[Stretch],
+) -> BranchingKind | None:
+    """What a singular point is along the parameter; None where no branches cross.
+
+    ``turning`` are those of its passes at which the parameter turns back, ``stretches``
+    those of all forms.
+    """
+    if point.kind is not Kind.BIFURCATION:
+        return None
+    if len(point.passes) != 2 or len(turning) > 1:
+        return BranchingKind.OTHER
+    if not turning:
+        stands = [_stands_still(atlas, parameter, *one) for one in point.passes]
+        return BranchingKind.OTHER if any(stands) else BranchingKind.TRANSCRITICAL
+    branch = turning[0]
+    trunk = next(one for one in point.passes if one != (branch.form, branch.s))
+    beside = _unstable_beside(stretches, branch.form, branch.s, 1.0)
+    rises = float(atlas.forms[trunk[0]].branch(trunk[1], 1)[parameter])
+    side = 1.0 if rises * branch.bend > 0 else -1.0
+    on_trunk = _unstable_beside(stretches, *trunk, side)
+    if min(beside, on_trunk) < 0 or beside == on_trunk:
+        return BranchingKind.PITCHFORK
+    if beside < on_trunk:
+        return BranchingKind.SUPERCRITICAL
+    return BranchingKind.SUBCRITICAL
+
+
+def _stands_still(atlas: Atlas, parameter: int, form: int, s: float) -> bool:
+    """Whether a form goes along a singular point with the parameter at rest."""
+    branch = atlas.forms[form].branch
+    here = abs(float(branch(s, 1)[parameter]))
+    return stands_still(here, float(largest_rates(branch)[parameter]))
+
+
+def _unstable_beside(
+    stretches: Sequence[Stretch], form: int, s: float, side: float
+) -> int:
+    """The number of unstable eigenvalues on a form next to ``s``, before or after it by
+    the sign ``side``; -1 where it is not known."""
+    own = [stretch for stretch in stretches if stretch.form == form]
+    if not own:
+        return -1
+    first = own[0].start
+    length = own[-1].end - first
+    for stretch in own:
+        here = stretch.start if side > 0 else stretch.end
+        gap = abs(here - s)
+        if min(gap, abs(gap - length)) <= SAME_CUT * max(length, 1.0):
+            return stretch.unstable
+    return -1

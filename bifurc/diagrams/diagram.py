@@ -1,0 +1,159 @@
+"""A bifurcation diagram as data: what happens along the forms as a parameter changes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+__all__ = [
+    "Branching",
+    "BranchingKind",
+    "Diagram",
+    "DiagramPoint",
+    "PointKind",
+    "Stability",
+    "Stretch",
+]
+
+
+class PointKind(Enum):
+    """What happens at one arclength of a form."""
+
+    # The parameter turns back: a limit point.
+    FOLD = "fold"
+    # A pair of eigenvalues crosses the imaginary axis.
+    HOPF = "Hopf point"
+    # A function of the user's takes a value.
+    EVENT = "event"
+
+
+class BranchingKind(Enum):
+    """How branches cross, seen along the parameter."""
+
+    # Both go on to either side.
+    TRANSCRITICAL = "transcritical"
+    # One of them turns back. Whether it is stable where the other is not, is not known.
+    PITCHFORK = "pitchfork"
+    # The one that turns back has fewer unstable directions than the other beside it.
+    SUPERCRITICAL = "supercritical pitchfork"
+    # It has more of them.
+    SUBCRITICAL = "subcritical pitchfork"
+    # More than two branches, or one that stands still without turning back.
+    OTHER = "branch point"
+
+
+class Stability(Enum):
+    """Stability of the equilibria of u' = F(u)."""
+
+    # All eigenvalues have negative real parts.
+    STABLE = "stable"
+    # Some have positive real parts.
+    UNSTABLE = "unstable"
+    # None is positive, and some lie on the imaginary axis all along.
+    NEUTRAL = "neutral"
+    # There are not as many equations as unknowns besides the parameter.
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, eq=False)
+class DiagramPoint:
+    """A fold, a Hopf point or an event at arclength ``s`` of a form, ``u`` (n,) there.
+
+    ``label`` is the name of the event, empty for the others. ``value`` is the second
+    derivative of the parameter in the arclength at a fold, the angular frequency at a
+    Hopf point, and the value that the function takes at an event.
+    """
+
+    name: str
+    kind: PointKind
+    form: int
+    s: float
+    u: np.ndarray
+    value: float
+    label: str = ""
+
+    def __repr__(self) -> str:
+        what = f"{self.kind.value} {self.label}".rstrip()
+        place = f"form {self.form} at s = {self.s:.6g}"
+        return (
+            f"<DiagramPoint {self.name!r}: {what} on {place}, value {self.value:.6g}>"
+        )
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Part of a form along which the stability does not change, from arclength
+    ``start`` to ``end``, which may exceed the length of a closed form.
+
+    ``unstable`` is the number of eigenvalues with positive real part, -1 where it is
+    not known.
+    """
+
+    form: int
+    start: float
+    end: float
+    stability: Stability
+    unstable: int
+
+
+@dataclass(frozen=True)
+class Branching:
+    """What singular point number ``point`` of the atlas is along the parameter."""
+
+    point: int
+    kind: BranchingKind
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """What happens along the forms of an atlas as a ``parameter`` changes.
+
+    ``parameter`` is the name of an unknown, empty where there is none but events were
+    asked for. ``points`` are folds, Hopf points and events, ``stretches`` cover all
+    forms, ``branchings`` are the singular points at which forms cross.
+    """
+
+    parameter: str
+    points: tuple[DiagramPoint, ...]
+    stretches: tuple[Stretch, ...]
+    branchings: tuple[Branching, ...]
+
+    @property
+    def folds(self) -> tuple[DiagramPoint, ...]:
+        """The points where the parameter turns back."""
+        return tuple(p for p in self.points if p.kind is PointKind.FOLD)
+
+    @property
+    def hopf_points(self) -> tuple[DiagramPoint, ...]:
+        """The points where a pair of eigenvalues crosses the imaginary axis."""
+        return tuple(p for p in self.points if p.kind is PointKind.HOPF)
+
+    def events(self, label: str = "") -> tuple[DiagramPoint, ...]:
+        """The events called ``label``, or all of them."""
+        events = [p for p in self.points if p.kind is PointKind.EVENT]
+        return tuple(p for p in events if label in ("", p.label))
+
+    def stretch_at(self, form: int, s: float) -> Stretch | None:
+        """The stretch of a form, given by its index, on which arclength ``s`` lies."""
+        own = [stretch for stretch in self.stretches if stretch.form == form]
+        length = max((one.end for one in own), default=0.0)
+        length -= min((one.start for one in own), default=0.0)
+        for stretch in own:
+            if any(
+                stretch.start <= place <= stretch.end
+                for place in (s, s + length, s - length)
+            ):
+                return stretch
+        return None
+
+    def __repr__(self) -> str:
+        counts = {
+            "folds": len(self.folds),
+            "Hopf points": len(self.hopf_points),
+            "events": len(self.events()),
+            "branchings": len(self.branchings),
+        }
+        words = ", ".join(f"{count} {noun}" for noun, count in counts.items())
+        return f"<Diagram in {self.parameter or 'no parameter'!r}: {words}>"

@@ -1,0 +1,88 @@
+"""What an axis of a diagram shows: an unknown, a norm, or a function of the unknowns."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from bifurc.atlas import Atlas
+from bifurc.errors import ProblemError
+
+__all__ = ["AxisRequest", "Quantity", "quantity_of"]
+
+AxisRequest: TypeAlias = "str | Callable[[np.ndarray], float]"
+NORM = "|u|"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number for every point, with the ``label`` of its axis; ``period`` is where it
+    begins again, inf where it does not."""
+
+    label: str
+    function: Callable[[np.ndarray], np.ndarray]
+    period: float = np.inf
+
+    def values(self, points: np.ndarray) -> np.ndarray:
+        """Values (k,) at points (k, n)."""
+        values = self.function(points)
+        if np.isfinite(self.period):
+            values = values - self.period * np.round(values / self.period)
+        return values
+
+
+def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
+    """What an axis shows.
+
+    ``request`` is the name of an unknown, its name between bars for its size, "|u|" for
+    the Euclidean norm of all unknowns but the parameter, or a function of the unknowns
+    (n,). Raises `ProblemError` for anything else.
+    """
+    if callable(request):
+        label = getattr(request, "__name__", "function")
+        return Quantity(label, _each(request))
+    names = list(atlas.names)
+    if request in names:
+        index = names.index(request)
+        label = _with_unit(atlas, index)
+        return Quantity(label, lambda points: points[:, index], _period(atlas, index))
+    inner = request[1:-1] if isinstance(request, str) else ""
+    if isinstance(request, str) and request == f"|{inner}|" and inner in names:
+        index = names.index(inner)
+        return Quantity(f"|{inner}|", lambda points: np.abs(points[:, index]))
+    if request == NORM:
+        parameter = atlas.diagram.parameter if atlas.diagram else ""
+        rest = [i for i, name in enumerate(names) if name != parameter]
+        return Quantity(NORM, lambda points: np.linalg.norm(points[:, rest], axis=1))
+    near = difflib.get_close_matches(str(request), names, n=1)
+    hint = f" (the nearest is {near[0]})" if near else ""
+    allowed = f"{NORM}, a function, or one of the unknowns {', '.join(names)}{hint}"
+    raise ProblemError("axis", repr(request), allowed)
+
+
+def _each(
+    function: Callable[[np.ndarray], float],
+) -> Callable[[np.ndarray], np.ndarray]:
+    """The function of many points (k, n) that one of a point (n,) makes."""
+    return lambda points: np.array([float(function(point)) for point in points])
+
+
+def _with_unit(atlas: Atlas, index: int) -> str:
+    name, unit = atlas.names[index], atlas.units[index]
+    return f"{name} ({unit})" if unit else name
+
+
+def _period(atlas: Atlas, index: int) -> float:
+    """The period of an unknown; inf where all forms lie within one."""
+    period = float(atlas.periods[index])
+    if not np.isfinite(period):
+        return period
+    ends = [form.branch.sample(64)[:, index] for form in atlas.forms]
+    if not ends:
+        return np.inf
+    values = np.concatenate(ends)
+    return period if np.ptp(values) > period else np.inf
