@@ -679,6 +679,16 @@ is_closed_to_rounding = Decision(
     third_answer="on either side the arc is said to be not certified, and where",
 )
 
+is_whole_circle = Decision(
+    "whole circle",
+    "the bounds of an unknown with a period hold its whole circle, and limit nothing",
+    "what the bounds are less than one period apart, over the period",
+    1e-6,
+    "a full turn is written with 7 digits or more; a limit leaves a visible part "
+    "of it out",
+    Role.CONVENTION,
+)
+
 # --- diagrams -------------------------------------------------------------------------
 
 is_on_axis = Decision(
@@ -712,6 +722,14 @@ is_event = Decision(
     "the difference there over the largest one next to it",
     1e-6,
     "next to a root it is rounding; at a pole it is larger than anywhere near",
+)
+
+is_event_all_along = Decision(
+    "event all along",
+    "a function has its value everywhere on a form, and there is no event",
+    "the largest difference on the form over the largest a tenth of the scale off it",
+    1e-9,
+    "forms are followed to 1e-13 of the scale",
 )
 
 TABLE = decisions_in(globals())

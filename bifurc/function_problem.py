@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc.checks import check_callable, floats_of
+from bifurc.decisions import is_whole_circle
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
@@ -104,7 +105,9 @@ class FunctionProblem(NumericalProblem):
     central differences. ``derivatives`` says which.
 
     ``bounds`` (n, 2) is the region from which `explore` draws starts and in which
-    curves are followed. Raises `ProblemError` for bounds out of order, for a function
+    curves are followed. An unknown with a period among the ``periods`` (n,) is a circle
+    where its bounds are one period or more apart, or infinite; bounds that are closer
+    are limits on the circle. Raises `ProblemError` for bounds out of order, for a function
     that gives no finite vector, and for a ``jacobian`` that is not its derivative.
     """
 
@@ -153,15 +156,18 @@ class FunctionProblem(NumericalProblem):
         if periods is not None:
             self.periods = floats_of("periods", periods)
         self._check_lengths(n)
+        self.bounds = _without_limits_of_circles(self.bounds, self.periods)
         low, high = self._finite_bounds
         self.scale = float(np.median(high - low)) / 4.0
 
     @property
     def _finite_bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper ends (n,), from -1 to 1 where the bounds are infinite."""
+        """Lower and upper ends (n,); where the bounds are infinite, half a period about
+        0, or from -1 to 1."""
         low, high = self.bounds.T
-        low = np.where(np.isfinite(low), low, -1.0)
-        return low, np.where(np.isfinite(high), high, 1.0)
+        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, 1.0)
+        low = np.where(np.isfinite(low), low, -half)
+        return low, np.where(np.isfinite(high), high, half)
 
     def _random_points(self) -> np.ndarray:
         """Points (k, n) within the bounds at which the equations are looked at."""
@@ -408,6 +414,16 @@ def _checked_bounds(bounds: Sequence[Sequence[float]]) -> np.ndarray:
     if not np.all(low < high):
         raise ProblemError("bounds", checked.tolist(), allowed)
     return checked
+
+
+def _without_limits_of_circles(bounds: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """The bounds (n, 2), infinite for unknowns that may go all round their circle."""
+    low, high = bounds.T
+    periodic = np.isfinite(periods)
+    missing = np.where(periodic, periods - (high - low), np.inf)
+    unit = np.where(periodic, periods, 1.0)
+    is_circle = periodic & is_whole_circle(missing, unit)
+    return np.where(is_circle[:, None], [-np.inf, np.inf], bounds)
 
 
 def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:

@@ -19,12 +19,13 @@ CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 def random_seeds(problem: Problem, rng: np.random.Generator, count: int) -> Seeds:
     """Solutions reached from ``count`` random starts.
 
-    Periodic unknowns are drawn from their period, the others from the bounds (from
-    -scale to scale where these are infinite).
+    Unknowns are drawn from the bounds; where these are infinite, from the period, or
+    from -scale to scale.
     """
     low, high = _region(problem)
     starts = rng.uniform(low, high, (count, problem.n))
     points, gaps = problem.project(starts)
+    points = _next_to_bounds(problem, points)
     lowest, highest = problem.bounds.T
     is_inside = np.all((points >= lowest) & (points <= highest), axis=1)
     is_taken = is_start_solved(gaps) & is_inside
@@ -40,13 +41,25 @@ def random_seeds(problem: Problem, rng: np.random.Generator, count: int) -> Seed
 def _region(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper ends (n,) of the box from which starts are drawn."""
     low, high = problem.bounds.T
-    low = np.where(np.isfinite(low), low, -problem.scale)
-    high = np.where(np.isfinite(high), high, problem.scale)
     periodic = np.isfinite(problem.periods)
-    half = 0.5 * problem.periods
-    low = np.where(periodic, -half, low)
-    high = np.where(periodic, half, high)
+    half = np.where(periodic, 0.5 * problem.periods, problem.scale)
+    low = np.where(np.isfinite(low), low, -half)
+    high = np.where(np.isfinite(high), high, half)
     return low, high
+
+
+def _next_to_bounds(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Points (k, n) with unknowns that have a period and bounds within half a period of
+    the middle of these."""
+    has_bounds = np.isfinite(problem.bounds).all(axis=1)
+    is_limited = np.isfinite(problem.periods) & has_bounds
+    if not np.any(is_limited):
+        return points
+    out = points.copy()
+    period = problem.periods[is_limited]
+    beside = out[:, is_limited] - problem.bounds[is_limited].mean(axis=1)
+    out[:, is_limited] -= period * np.round(beside / period)
+    return out
 
 
 def missed_probability(hits: Sequence[int]) -> float:

@@ -11,12 +11,13 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.checks import check_callable, check_finite, check_type, floats_of
 from bifurc.curves.monitor import NODES
-from bifurc.decisions import is_event
+from bifurc.decisions import is_event, is_event_all_along
 from bifurc.errors import ProblemError
 from bifurc.numerics.roots import bracketed_roots
 
 __all__ = ["EventFunction", "EventRequests", "event_places", "events_of"]
 
+SAMPLES, BESIDE = 16, 0.1  # places on a branch, so far, over the scale, off it
 UnknownsToNumber: TypeAlias = Callable[[np.ndarray], float]
 # By their names: a function whose zeros are looked for, or a function and what it shall
 # be equal to, one value or several. In place of a function the name of an unknown.
@@ -83,21 +84,38 @@ def _function_of(
     return cast(UnknownsToNumber, function)
 
 
-def event_places(branch: Branch, event: EventFunction) -> np.ndarray:
+def event_places(branch: Branch, event: EventFunction, scale: float) -> np.ndarray:
     """Arclengths, in order, at which a function passes its value, or takes it at a
-    place that is looked at. Where it jumps, as at a pole, there is none."""
+    place that is looked at; ``scale`` is that of the unknowns.
+
+    There are none where it jumps, as at a pole, and on a branch along which it has the
+    value everywhere.
+    """
     nodes = branch.places(NODES).ravel()
     s = np.concatenate([[0.0], nodes, [branch.length]])
     values = event.differences(branch(s))
-    at_once = s[values == 0.0]
+    beside = _size_beside(branch, event, scale)
+    if is_event_all_along(float(np.abs(values).max()), beside):
+        return np.empty(0)
+    at_once: np.ndarray = s[values == 0.0]
     if branch.closed:
         at_once = at_once[at_once < branch.length]
     (changing,) = np.nonzero(values[:-1] * values[1:] < 0)
+    if not len(changing):
+        return at_once
     low, high = s[changing], s[changing + 1]
-    roots = at_once[:0]
-    if len(changing):
-        roots = bracketed_roots(lambda x: event.differences(branch(x)), low, high)
-        beside = np.maximum(np.abs(values[changing]), np.abs(values[changing + 1]))
-        left = np.abs(event.differences(branch(roots)))
-        roots = roots[is_event(left, beside)]
-    return np.sort(np.concatenate([at_once, roots]))
+    roots = bracketed_roots(lambda x: event.differences(branch(x)), low, high)
+    ends = np.maximum(np.abs(values[changing]), np.abs(values[changing + 1]))
+    left = np.abs(event.differences(branch(roots)))
+    places: np.ndarray = np.sort(np.concatenate([at_once, roots[is_event(left, ends)]]))
+    return places
+
+
+def _size_beside(branch: Branch, event: EventFunction, scale: float) -> float:
+    """How large the difference of a function to its value is a little way off a
+    branch."""
+    rng = np.random.default_rng(0)
+    points = branch.sample(SAMPLES)
+    points = points + BESIDE * scale * rng.uniform(-1.0, 1.0, points.shape)
+    values = np.abs(event.differences(points))
+    return float(values[np.isfinite(values)].max(initial=0.0))

@@ -41,12 +41,15 @@ def diagram_of(
     atlas: Atlas,
     parameter: str | None = None,
     events: EventRequests | None = None,
+    *,
+    is_flow: bool = True,
 ) -> Diagram:
     """What happens along the forms of an atlas of a problem as a parameter changes.
 
     ``parameter`` is the name of an unknown. Where there are as many equations as other
     unknowns, they are taken as the right-hand sides of u' = F(u), the first for the
-    first of the others, and so on. ``events`` are functions of the unknowns (n,) by
+    first of the others, and so on; with ``is_flow`` False they are not, and there is no
+    stability. ``events`` are functions of the unknowns (n,) by
     their names, of which the zeros are looked for; with (function, value) the places
     where it takes the value, or each of several. The name of an unknown may stand for a
     function. Raises `ProblemError` for a parameter that is no unknown, and for events
@@ -54,24 +57,17 @@ def diagram_of(
     """
     check_type("problem", problem, Problem)
     check_type("atlas", atlas, Atlas)
+    check_type("is_flow", is_flow, bool)
     functions = events_of({} if events is None else events, problem.names)
-    found = [place for event in functions for place in _event_points(atlas, event)]
+    found = [
+        place for event in functions for place in _event_points(problem, atlas, event)
+    ]
     if parameter is None:
         return Diagram("", _named(problem, found), (), ())
     index = parameter_index(problem.names, parameter)
-    turnings = [event for event in atlas.dead_points if event.index == index]
-    at_crossings: dict[int, list[TurningPass]] = {}
-    folds = []
-    for event in turnings:
-        crossing = _crossing_at(problem, atlas, event)
-        bend = float(atlas.forms[event.form].branch(event.s, 2)[index])
-        if crossing is None:
-            fold = DiagramPoint("", PointKind.FOLD, event.form, event.s, event.u, bend)
-            folds.append(fold)
-        else:
-            passing = TurningPass(event.form, crossing.s, bend)
-            at_crossings.setdefault(crossing.point, []).append(passing)
-    along = _stability(problem, atlas, index, folds)
+    folds, at_crossings = _turnings(problem, atlas, index)
+    has_stability = is_flow and bool(atlas.forms) and has_square_rest(problem)
+    along = _stability(problem, atlas, index, folds, has_stability)
     hopf_points = [
         _hopf_point(atlas, form, place)
         for form, one in enumerate(along)
@@ -99,6 +95,31 @@ def parameter_index(names: Sequence[str], parameter: object) -> int:
     return list(names).index(str(parameter))
 
 
+class _Turnings(NamedTuple):
+    """Where a parameter turns back: ``folds``, and passes of singular points by the
+    numbers of these."""
+
+    folds: list[DiagramPoint]
+    at_crossings: dict[int, list[TurningPass]]
+
+
+def _turnings(problem: Problem, atlas: Atlas, index: int) -> _Turnings:
+    """Where the unknown number ``index`` turns back."""
+    turnings = _Turnings([], {})
+    for event in atlas.dead_points:
+        if event.index != index:
+            continue
+        crossing = _crossing_at(problem, atlas, event)
+        bend = float(atlas.forms[event.form].branch(event.s, 2)[index])
+        if crossing is None:
+            fold = DiagramPoint("", PointKind.FOLD, event.form, event.s, event.u, bend)
+            turnings.folds.append(fold)
+        else:
+            passing = TurningPass(event.form, crossing.s, bend)
+            turnings.at_crossings.setdefault(crossing.point, []).append(passing)
+    return turnings
+
+
 class _Crossing(NamedTuple):
     """Singular point number ``point``, passed at arclength ``s``."""
 
@@ -122,10 +143,13 @@ def _crossing_at(problem: Problem, atlas: Atlas, event: Event) -> _Crossing | No
 
 
 def _stability(
-    problem: Problem, atlas: Atlas, index: int, folds: Sequence[DiagramPoint]
+    problem: Problem,
+    atlas: Atlas,
+    index: int,
+    folds: Sequence[DiagramPoint],
+    is_known: bool,
 ) -> list[FormStability]:
     """The stretches and Hopf points of every form."""
-    is_known = bool(atlas.forms) and has_square_rest(problem)
     along = []
     for number, form in enumerate(atlas.forms):
         cuts = [fold.s for fold in folds if fold.form == number]
@@ -145,12 +169,14 @@ def _hopf_point(atlas: Atlas, form: int, place: HopfPlace) -> DiagramPoint:
     return DiagramPoint("", PointKind.HOPF, form, s, branch(s), place.frequency)
 
 
-def _event_points(atlas: Atlas, event: EventFunction) -> list[DiagramPoint]:
+def _event_points(
+    problem: Problem, atlas: Atlas, event: EventFunction
+) -> list[DiagramPoint]:
     """The places on all forms where a function takes its value."""
     points = []
     for number, form in enumerate(atlas.forms):
         branch = form.branch
-        for s in event_places(branch, event).tolist():
+        for s in event_places(branch, event, problem.scale).tolist():
             u, value = branch(s), event.value
             point = DiagramPoint("", PointKind.EVENT, number, s, u, value, event.label)
             points.append(point)

@@ -17,7 +17,7 @@ from bifurc.function_problem import PROBES, FunctionProblem
 if TYPE_CHECKING:
     from bifurc.problem import PreciseResidual
 
-__all__ = ["SymbolicProblem"]
+__all__ = ["SymbolicFunction", "SymbolicProblem"]
 
 # of one number, by their names in sympy
 _RECIPROCALS = {
@@ -65,6 +65,24 @@ class SymbolicProblem(FunctionProblem):
         function = sympy.lambdify([self.unknowns], self.expressions, modules="mpmath")
         residual: PreciseResidual = function
         return residual
+
+
+@dataclass(frozen=True)
+class SymbolicFunction:
+    """A function of unknowns (n,), from a tape with one output."""
+
+    tape: Tape
+
+    @staticmethod
+    def of(
+        expression: sympy.Expr, unknowns: Sequence[sympy.Symbol]
+    ) -> SymbolicFunction:
+        """The function that a sympy expression is; raises `ProblemError`."""
+        return SymbolicFunction(_tape_of([expression], unknowns))
+
+    def __call__(self, point: np.ndarray) -> float:
+        row = np.ascontiguousarray(point, dtype=float)[None]
+        return float(self.tape.compiled.residuals(row)[0, 0])
 
 
 @dataclass(frozen=True)

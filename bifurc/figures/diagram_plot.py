@@ -3,7 +3,7 @@ dashed, and marks where something happens."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.diagrams.diagram import PointKind, Stability, Stretch
-from bifurc.figures.drawing import note_emptiness
+from bifurc.diagrams.diagram import BranchingKind, PointKind, Stability, Stretch
+from bifurc.figures.drawing import note_emptiness, widen_flat_axes
 from bifurc.figures.labels import label_spots
 from bifurc.figures.quantities import AxisRequest, Quantity, quantity_of
 from bifurc.figures.style import COLORS, RC, Dashes
@@ -34,12 +34,23 @@ DASHES: dict[Stability, Dashes] = {
 EVENT_SYMBOLS = ("x", "+", "*", "P", "v", "1")
 
 
+# insides of the marks of crossings
+FILLS = {
+    BranchingKind.SUPERCRITICAL: "white",
+    BranchingKind.SUBCRITICAL: "black",
+    BranchingKind.PITCHFORK: "0.6",
+    BranchingKind.TRANSCRITICAL: "0.85",
+}
+
+
 class _Mark(NamedTuple):
-    """A symbol of matplotlib for the points of one ``label`` in the legend."""
+    """A symbol of matplotlib for the points of one ``label`` in the legend, and the
+    colours of its ``edge`` and its inside."""
 
     label: str
     symbol: str
-    color: str
+    edge: str = "black"
+    fill: str = "white"
 
 
 def plot_diagram(
@@ -70,6 +81,7 @@ def plot_diagram(
         axes.set_ylabel(y.label)
         axes.grid(True)
         axes.margins(0.04)
+        widen_flat_axes(axes, atlas)
         _draw_legend(figure, atlas, stabilities, marks)
         note_emptiness(axes, atlas)
         marked = _marked(atlas)
@@ -134,19 +146,21 @@ def _draw_marks(axes: Axes, atlas: Atlas, x: Quantity, y: Quantity) -> list[_Mar
     for _, mark, point in _marked(atlas):
         drawn[mark.label] = mark
         spot = _spot(point, x, y)
-        is_line = mark.symbol in EVENT_SYMBOLS
-        axes.plot(
-            spot[0],
-            spot[1],
-            marker=mark.symbol,
-            color=mark.color,
-            markerfacecolor=mark.color if is_line else "white",
-            markersize=6.0,
-            markeredgewidth=1.3,
-            linestyle="none",
-            zorder=5,
-        )
+        axes.plot(spot[0], spot[1], zorder=5, **_properties(mark))
     return list(drawn.values())
+
+
+def _properties(mark: _Mark) -> dict[str, Any]:
+    """How a line of one point is drawn as a mark."""
+    return {
+        "marker": mark.symbol,
+        "color": mark.edge,
+        "markerfacecolor": mark.fill,
+        "markeredgecolor": mark.edge,
+        "markersize": 6.0,
+        "markeredgewidth": 1.3,
+        "linestyle": "none",
+    }
 
 
 def _spot(point: np.ndarray, x: Quantity, y: Quantity) -> np.ndarray:
@@ -159,27 +173,30 @@ def _marked(atlas: Atlas) -> list[tuple[str, _Mark, np.ndarray]]:
     diagram = atlas.diagram
     kinds = {}
     if diagram is not None:
-        kinds = {one.point: one.kind.value for one in diagram.branchings}
+        kinds = {one.point: one.kind for one in diagram.branchings}
     marked = []
     for number, meeting in enumerate(atlas.points):
         if meeting.kind is Kind.BIFURCATION:
-            mark = _Mark(kinds.get(number, "bifurcation"), "o", "black")
+            kind = kinds.get(number)
+            label = "bifurcation" if kind is None else kind.value
+            fill = "white" if kind is None else FILLS.get(kind, "white")
+            mark = _Mark(label, "o", fill=fill)
             marked.append((meeting.name, mark, meeting.point.u))
         elif meeting.passes:
-            mark = _Mark(meeting.kind.value, "D", "0.35")
+            mark = _Mark(meeting.kind.value, "D", edge="0.35")
             marked.append((meeting.name, mark, meeting.point.u))
     if diagram is None:
         return marked
     labels = sorted({event.label for event in diagram.events()})
     for point in diagram.points:
         if point.kind is PointKind.FOLD:
-            mark = _Mark("fold", "s", "black")
+            mark = _Mark("fold", "s")
         elif point.kind is PointKind.HOPF:
-            mark = _Mark("Hopf point", "^", "black")
+            mark = _Mark("Hopf point", "^")
         else:
             number = labels.index(point.label)
             symbol = EVENT_SYMBOLS[number % len(EVENT_SYMBOLS)]
-            mark = _Mark(point.label, symbol, "black")
+            mark = _Mark(point.label, symbol)
         marked.append((point.name, mark, point.u))
     return marked
 
@@ -205,19 +222,6 @@ def _draw_legend(
                 )
             )
     for mark in marks:
-        is_line = mark.symbol in EVENT_SYMBOLS
-        handles.append(
-            Line2D(
-                [],
-                [],
-                marker=mark.symbol,
-                color=mark.color,
-                markerfacecolor=mark.color if is_line else "white",
-                markeredgewidth=1.3,
-                markersize=6.0,
-                linestyle="none",
-                label=mark.label,
-            )
-        )
+        handles.append(Line2D([], [], label=mark.label, **_properties(mark)))
     if handles:
         figure.legend(handles=handles, loc="outside right upper", frameon=False)

@@ -36,6 +36,7 @@ __all__ = [
     "draw_marks",
     "legend_size",
     "note_emptiness",
+    "widen_flat_axes",
 ]
 
 NAME_WIDTH = 24  # letters of a line of the legend
@@ -57,6 +58,24 @@ class PanelSettings:
 
 
 DEFAULT_PANEL = PanelSettings()
+
+
+FLAT_SAMPLES = 32  # of each form, by which the largest unknown is seen
+FLAT = 1e-9  # of the largest unknown: an axis that shows less shows rounding
+FLAT_HALF = 0.1  # of the largest unknown: half of what is shown instead
+
+
+def widen_flat_axes(axes: Axes, atlas: Atlas) -> None:
+    """Show more of an axis along which nothing changes but for rounding."""
+    samples = [form.branch.sample(FLAT_SAMPLES) for form in atlas.forms]
+    largest = max((float(np.abs(one).max(initial=0.0)) for one in samples), default=0.0)
+    half = FLAT_HALF * (largest or 1.0)
+    if np.ptp(axes.get_xlim()) < FLAT * largest:
+        middle = float(np.mean(axes.get_xlim()))
+        axes.set_xlim(middle - half, middle + half)
+    if np.ptp(axes.get_ylim()) < FLAT * largest:
+        middle = float(np.mean(axes.get_ylim()))
+        axes.set_ylim(middle - half, middle + half)
 
 
 # --- forms ----------------------------------------------------------------------------
@@ -81,6 +100,7 @@ def draw_forms(
     if horizontal.is_periodic and vertical.is_periodic:
         axes.set_box_aspect(1)
         fix_names_of_axes(axes)
+    widen_flat_axes(axes, atlas)
     axes.grid(True)
     for spine in axes.spines.values():
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it

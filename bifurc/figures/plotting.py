@@ -20,6 +20,7 @@ from matplotlib.ticker import NullLocator
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
 from bifurc.errors import ProblemError
+from bifurc.figures.diagram_plot import plot_diagram
 from bifurc.figures.drawing import (
     PanelSettings,
     draw_forms,
@@ -162,14 +163,17 @@ def save_figures(
     folder: str | os.PathLike[str],
     others: Mapping[str, Callable[[Atlas], Figure]] | None = None,
 ) -> list[Path]:
-    """Paths of the four figures just written into an existing ``folder``, as PNG and
-    SVG each; ``others`` are drawn in place of those of the same name.
+    """Paths of the figures just written into an existing ``folder``, as PNG and SVG
+    each; ``others`` are drawn in place of those of the same name.
+
+    The unknowns of equations are drawn in `unknowns`, of anything else in
+    `joint_angles`; with a parameter there is `diagram`.
 
     The same atlas gives the same bytes. There is never a half-written file. Raises
     `OSError` that names the file that cannot be written.
     """
     paths = []
-    for name, plot in {**FIGURES, **(others or {})}.items():
+    for name, plot in {**_figures_of(atlas), **(others or {})}.items():
         with rc_context(RC):
             figure = plot(atlas)
         paths += save_figure(figure, Path(folder) / name)
@@ -190,6 +194,16 @@ def save_figure(figure: Figure, stem: Path) -> list[Path]:
         path = stem.with_name(f"{stem.name}.{ending}")
         paths.append(replace_file(path, partial(_write, content)))
     return paths
+
+
+def _figures_of(atlas: Atlas) -> dict[str, Callable[[Atlas], Figure]]:
+    """The functions that draw the figures of an atlas, by the names of the files."""
+    figures = dict(FIGURES)
+    if atlas.subject.get("kind") == "system":
+        figures["unknowns"] = figures.pop("joint_angles")
+    if atlas.diagram is not None and atlas.diagram.parameter:
+        figures["diagram"] = plot_diagram
+    return figures
 
 
 def _write(content: bytes, path: Path) -> None:

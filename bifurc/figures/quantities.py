@@ -11,6 +11,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
+from bifurc.torus import wrap
 
 __all__ = ["AxisRequest", "Quantity", "quantity_of"]
 
@@ -40,7 +41,8 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
 
     ``request`` is the name of an unknown, its name between bars for its size, "|u|" for
     the Euclidean norm of all unknowns but the parameter, or a function of the unknowns
-    (n,). Raises `ProblemError` for anything else.
+    (n,); unknowns with a period count from half of it below 0 to half above. Raises
+    `ProblemError` for anything else.
     """
     if callable(request):
         label = getattr(request, "__name__", "function")
@@ -57,11 +59,18 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
     if request == NORM:
         parameter = atlas.diagram.parameter if atlas.diagram else ""
         rest = [i for i, name in enumerate(names) if name != parameter]
-        return Quantity(NORM, lambda points: np.linalg.norm(points[:, rest], axis=1))
+        periods = atlas.periods[rest]
+        return Quantity(NORM, lambda points: _norms(points[:, rest], periods))
     near = difflib.get_close_matches(str(request), names, n=1)
     hint = f" (the nearest is {near[0]})" if near else ""
     allowed = f"{NORM}, a function, or one of the unknowns {', '.join(names)}{hint}"
     raise ProblemError("axis", repr(request), allowed)
+
+
+def _norms(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """Euclidean norms (k,) of points (k, q), unknowns with a period within half of it
+    of 0."""
+    return np.asarray(np.linalg.norm(wrap(points, periods), axis=1))
 
 
 def _each(

@@ -158,7 +158,7 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
     points), ``pass`` and others named after what they count. ``sample`` runs over the
     points at which the singular values were taken, denser where the curve bends more.
     Entries of ``atlas.subject`` become variables along ``joint`` and attributes
-    called ``linkage_...``.
+    called ``linkage_...``, or after the ``kind`` of the subject.
     """
     import xarray as xr
 
@@ -231,22 +231,29 @@ def _release() -> str:
 
 def _subject_attributes(atlas: Atlas) -> dict[str, Attribute]:
     """What the subject says in one word or number."""
+    kind = _kind_of_subject(atlas)
     return {
-        f"linkage_{key}": value
+        f"{kind}_{key}": value
         for key, value in atlas.subject.items()
         if isinstance(value, str | int | float)
     }
 
 
+def _kind_of_subject(atlas: Atlas) -> str:
+    """What was mapped, in a word: a linkage where nothing is said."""
+    return str(atlas.subject.get("kind", "linkage"))
+
+
 def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, Variable]:
     """What the subject says with one number for each unknown."""
     variables = {}
+    kind = _kind_of_subject(atlas)
     for key, value in atlas.subject.items():
         if np.shape(value) == (len(atlas.names),):
-            variables[f"linkage_{key}"] = make_variable(
+            variables[f"{kind}_{key}"] = make_variable(
                 (frame.joint,),
                 np.array(value, dtype=float),
-                f"{key} of the linkage",
+                f"{key} of the {kind}",
                 LINKAGE_UNITS.get(key, ""),
             )
     return variables

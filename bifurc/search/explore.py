@@ -38,6 +38,7 @@ def explore(
     progress: Callable[[str, int], None] | None = None,
     parameter: str | None = None,
     events: EventRequests | None = None,
+    is_flow: bool = True,
 ) -> Atlas:
     """All solution curves of a problem, all singular points on them, nothing twice.
 
@@ -48,8 +49,8 @@ def explore(
     Ctrl-C ends the search early: the atlas holds what was found, and its provenance
     says so. When the budget of time is used up, the completeness and the provenance say
     so. With a ``parameter``, the name of an unknown, or ``events``, functions of the
-    unknowns, the atlas holds a diagram; see `diagram_of`. Raises `ProblemError` for
-    settings or a seed that cannot be used.
+    unknowns, the atlas holds a diagram; see `diagram_of`, also for ``is_flow``. Raises
+    `ProblemError` for settings or a seed that cannot be used.
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, SearchSettings)
@@ -93,4 +94,5 @@ def explore(
     atlas = assemble_atlas(problem, search.findings, provenance)
     if parameter is None and not events:
         return atlas
-    return replace(atlas, diagram=diagram_of(problem, atlas, parameter, events))
+    diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
+    return replace(atlas, diagram=diagram)

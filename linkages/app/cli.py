@@ -19,6 +19,7 @@ from linkages.app.commands.list_command import list_command
 from linkages.app.commands.map_command import map_command
 from linkages.app.commands.route_command import route_command
 from linkages.app.commands.show_command import show_command
+from linkages.app.commands.solve_command import solve_command
 from linkages.app.commands.sweep_command import sweep_command
 from linkages.app.commands.tolerance_command import tolerance_command
 from linkages.app.commands.verify_command import verify_command
@@ -109,12 +110,13 @@ def _usage(error: click.UsageError) -> str:
 @click.version_option(package_name="bifurc")
 @click.pass_context
 def main(ctx: click.Context) -> None:
-    """Transition maps of spatial linkages.
+    """Transition maps of spatial linkages, and solution curves of any equations.
 
     \b
     Examples:
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map my_linkage.toml --json
+      bifurc solve my_equations.toml --out out
       bifurc route special-double-subtractive-goldberg "Form I" "Bennett 4R"
     """
     if ctx.invoked_subcommand is None:
@@ -134,5 +136,6 @@ for command in (
     sweep_command,
     tolerance_command,
     verify_command,
+    solve_command,
 ):
     main.add_command(command)

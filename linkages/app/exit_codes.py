@@ -20,9 +20,12 @@ class ExitCode(IntEnum):
         member.meaning = meaning
         return member
 
-    DONE = 0, "done; for map: the linkage moves"
+    DONE = 0, "done; for map: the linkage moves; for solve: there are curves"
     BAD_INPUT = 2, "bad input, or a file that cannot be read or written"
-    DOES_NOT_MOVE = 3, "the linkage does not move: rigid, or no real configuration"
+    DOES_NOT_MOVE = (
+        3,
+        "for map: the linkage does not move; for solve: there is no curve",
+    )
     NO_ROUTE = 4, "there is no route"
     NOT_IN_CATALOGUE = 5, "for identify: no linkage of the catalogue has this geometry"
     DOES_NOT_HOLD = 6, "for verify: something does not hold; for sweep: a member failed"

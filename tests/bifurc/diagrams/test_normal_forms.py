@@ -175,6 +175,18 @@ def test_events_are_zeros_of_functions_and_places_of_values() -> None:
     assert diagram.parameter == "" and not diagram.stretches
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_value_that_a_form_has_all_along_is_no_event(seed) -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [(u[0] - np.pi) * (u[0] - u[1])], [(-4, 4)] * 2, names=["x", "p"]
+    )
+    requests = {"on it": ("x", np.pi), "cosine": lambda u: np.cos(u[0]) + 1}
+    diagram = bifurc.explore(problem, events=requests, seed=seed).diagram
+    (event,) = diagram.events()
+    assert event.label == "on it"
+    assert event.u == pytest.approx([np.pi, np.pi], abs=1e-12)
+
+
 def test_a_pole_is_no_event() -> None:
     diagram = bifurc.explore(CIRCLE, events={"pole": lambda u: 1 / u[0]}).diagram
     assert not diagram.events()

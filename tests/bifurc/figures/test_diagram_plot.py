@@ -95,6 +95,14 @@ def test_a_line_breaks_where_an_unknown_comes_round() -> None:
     assert np.isnan(rows).any()
 
 
+def test_rounding_is_not_drawn_as_large_as_the_frame() -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [u[1] * np.cos(u[0]), u[0] - 2 * u[1] - u[2]], [(-1, 1)] * 3
+    )
+    axes = plot_diagram(bifurc.explore(problem), "u1", "u2").axes[0]
+    assert np.ptp(axes.get_ylim()) > 0.1
+
+
 @pytest.mark.parametrize("axis", ["z", "|z|", "", 3])
 def test_an_axis_that_is_nothing_is_refused(pitchfork, axis) -> None:
     with pytest.raises(ProblemError, match=r"axis: .* unknowns x, p"):

@@ -1,0 +1,1 @@
+"""Systems of equations in files: read, solved, and reported on."""

@@ -1,0 +1,376 @@
+"""Reading a system of equations from a TOML file.
+
+name = "A to B reaction"          # optional
+parameter = "p"                   # optional: an unknown, for the diagram
+
+[unknowns]                        # bounds, or a table
+x = [0, 1]
+y = { bounds = [0, 8], unit = "K" }
+phi = { period = "2*pi", unit = "rad" }
+p = [0, 0.16]
+
+[parameters]                      # optional: constants
+B = 14
+
+[definitions]                     # optional: each of what stands above it
+rate = "p*(1 - x)*exp(y)"
+
+[equations]                       # or a list of texts
+mass = "x' = rate - x"
+
+[events]                          # optional
+half = "x = 0.5"
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+import tomllib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple, TypeAlias
+
+import sympy
+
+from bifurc.equations.expression import (
+    CONSTANTS,
+    FUNCTION_NAMES,
+    ExpressionError,
+    Part,
+    parse_expression,
+)
+from bifurc.equations.symbolic import SymbolicFunction, SymbolicProblem
+from bifurc.errors import ProblemError
+from bifurc.systems.system import EquationFileError, EquationSystem
+
+__all__ = ["read_equations"]
+
+Content: TypeAlias = Mapping[str, object]
+
+REQUIRED = ("unknowns", "equations")
+KEYS = ("name", "parameter", *REQUIRED, "parameters", "definitions", "events")
+UNKNOWN_KEYS = ("bounds", "period", "unit")
+NAME = re.compile(r"[^\W\d]\w*")
+RATE = re.compile(r"\s*([^\W\d]\w*)\s*'\s*")
+INFINITE = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
+
+
+def read_equations(
+    path: Path | str, values: Mapping[str, float] | None = None
+) -> EquationSystem:
+    """The system of equations that a TOML file describes; docs/equations.md says how.
+
+    ``values`` replace those of the parameters in the file. Nothing in the file is run.
+    Raises `EquationFileError` for a file that cannot be read, and for anything wrong in
+    it, with the name of the entry.
+    """
+    path = Path(path)
+    content = _parsed(path)
+    try:
+        return _Reading(path, content, dict(values or {})).system()
+    except _Refusal as refusal:
+        raise EquationFileError(path, str(refusal)) from None
+    except ProblemError as error:
+        raise EquationFileError(path, str(error)) from None
+
+
+class _Refusal(Exception):
+    """Something wrong in the file."""
+
+
+def _parsed(path: Path) -> Content:
+    """What the file holds, decimals as texts."""
+    if path.is_dir():
+        raise EquationFileError(path, "is a folder, and equations are a file")
+    try:
+        text = path.read_text(encoding="utf-8")
+        return tomllib.loads(text, parse_float=str)
+    except FileNotFoundError:
+        raise EquationFileError(path, "there is no such file") from None
+    except OSError as error:
+        raise EquationFileError(path, f"cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        message = f"is not UTF-8 text: byte {error.start} is wrong"
+        raise EquationFileError(path, message) from None
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
+        raise EquationFileError(path, f"is not valid TOML: {error}") from None
+
+
+class _Unknown(NamedTuple):
+    """An unknown as the file describes it."""
+
+    low: float
+    high: float
+    period: float
+    unit: str
+
+
+class _Equation(NamedTuple):
+    """An equation: the ``part`` that is to be zero, or the rate of an unknown, which is
+    empty where none is named."""
+
+    label: str
+    text: str
+    part: Part
+    rate_of: str
+
+
+@dataclass
+class _Reading:
+    """A file while it is read: ``content``, ``overrides`` of parameters, and the
+    symbols that are known so far."""
+
+    path: Path
+    content: Content
+    overrides: dict[str, float]
+    symbols: dict[str, Part] = field(default_factory=dict)
+
+    def system(self) -> EquationSystem:
+        """All of it."""
+        _check_keys("key", self.content, KEYS)
+        for key in REQUIRED:
+            if key not in self.content:
+                raise _Refusal(f"{key}: it is missing")
+        values = self._parameters()
+        unknowns = self._unknowns()
+        parameter = self._parameter(list(unknowns))
+        self._definitions(list(unknowns))
+        equations = self._equations(list(unknowns))
+        is_flow = self._is_flow(equations, list(unknowns), parameter)
+        if is_flow:
+            order = list(unknowns)
+            equations.sort(key=lambda one: order.index(one.rate_of))
+        symbols = [sympy.Symbol(name) for name in unknowns]
+        problem = SymbolicProblem(
+            [equation.part.expression for equation in equations],
+            symbols,
+            [(one.low, one.high) for one in unknowns.values()],
+            periods=[one.period for one in unknowns.values()],
+            units=[one.unit for one in unknowns.values()],
+        )
+        return EquationSystem(
+            name=self._text("name", self.path.stem),
+            problem=problem,
+            parameter=parameter,
+            equations={one.label: one.text for one in equations},
+            values=values,
+            events=self._events(symbols),
+            is_flow=is_flow,
+        )
+
+    # --- symbols ----------------------------------------------------------------------
+
+    def _parameters(self) -> dict[str, float]:
+        """The constants by their names."""
+        table = self._table("parameters")
+        for name in self.overrides:
+            if name not in table:
+                hint = _nearest(name, table)
+                raise _Refusal(f"parameters.{name}: there is none in the file{hint}")
+        values = {}
+        for name, given in table.items():
+            label = f"parameters.{name}"
+            self._check_name(label, name)
+            value = repr(self.overrides[name]) if name in self.overrides else given
+            part = self._constant(label, value)
+            self.symbols[name] = part
+            values[name] = float(part.value or 0.0)
+        return values
+
+    def _unknowns(self) -> dict[str, _Unknown]:
+        table = self._table("unknowns")
+        unknowns = {}
+        for name, given in table.items():
+            label = f"unknowns.{name}"
+            self._check_name(label, name)
+            unknowns[name] = self._unknown(label, given)
+        if len(unknowns) < 2:
+            raise _Refusal(
+                f"unknowns: {len(unknowns)} of them; there must be 2 or more"
+            )
+        for name in unknowns:
+            self.symbols[name] = Part(sympy.Symbol(name))
+        return unknowns
+
+    def _unknown(self, label: str, given: object) -> _Unknown:
+        entries: Mapping[str, object] = {"bounds": given}
+        if isinstance(given, dict):
+            entries = given
+            _check_keys(label, entries, UNKNOWN_KEYS)
+        elif not isinstance(given, list):
+            raise _Refusal(f"{label}: {given!r} is no [low, high], and no table")
+        period = math.inf
+        if "period" in entries:
+            period = self._number(f"{label}.period", entries["period"])
+            if not 0.0 < period < math.inf:
+                raise _Refusal(f"{label}.period: {period:g} is not positive")
+        low, high = -math.inf, math.inf
+        if "bounds" in entries:
+            bounds = entries["bounds"]
+            if not isinstance(bounds, list) or len(bounds) != 2:
+                raise _Refusal(f"{label}.bounds: {bounds!r} is no [low, high]")
+            low, high = (self._number(f"{label}.bounds", one) for one in bounds)
+            if not low < high:
+                raise _Refusal(f"{label}.bounds: {low:g} is not below {high:g}")
+        unit = entries.get("unit", "")
+        if not isinstance(unit, str):
+            raise _Refusal(f"{label}.unit: {unit!r} is no text in quotes")
+        return _Unknown(low, high, period, unit)
+
+    def _parameter(self, unknowns: Sequence[str]) -> str | None:
+        """The unknown along which there is a diagram."""
+        if "parameter" not in self.content:
+            return None
+        parameter = self._text("parameter", "")
+        if parameter not in unknowns:
+            hint = _nearest(parameter, unknowns)
+            if parameter in self.symbols:
+                hint = "; it has a value, and must have bounds among the unknowns"
+            raise _Refusal(f"parameter: {parameter!r} is no unknown{hint}")
+        return parameter
+
+    def _definitions(self, unknowns: Sequence[str]) -> None:
+        for name, text in self._table("definitions").items():
+            label = f"definitions.{name}"
+            self._check_name(label, name)
+            self.symbols[name] = self._part(label, text)
+
+    # --- equations and events ---------------------------------------------------------
+
+    def _equations(self, unknowns: Sequence[str]) -> list[_Equation]:
+        given = self.content["equations"]
+        if isinstance(given, list):
+            given = {f"{k}": text for k, text in enumerate(given, start=1)}
+        if not isinstance(given, dict):
+            raise _Refusal("equations: neither a table nor a list of texts")
+        if not given:
+            raise _Refusal("equations: there are none")
+        return [self._equation(name, text, unknowns) for name, text in given.items()]
+
+    def _equation(self, name: str, text: object, unknowns: Sequence[str]) -> _Equation:
+        label = f"equations.{name}"
+        if not isinstance(text, str):
+            raise _Refusal(f"{label}: {text!r} is no text in quotes")
+        left, equals, right = text.replace("==", "=").partition("=")
+        rate = RATE.fullmatch(left)
+        if rate is None or not equals:
+            part = self._part(label, text)
+            rate_of = ""
+        else:
+            if "=" in right:
+                raise _Refusal(f"{label}: {text!r} has more than one sign =")
+            part = self._part(label, right)
+            rate_of = rate[1]
+            if rate_of not in unknowns:
+                hint = _nearest(rate_of, unknowns)
+                raise _Refusal(f"{label}: {rate_of!r} is no unknown{hint}")
+        if not part.expression.free_symbols:
+            raise _Refusal(f"{label}: {text!r} holds no unknown")
+        return _Equation(name, text, part, rate_of)
+
+    def _is_flow(
+        self,
+        equations: Sequence[_Equation],
+        unknowns: Sequence[str],
+        parameter: str | None,
+    ) -> bool:
+        """Whether the equations are the rates of all unknowns but the parameter."""
+        rates = [equation.rate_of for equation in equations]
+        if not any(rates):
+            return False
+        for equation in equations:
+            label = f"equations.{equation.label}"
+            if not equation.rate_of:
+                raise _Refusal(
+                    f"{label}: it says no rate (x' = ...), and others do; all or none "
+                    "must"
+                )
+            if parameter is None:
+                raise _Refusal(f"{label}: a rate, and no unknown is the parameter")
+            if equation.rate_of == parameter:
+                raise _Refusal(f"{label}: the parameter {parameter} has no rate")
+            if rates.count(equation.rate_of) > 1:
+                raise _Refusal(f"{label}: {equation.rate_of} has a rate already")
+        missing = [one for one in unknowns if one not in (*rates, parameter)]
+        if missing:
+            raise _Refusal(f"equations: there is no rate of {', '.join(missing)}")
+        return True
+
+    def _events(self, symbols: Sequence[sympy.Symbol]) -> dict[str, SymbolicFunction]:
+        events = {}
+        for name, text in self._table("events").items():
+            part = self._part(f"events.{name}", text)
+            if not part.expression.free_symbols:
+                raise _Refusal(f"events.{name}: {text!r} holds no unknown")
+            events[name] = SymbolicFunction.of(part.expression, symbols)
+        return events
+
+    # --- entries ----------------------------------------------------------------------
+
+    def _table(self, key: str) -> Mapping[str, object]:
+        table = self.content.get(key, {})
+        if not isinstance(table, dict):
+            raise _Refusal(f"{key}: {table!r} is no table")
+        return table
+
+    def _text(self, key: str, default: str) -> str:
+        text = self.content.get(key, default)
+        if not isinstance(text, str):
+            raise _Refusal(f"{key}: {text!r} is no text in quotes")
+        return text
+
+    def _part(self, label: str, text: object) -> Part:
+        """An expression, or what the left of an equation is more than the right."""
+        if isinstance(text, int) and not isinstance(text, bool):
+            text = str(text)
+        if not isinstance(text, str):
+            raise _Refusal(f"{label}: {text!r} is no text in quotes")
+        sides = text.replace("==", "=").split("=")
+        if len(sides) > 2:
+            raise _Refusal(f"{label}: {text!r} has more than one sign =")
+        try:
+            left = parse_expression(sides[0], self.symbols)
+            if len(sides) == 1:
+                return left
+            right = parse_expression(sides[1], self.symbols)
+        except ExpressionError as error:
+            raise _Refusal(f"{label}: {text!r}: {error}") from None
+        size = left.size + right.size
+        return Part(left.expression - right.expression, None, size)
+
+    def _constant(self, label: str, given: object) -> Part:
+        if isinstance(given, bool) or not isinstance(given, int | str):
+            raise _Refusal(f"{label}: {given!r} is no number, and no text of one")
+        part = self._part(label, str(given))
+        if part.value is None:
+            raise _Refusal(f"{label}: {given!r} is no constant")
+        return part
+
+    def _number(self, label: str, given: object) -> float:
+        """A constant, which may be infinite."""
+        if isinstance(given, str) and given in INFINITE:
+            return INFINITE[given]
+        return float(self._constant(label, given).value or 0.0)
+
+    def _check_name(self, label: str, name: str) -> None:
+        if NAME.fullmatch(name) is None:
+            raise _Refusal(f"{label}: {name!r} is no name of letters and digits")
+        if name in FUNCTION_NAMES or name in CONSTANTS:
+            raise _Refusal(f"{label}: the name {name!r} has a meaning already")
+        if name in self.symbols:
+            raise _Refusal(f"{label}: there is another {name!r} above")
+
+
+def _check_keys(label: str, table: Content, known: Sequence[str]) -> None:
+    for key in table:
+        if key not in known:
+            hint = _nearest(key, known)
+            raise _Refusal(f"{label}: {key!r} is none of {', '.join(known)}{hint}")
+
+
+def _nearest(name: str, names: Iterable[str]) -> str:
+    near = difflib.get_close_matches(name, list(names), n=1)
+    return f"; the nearest is {near[0]!r}" if near else ""

@@ -1,0 +1,205 @@
+"""The summary of an atlas of equations: tables of what was found, in the units of the
+unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.diagrams.diagram import DiagramPoint, PointKind
+from bifurc.systems.verdict import verdict_of
+from bifurc.text_tables import section
+
+__all__ = ["make_summary"]
+
+SHOWN = 40  # rows of a table; the others are counted
+NONE = "-"
+
+
+def make_summary(atlas: Atlas) -> str:
+    """What `bifurc solve` shows: verdict, equations, forms, points, completeness."""
+    completeness = atlas.completeness
+    provenance = atlas.provenance
+    parts = [
+        f"{atlas.subject.get('name', 'equations')}\n{verdict_of(atlas)}",
+        _equations(atlas),
+        _forms(atlas),
+        _surfaces(atlas),
+        _points(atlas),
+        _folds(atlas),
+        _hopf_points(atlas),
+        _events(atlas),
+        _stretches(atlas),
+        _near_misses(atlas),
+        _isolated(atlas),
+        f"Completeness ({completeness.level}): {completeness.statement}.",
+        f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _shown(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table with its first rows, and how many there are besides."""
+    text = section(title, heads, rows[:SHOWN])
+    if len(rows) > SHOWN:
+        text += f"\n  and {len(rows) - SHOWN} more"
+    return text
+
+
+def _equations(atlas: Atlas) -> str:
+    equations = atlas.subject.get("equations", {})
+    rows = [(name, text) for name, text in equations.items()]
+    text = section("Equations", ("name", "equation"), rows)
+    values = atlas.subject.get("parameters", {})
+    if values:
+        shown = ", ".join(f"{name} = {value:.15g}" for name, value in values.items())
+        text += f"\n  with {shown}"
+    return text
+
+
+def _heads(atlas: Atlas) -> list[str]:
+    """Names of the unknowns with their units."""
+    columns = zip(atlas.names, atlas.units, strict=True)
+    return [f"{name} ({unit})" if unit else name for name, unit in columns]
+
+
+def _numbers(point: np.ndarray, size: float = 1.0) -> list[str]:
+    """The unknowns to ten digits, what is rounding as 0."""
+    rounding = 1e-14 * max(size, float(np.abs(point).max(initial=0.0)))
+    return [f"{0.0 if abs(x) < rounding else x:.10g}" for x in point]
+
+
+# --- forms ----------------------------------------------------------------------------
+
+
+def _forms(atlas: Atlas) -> str:
+    is_periodic = bool(np.any(np.isfinite(atlas.periods)))
+    heads = ["name", "length", "end", "smallest s.v.", "residual"]
+    if is_periodic:
+        heads.insert(3, "winding")
+    rows = [_form_row(form, is_periodic) for form in atlas.forms]
+    return _shown("Forms", heads, rows)
+
+
+def _form_row(form: Form, is_periodic: bool) -> list[str]:
+    branch = form.branch
+    row = [
+        form.name,
+        f"{branch.length:.6g}",
+        branch.outcome.name.lower().replace("_", " "),
+        f"{form.min_singular_value:.3g}",
+        f"{branch.max_residual:.1e}",
+    ]
+    if is_periodic:
+        winding = " ".join(f"{turns:+d}" if turns else "0" for turns in branch.winding)
+        row.insert(3, winding if branch.closed else NONE)
+    return row
+
+
+def _surfaces(atlas: Atlas) -> str:
+    rows = []
+    for surface in atlas.surfaces:
+        charts = surface.charts
+        count, area = NONE, NONE
+        if charts is not None:
+            count, area = str(len(charts)), f"{charts.area:.6g}"
+        rows.append((surface.name, str(surface.dimension), count, area, surface.note))
+    heads = ("name", "dimension", "charts", "area", "remark")
+    return _shown("Surfaces", heads, rows)
+
+
+# --- points ---------------------------------------------------------------------------
+
+
+def _points(atlas: Atlas) -> str:
+    kinds = {}
+    if atlas.diagram is not None:
+        kinds = {one.point: one.kind.value for one in atlas.diagram.branchings}
+    rows = []
+    for number, point in enumerate(atlas.points):
+        kind = kinds.get(number, point.kind.value)
+        row = [point.name, kind, *_numbers(point.point.u)]
+        row += [f"{point.point.error:.0e}", _members(atlas, point), point.note]
+        rows.append(row)
+    heads = ["name", "kind", *_heads(atlas), "error", "forms", "remark"]
+    return _shown("Singular points", heads, rows)
+
+
+def _members(atlas: Atlas, point: MeetingPoint) -> str:
+    forms = [atlas.forms[index].name for index, _ in point.passes]
+    surfaces = [atlas.surfaces[index].name for index in point.surfaces]
+    return ", ".join(forms + surfaces) or NONE
+
+
+def _diagram_points(atlas: Atlas, kind: PointKind) -> list[DiagramPoint]:
+    if atlas.diagram is None:
+        return []
+    return [point for point in atlas.diagram.points if point.kind is kind]
+
+
+def _folds(atlas: Atlas) -> str:
+    rows = []
+    for point in _diagram_points(atlas, PointKind.FOLD):
+        rows.append([point.name, *_numbers(point.u), atlas.forms[point.form].name])
+    parameter = atlas.diagram.parameter if atlas.diagram else ""
+    title = f"Folds ({parameter} turns back)"
+    return _shown(title, ["name", *_heads(atlas), "form"], rows)
+
+
+def _hopf_points(atlas: Atlas) -> str:
+    rows = []
+    for point in _diagram_points(atlas, PointKind.HOPF):
+        row = [point.name, *_numbers(point.u), f"{point.value:.10g}"]
+        rows.append([*row, atlas.forms[point.form].name])
+    heads = ["name", *_heads(atlas), "frequency", "form"]
+    return _shown("Hopf points", heads, rows)
+
+
+def _events(atlas: Atlas) -> str:
+    rows = []
+    for point in _diagram_points(atlas, PointKind.EVENT):
+        row = [point.name, point.label, *_numbers(point.u)]
+        rows.append([*row, atlas.forms[point.form].name])
+    heads = ["name", "event", *_heads(atlas), "form"]
+    return _shown("Events", heads, rows)
+
+
+def _stretches(atlas: Atlas) -> str:
+    """Where on each form it is stable, where that is known."""
+    diagram = atlas.diagram
+    if diagram is None:
+        return ""
+    parameter = list(atlas.names).index(diagram.parameter) if diagram.parameter else 0
+    rows = []
+    for stretch in diagram.stretches:
+        if stretch.unstable < 0:
+            continue
+        branch = atlas.forms[stretch.form].branch
+        start, end = branch(np.array([stretch.start, stretch.end]))[:, parameter]
+        rows.append(
+            (
+                atlas.forms[stretch.form].name,
+                f"{stretch.start:.6g} to {stretch.end:.6g}",
+                " to ".join(_numbers(np.array([start, end]))),
+                stretch.stability.value,
+                str(stretch.unstable),
+            )
+        )
+    heads = ("form", "arclength", diagram.parameter, "stability", "unstable")
+    return _shown("Stability", heads, rows)
+
+
+def _near_misses(atlas: Atlas) -> str:
+    rows = []
+    for miss in sorted(atlas.near_misses, key=lambda miss: miss.value):
+        row = [*_numbers(miss.u), f"{miss.value:.6g}", f"{miss.error:.0e}"]
+        rows.append([*row, atlas.forms[miss.form].name])
+    heads = [*_heads(atlas), "singular value", "error", "form"]
+    return _shown("Near misses (no bifurcation)", heads, rows)
+
+
+def _isolated(atlas: Atlas) -> str:
+    rows = [_numbers(point) for point in atlas.rigid]
+    return _shown("Isolated solutions", _heads(atlas), rows)

@@ -1,0 +1,50 @@
+"""One sentence on what the solutions of a system are."""
+
+from __future__ import annotations
+
+from bifurc.atlas import Atlas
+from bifurc.seeds import Level
+from bifurc.singular.point import Kind
+from bifurc.text_tables import count_of
+
+__all__ = ["verdict_of"]
+
+
+def verdict_of(atlas: Atlas) -> str:
+    """What there is: curves, surfaces, isolated solutions, or nothing; an interrupted
+    search is said to be one."""
+    if atlas.provenance.interrupted:
+        return f"The search was interrupted; by then it had found {_counts(atlas)}."
+    if atlas.forms or atlas.surfaces:
+        return f"The solutions are {_counts(atlas)}."
+    if atlas.completeness.level is Level.OUT_OF_TIME:
+        seconds = atlas.provenance.settings.budget
+        return (
+            f"The search ended after {seconds:.4g} s, before it found a curve; whether "
+            "there is one is not known."
+        )
+    if atlas.near_motions:
+        near = atlas.near_motions[0]
+        return (
+            "There is no curve of solutions, but the equations are nearly solved along "
+            f"one: they are missed by {near.misclosure:.3g} of their magnitude at most."
+        )
+    isolated = sum(point.kind is Kind.ISOLATED for point in atlas.points)
+    isolated += len(atlas.rigid)
+    if isolated:
+        count = count_of(isolated, "isolated solution")
+        return f"There is no curve of solutions, but {count}."
+    return (
+        "There is no solution within the bounds: the equations are missed by "
+        f"{atlas.closure_gap:.3g} of their magnitude at the median start."
+    )
+
+
+def _counts(atlas: Atlas) -> str:
+    forms = count_of(len(atlas.forms), "form")
+    components = count_of(atlas.components, "component")
+    bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
+    words = f"{forms} in {components}, {bifurcations}"
+    if atlas.surfaces:
+        words += f", {count_of(len(atlas.surfaces), 'surface')}"
+    return words

@@ -1,0 +1,35 @@
+"""Tables and counts as text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+__all__ = ["count_of", "section", "table"]
+
+
+def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Left-aligned columns, two spaces apart, without trailing spaces."""
+    lines = [tuple(heads)]
+    lines += [tuple(row) for row in rows]
+    widths = [max(len(line[k]) for line in lines) for k in range(len(heads))]
+    shown = []
+    for line in lines:
+        cells = [cell.ljust(width) for cell, width in zip(line, widths, strict=True)]
+        shown.append(("  " + "  ".join(cells)).rstrip())
+    return "\n".join(shown)
+
+
+def section(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """A table below its title; empty where there are no rows."""
+    if not rows:
+        return ""
+    return f"{title}\n{table(heads, rows)}"
+
+
+def count_of(number: int, noun: str) -> str:
+    """``number`` and the noun in its number: "1 form", "2 assemblies"."""
+    if number == 1:
+        return f"{number} {noun}"
+    if noun.endswith("y"):
+        return f"{number} {noun[:-1]}ies"
+    return f"{number} {noun}s"

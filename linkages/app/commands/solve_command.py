@@ -1,0 +1,155 @@
+"""The command `bifurc solve`: all solution curves of equations in a file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from bifurc.limits import HeldInterrupt
+from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.options import (
+    SearchOptions,
+    json_option,
+    out_option,
+    search_options,
+    verbose_option,
+)
+
+if TYPE_CHECKING:
+    from bifurc.atlas import Atlas
+    from bifurc.systems.system import EquationSystem
+
+__all__ = ["solve_command"]
+
+
+@click.command("solve", epilog=exit_code_table())
+@click.argument("equations", metavar="FILE.toml")
+@out_option("dataset, graph, summary and figures")
+@json_option()
+@click.option(
+    "--no-certify",
+    is_flag=True,
+    help="Do not prove that no form jumps from one arc to another.",
+)
+@click.option(
+    "--param",
+    "parameters",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Another value of a parameter of the file; may be given several times.",
+)
+@search_options
+@verbose_option
+def solve_command(
+    equations: str,
+    parameters: tuple[str, ...],
+    out: Path | None,
+    as_json: bool,
+    no_certify: bool,
+    verbose: bool,
+    search: SearchOptions,
+) -> None:
+    """Find all solution curves of the equations in a file, their bifurcations, and the
+    bifurcation diagram along a parameter.
+
+    \b
+    Examples:
+      bifurc solve reaction.toml --out out/reaction
+      bifurc solve reaction.toml --param B=12 --json
+    """
+    from bifurc.systems.document import make_document
+    from bifurc.systems.equation_file import read_equations
+    from bifurc.systems.summary import make_summary
+    from bifurc.systems.verdict import verdict_of
+    from linkages.app.output import require_folder, say, say_json
+    from linkages.app.status import say_more
+
+    if verbose:
+        say_more()
+    system = read_equations(equations, _values(parameters))
+    if out is not None:
+        require_folder(out)
+    paths: list[Path] = []
+    # Ctrl-C ends the search, but not before what was found is shown and written
+    with HeldInterrupt():
+        atlas = explore_system(system, replace(search, certify=not no_certify))
+        summary = make_summary(atlas)
+        try:
+            if as_json:
+                say_json(make_document(atlas))
+            else:
+                say(summary)
+        finally:  # where nothing can be shown, there are still the files
+            if out is not None:
+                paths = write_numbers(atlas, out, summary)
+    if out is not None:
+        paths += draw_figures(atlas, out)
+        names = ", ".join(path.name for path in paths)
+        click.echo(f"wrote {names} to {out}", err=True)
+    code = exit_code_of(atlas)
+    if as_json and code is not ExitCode.DONE:
+        click.echo(verdict_of(atlas), err=True)
+    click.get_current_context().exit(code)
+
+
+def explore_system(system: EquationSystem, search: SearchOptions) -> Atlas:
+    """The atlas of a system; progress is shown on standard error."""
+    from linkages.app.status import StatusLine
+
+    settings = search.settings()
+    status = StatusLine()
+    try:
+        return system.explore(settings=settings, seed=search.seed, progress=status)
+    finally:
+        status.wipe()
+
+
+def exit_code_of(atlas: Atlas) -> ExitCode:
+    """Whether there are curves, there are none, or nothing is known."""
+    from bifurc.seeds import Level
+
+    if atlas.provenance.interrupted:
+        return ExitCode.INTERRUPTED
+    if atlas.forms or atlas.surfaces:
+        return ExitCode.DONE
+    if atlas.completeness.level is Level.OUT_OF_TIME:
+        return ExitCode.NOTHING_KNOWN
+    return ExitCode.DOES_NOT_MOVE
+
+
+def write_numbers(atlas: Atlas, out: Path, summary: str) -> list[Path]:
+    """The paths of dataset, graph and summary, just written to ``out``."""
+    from linkages.app.files import write_data
+    from linkages.app.output import writing_to
+
+    with writing_to(out):
+        return write_data(atlas, out, summary)
+
+
+def draw_figures(atlas: Atlas, out: Path) -> list[Path]:
+    """The paths of the figures, just written to ``out``."""
+    from linkages.app.files import write_figures
+    from linkages.app.output import writing_to
+
+    with writing_to(out):
+        return write_figures(atlas, out)
+
+
+def _values(texts: tuple[str, ...]) -> dict[str, float]:
+    """The parameters in "key=value"; raises `CommandError`."""
+    values = {}
+    for text in texts:
+        key, equals, number = text.partition("=")
+        try:
+            value = float(number)
+        except ValueError:
+            equals = ""
+        if not equals or not key.strip():
+            raise CommandError(f"--param {text}: it must be KEY=NUMBER")
+        if key.strip() in values:
+            raise CommandError(f"--param {text}: {key.strip()} is given twice")
+        values[key.strip()] = value
+    return values

@@ -1,0 +1,195 @@
+"""Files of equations: what is in them, and what is wrong with them."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+import bifurc
+from bifurc.diagrams.diagram import Stability
+from bifurc.systems.equation_file import read_equations
+
+REACTION = """
+name = "reaction"
+parameter = "p"
+
+[unknowns]
+x = [0, 1]
+y = { bounds = [0, "2*4"], unit = "K" }
+p = [0, 0.16]
+
+[parameters]
+B = 14
+beta = "B/7"
+
+[definitions]
+rate = "p*(1 - x)*exp(y)"
+
+[equations]
+heat = "y' = B*rate - (1 + beta)*y"
+mass = "x' = rate - x"
+
+[events]
+half = "x = 0.5"
+"""
+
+
+@pytest.fixture
+def path(tmp_path):
+    """A file with the reaction."""
+    file = tmp_path / "reaction.toml"
+    file.write_text(REACTION, encoding="utf-8")
+    return file
+
+
+def refused(path, text: str) -> str:
+    """What is said of a file with a text."""
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(bifurc.EquationFileError) as error:
+        read_equations(path)
+    assert error.value.path == str(path)
+    return error.value.message
+
+
+def test_a_file_says_what_is_solved(path) -> None:
+    system = read_equations(path)
+    assert system.name == "reaction"
+    assert system.parameter == "p"
+    assert system.is_flow
+    assert system.values == {"B": 14.0, "beta": 2.0}
+    problem = system.problem
+    assert problem.names == ("x", "y", "p")
+    assert problem.units == ("", "K", "")
+    np.testing.assert_array_equal(problem.bounds, [[0, 1], [0, 8], [0, 0.16]])
+    point = np.array([0.25, 1.0, 0.1])
+    rate = 0.1 * 0.75 * math.e
+    # the rates stand in the order of the unknowns, whatever their order in the file
+    expected = [rate - 0.25, 14 * rate - 3]
+    np.testing.assert_allclose(problem.residuals(point[None])[0], expected, rtol=1e-14)
+    assert system.events["half"](point) == -0.25
+
+
+def test_the_atlas_of_a_file_says_what_was_solved(path) -> None:
+    atlas = read_equations(path).explore(seed=3)
+    assert atlas.subject["name"] == "reaction"
+    assert atlas.subject["equations"]["mass"] == "x' = rate - x"
+    assert len(atlas.diagram.folds) == 2
+    assert len(atlas.diagram.hopf_points) == 1
+    assert atlas.diagram.events("half")[0].u[0] == pytest.approx(0.5, abs=1e-15)
+    assert bifurc.to_dataset(atlas).attrs["system_name"] == "reaction"
+
+
+def test_decimals_are_exact(tmp_path) -> None:
+    path = tmp_path / "third.toml"
+    path.write_text(
+        'equations = ["x = k*y"]\n[unknowns]\nx = [0, 1]\ny = [0, 1]\n'
+        "[parameters]\nk = 0.1\n"
+    )
+    system = read_equations(path)
+    assert str(system.problem.expressions[0]) == "x - y/10"
+    assert system.name == "third"
+    assert system.parameter is None and not system.is_flow
+
+
+def test_values_of_parameters_may_be_replaced(path) -> None:
+    system = read_equations(path, {"B": 12.0})
+    assert system.values["B"] == 12.0
+    with pytest.raises(bifurc.EquationFileError, match=r"parameters\.b: .*in the file"):
+        read_equations(path, {"b": 1.0})
+
+
+def test_equations_that_are_no_rates_have_no_stability(path) -> None:
+    text = REACTION.replace("x' = rate - x", "x = rate")
+    text = text.replace("y' = B*rate - (1 + beta)*y", "B*rate = 3*y")
+    path.write_text(text, encoding="utf-8")
+    diagram = read_equations(path).explore().diagram
+    assert len(diagram.folds) == 2
+    assert {one.stability for one in diagram.stretches} == {Stability.UNKNOWN}
+
+
+def test_an_unknown_may_be_a_circle(tmp_path) -> None:
+    path = tmp_path / "torus.toml"
+    path.write_text(
+        'equations = ["a = 2*b"]\n[unknowns]\na = { period = "2*pi" }\n'
+        'b = { period = "2*pi", bounds = ["-pi", "pi"] }\n'
+    )
+    (form,) = read_equations(path).explore().forms
+    assert form.branch.closed
+    assert form.branch.winding.tolist() == [2, 1]
+
+
+@pytest.mark.parametrize(
+    "old, new, message",
+    [
+        ("exp(y)", "exq(y)", r"definitions\.rate: .*'exq' at column 11; .*'exp'"),
+        ("(1 + beta)", "(1 + bta)", r"equations\.heat: .*'bta' at .*nearest is 'beta'"),
+        ("rate - x", "rate - x = 1", r"equations\.mass: .* more than one sign ="),
+        ("x' = rate - x", "rate = x", r"equations\.mass: it says no rate"),
+        ("x' = rate", "z' = rate", r"equations\.mass: 'z' is no unknown"),
+        ("x' = rate", "p' = rate", r"equations\.mass: the parameter p has no rate"),
+        ("x' = rate", "y' = rate", r"y has a rate already"),
+        ('mass = "x\' = rate - x"', "", "there is no rate of x"),
+        ('parameter = "p"', "", "a rate, and no unknown is the parameter"),
+        ('parameter = "p"', 'parameter = "B"', "parameter: .*it has a value"),
+        ('parameter = "p"', 'parameter = "q"', "parameter: 'q' is no unknown"),
+        ('parameter = "p"', "parameter = 1", "parameter: 1 is no text"),
+        (
+            "[unknowns]",
+            "[unknown]",
+            "key: 'unknown' is none of .*nearest is 'unknowns'",
+        ),
+        ("x = [0, 1]", "x = [1, 0]", r"unknowns\.x\.bounds: 1 is not below 0"),
+        ("x = [0, 1]", "x = [0]", r"unknowns\.x\.bounds: \[0\] is no \[low, high\]"),
+        ("x = [0, 1]", "x = 0.5", r"unknowns\.x: '0\.5' is no \[low, high\]"),
+        ("x = [0, 1]", "x = [0, true]", r"unknowns\.x\.bounds: True is no number"),
+        ("x = [0, 1]", "x = [0, nan]", r"unknowns\.x\.bounds: 'nan'"),
+        ("x = [0, 1]", 'x = [0, "p"]', r"unknowns\.x\.bounds: 'p': there is no symbol"),
+        ("x = [0, 1]", "x = { priod = 1 }", "'priod' is none of .*nearest is 'period'"),
+        (
+            "x = [0, 1]",
+            "x = { period = -1 }",
+            r"unknowns\.x\.period: -1 is not positive",
+        ),
+        ("x = [0, 1]", "x = { unit = 1 }", r"unknowns\.x\.unit: 1 is no text"),
+        ("x = [0, 1]", "sin = [0, 1]", r"unknowns\.sin: .* has a meaning already"),
+        ("x = [0, 1]", '"a b" = [0, 1]', r"unknowns\.a b: .*is no name"),
+        ("B = 14", "B = 14\nx = 14", r"unknowns\.x: there is another 'x' above"),
+        ("B = 14", "B = inf", r"parameters\.B: 'inf'"),
+        ("B = 14", 'B = "beta"', r"parameters\.B: .*no symbol 'beta'"),
+        ("x = 0.5", "1 = 2", r"events\.half: '1 = 2' holds no unknown"),
+        ("x = 0.5", "x > 0.5", r"events\.half: .*'>' at column 3 cannot be read"),
+        ("x = [0, 1]", "x = [0, 1", "is not valid TOML"),
+    ],
+)
+def test_what_is_wrong_is_named(path, old, new, message) -> None:
+    assert old in REACTION
+    said = refused(path, REACTION.replace(old, new, 1))
+    assert re.search(message, said), said
+
+
+def test_files_that_are_none_are_refused(tmp_path) -> None:
+    with pytest.raises(bifurc.EquationFileError, match="there is no such file"):
+        read_equations(tmp_path / "nothing.toml")
+    with pytest.raises(bifurc.EquationFileError, match="is a folder"):
+        read_equations(tmp_path)
+    path = tmp_path / "bytes.toml"
+    path.write_bytes(b"\xff\xfe")
+    with pytest.raises(bifurc.EquationFileError, match="is not UTF-8"):
+        read_equations(path)
+    for text in ("", "equations = []", "[unknowns]\nx=[0,1]", "unknowns = 3"):
+        assert refused(path, text)
+    assert "unknowns: it is missing" in refused(path, 'equations = ["x"]')
+    assert "[[[" not in refused(path, "a = " + "[" * 100000)
+
+
+def test_code_in_a_file_is_not_run(tmp_path) -> None:
+    path, witness = tmp_path / "hostile.toml", tmp_path / "witness"
+    code = f"__import__('pathlib').Path('{witness}').touch()"
+    for key in ("equations", "events", "definitions", "parameters"):
+        text = REACTION.replace(f"[{key}]", f'[{key}]\nbad = "{code}"')
+        message = refused(path, text)
+        assert f"{key}.bad" in message
+    assert not witness.exists()
