@@ -679,6 +679,14 @@ is_closed_to_rounding = Decision(
     third_answer="on either side the arc is said to be not certified, and where",
 )
 
+is_solved_from_afar = Decision(
+    "solution of unknown size",
+    "what a start about 0 leads to is a solution, and shows how large the unknowns are",
+    "residual over F' times the size of the unknowns",
+    1e-8,
+    "only a scale is taken from it; at a solution it is 1e-13, or 1e-8 at singular ones",
+    Role.LOOK,
+)
 is_whole_circle = Decision(
     "whole circle",
     "the bounds of an unknown with a period hold its whole circle, and limit nothing",

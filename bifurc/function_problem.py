@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc.checks import check_callable, floats_of
-from bifurc.decisions import is_whole_circle
+from bifurc.decisions import is_solved_from_afar, is_whole_circle
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
@@ -42,6 +42,8 @@ PROBES = 7  # points at which a function is tried out and its derivatives are me
 CHECKS = 20  # more points at which a recording is compared with the function
 WRONG = 1e-2  # relative difference from which on a given derivative is wrong
 LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
+START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
+FARTHEST = 100.0  # over the size of solutions, bounds where none are given
 AT_ONCE = 14  # pieces by collocation in one march
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
@@ -107,7 +109,9 @@ class FunctionProblem(NumericalProblem):
     ``bounds`` (n, 2) is the region from which `explore` draws starts and in which
     curves are followed. An unknown with a period among the ``periods`` (n,) is a circle
     where its bounds are one period or more apart, or infinite; bounds that are closer
-    are limits on the circle. Raises `ProblemError` for bounds out of order, for a function
+    are limits on the circle. An unknown without bounds or a period is followed as far
+    as a hundred times the size of the solutions that are reached from starts about 0;
+    `bounds` holds what was taken. Raises `ProblemError` for bounds out of order, for a function
     that gives no finite vector, and for a ``jacobian`` that is not its derivative.
     """
 
@@ -136,6 +140,7 @@ class FunctionProblem(NumericalProblem):
         if is_recorded:
             self.recording = record(function, points)
         self._measure(probes)
+        self._settle_open_bounds()
 
     def _set_unknowns(
         self,
@@ -163,17 +168,53 @@ class FunctionProblem(NumericalProblem):
     @property
     def _finite_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lower and upper ends (n,); where the bounds are infinite, half a period about
-        0, or from -1 to 1."""
+        0, or from -1 to 1, or as far from the other end as that is from 0 and 1 more."""
         low, high = self.bounds.T
         half = np.where(np.isfinite(self.periods), 0.5 * self.periods, 1.0)
-        low = np.where(np.isfinite(low), low, -half)
-        return low, np.where(np.isfinite(high), high, half)
+        from_high = np.where(np.isfinite(high), np.minimum(-half, 2 * high - 1), -half)
+        low = np.where(np.isfinite(low), low, from_high)
+        from_low = np.where(np.isfinite(low), np.maximum(half, 2 * low + 1), half)
+        return low, np.where(np.isfinite(high), high, from_low)
 
     def _random_points(self) -> np.ndarray:
         """Points (k, n) within the bounds at which the equations are looked at."""
         rng = np.random.default_rng(0)
         low, high = self._finite_bounds
         return rng.uniform(low, high, (PROBES + CHECKS, self.n))
+
+    def _settle_open_bounds(self) -> None:
+        """Take the scale of unknowns without bounds or a period, and bounds for them,
+        from solutions that are reached from starts about 0."""
+        is_open = ~np.isfinite(self.bounds) & ~np.isfinite(self.periods)[:, None]
+        if not np.any(is_open):
+            return
+        size = self._size_of_solutions(is_open.any(axis=1))
+        known_ends = self.bounds[np.isfinite(self.bounds) & is_open[:, ::-1]]
+        size = max(size, float(np.abs(known_ends).max(initial=0.0)))
+        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, size)
+        about_zero = half[:, None] * np.array([-1.0, 1.0])
+        low, high = np.where(np.isfinite(self.bounds), self.bounds, about_zero).T
+        self.scale = float(np.median(high - low)) / 4.0
+        self.bounds = np.where(is_open, FARTHEST * about_zero, self.bounds)
+        rng = np.random.default_rng(0)
+        points = rng.uniform(low, high, (PROBES, self.n))
+        self._measure(self._probes_with_value(points))
+
+    def _size_of_solutions(self, is_open: np.ndarray) -> float:
+        """The typical size of the open unknowns (n,) at solutions, 1 where none are
+        found."""
+        starts = self._random_points()
+        for size in START_SIZES:
+            sized = np.where(is_open, size * starts, starts)
+            with np.errstate(all="ignore"):
+                points, _ = self.project(sized)
+            sizes = np.abs(points[:, is_open]).max(axis=1)
+            residuals = np.linalg.norm(self.residuals(points), axis=1)
+            slopes = np.linalg.norm(self.jacobians(points), axis=(1, 2))
+            is_solved = is_solved_from_afar(residuals, slopes * sizes)
+            if np.any(is_solved & (sizes > 0.0)):
+                return float(np.median(sizes[is_solved]))
+        return 1.0
 
     def _measure(self, probes: np.ndarray) -> None:
         """Choose how F' is made, check it at the probes (k, n), and take its typical
@@ -248,6 +289,11 @@ class FunctionProblem(NumericalProblem):
         return residual
 
     # --- curves and solutions ---------------------------------------------------------
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether curves and solutions come from the recorded equations."""
+        return self._compiled is not None
 
     @property
     def _compiled(self) -> ScaledTape | None:
@@ -420,7 +466,8 @@ def _without_limits_of_circles(bounds: np.ndarray, periods: np.ndarray) -> np.nd
     """The bounds (n, 2), infinite for unknowns that may go all round their circle."""
     low, high = bounds.T
     periodic = np.isfinite(periods)
-    missing = np.where(periodic, periods - (high - low), np.inf)
+    missing = np.full(len(periods), np.inf)
+    missing[periodic] = periods[periodic] - (high[periodic] - low[periodic])
     unit = np.where(periodic, periods, 1.0)
     is_circle = periodic & is_whole_circle(missing, unit)
     return np.where(is_circle[:, None], [-np.inf, np.inf], bounds)

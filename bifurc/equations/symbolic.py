@@ -59,6 +59,7 @@ class SymbolicProblem(FunctionProblem):
         self._function = _TapeFunction(tape)
         self._jacobian = None
         self._measure(self._probes_with_value(self._random_points()[:PROBES]))
+        self._settle_open_bounds()
 
     def precise_residual(self) -> PreciseResidual:
         """F over mpmath numbers, to whatever precision is set."""

@@ -14,8 +14,15 @@ from bifurc.checks import check_callable, check_type
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
 from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
+from bifurc.search.rescaled import (
+    RescaledProblem,
+    in_unit_of_problem,
+    seeds_in_unit,
+    unit_of,
+)
 from bifurc.search.search import Search
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
@@ -69,7 +76,10 @@ def explore(
         parameter_index(problem.names, parameter)
     events_of({} if events is None else events, problem.names)
     began = time.perf_counter()
-    search = Search(problem, settings, progress)
+    searched, unit = _in_its_own_unit(problem)
+    if seeds is not None:
+        seeds = seeds_in_unit(seeds, unit)
+    search = Search(searched, settings, progress)
     interrupted = False
     try:
         with search.limits.interrupt:
@@ -91,8 +101,19 @@ def explore(
         equations=problem.equations,
         seconds=time.perf_counter() - began,
     )
-    atlas = assemble_atlas(problem, search.findings, provenance)
+    atlas = assemble_atlas(searched, search.findings, provenance)
+    if isinstance(searched, RescaledProblem):
+        atlas = in_unit_of_problem(atlas, problem, unit)
     if parameter is None and not events:
         return atlas
     diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
     return replace(atlas, diagram=diagram)
+
+
+def _in_its_own_unit(problem: Problem) -> tuple[Problem, float]:
+    """The problem with its unknowns counted in a unit near its scale, and that unit;
+    a problem that is no function counts as it likes."""
+    if not isinstance(problem, FunctionProblem):
+        return problem, 1.0
+    unit = unit_of(problem)
+    return (problem, 1.0) if unit == 1.0 else (RescaledProblem(problem, unit), unit)

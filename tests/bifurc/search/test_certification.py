@@ -24,7 +24,7 @@ class Hyperbola(FunctionProblem):
     """x y = gap in a box, with an audit that finds nothing missing."""
 
     def __init__(self, gap: float):
-        super().__init__(lambda u: np.array([u[0] * u[1] - gap]), [[-1, 1], [-1, 1]])
+        super().__init__(lambda u: np.array([u[0] * u[1] - gap]), [[-2, 2], [-2, 2]])
         self.magnitude = 1.0
 
     def curvature_bound(self) -> float:
@@ -84,7 +84,7 @@ def test_a_branch_that_is_refused_is_traced_again(monkeypatch):
     assert counts(atlas) == (2, 0)
     for form in atlas.forms:
         assert form.certificate.status is CertificateStatus.CERTIFIED
-        assert form.branch.length == pytest.approx(2.0, abs=1e-3)
+        assert form.branch.length == pytest.approx(4.0, abs=1e-3)
     assert atlas.completeness.level is Level.PROVED
 
 
@@ -116,7 +116,7 @@ def test_without_certificates_the_audit_alone_decides(monkeypatch):
 def test_a_branch_that_turns_off_at_a_crossing_is_refused_there(monkeypatch):
     corner = polyline([(-1.0, 0.0), (0.0, 0.0), (0.0, 1.0)])
     monkeypatch.setattr(search_module, "trace_branch", lambda *_: corner)
-    cross = FunctionProblem(lambda u: [u[0] * u[1]], [(-1, 1), (-1, 1)])
+    cross = FunctionProblem(lambda u: [u[0] * u[1]], [(-2, 2), (-2, 2)])
     atlas = explore(cross, settings=SETTINGS)
     certificate = atlas.forms[0].certificate
     assert certificate.status is CertificateStatus.NOT_CERTIFIED
