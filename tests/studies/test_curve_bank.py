@@ -46,6 +46,7 @@ def test_a_wrong_answer_without_a_doubt_is_silent() -> None:
 
 
 def test_an_exception_is_silently_wrong() -> None:
-    broken = BankCurve("none", ["x - x"], {"x": (0, 1)}, {}, Answer(1, 0, 0, 0))
+    broken = BankCurve("none", ["f(x)"], {"x": (0, 1)}, {}, Answer(1, 0, 0, 0))
     result = run(broken, Scales(), seed=0, budget=1.0)
-    assert result.outcome in (Outcome.SILENT_WRONG, Outcome.UNDECIDED)
+    assert result.outcome is Outcome.SILENT_WRONG
+    assert "no function" in str(result.answer)
