@@ -11,7 +11,7 @@ STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
 
-test: .venv/ready  ## all tests, the examples of README and docs among them
+test: .venv/ready-to-test  ## all tests, the examples of README and docs among them
 	$(BIN)/python -m pytest -n auto
 
 # OpenBLAS picks its kernels by the processor; other kernels give other last bits.
@@ -19,18 +19,18 @@ PROCESSORS := Prescott Nehalem Haswell Zen SkylakeX
 FRAGILE := tests/test_literature.py tests/bifurc/curves/test_monitor.py tests/bifurc/surfaces/test_covering.py \
   tests/bifurc/search/test_canonical_order.py tests/studies/test_same_answer.py
 
-test-processors: .venv/ready  ## all tests with the last bits of five processors, with one thread and with two
+test-processors: .venv/ready-to-test  ## all tests with the last bits of five processors, with one thread and with two
 	for kernel in $(PROCESSORS); do for threads in 1 2; do \
 	  echo "$$kernel, $$threads threads"; \
 	  OPENBLAS_CORETYPE=$$kernel OPENBLAS_NUM_THREADS=$$threads $(BIN)/python -m pytest -n auto || exit 1; \
 	done; done
 
-test-fragile: .venv/ready  ## what once hung on the last bits, and a sample of studies.same_answer, under three processors
+test-fragile: .venv/ready-to-test  ## what once hung on the last bits, and a sample of studies.same_answer, under three processors
 	for kernel in Nehalem Haswell SkylakeX; do \
 	  echo "$$kernel"; OPENBLAS_CORETYPE=$$kernel $(BIN)/python -m pytest -n auto $(FRAGILE) || exit 1; \
 	done
 
-lint: .venv/ready  ## ruff and mypy
+lint: .venv/ready-to-test  ## ruff and mypy
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
@@ -41,12 +41,12 @@ studies: .venv/ready  ## every study, each into out/NAME
 gallery: .venv/ready  ## every figure of the sources, drawn from the geometry, into out/gallery
 	$(BIN)/bifurc figure all --out out/gallery
 
-bench: .venv/ready  ## a short, fixed set of benchmarks, with versions and machine, into out/bench.json
+bench: .venv/ready-to-test  ## a short, fixed set of benchmarks, with versions and machine, into out/bench.json
 	mkdir -p out
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.bench --out out/bench.json
 
 # Linkages are mapped anew where parameters or code have changed; nothing is fetched, and no page fetches anything.
-docs: .venv/ready  ## the site, into out/site; fails on any warning and any dead link
+docs: .venv/ready-to-test  ## the site, into out/site; fails on any warning and any dead link
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m docs.generator sources
 	OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg $(BIN)/python -m sphinx -q -W --keep-going -n -j auto -b html -c docs \
 	  build/docs/source out/site
@@ -72,8 +72,23 @@ chromium:  ## a browser without a window, from Debian's packages, where that is 
 clean:
 	rm -rf .venv build dist out
 
-.venv/ready: pyproject.toml CMakeLists.txt $(wildcard */core/*)
-	@command -v c++ > /dev/null || { echo "A C++ compiler is missing (on Debian and Ubuntu: apt install g++)." >&2; exit 1; }
+SOURCES := pyproject.toml CMakeLists.txt $(wildcard */core/*)
+INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
+
+# What the program needs.
+.venv/ready: $(SOURCES)
+	$(require-compiler)
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	$(INSTALL) .
 	touch $@
+
+# What tests, checks and the site need besides.
+.venv/ready-to-test: $(SOURCES)
+	$(require-compiler)
+	$(PYTHON) -m venv .venv
+	$(INSTALL) '.[test]'
+	touch .venv/ready $@
+
+define require-compiler
+@command -v c++ > /dev/null || { echo "A C++ compiler is missing (on Debian and Ubuntu: apt install g++)." >&2; exit 1; }
+endef

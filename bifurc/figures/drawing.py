@@ -33,6 +33,7 @@ __all__ = [
     "draw_curve",
     "draw_forms",
     "draw_legend",
+    "draw_legend_outside",
     "draw_marks",
     "legend_size",
     "note_emptiness",
@@ -204,6 +205,18 @@ def draw_legend(figure: Figure, atlas: Atlas, edge: float) -> None:
         handletextpad=HANDLE_GAP,
         frameon=False,
     )
+
+
+def draw_legend_outside(figure: Figure, atlas: Atlas) -> None:
+    """The same at the right of a figure whose layout makes room for it."""
+    entries = _form_entries(atlas) + _mark_entries(atlas)
+    if entries:
+        figure.legend(
+            handles=entries,
+            loc="outside right upper",
+            frameon=False,
+            handlelength=HANDLE_LENGTH,
+        )
 
 
 def _form_entries(atlas: Atlas) -> list[Line2D]:

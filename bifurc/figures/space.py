@@ -14,7 +14,7 @@ from mpl_toolkits.mplot3d import Axes3D
 from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
-from bifurc.figures.drawing import draw_legend, legend_size
+from bifurc.figures.drawing import draw_legend_outside, legend_size
 from bifurc.figures.planes import Scale, curve_points, scale_of
 from bifurc.figures.style import RC, form_style, mark_of
 
@@ -45,7 +45,7 @@ def plot_map_in_space(
         _draw_forms(axes, atlas, indices, scales)
         _draw_points(axes, atlas, indices, scales)
         _set_frame(axes, scales)
-        draw_legend(figure, atlas)
+        draw_legend_outside(figure, atlas)
     return figure
 
 

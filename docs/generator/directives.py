@@ -54,7 +54,8 @@ class Raw(SphinxDirective):
     @property
     def root(self) -> str:
         """The way from the page to the top of the site."""
-        return "../" * self.env.docname.count("/")
+        depth: int = self.env.docname.count("/")
+        return "../" * depth
 
 
 class LinkageView(Raw):

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
+from linkages.app.configurations import show_configuration
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.print_options import PrintOptions
-from linkages.app.summary import show_configuration
 from linkages.app.texts import link_name, table
 from linkages.labels import loop_of
 from linkages.loop import GeometryError, Loop

@@ -12,7 +12,7 @@ from bifurc.search.settings import SearchSettings
 from bifurc.torus import wrap
 from linkages.catalogue import entry
 from linkages.entry import ParameterKind
-from linkages.linkage import Linkage, load
+from linkages.linkage import Linkage, load_linkage
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.source_figures.table import Content
@@ -42,7 +42,7 @@ def linkage_of(content: Content) -> Linkage:
     for key, value in content.get("parameters", {}).items():
         is_angle = kinds.get(key) is ParameterKind.ANGLE
         values[key] = float(np.radians(value)) if is_angle else float(value)
-    return load(name, **values)
+    return load_linkage(name, **values)
 
 
 def loop_of_content(content: Content) -> Loop:

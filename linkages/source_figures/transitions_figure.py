@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
-from bifurc.figures.drawing import draw_forms, draw_legend, draw_marks
+from bifurc.figures.drawing import draw_forms, draw_legend_outside, draw_marks
 from bifurc.figures.labels import label_points
 from bifurc.figures.planes import Plane, plane_of
 from bifurc.figures.style import form_style
@@ -54,7 +54,7 @@ def draw(source: SourceFigure) -> Figure:
         figure = Figure(figsize=(6.6, 4.9), layout="constrained")
         axes = figure.subplots()
         _draw_map(axes, atlas, plane, stops)
-        draw_legend(figure, atlas)
+        draw_legend_outside(figure, atlas)
         return figure
     rows = -(-len(stops) // COLUMNS)
     height = max(rows * (SNAPSHOT + 0.15), 5.4)
