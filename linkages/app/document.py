@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.decisions import is_tied
+from bifurc.singular.point import Kind
 from linkages.app.configurations import numbers_at, readout_of
 from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.verdict import is_without_gaps
@@ -95,6 +96,16 @@ class RankDropDocument(PlaceDocument):
     form: str
 
 
+class SingularPointDocument(PlaceDocument):
+    """A singular point of another kind: ``forms`` once for every pass of a form."""
+
+    theta: list[float]
+    kind: str
+    rank: int
+    error: float
+    forms: list[str]
+
+
 class NearMissDocument(PlaceDocument):
     """A minimum of the smallest regular singular value."""
 
@@ -142,6 +153,7 @@ class MapDocument(TypedDict):
     forms: list[FormDocument]
     bifurcations: list[BifurcationDocument]
     rank_drops: list[RankDropDocument]
+    other_singular_points: list[SingularPointDocument]
     near_misses: list[NearMissDocument]
     dead_points: list[DeadPointDocument]
     rigid_assemblies: list[list[float] | AssemblyDocument]
@@ -164,9 +176,14 @@ def make_document(atlas: Atlas) -> MapDocument:
         "forms": forms + surfaces,
         "bifurcations": [_bifurcation(atlas, point) for point in atlas.bifurcations],
         "rank_drops": [_rank_drop(atlas, point) for point in atlas.rank_drops],
+        "other_singular_points": [
+            _singular_point(atlas, point)
+            for point in atlas.points
+            if point.kind not in (Kind.BIFURCATION, Kind.RANK_DROP)
+        ],
         "near_misses": [_near_miss(atlas, event) for event in atlas.near_misses],
         "dead_points": [_dead_point(atlas, event) for event in atlas.dead_points],
-        "rigid_assemblies": [_assembly(atlas, theta) for theta in atlas.rigid],
+        "rigid_assemblies": [_assembly(atlas, theta) for theta in _isolated(atlas)],
         "near_motions": [_near_motion(atlas, near) for near in atlas.near_motions],
         "completeness": _completeness(atlas),
         "seconds": atlas.provenance.seconds,
@@ -300,6 +317,25 @@ def _rank_drop(atlas: Atlas, point: MeetingPoint) -> RankDropDocument:
     }
     _add_variables(atlas, document, point.point.u)
     return document
+
+
+def _singular_point(atlas: Atlas, point: MeetingPoint) -> SingularPointDocument:
+    document: SingularPointDocument = {
+        "theta": numbers_at(atlas, point.point.u),
+        "kind": point.kind.value,
+        "rank": point.point.rank,
+        "error": point.point.error,
+        "forms": [atlas.forms[index].name for index, _ in point.passes],
+    }
+    _add_variables(atlas, document, point.point.u)
+    return document
+
+
+def _isolated(atlas: Atlas) -> list[NDArray[np.float64]]:
+    """All configurations (n,) that have no others beside them, those of full rank
+    first."""
+    shaky = [p.point.u for p in atlas.points if p.kind is Kind.ISOLATED]
+    return [*atlas.rigid, *shaky]
 
 
 def _near_miss(atlas: Atlas, event: Event) -> NearMissDocument:

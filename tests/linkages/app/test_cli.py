@@ -45,6 +45,7 @@ KEYS = {
     },
     "bifurcations": {"theta", "rank", "forms", "tangents", "error"},
     "rank_drops": {"theta", "rank", "form"},
+    "other_singular_points": {"theta", "kind", "rank", "error", "forms"},
     "near_misses": {"theta", "singular_value", "error", "form"},
     "dead_points": {"theta", "joint", "form"},
     "rigid_assemblies": None,
