@@ -47,7 +47,9 @@ class Form:
     ``misclosure`` is the largest relative residual that no correction across the form
     removes: rounding, some 1e-15, unless the equations contradict each other a little.
     ``certificate`` says what is certified of it. ``labels`` holds what whoever knows
-    more than the equations said of it, as values that JSON can hold.
+    more than the equations said of it, as values that JSON can hold. ``multiplicity``:
+    the order to which all equations vanish on it, as those of a square do twice; the
+    singular values are then those of the equations with their derivatives.
     """
 
     name: str
@@ -58,6 +60,7 @@ class Form:
     misclosure: float = 0.0
     certificate: Certificate | None = None
     labels: JsonObject = field(default_factory=dict)
+    multiplicity: int = 1
 
     @property
     def rank(self) -> int:

@@ -250,6 +250,33 @@ is_same_function = Decision(
     "and more",
 )
 
+is_on_the_way = Decision(
+    "on the way to a solution",
+    "a start that ends short of a solution shows where solutions may be",
+    "residual",
+    1e-6,
+    "beside a small curve with a crossing F is so flat that starts stop at 1e-11",
+    Role.LOOK,
+)
+is_flat_equation = Decision(
+    "power of an equation",
+    "the gradient of an equation vanishes at all solutions, as that of a square does, "
+    "and its derivatives are equations as well",
+    "length of the gradient where nine tenths of the starts end, over that elsewhere",
+    1e-4,
+    "at a k-fold solution starts stop at 1e-11, where it is 1e-11 to the power of "
+    "1 - 1 / k: 3e-6 for a square",
+)
+is_far_smaller = Decision(
+    "far smaller",
+    "solutions fill so little of where they are looked for that they are looked at in "
+    "units of their own",
+    "what they span over the width of the region, in one unknown",
+    0.125,
+    "a curve as large as an eighth of the region is followed as well as a larger one",
+    Role.LOOK,
+)
+
 # --- rank -----------------------------------------------------------------------------
 
 is_null = Decision(
@@ -419,6 +446,22 @@ is_located = Decision(
     "last step over the scale",
     1e-4,
     "at singular points it is 1e-9 and less, at points of high order, too",
+    Role.LOOK,
+)
+is_hidden_by = Decision(
+    "points that rounding does not separate",
+    "two singular points of which no section from nearby shows more are one",
+    "how far they are apart over the errors of both",
+    10.0,
+    "along a contact of high order doubles see singular points up to a few errors apart",
+    third_answer="others stay two, with the half-branches that second order gives",
+)
+is_precise_enough = Decision(
+    "located to rounding",
+    "doubles know the place of a singular point, which need not be found in more digits",
+    "its error over the scale",
+    1e-9,
+    "at a simple point it is 1e-11 and less, at others 1e-8 and more",
     Role.LOOK,
 )
 is_simple = Decision(

@@ -231,6 +231,7 @@ class FunctionProblem(NumericalProblem):
         self.magnitude = float(np.median(sizes)) or 1.0
         if tape is not None:
             self.hessian_error = EXACT_HESSIAN
+            self.is_exact = True
             self._scaled = self._scaled_tape(tape, self.magnitude)
 
     def _scaled_tape(self, tape: Tape, magnitude: float) -> ScaledTape:

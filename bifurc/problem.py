@@ -168,7 +168,8 @@ class Problem(ABC):
     there is none), ``magnitude`` the typical size of F', by which residuals and
     singular values are divided, ``scale`` the typical size of the unknowns, and
     ``derivatives`` says how F' was made, ``equations`` whether a function was recorded,
-    and why not. ``hessian_error`` is how far off `hessian` may be, over a bound on F''.
+    and why not. ``is_exact``: its equations are what is meant, and not made of numbers that
+    are rounded. ``hessian_error`` is how far off `hessian` may be, over a bound on F''.
     """
 
     names: tuple[str, ...]
@@ -181,6 +182,7 @@ class Problem(ABC):
     scale: float = 1.0
     derivatives: str = "exact"
     equations: str = ""
+    is_exact: bool = False
 
     @property
     def n(self) -> int:

@@ -10,22 +10,30 @@ import numpy as np
 from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
+from bifurc.torus import wrap
 
 __all__ = ["missed_probability", "random_seeds"]
 
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 
 
-def random_seeds(problem: Problem, rng: np.random.Generator, count: int) -> Seeds:
-    """Solutions reached from ``count`` random starts.
+def random_seeds(
+    problem: Problem,
+    rng: np.random.Generator,
+    count: int,
+    region: np.ndarray | None = None,
+) -> Seeds:
+    """Solutions reached from ``count`` random starts, drawn from a ``region`` (n, 2).
 
     Unknowns are drawn from the bounds; where these are infinite, from the period, or
     from -scale to scale.
     """
-    low, high = _region(problem)
+    low, high = _region(problem) if region is None else region.T
     starts = rng.uniform(low, high, (count, problem.n))
     points, gaps = problem.project(starts)
     points = _next_to_bounds(problem, points)
+    if region is not None:
+        points = wrap(points, problem.periods)
     lowest, highest = problem.bounds.T
     is_inside = np.all((points >= lowest) & (points <= highest), axis=1)
     is_taken = is_start_solved(gaps) & is_inside

@@ -46,10 +46,13 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
     """The local minima of the smallest regular singular value.
 
     Where a value rises to no side by more than rounding there is no minimum, and the
-    ends of an open curve are none. Where the curve crosses a singular point the value
+    ends of an open curve are none; nor is there one where F' vanishes all along.
+    Where the curve crosses a singular point the value
     is small but not zero; `bifurc.singular.locate` decides.
     """
     rank = profile.rank
+    if not rank:
+        return Minima(np.empty(0), np.empty(0))
     places = _places_to_look(branch, profile)
     here = _values_and_slopes(problem, branch, rank, places)
     low, high = _valleys(branch, places, here.slopes * problem.scale)

@@ -39,7 +39,7 @@ class Profile:
 
     ``arclength`` (p, k), ``values`` (p, k, n) in decreasing order, ``rank``:
     the rank that F' has along the curve but for single points, n - 1 as a rule. Number
-    ``rank`` is the one to watch.
+    ``rank`` is the one to watch; there is none where F' vanishes all along.
     """
 
     arclength: np.ndarray
@@ -48,7 +48,9 @@ class Profile:
 
     @property
     def smallest(self) -> np.ndarray:
-        """The smallest regular singular value (p, k)."""
+        """The smallest regular singular value (p, k); 0 where there is none."""
+        if not self.rank:
+            return np.zeros(self.arclength.shape)
         return self.values[..., self.rank - 1]
 
 
@@ -58,7 +60,7 @@ def profile_branch(problem: Problem, branch: Branch) -> Profile:
     values = singular_values(problem, branch(arclength))
     typical = np.median(values.reshape(-1, problem.n), axis=0)
     rank = int(np.count_nonzero(~is_zero_along(typical)))
-    return Profile(arclength, values, max(min(rank, problem.n - 1), 1))
+    return Profile(arclength, values, min(rank, problem.n - 1))
 
 
 def roots_along(

@@ -56,6 +56,7 @@ class SymbolicProblem(FunctionProblem):
         self._set_unknowns(bounds, names, units, periods)
         tape = _tape_of(self.expressions, self.unknowns)
         self.recording = Recording(tape)
+        self._rows = tape.m
         self._function = _TapeFunction(tape)
         self._jacobian = None
         self._measure(self._probes_with_value(self._random_points()[:PROBES]))

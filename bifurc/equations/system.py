@@ -45,7 +45,8 @@ class _Pattern(NamedTuple):
 class ScaledTape:
     """The compiled methods of a ``tape`` whose F' is of size ``magnitude`` and whose
     unknowns are of size ``scale``, within ``bounds`` (n, 2) and with ``periods``
-    (n,). Immutable."""
+    (n,); solutions are looked for in the ``region`` (n, 2), that of the bounds unless
+    given. Immutable."""
 
     def __init__(
         self,
@@ -54,6 +55,7 @@ class ScaledTape:
         scale: float,
         bounds: np.ndarray,
         periods: np.ndarray,
+        region: np.ndarray | None = None,
     ):
         self.tape = tape
         self._scale = scale
@@ -62,6 +64,7 @@ class ScaledTape:
         self._units = np.full(tape.n, self._unit)
         self._weights = np.full(tape.m, 1.0 / (magnitude * self._unit))
         self._bounds = bounds
+        self._region = bounds if region is None else region
         self._periods = periods
 
     # --- values and derivatives -------------------------------------------------------
@@ -163,8 +166,8 @@ class ScaledTape:
 
     @cached_property
     def _solutions(self) -> np.ndarray:
-        """Solutions (k, n) near random points in the middle of the bounds."""
-        low, high = self._bounds.T
+        """Solutions (k, n) near random points in the middle of the region."""
+        low, high = self._region.T
         low = np.where(np.isfinite(low), low, -self._scale)
         high = np.where(np.isfinite(high), high, self._scale)
         rng = np.random.default_rng(0)

@@ -193,6 +193,45 @@ class Tape:
                 values[slot] = function(values[left])
         return [values[slot] for slot in self.outputs.tolist()]
 
+    def in_units(
+        self, origin: np.ndarray, sizes: np.ndarray, weights: np.ndarray
+    ) -> Tape:
+        """The tape of ``weights`` (m,) times F at ``origin`` + ``sizes`` v, both (n,),
+        in the unknowns v."""
+        writer = TapeWriter(self.n)
+        unknowns = []
+        for number, (start, size) in enumerate(zip(origin, sizes, strict=True)):
+            factor, shift = writer.constant(float(size)), writer.constant(float(start))
+            scaled = writer.multiply(writer.unknown(number), factor)
+            unknowns.append(writer.add(scaled, shift))
+        slots = self.write_on(writer, unknowns)
+        outputs = []
+        for slot, weight in zip(self.outputs.tolist(), weights, strict=True):
+            factor = writer.constant(float(weight))
+            outputs.append(writer.multiply(slots[slot], factor))
+        return writer.tape(outputs)
+
+    def write_on(
+        self, writer: TapeWriter, unknowns: Sequence[int] | None = None
+    ) -> dict[int, int]:
+        """Write the equations on another tape, in terms of its slots ``unknowns`` (n,)
+        or else its unknowns; where each slot of this one stands there."""
+        slots: dict[int, int] = {}
+        for slot in self._needed:
+            operation = Operation(int(self.operations[slot]))
+            left, right, _ = self.operands[slot].tolist()
+            if operation is Operation.UNKNOWN:
+                slots[slot] = (
+                    writer.unknown(left) if unknowns is None else unknowns[left]
+                )
+                continue
+            is_leaf = operation is Operation.CONSTANT
+            first = left if is_leaf else slots[left]
+            second = slots[right] if operation in _BINARY else right
+            constant = float(self.constants[slot])
+            slots[slot] = writer.copy(Node(operation, first, second, constant))
+        return slots
+
 
 _BINARY = {
     Operation.ADD: operator.add,
@@ -228,11 +267,9 @@ class TapeWriter:
 
     def tape(self, outputs: Sequence[int]) -> Tape:
         """The tape whose equations stand in the slots ``outputs``."""
-        for slot in range(len(self._nodes)):
-            self._write_rule(slot)
-        slot = len(self._rules)
+        slot = 0
         while slot < len(self._nodes):  # rules may need rules
-            self._write_rule(slot)
+            self.rule(slot)
             slot += 1
         rules = [self._rules[slot] for slot in range(len(self._nodes))]
         operands = [
@@ -256,6 +293,32 @@ class TapeWriter:
     def constant(self, value: float) -> int:
         """A number."""
         return self._slot(Node(Operation.CONSTANT, constant=value))
+
+    def node(self, slot: int) -> Node:
+        """What a slot holds."""
+        return self._nodes[slot]
+
+    def rule(self, slot: int) -> int:
+        """The slot of the rule for the derivatives of a function."""
+        if slot not in self._rules:
+            self._write_rule(slot)
+        return self._rules[slot]
+
+    def needed_for(self, slot: int) -> list[int]:
+        """The slots that one is made of, and itself, operands first."""
+        needed = {slot}
+        for earlier in range(slot, -1, -1):
+            node = self._nodes[earlier]
+            if earlier not in needed or node.operation <= Operation.CONSTANT:
+                continue
+            needed.add(node.left)
+            if node.operation in _BINARY:
+                needed.add(node.right)
+        return sorted(needed)
+
+    def copy(self, node: Node) -> int:
+        """An operation of another tape, on slots of this one."""
+        return self._slot(node)
 
     def value(self, slot: int) -> float | None:
         """The number that a slot holds; None where it depends on the unknowns."""

@@ -108,6 +108,12 @@ FORMS: Table[Form] = Table(
         ),
         Column("rank", lambda f: f.rank, "rank of F' along the form", dtype=int),
         Column(
+            "multiplicity",
+            lambda f: f.multiplicity,
+            "order to which the equations vanish on the form",
+            dtype=int,
+        ),
+        Column(
             "component",
             lambda f: f.component,
             "number of the connected component",
@@ -199,6 +205,7 @@ def read_form(row: Row, periods: np.ndarray) -> Form:
         min_singular_value=float(row["min_singular_value"]),
         component=int(row["component"]),
         misclosure=float(row["misclosure"]),
+        multiplicity=int(row["multiplicity"]),
         certificate=_read_certificate(str(row["certificate"])),
         labels=mapping_from_text(str(row["labels"])),
     )

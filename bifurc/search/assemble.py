@@ -140,6 +140,8 @@ def _certificate(
 def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
     """The smallest regular singular value along a branch: at its minima or its ends."""
     branch, profile = traced.branch, traced.profile
+    if not profile.rank:
+        return 0.0
     _, minima = traced.minima
     smallest = min(minima.min(initial=np.inf), profile.smallest.min())
     if not branch.closed:

@@ -191,4 +191,6 @@ def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
     if point.kind is Kind.UNDECIDED:
         reason = point.note or "sections of two radii disagree"
         return [f"{point.name} is undecided: {reason}"]
+    if not point.point.is_confirmed:
+        return [f"{point.name} is seen in doubles, and more digits do not show it"]
     return []

@@ -23,9 +23,11 @@ from bifurc.search.rescaled import (
     seeds_in_unit,
     unit_of,
 )
+from bifurc.search.restated import restated
 from bifurc.search.search import Search
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
+from bifurc.unit_problem import UnitProblem, in_one_size, in_own_units
 
 __all__ = ["explore"]
 
@@ -76,10 +78,68 @@ def explore(
         parameter_index(problem.names, parameter)
     events_of({} if events is None else events, problem.names)
     began = time.perf_counter()
+    own = in_own_units(problem)
+    if own is None:
+        atlas = _explored_in_one_unit(problem, settings, seed, seeds, progress, began)
+    else:
+        atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
+        has_lengths = bool(atlas.surfaces or atlas.near_motions)
+        if has_lengths and not own.own_units.is_uniform:
+            # areas and lengths are those of the user only where all sizes are one
+            own = in_one_size(own)
+            atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
+        atlas = restated(atlas, problem, own.own_units, own.multiplicity)
+    if parameter is None and not events:
+        return atlas
+    diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
+    return replace(atlas, diagram=diagram)
+
+
+def _explored_in_one_unit(
+    problem: Problem,
+    settings: SearchSettings,
+    seed: int,
+    seeds: Seeds | None,
+    progress: Callable[[str, int], None] | None,
+    began: float,
+) -> Atlas:
+    """The atlas of a problem with its unknowns counted in one unit near its scale."""
     searched, unit = _in_its_own_unit(problem)
     if seeds is not None:
         seeds = seeds_in_unit(seeds, unit)
-    search = Search(searched, settings, progress)
+    atlas = _explored(searched, settings, seed, seeds, progress, began)
+    if isinstance(searched, RescaledProblem):
+        return in_unit_of_problem(atlas, problem, unit)
+    return atlas
+
+
+def _explored_in_units(
+    own: UnitProblem,
+    settings: SearchSettings,
+    seed: int,
+    seeds: Seeds | None,
+    progress: Callable[[str, int], None] | None,
+    began: float,
+) -> Atlas:
+    """The atlas of a problem in units of its own, in these units; the ``seeds`` are in
+    those of the user."""
+    if seeds is not None:
+        units = own.own_units
+        points, missed = units.inwards(seeds.points), units.inwards(seeds.missed)
+        seeds = replace(seeds, points=points, missed=missed)
+    return _explored(own, settings, seed, seeds, progress, began)
+
+
+def _explored(
+    problem: Problem,
+    settings: SearchSettings,
+    seed: int,
+    seeds: Seeds | None,
+    progress: Callable[[str, int], None] | None,
+    began: float,
+) -> Atlas:
+    """The atlas of a problem, in the units in which it stands."""
+    search = Search(problem, settings, progress)
     interrupted = False
     try:
         with search.limits.interrupt:
@@ -87,6 +147,8 @@ def explore(
             search.sort_seeds()
             search.trace_seeds()
             search.cover_surfaces()
+            search.separate_points()
+            search.join_branches()
             search.audit_branches()
             search.look_for_near_motions()
     except KeyboardInterrupt:
@@ -101,13 +163,7 @@ def explore(
         equations=problem.equations,
         seconds=time.perf_counter() - began,
     )
-    atlas = assemble_atlas(searched, search.findings, provenance)
-    if isinstance(searched, RescaledProblem):
-        atlas = in_unit_of_problem(atlas, problem, unit)
-    if parameter is None and not events:
-        return atlas
-    diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
-    return replace(atlas, diagram=diagram)
+    return assemble_atlas(problem, search.findings, provenance)
 
 
 def _in_its_own_unit(problem: Problem) -> tuple[Problem, float]:

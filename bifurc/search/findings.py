@@ -175,6 +175,19 @@ class Findings:
         self.awaits_audit = True
         return len(self.traced) - 1
 
+    def replace_branches(self, one: int, other: int, traced: TracedBranch) -> None:
+        """Put a branch in the place of number ``one``, which it is together with number
+        ``other``."""
+        self.traced[one] = traced
+        if other != one:
+            del self.traced[other]
+        for number, fate in self.fates.items():
+            if fate.fate is not Fate.ON_FORM or other == one:
+                continue
+            branch = one if fate.number == other else fate.number
+            self.fates[number] = SeedFate(Fate.ON_FORM, branch - (branch > other))
+        self.awaits_audit = True
+
     def branch_through(self, point: np.ndarray, within: float = 0.0) -> int | None:
         """The number of the first branch through a point (n,), as far as that is known,
         or at less than ``within`` scales from it."""
@@ -283,6 +296,31 @@ class Findings:
             if decision(self._distance(point.u, u), unit):
                 return PointSighting(point, number, is_new=False)
         return None
+
+    def nearest_point(self, number: int) -> tuple[int, float]:
+        """The number of the singular point next to another one, given by its number, and
+        how far apart they are; infinitely far where there is none."""
+        apart = [self._distance(p.u, self.points[number].u) for p in self.points]
+        apart[number] = np.inf
+        nearest = int(np.argmin(apart))
+        return nearest, float(apart[nearest])
+
+    def merge_points(self, pairs: Sequence[tuple[int, int]]) -> None:
+        """Take each of the ``pairs`` of singular points, by their numbers, for one: that
+        which is confirmed, or else which doubles know less well, for they say so only
+        where they see it."""
+        dropped = set()
+        for one, other in pairs:
+            if one in dropped or other in dropped:
+                continue
+            both = (one, other)
+            dropped.add(min(both, key=self._standing))
+        self.points = [p for k, p in enumerate(self.points) if k not in dropped]
+
+    def _standing(self, number: int) -> tuple[bool, float]:
+        """What is known of a singular point; that which is more stays."""
+        point = self.points[number]
+        return point.is_confirmed, point.error
 
     def rigid_at(self, u: np.ndarray, stiffness: float = np.inf) -> int | None:
         """The number of the known rigid assembly at ``u`` (n,), where the smallest

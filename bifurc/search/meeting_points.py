@@ -16,7 +16,7 @@ from bifurc.search.canonical_order import order_points
 from bifurc.search.components import surfaces_through
 from bifurc.singular.point import Kind, SingularPoint
 
-__all__ = ["meeting_points"]
+__all__ = ["ends_at", "meeting_points"]
 
 INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R", Kind.DIMENSION_CHANGE: "D"}
 OTHER_INITIAL = "S"
@@ -68,7 +68,7 @@ def _meeting_point(
     through: list[tuple[int, float]] = []
     ending: list[tuple[int, float]] = []
     for index, branch in enumerate(branches):
-        ends = _ends_at(problem, branch, point)
+        ends = ends_at(problem, branch, point)
         passes = _passes_at(problem, branch, point, ends)
         ending += [(index, s) for s in ends]
         through += [(index, s) for s in passes]
@@ -129,7 +129,7 @@ def _kind_in_doubt(point: SingularPoint, half_branches: int) -> Kind:
     return Kind.BIFURCATION if half_branches > 2 else Kind.UNDECIDED
 
 
-def _ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
+def ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:
     """Arclengths of the ends of a branch that stalled at a cusp, along a half-branch.
 
     Where it stalled hangs on rounding: before a sharp cusp, about where the section
@@ -179,13 +179,23 @@ def _is_along(point: SingularPoint, offset: np.ndarray) -> bool:
     return along > ALONG * float(np.linalg.norm(offset))
 
 
+def _distinct(passes: Sequence[float], within: float) -> list[float]:
+    """The arclengths, those nearer to the one before than ``within`` left out: a curve
+    does not come back to a point over so short a way."""
+    distinct: list[float] = []
+    for s in passes:
+        if not distinct or s - distinct[-1] > within:
+            distinct.append(s)
+    return distinct
+
+
 def _passes_at(
     problem: Problem, branch: Branch, point: SingularPoint, ends: Sequence[float]
 ) -> list[float]:
     """Arclengths at which a branch passes a point, but for the ``ends`` that lie
     there."""
     within = is_same_point.threshold * problem.scale + 2 * point.error
-    passes = [float(s) for s in branch.passes(point.u, within)]
+    passes = _distinct([float(s) for s in branch.passes(point.u, within)], 2 * within)
     if branch.outcome is not Outcome.STALLED:
         return passes
     for end in (0.0, branch.length):

@@ -21,8 +21,10 @@ from bifurc.decisions import (
     closes_to_rounding,
     is_beside_singular,
     is_deep_place,
+    is_hidden_by,
     is_passed,
     is_plainly_closed_curve,
+    is_precise_enough,
     is_same_point,
     is_solution,
     is_start_solved,
@@ -44,12 +46,14 @@ from bifurc.search.certification import certificate_of, finer_settings, may_be_m
 from bifurc.search.closure_gap import valley_points
 from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import NO_DOUBT, Findings, PointSighting, TracedBranch
+from bifurc.search.joining import joined_through
+from bifurc.search.meeting_points import ends_at
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.search.settings import SearchSettings
 from bifurc.search.weak_seeds import sharpened, with_weak_solutions
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
-from bifurc.singular.classify import classify_singular_point
+from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.singular.sphere import is_on_surface
@@ -65,7 +69,8 @@ LEAVING_STUB = 20  # times shorter: a branch that leaves the bounds and is none
 LENIENT = 4.0 * is_solution.threshold
 SAME_STARTS = 200  # from which every search looks for near motions
 FRUITLESS = 4  # of those on no known near motion that in a row led to nothing new
-BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits
+BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits, at worst
+TINY = 1e-300  # keeps a singular value of zero from being divided by
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
 BESIDE = 16  # nodes before and after a deep place that are higher
@@ -342,10 +347,11 @@ class Search:
     ) -> SeedFate | None:
         """What a seed (n,) lies on where F' has a lower rank than along a curve, or
         nearly; None where nothing is singular there."""
-        known = self.findings.point_near(point, BLURRED)
+        within = self._blur_of_seed(values)
+        known = self.findings.point_near(point, within)
         if known is not None:
             return SeedFate(Fate.AT_SINGULAR_POINT, known.number)
-        branch = self.findings.branch_through(point, BLURRED)
+        branch = self.findings.branch_through(point, within)
         if branch is not None:
             return SeedFate(Fate.ON_FORM, branch)
         direction = lower_rank_direction(self.problem, point)
@@ -357,6 +363,13 @@ class Search:
             return None
         self._branch_off(_half_branch_starts(sighting.point))
         return SeedFate(Fate.AT_SINGULAR_POINT, sighting.number)
+
+    def _blur_of_seed(self, values: np.ndarray) -> float:
+        """How far, over the scale, a seed with singular values (n,) may lie from where
+        it belongs: what its residual leaves open in the weakest direction, and no more
+        where sheets lie near to each other."""
+        weakest = float(values[self.problem.n - 2]) * self.problem.scale
+        return min(BLURRED, is_start_solved.threshold / max(weakest, TINY))
 
     # --- branches ---------------------------------------------------------------------
 
@@ -454,9 +467,11 @@ class Search:
         branch = canonical_course(self.problem, branch)
         profile = profile_branch(self.problem, branch)
         minima = singular_value_minima(self.problem, branch, profile)
-        candidates = _small_minima(*minima)
-        candidates += _deep_places(profile, minima[0])
-        candidates += self._candidate_ends(branch, profile)
+        candidates = []
+        if profile.rank:  # where F' vanishes all along nothing of it tells places apart
+            candidates = _small_minima(*minima)
+            candidates += _deep_places(profile, minima[0])
+            candidates += self._candidate_ends(branch, profile)
         located: list[float] = []
         passes: list[float] = []
         starts: list[Start] = []
@@ -560,8 +575,22 @@ class Search:
         known = self.findings.point_at(located.u, located.error)
         if known is not None:
             return known
+        located = self._in_more_digits(located)
+        known = self.findings.point_at(located.u, located.error)
+        if known is not None:
+            return known
         point = classify_singular_point(self.problem, located)
         return self.findings.add_point(point)
+
+    def _in_more_digits(self, located: LocatedPoint) -> LocatedPoint:
+        """The located point, in more digits where these tell more."""
+        is_open = not is_precise_enough(located.error, self.problem.scale)
+        if not (is_open and self.problem.is_exact):
+            return located
+        # mpmath takes longer to import than an ordinary search
+        from bifurc.singular.precise_location import precisely_located
+
+        return precisely_located(self.problem, located)
 
     def _singular_values(self, points: np.ndarray) -> np.ndarray:
         """Singular values (k, n) of F' at points (k, n)."""
@@ -586,6 +615,55 @@ class Search:
                 break
             sighting = self._sight(located)
             self._branch_off(_half_branch_starts(sighting.point))
+
+    # --- points next to each other ----------------------------------------------------
+
+    def separate_points(self) -> None:
+        """Look again, from nearer by, at singular points with others next to them; those
+        that doubles do not separate are one."""
+        findings = self.findings
+        starts: list[Start] = []
+        hidden: list[tuple[int, int]] = []
+        for number, point in enumerate(findings.points):
+            other, apart = findings.nearest_point(number)
+            if self.is_over or not apart < point.radius or point.dimension > 1:
+                continue
+            closer = classify_from_nearby(self.problem, point, 0.5 * apart)
+            if closer is None:
+                next_to = findings.points[other]
+                is_same = is_hidden_by(apart, point.error + next_to.error)
+                if is_same or next_to.is_confirmed > point.is_confirmed:
+                    hidden.append((number, other))
+                continue
+            findings.points[number] = closer
+            starts += _half_branch_starts(closer)
+        findings.merge_points(hidden)
+        self._branch_off(starts)
+
+    def join_branches(self) -> None:
+        """Take two branches that stall at a point which a single branch passes for
+        one."""
+        for point in self.findings.points:
+            if self.is_over or point.kind is not Kind.RANK_DROP:
+                continue
+            ends = [
+                (number, s)
+                for number, branch in enumerate(self.findings.branches)
+                for s in ends_at(self.problem, branch, point)
+            ]
+            if len(ends) != 2:
+                continue
+            (one, s), (other, t) = ends
+            if one == other:
+                s, t = max(s, t), min(s, t)
+            branches = self.findings.branches
+            joined = joined_through(
+                self.problem, point, (branches[one], s), (branches[other], t)
+            )
+            if joined is not None:
+                misclosure = largest_misclosure(self.problem, joined)
+                examined = self._examine_branch(joined, misclosure)
+                self.findings.replace_branches(one, other, examined.traced)
 
     # --- audit ------------------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,23 +13,29 @@ from bifurc.singular.point import SingularPoint
 from bifurc.singular.second_order import second_order_tangents
 from bifurc.singular.sphere import Section, section
 
-__all__ = ["classify_singular_point"]
+__all__ = ["classify_from_nearby", "classify_singular_point"]
 
 # Radii of the sections, over the scale, in the order in which they are tried: at a
 # larger one branches that touch separate, at a smaller one other singular points stay
 # outside.
 FIRST_RADIUS = 2e-2
 OTHER_RADII = (4e-2, 8e-2, 5e-3, 1.25e-3)
+# Where all of these are in doubt the equations may be known exactly: then branches that
+# touch to a higher order are looked at from farther away.
+FARTHER_RADII = (0.16, 0.32)
 
 
-def classify_singular_point(problem: Problem, located: LocatedPoint) -> SingularPoint:
-    """The located point with its half-branches, tangents and local dimension.
+def classify_singular_point(
+    problem: Problem, located: LocatedPoint, within: float = np.inf
+) -> SingularPoint:
+    """The located point with its half-branches, tangents and local dimension, seen from
+    no farther away than ``within``, where other singular points are.
 
     The half-branches are those of a section with a small sphere, at whose radius and
     at half of it the same is seen; both are larger than the error of the point.
     Tangents of second order are kept where their number agrees with the section.
     """
-    cut = _choose_sections(problem, located)
+    cut = _choose_sections(problem, located, within)
     no_directions = np.empty((0, problem.n))
     half_branches, dimension = no_directions, -1
     if cut.agree:
@@ -49,6 +56,31 @@ def classify_singular_point(problem: Problem, located: LocatedPoint) -> Singular
         dimension=dimension,
         order=order,
         radius=cut.radius,
+        is_clear=cut.agree and cut.are_clear,
+        is_confirmed=located.is_confirmed,
+    )
+
+
+def classify_from_nearby(
+    problem: Problem, point: SingularPoint, within: float
+) -> SingularPoint | None:
+    """A singular point classified again from no farther away than ``within``: by clear
+    sections, else by its tangents of second order; None where rounding hides them."""
+    place = (point.u, point.null_space, point.error, point.is_confirmed)
+    located = LocatedPoint(*place)
+    closer = classify_singular_point(problem, located, within)
+    if closer.is_clear and closer.dimension <= 1:
+        return closer
+    tangents = second_order_tangents(problem, point.u, point.null_space)
+    if tangents is None or not len(tangents) or within < point.error:
+        return None
+    return replace(
+        point,
+        half_branches=np.concatenate([tangents, -tangents]),
+        tangents=tangents,
+        dimension=1,
+        order=2,
+        radius=within,
     )
 
 
@@ -65,11 +97,19 @@ class _Sections(NamedTuple):
     are_clear: bool
 
 
-def _choose_sections(problem: Problem, located: LocatedPoint) -> _Sections:
-    """The first sections that agree and are clear; else the first that agree; else
-    those of the first radius."""
-    best = _cut(problem, located, FIRST_RADIUS)
-    for radius in OTHER_RADII:
+def _choose_sections(
+    problem: Problem, located: LocatedPoint, within: float
+) -> _Sections:
+    """The first sections, of radii up to ``within``, that agree and are clear; else the
+    first that agree; else those of the first radius."""
+    farther = FARTHER_RADII if problem.is_exact else ()
+    radii = [FIRST_RADIUS, *OTHER_RADII, *farther]
+    largest = within / problem.scale
+    radii = [radius for radius in radii if radius <= largest]
+    if len(radii) < 2:
+        radii = [largest, largest / 4]
+    best = _cut(problem, located, radii[0])
+    for radius in radii[1:]:
         if best.agree and best.are_clear:
             break
         if radius * problem.scale / 2 < located.error:

@@ -14,7 +14,15 @@ import numpy as np
 from bifurc.errors import ProblemError
 from bifurc.singular.locate import block_slice
 
-__all__ = ["Confirmation", "Convergence", "Residual", "confirm_singular_point"]
+__all__ = [
+    "Confirmation",
+    "Convergence",
+    "Differences",
+    "Residual",
+    "augmented_system",
+    "confirm_singular_point",
+    "least_squares",
+]
 
 Residual = Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]
 """F over mpmath numbers: n of them in, m out, right to whatever precision is set when
@@ -97,7 +105,7 @@ def confirm_singular_point(
     if not 20 <= digits <= 1000:
         raise ProblemError("digits", digits, "from 20 to 1000")
     with mpmath.workdps(3 * digits + 30):
-        derivatives = _Differences(residual, mpmath.mpf(10) ** -(digits + 5))
+        derivatives = Differences(residual, mpmath.mpf(10) ** -(digits + 5))
         start = mpmath.matrix(point.tolist())
         start_basis = _orthonormal(mpmath.matrix(null_space.tolist()))
         refinement = _Refinement(start.copy(), start_basis.copy())
@@ -124,7 +132,7 @@ def confirm_singular_point(
 
 
 @dataclass(frozen=True)
-class _Differences:
+class Differences:
     """F and its derivatives by central differences of ``step``, at the precision that
     is set."""
 
@@ -172,12 +180,12 @@ class _Refinement:
             return mpmath.mpf(0)
         return self.moves[-1] / self.moves[-2]
 
-    def run(self, derivatives: _Differences, precision: mpmath.mpf) -> None:
+    def run(self, derivatives: Differences, precision: mpmath.mpf) -> None:
         """Take steps of Gauss-Newton until they are below the ``precision``, or too
         long to converge."""
         for _ in range(ITERATIONS):
-            matrix, right_side = _augmented_system(derivatives, self.u, self.basis)
-            self._move(_least_squares(matrix, right_side, precision**2))
+            matrix, right_side = augmented_system(derivatives, self.u, self.basis)
+            self._move(least_squares(matrix, right_side, precision**2))
             if self.moves[-1] < precision or self.moves[-1] > 1:
                 break
 
@@ -192,8 +200,8 @@ class _Refinement:
         self.moves.append(mpmath.norm(step[:n]))
 
 
-def _augmented_system(
-    derivatives: _Differences, u: mpmath.matrix, basis: mpmath.matrix
+def augmented_system(
+    derivatives: Differences, u: mpmath.matrix, basis: mpmath.matrix
 ) -> tuple[mpmath.matrix, mpmath.matrix]:
     """Matrix and right-hand side of a step for the point and its null space."""
     # The columns v_1 ... v_k of V move across V only:
@@ -243,7 +251,7 @@ class _Pivot(NamedTuple):
     right_side: mpmath.mpf
 
 
-def _least_squares(
+def least_squares(
     matrix: mpmath.matrix, right_side: mpmath.matrix, negligible: mpmath.mpf
 ) -> list[mpmath.mpf]:
     """A least-squares solution by QR with column pivoting; columns that add less than
@@ -305,7 +313,7 @@ class _Verdict(NamedTuple):
 
 
 def _judge(
-    derivatives: _Differences,
+    derivatives: Differences,
     refinement: _Refinement,
     precision: mpmath.mpf,
     magnitude: mpmath.mpf,

@@ -38,11 +38,13 @@ TINY = 1e-300  # keeps a step of zero from being divided by
 
 class LocatedPoint(NamedTuple):
     """A point ``u`` (n,) where F = 0 and F' has the ``null_space`` (n, k), and an
-    estimate of its ``error``, the distance to the exact point."""
+    estimate of its ``error``, the distance to the exact point; ``is_confirmed`` unless
+    it was looked for in more digits and not found."""
 
     u: np.ndarray
     null_space: np.ndarray
     error: float
+    is_confirmed: bool = True
 
 
 def locate_singular_point(

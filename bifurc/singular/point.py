@@ -38,7 +38,9 @@ class SingularPoint:
     solutions leave it, as seen on a small sphere, ``tangents`` (t, n) of the branches
     from the second-order equations (t = 0 where these do not decide), ``dimension`` of
     the solution set nearby (-1 where sections of two radii disagree), ``order`` of the
-    argument that decided: 2, or 0 for the section alone, which was made at ``radius``.
+    argument that decided: 2, or 0 for the section alone, which was made at ``radius``;
+    ``is_clear`` where nothing in it is a zero but for rounding, ``is_confirmed`` unless
+    the equations are known exactly and more digits did not show the point.
     """
 
     u: np.ndarray
@@ -50,6 +52,8 @@ class SingularPoint:
     dimension: int
     order: int
     radius: float
+    is_clear: bool = True
+    is_confirmed: bool = True
 
     @property
     def kind(self) -> Kind:

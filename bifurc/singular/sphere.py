@@ -39,7 +39,7 @@ ROUNDING, MARGIN = 4e-15, 8.0
 TOUCHES, ROOT, TOUCH = 1e-9, 1e-10, 1e-6
 ROOT_TOLERANCE = 1e-12
 # Rounds of the chord iteration, and the step over the scale at which it ends.
-ROUNDS, LAST_STEP = 10, 1e-15
+ROUNDS, LAST_STEP = 40, 1e-15
 # Of a point on a sphere, over the radius: last step of the iteration.
 SETTLED = 1e-4
 BESIDE = 1e3  # times the gap of points that are one: those are looked at as well

@@ -59,7 +59,7 @@ def is_on_singular_curve(problem: Problem, located: LocatedPoint) -> bool:
 
     They are looked for from starts to all sides in its null space.
     """
-    u, null_space, error = located
+    u, null_space, error, _ = located
     distance = NEXT * problem.scale + NEXT_TO_ERROR * error
     nullity = null_space.shape[1]
     for direction in np.concatenate([null_space.T, -null_space.T]):

@@ -53,9 +53,9 @@ def test_a_regular_point_is_no_start_of_a_curve_of_lower_rank():
     assert lower_rank_direction(circle, np.array([1.0, 0.0])) is None
 
 
-def test_explore_finds_a_double_circle_once_and_says_its_rank():
+def test_explore_finds_a_double_circle_once_and_says_its_multiplicity():
     atlas = explore(double_circle(), settings=SearchSettings(starts=40))
-    assert [(form.rank, form.branch.outcome) for form in atlas.forms] == [
-        (1, Outcome.CLOSED)
+    assert [(form.multiplicity, form.branch.outcome) for form in atlas.forms] == [
+        (2, Outcome.CLOSED)
     ]
     assert atlas.points == ()

@@ -1,0 +1,103 @@
+"""The place of a singular point of higher order, in many digits.
+
+There F vanishes to a higher order, and doubles see a whole stretch of singular points:
+1e-4 of the scale at a point of order 4. Equations that are known exactly tell which of
+them it is. Gauss-Newton converges linearly there, and where its steps shrink at a steady
+rate the rest of the geometric series is taken at once.
+"""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+
+from bifurc.problem import Problem
+from bifurc.singular.confirm import Differences, augmented_system, least_squares
+from bifurc.singular.locate import LocatedPoint
+
+__all__ = ["precisely_located"]
+
+DIGITS = 40  # that are worked to; the derivatives are differences, at three times these
+ITERATIONS = 120
+AMISS = 2.0  # times the distance from the place in doubles is its error
+STEADY = 0.05  # relative change of the rate at which steps shrink that is none
+SLOWEST = 0.95  # rate at which they shrink, at most, where the rest of them is taken
+FARTHEST = 4.0  # errors of the point in doubles, and at least this share of the scale:
+NEAREST = 0.02  # no farther away is the point
+ENOUGH = 1e-16  # length of the last step over the scale
+
+
+def precisely_located(problem: Problem, located: LocatedPoint) -> LocatedPoint:
+    """A located point as the exact equations have it, where they are known and a
+    singular point of this nullity is there.
+
+    The error stays what curves in doubles may pass it by, and is at least that by which
+    it was amiss. Where the iteration does not settle the point is not confirmed.
+    """
+    residual = problem.precise_residual()
+    if residual is None:
+        return located
+    reach = max(FARTHEST * located.error, NEAREST * problem.scale)
+    with mpmath.workdps(3 * DIGITS + 10):
+        derivatives = Differences(residual, mpmath.mpf(10) ** -DIGITS)
+        start = mpmath.matrix(located.u.tolist())
+        basis = mpmath.matrix(located.null_space.tolist())
+        try:
+            end = _iterate(derivatives, start, basis, reach)
+        except (ZeroDivisionError, ValueError, OverflowError):
+            return located  # it left where the function is defined
+    if end is None:
+        return located._replace(is_confirmed=False)
+    u, vectors = end
+    null_space, _ = np.linalg.qr(vectors)
+    moved = float(np.linalg.norm(u - located.u))
+    return LocatedPoint(u, null_space, max(located.error, AMISS * moved))
+
+
+def _iterate(
+    derivatives: Differences,
+    start: mpmath.matrix,
+    basis: mpmath.matrix,
+    reach: float,
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Where the iteration settles, as doubles: the point (n,) and vectors (n, k) that
+    span its null space; None where it does not, or farther away than ``reach``."""
+    negligible = mpmath.mpf(10) ** (-2 * DIGITS)
+    u = start.copy()
+    enough = ENOUGH * min(reach / NEAREST, 1.0)
+    lengths: list[mpmath.mpf] = []
+    rates: list[mpmath.mpf] = []
+    for _ in range(ITERATIONS):
+        matrix, right_side = augmented_system(derivatives, u, basis)
+        step = least_squares(matrix, right_side, negligible)
+        n, k = basis.rows, basis.cols
+        du = mpmath.matrix(step[:n])
+        length = mpmath.norm(du)
+        lengths.append(length)
+        if len(lengths) > 1 and lengths[-2]:
+            rates.append(length / lengths[-2])
+        ahead = _ahead(rates)
+        if ahead > 1:
+            lengths, rates = [], []  # the next steps are those of another series
+        u = u + ahead * du
+        for j in range(k):
+            for i in range(n):
+                basis[i, j] += step[n + j * n + i]
+        if mpmath.norm(u - start) > reach:
+            return None
+        if length < enough:
+            vectors = [[float(basis[i, j]) for j in range(k)] for i in range(n)]
+            return np.array([float(x) for x in u]), np.array(vectors)
+    return None
+
+
+def _ahead(rates: list[mpmath.mpf]) -> mpmath.mpf:
+    """By what to lengthen a step, so that it is the rest of a geometric series; 1 where
+    steps do not shrink at a steady rate."""
+    if len(rates) < 2:
+        return mpmath.mpf(1)
+    before, rate = rates[-2:]
+    is_steady = abs(rate - before) < STEADY * rate
+    if not is_steady or not 0.2 < rate < SLOWEST:
+        return mpmath.mpf(1)
+    return 1 / (1 - rate)

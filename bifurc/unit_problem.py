@@ -1,0 +1,439 @@
+"""A function's equations in units of their own: what a search works on.
+
+The sizes of the unknowns are those of the region in which solutions are, not those of
+the bounds: a curve far smaller than its bounds is looked for about where it is. The
+equations count by their gradients there. So a search sees the same numbers whatever the
+user's units are; `bifurc.search.restated` takes its answer back into these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bifurc import torus
+from bifurc.decisions import is_far_smaller, is_flat_equation, is_on_the_way
+from bifurc.equations.differentiation import with_gradients
+from bifurc.equations.recording import Recording
+from bifurc.equations.system import LARGEST_DENSE, ScaledTape
+from bifurc.equations.tape import Tape
+from bifurc.function_problem import EXACT_HESSIAN, PROBES, FunctionProblem
+from bifurc.numerics.bordered import as_dense
+from bifurc.problem import PreciseResidual, Problem
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Seeds
+from bifurc.units import Units
+
+if TYPE_CHECKING:
+    import mpmath
+
+__all__ = ["FARTHEST", "UnitProblem", "in_own_units"]
+
+FARTHEST = 100.0  # times the region: so far an unknown without bounds is followed
+STARTS, STARTS_OF_CALLABLE = 100, 24  # from which it is seen where solutions are
+ROUNDS = 40  # in which the region shrinks or grows to them
+MARGIN = 0.25  # of what solutions span, on either side of them
+CLOSE = 0.5  # share of a region that has shrunk which solutions then span
+WIDEST_MIX = 8.0  # sizes that differ by no more are taken for one
+# Share of the bounds below which solutions that lie so near to each other are one point.
+POINT = 1e-10
+OFF_CENTER = 4.0  # widths from zero from which on an unknown is counted from its middle
+HIGHEST, MOST_EQUATIONS = 6, 60  # multiplicity that is looked for, and equations
+FEWEST = 5  # ends of starts by which a multiplicity is told
+REGULAR = 1e-6  # smallest regular singular value at an end that is where it belongs
+OF_CURVES = 1e-4  # the same: at points of higher order where starts stop it is 2e-6
+METHODS = (
+    "residuals",
+    "jacobian",
+    "jacobians",
+    "hessian",
+    "march",
+    "project",
+    "project_to_sphere",
+    "seeds",
+    "bridge",
+    "missed",
+    "excess",
+    "curvature_bound",
+    "complex_curvature",
+)
+OUTER = 0.1  # share of solutions on either side that does not make a region grow
+
+
+class UnitProblem(FunctionProblem):
+    """The equations of a function in ``units``, with solutions looked for in the
+    ``region`` (n, 2) besides the bounds of the ``problem``; both in the user's units.
+
+    An unknown whose bounds hold a whole period has none: it is a circle. Where every
+    solution is a ``multiplicity``-fold one, the equations are those of ``tape``: F and
+    the derivatives that vanish with it.
+    """
+
+    def __init__(
+        self,
+        problem: FunctionProblem,
+        units: Units,
+        region: np.ndarray,
+        tape: Tape | None = None,
+        multiplicity: int = 1,
+    ):
+        self.problem = problem
+        self.multiplicity = multiplicity
+        self.own_units = units
+        self.names, self.units = problem.names, problem.units
+        self.derivatives, self.equations = problem.derivatives, problem.equations
+        self.periods = problem.periods / units.sizes
+        self.region = units.inwards(region.T).T
+        self.bounds = self._followed_bounds(problem)
+        self.scale = float(np.median(np.diff(self.region, axis=1))) / 4.0
+        self._function = self._restated_function
+        self._jacobian = None if problem._jacobian is None else self._restated_jacobian
+        self._rows = len(units.weights)
+        self._scaled = None
+        self.tape = problem.recording.tape if tape is None else tape
+        tape = self.tape
+        self.recording = Recording(None, problem.recording.reason)
+        if tape is not None:
+            self.hessian_error = EXACT_HESSIAN
+            self.is_exact = True
+            own = tape.in_units(units.origin, units.sizes, units.weights)
+            self.recording = Recording(own)
+            self._scaled = self._scaled_tape(own, 1.0)
+        sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
+        self.magnitude = float(np.median(sizes)) if sizes else 1.0
+        self.magnitude = self.magnitude or 1.0
+        if self.recording.tape is not None:
+            self._scaled = self._scaled_tape(self.recording.tape, self.magnitude)
+
+    def _followed_bounds(self, problem: FunctionProblem) -> np.ndarray:
+        """The bounds (n, 2) in which curves are followed: none on a circle, and far
+        from the region where the user gives none."""
+        bounds = self.own_units.inwards(problem.bounds.T).T
+        widths = np.diff(self.region, axis=1)[:, 0]
+        middles = self.region.mean(axis=1)
+        rim = middles[:, None] + FARTHEST * widths[:, None] * np.array([-0.5, 0.5])
+        is_circle = _is_circle(problem)[:, None]
+        is_open = np.isinf(bounds)
+        followed = np.where(is_open, rim, bounds)
+        nowhere = np.array([-np.inf, np.inf])
+        return np.where(is_circle, nowhere, followed)
+
+    def _scaled_tape(self, tape: Tape, magnitude: float) -> ScaledTape:
+        return ScaledTape(
+            tape,
+            magnitude,
+            self.scale,
+            self.bounds,
+            self.periods,
+            self.region,
+        )
+
+    def _restated_function(self, point: np.ndarray) -> np.ndarray:
+        """F (m,) of the user at a point (n,) in these units, weighted."""
+        value = self.problem._function(self.own_units.outwards(point))
+        weighted: np.ndarray = self.own_units.weights * np.asarray(value)
+        return weighted
+
+    def _restated_jacobian(self, point: np.ndarray) -> np.ndarray:
+        """F' (m, n) of the user at a point (n,) in these units, weighted."""
+        own = self.problem._given_jacobian(self.own_units.outwards(point))
+        rows = self.own_units.weights[:, None]
+        matrix: np.ndarray = rows * as_dense(own) * self.own_units.sizes
+        return matrix
+
+    def _matrices(self) -> list[np.ndarray]:
+        """F' (m, n) at random points of the region where it is finite."""
+        rng = np.random.default_rng(0)
+        points = rng.uniform(self.region[:, 0], self.region[:, 1], (PROBES, self.n))
+        with np.errstate(all="ignore"):
+            matrices = [self.jacobians(point[None])[0] for point in points]
+        return [matrix for matrix in matrices if np.all(np.isfinite(matrix))]
+
+    def precise_residual(self) -> PreciseResidual | None:
+        """F over mpmath numbers, from that of the user's problem."""
+        if self.multiplicity > 1:
+            return super().precise_residual()
+        precise = self.problem.precise_residual()
+        if precise is None:
+            return None
+        units = self.own_units
+
+        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+            pairs = zip(units.origin, units.sizes, unknowns, strict=True)
+            restated = [float(c) + float(d) * v for c, d, v in pairs]
+            values = precise(restated)
+            weights = units.weights.tolist()
+            return [w * value for w, value in zip(weights, values, strict=True)]
+
+        return residual
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        """Solutions reached from ``count`` random starts, half of them from the region
+        where that is smaller than the bounds."""
+        is_whole = np.isinf(self.bounds) | np.isinf(self.own_bounds)
+        is_whole |= np.isclose(self.bounds, self.region)
+        if np.all(is_whole):
+            return random_seeds(self, rng, count, self.region)
+        near = random_seeds(self, rng, count - count // 2, self.region)
+        anywhere = random_seeds(self, rng, count // 2, self.own_box)
+        return Seeds(
+            points=np.concatenate([near.points, anywhere.points]),
+            random=np.concatenate([near.random, anywhere.random]),
+            gaps=np.concatenate([near.gaps, anywhere.gaps]),
+            missed=np.concatenate([near.missed, anywhere.missed]),
+        )
+
+    @property
+    def own_bounds(self) -> np.ndarray:
+        """The user's bounds (n, 2) in these units."""
+        return self.own_units.inwards(self.problem.bounds.T).T
+
+    @property
+    def own_box(self) -> np.ndarray:
+        """The bounds (n, 2) in these units as far as they are finite, else the
+        region."""
+        bounds = self.own_bounds
+        is_bounded = np.isfinite(bounds).all(axis=1) & ~_is_circle(self.problem)
+        return np.where(is_bounded[:, None], bounds, self.region)
+
+    def ends(self, count: int) -> np.ndarray:
+        """Points (k, n), in the user's units, at which ``count`` random starts in the
+        region end: solutions, or where most reach none points on the way to them."""
+        seeds = random_seeds(self, np.random.default_rng(1), count, self.region)
+        near = seeds.missed[is_on_the_way(seeds.gaps)]
+        if len(seeds.points) > len(near):
+            near = near[:0]
+        ends = np.concatenate([seeds.points, near])
+        sharp = self._is_sharp(ends)
+        if 2 * np.count_nonzero(sharp) > len(ends):
+            ends = ends[sharp]
+        return self.own_units.outwards(ends)
+
+    def _is_sharp(self, points: np.ndarray) -> np.ndarray:
+        """Which of the ends (k, n) of starts are far from singular, and so where they
+        belong; others are spread by what a residual leaves open."""
+        if not len(points) or self.n < 2:
+            return np.ones(len(points), dtype=bool)
+        values = np.linalg.svd(self.jacobians(points), compute_uv=False)
+        if values.shape[1] < self.n - 1:
+            return np.zeros(len(points), dtype=bool)
+        sharp: np.ndarray = values[:, self.n - 2] > REGULAR * self.magnitude
+        return sharp
+
+
+def in_own_units(problem: Problem) -> UnitProblem | None:
+    """The equations of a function in units of their own; None for any other problem,
+    for more unknowns than are factored as dense matrices, and where they are in such
+    units as they stand."""
+    if not isinstance(problem, FunctionProblem) or not _is_plain(problem):
+        return None
+    if problem.n > LARGEST_DENSE:
+        return None
+    whole = _first_region(problem)
+    region, is_point = whole, np.zeros(problem.n, dtype=bool)
+    count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
+    own = _problem_on(problem, region)
+    for _ in range(ROUNDS):
+        closer = _region_of(problem, own.ends(count), region, is_point)
+        if closer is None:
+            break
+        # what shrinks without end is a point, and looked at from where it is
+        is_point |= _is_a_point(closer, whole)
+        region = np.where(is_point[:, None], whole, closer)
+        own = _problem_on(problem, region)
+    else:
+        own = _problem_on(problem, whole)
+    own = _deflated(own)
+    if not np.array_equal(region, whole) and not _has_curves(own):
+        own = _deflated(_problem_on(problem, whole))
+    return None if _is_as_it_stands(problem, own) else own
+
+
+def _is_a_point(region: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """In which unknowns (n,) a region (n, 2) is so small a part of the ``whole`` (n, 2)
+    that it is one point."""
+    least = POINT * np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(region).max(axis=1))
+    is_point: np.ndarray = np.diff(region, axis=1)[:, 0] < least
+    return is_point
+
+
+def in_one_size(own: UnitProblem) -> UnitProblem:
+    """The same in units in which all unknowns have one size."""
+    size = float(np.exp2(np.round(np.median(np.log2(own.own_units.sizes)))))
+    sizes = np.full(own.n, size)
+    units = replace(own.own_units, sizes=sizes)
+    region = own.own_units.outwards(own.region.T).T
+    return UnitProblem(own.problem, units, region, own.tape, own.multiplicity)
+
+
+def _is_plain(problem: FunctionProblem) -> bool:
+    """Whether a problem is its function and nothing else: a class that answers some
+    question in another way, a bound on F'' for instance, does so in its own units."""
+    kind = type(problem)
+    return all(
+        getattr(kind, name) is getattr(FunctionProblem, name) for name in METHODS
+    )
+
+
+def _is_circle(problem: Problem) -> np.ndarray:
+    """Which unknowns (n,) take all values of their period."""
+    widths = np.diff(problem.bounds, axis=1)[:, 0]
+    is_whole = widths >= problem.periods * (1.0 - torus.SEAM)
+    is_circle: np.ndarray = np.isfinite(problem.periods) & is_whole
+    return is_circle
+
+
+# --- where solutions are --------------------------------------------------------------
+
+
+def _first_region(problem: Problem) -> np.ndarray:
+    """The bounds (n, 2), those of one period on a circle, and about the finite end, or
+    from -1 to 1, where there are none."""
+    low, high = problem.bounds.T
+    low, high = (
+        np.where(np.isfinite(low), low, np.where(np.isfinite(high), high - 2.0, -1.0)),
+        np.where(np.isfinite(high), high, np.where(np.isfinite(low), low + 2.0, 1.0)),
+    )
+    middles = 0.5 * (low + high)
+    is_circle = _is_circle(problem)
+    half = np.where(is_circle, 0.5 * problem.periods, 0.5 * (high - low))
+    return np.column_stack([middles - half, middles + half])
+
+
+def _region_of(
+    problem: Problem, ends: np.ndarray, region: np.ndarray, is_point: np.ndarray
+) -> np.ndarray | None:
+    """The part of a ``region`` (n, 2) that holds the ``ends`` (k, n) of starts, where
+    that is far smaller, or larger for an unknown without bounds; None where it is not.
+    The unknowns that are a point (n,) are left as they are."""
+    if not len(ends):
+        return None
+    widths = np.diff(region, axis=1)[:, 0]
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    spans = high - low
+    whole = np.diff(_first_region(problem), axis=1)[:, 0]
+    is_free = ~np.isfinite(problem.periods) & ~is_point
+    # what has shrunk already is fitted closely, or sizes would differ by the last round
+    is_shrunk = widths < 0.5 * whole
+    unit = np.where(is_shrunk, CLOSE / is_far_smaller.threshold, 1.0)
+    is_constant = spans <= POINT * np.maximum(widths, np.abs(ends).max(axis=0))
+    is_small = is_free & is_far_smaller(spans, unit * widths) & ~is_constant
+    is_endless = is_free & ~np.isfinite(problem.bounds).all(axis=1)
+    inner = np.quantile(ends, [OUTER, 1.0 - OUTER], axis=0)
+    is_large = is_endless & is_far_smaller(widths, np.diff(inner, axis=0)[0])
+    is_beside = is_endless & ((inner[0] > region[:, 1]) | (inner[1] < region[:, 0]))
+    is_changed = is_small | is_large | is_beside
+    if not np.any(is_changed):
+        return None
+    low, high = np.where(is_small, low, inner[0]), np.where(is_small, high, inner[1])
+    margins = np.maximum(MARGIN * (high - low), np.where(is_small, 0.0, 0.5 * widths))
+    closer = np.column_stack([low - margins, high + margins])
+    closer = np.clip(closer, problem.bounds[:, :1], problem.bounds[:, 1:])
+    return np.where(is_changed[:, None], closer, region)
+
+
+# --- multiplicity ---------------------------------------------------------------------
+
+
+def _deflated(own: UnitProblem) -> UnitProblem:
+    """The same with the derivatives of the equations whose gradients vanish at all
+    solutions, as those of a square do, where that leaves curves of full rank."""
+    tape, deflated = own.tape, own
+    if tape is None or own.n < 2:
+        return own
+    region = own.own_units.outwards(own.region.T).T
+    latest = range(tape.m)
+    multiplicity = 1
+    while multiplicity < HIGHEST and tape.m <= MOST_EQUATIONS:
+        flat = _flat_equations(deflated, latest)
+        if not flat:
+            break
+        begin = tape.m
+        tape = with_gradients(tape, flat)
+        latest = range(begin, tape.m)
+        multiplicity += 1
+        deflated = _problem_on(own.problem, region, tape, multiplicity)
+    return deflated if multiplicity > 1 and _has_curves(deflated) else own
+
+
+def _flat_equations(own: UnitProblem, rows: Sequence[int]) -> list[int]:
+    """Which of the equations ``rows`` have no gradient where random starts end."""
+    ends = own.own_units.inwards(own.ends(STARTS))
+    typical = own._matrices()
+    if len(ends) < FEWEST or not typical:
+        return []
+    usual = np.median(np.linalg.norm(typical, axis=2), axis=0)
+    there = np.linalg.norm(own.jacobians(ends), axis=2)
+    there = np.quantile(there, 1.0 - OUTER, axis=0)
+    return [
+        row for row in rows if is_flat_equation(float(there[row]), float(usual[row]))
+    ]
+
+
+def _has_curves(own: UnitProblem) -> bool:
+    """Whether the solutions that random starts reach lie on curves of full rank, as a
+    rule."""
+    seeds = random_seeds(own, np.random.default_rng(1), STARTS, own.region)
+    if len(seeds.points) < FEWEST:
+        return False
+    matrices = own.jacobians(seeds.points) / own.magnitude
+    values = np.linalg.svd(matrices, compute_uv=False)
+    regular = np.median(values[:, own.n - 2])
+    left = np.median(values[:, own.n - 1]) if values.shape[1] >= own.n else 0.0
+    return bool(regular > OF_CURVES and left < OF_CURVES * regular)
+
+
+def _problem_on(
+    problem: FunctionProblem,
+    region: np.ndarray,
+    tape: Tape | None = None,
+    multiplicity: int = 1,
+) -> UnitProblem:
+    """The problem, with the equations of a ``tape`` where one is given, in the units
+    that a ``region`` (n, 2) gives."""
+    sizes = np.diff(region, axis=1)[:, 0] / 4.0
+    if sizes.max() <= WIDEST_MIX * sizes.min():
+        sizes = np.full(problem.n, np.median(sizes))
+    sizes = np.exp2(np.round(np.log2(sizes)))
+    middles = region.mean(axis=1)
+    is_off = np.abs(middles) > OFF_CENTER * np.diff(region, axis=1)[:, 0]
+    is_arc = np.isfinite(problem.periods) & np.isfinite(problem.bounds).all(axis=1)
+    origin = np.where(is_off | is_arc, middles, 0.0)
+    rows = problem._rows if tape is None else tape.m
+    units = Units(origin, sizes, np.ones(rows))
+    own = UnitProblem(problem, units, region, tape, multiplicity)
+    weights = _weights(own)
+    if np.all(weights == 1.0):
+        return own
+    weighted = replace(units, weights=weights)
+    return UnitProblem(problem, weighted, region, tape, multiplicity)
+
+
+def _weights(own: UnitProblem) -> np.ndarray:
+    """Powers of 2 (m,) that make the gradients of the equations about as long as each
+    other; ones where they are."""
+    matrices = own._matrices()
+    ones = np.ones(own._rows)
+    if not matrices or own._rows == 1:
+        return ones
+    lengths = np.median(np.linalg.norm(matrices, axis=2), axis=0)
+    is_counted = lengths > 0.0
+    if not np.any(is_counted):
+        return ones
+    counted = lengths[is_counted]
+    if counted.max() <= WIDEST_MIX * counted.min():
+        return ones
+    ones[is_counted] = np.exp2(-np.round(np.log2(counted)))
+    return ones
+
+
+def _is_as_it_stands(problem: Problem, own: UnitProblem) -> bool:
+    """Whether nothing is gained by other units."""
+    units = own.own_units
+    is_same = not np.any(units.origin) and own.multiplicity == 1
+    has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
+    has_bounds = not np.array_equal(own.bounds, problem.bounds)
+    return is_same and not has_sizes and not has_bounds

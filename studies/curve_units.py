@@ -1,0 +1,290 @@
+"""Curves with known answers, in any units: how many come out right.
+
+Every curve of `data/algebraic_curves.json` has a known number of forms, closed and open, of
+bifurcations with their half-branches, of cusps, of points where the rank drops on a
+single branch, and of isolated points. A cusp ends a form; through
+a point like that of x^3 = y^4, with half-branches to opposite sides, a single one
+passes. Each is explored as it stands, with its
+unknowns or its equations in other units, turned, shifted, and from other random starts.
+An answer is right, or wrong and said to be in doubt, or wrong without a word. Seconds
+are those of the processor.
+
+    python -m studies.curve_units --changes plain unknowns --seeds 2
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import product
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bifurc import Atlas, FunctionProblem, Kind, explore
+from bifurc.search.completeness import IN_DOUBT
+
+__all__ = ["Answer", "Change", "Curve", "Verdict", "changes_of", "judge", "load_curves"]
+
+BANK = Path(__file__).parent.parent / "data" / "algebraic_curves.json"
+SCALES = (1e-6, 1e-3, 10.0, 1e3, 1e6)
+SLOW = 5.0  # s, from which on an answer is listed
+FUNCTIONS = {
+    name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt")
+}
+
+
+class Answer(NamedTuple):
+    """What is counted in an atlas: forms ``closed`` and ``open``, the numbers of
+    half-branches of the ``bifurcations`` in order, ``cusps``, ``rank_drops``,
+    ``isolated`` points, ``others`` (surfaces, points of another kind) and the
+    ``multiplicity`` of the forms."""
+
+    closed: int
+    open: int
+    bifurcations: tuple[int, ...]
+    cusps: int
+    rank_drops: int
+    isolated: int
+    others: int = 0
+    multiplicity: int = 1
+
+    @staticmethod
+    def of(atlas: Atlas) -> Answer:
+        """The answer of an atlas."""
+        kinds = Counter(point.kind for point in atlas.points)
+        closed = sum(form.branch.closed for form in atlas.forms)
+        counted = (Kind.BIFURCATION, Kind.CUSP, Kind.RANK_DROP, Kind.ISOLATED)
+        sizes = [len(point.point.half_branches) for point in atlas.bifurcations]
+        return Answer(
+            closed=closed,
+            open=len(atlas.forms) - closed,
+            bifurcations=tuple(sorted(sizes)),
+            cusps=kinds[Kind.CUSP],
+            rank_drops=kinds[Kind.RANK_DROP],
+            isolated=kinds[Kind.ISOLATED] + len(atlas.rigid),
+            others=len(atlas.surfaces)
+            + sum(kinds[kind] for kind in kinds if kind not in counted),
+            multiplicity=max((form.multiplicity for form in atlas.forms), default=1),
+        )
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A curve with its ``equations`` in the ``unknowns``, ``bounds`` (n, 2) and
+    ``periods`` (n,), its ``source`` and its right ``answer``."""
+
+    name: str
+    source: str
+    unknowns: tuple[str, ...]
+    equations: tuple[str, ...]
+    bounds: np.ndarray
+    periods: np.ndarray
+    answer: Answer
+
+    def function(self) -> Callable[[np.ndarray], list[Any]]:
+        """F (m,) of a point (n,)."""
+        codes = [compile(text, self.name, "eval") for text in self.equations]
+
+        def values(point: np.ndarray) -> list[Any]:
+            names = dict(zip(self.unknowns, point, strict=True))
+            return [eval(code, FUNCTIONS, names) for code in codes]
+
+        return values
+
+
+def load_curves() -> list[Curve]:
+    """The curves of the bank."""
+    return [_curve(entry) for entry in json.loads(BANK.read_text())]
+
+
+def _curve(entry: dict[str, Any]) -> Curve:
+    n = len(entry["unknowns"])
+    periods = entry.get("periods", [None] * n)
+    ends = ((-np.inf, np.inf),) * n
+    bounds = [
+        [end if value is None else value for value, end in zip(row, limit, strict=True)]
+        for row, limit in zip(entry["bounds"], ends, strict=True)
+    ]
+    return Curve(
+        name=entry["name"],
+        source=entry["source"],
+        unknowns=tuple(entry["unknowns"]),
+        equations=tuple(entry["equations"]),
+        bounds=np.array(bounds, dtype=float),
+        periods=np.array([np.inf if p is None else p for p in periods]),
+        answer=Answer(
+            closed=entry["closed"],
+            open=entry["open"],
+            bifurcations=tuple(entry["bifurcations"]),
+            cusps=entry["cusps"],
+            rank_drops=entry["rank_drops"],
+            isolated=entry["isolated"],
+            multiplicity=entry.get("multiplicity", 1),
+        ),
+    )
+
+
+# --- other units ----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Change:
+    """Unknowns u = ``matrix`` v + ``shift`` and equations ``mixing`` F, with a
+    ``name``, of a ``kind``."""
+
+    kind: str
+    name: str
+    matrix: np.ndarray
+    shift: np.ndarray
+    mixing: np.ndarray
+
+    def problem(self, curve: Curve) -> FunctionProblem:
+        """The curve's equations so changed, in v."""
+        function = curve.function()
+
+        def changed(point: np.ndarray) -> np.ndarray:
+            values = np.array(function(self.matrix @ point + self.shift))
+            mixed: np.ndarray = self.mixing @ values
+            return mixed
+
+        inverse = np.linalg.inv(self.matrix)
+        is_diagonal = np.array_equal(self.matrix, np.diag(np.diag(self.matrix)))
+        bounds = curve.bounds - self.shift[:, None]
+        if is_diagonal:
+            bounds = np.diag(inverse)[:, None] * bounds
+            periods = np.diag(inverse) * curve.periods
+            return FunctionProblem(changed, bounds, periods=periods)
+        corners = np.array(list(product(*bounds))) @ inverse.T
+        around = np.column_stack([corners.min(axis=0), corners.max(axis=0)])
+        return FunctionProblem(changed, around.tolist())
+
+
+def changes_of(curve: Curve) -> Iterator[Change]:
+    """The curve as it stands, and its changes: five scales of the unknowns, the same for
+    the last of them alone, five of the equations, mixed equations, a shift and two
+    turns.
+
+    Turns are for closed curves that leave no bounds, and not for angles.
+    """
+    n, m = len(curve.unknowns), len(curve.equations)
+    one, still, same = np.eye(n), np.zeros(n), np.eye(m)
+    yield Change("plain", "plain", one, still, same)
+    for scale in SCALES:
+        yield Change("unknowns", f"unknowns {scale:g}", scale * one, still, same)
+        last = np.diag([1.0] * (n - 1) + [scale])
+        yield Change("unknown", f"last unknown {scale:g}", last, still, same)
+        weights = np.diag([scale] + [1.0] * (m - 1))
+        yield Change("equations", f"first equation {scale:g}", one, still, weights)
+    rng = np.random.default_rng(0)
+    mixing = np.linalg.qr(rng.normal(size=(m, m)))[0] @ np.diag(np.geomspace(1, 5, m))
+    yield Change("mixed", "mixed equations", one, still, mixing)
+    yield Change("shift", "shifted", one, rng.normal(size=n), same)
+    is_plain = not np.any(np.isfinite(curve.periods))
+    if is_plain and not curve.answer.open and np.all(np.isfinite(curve.bounds)):
+        for number in range(2):
+            turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
+            yield Change("turned", f"turned {number + 1}", turn, still, same)
+
+
+# --- verdicts -------------------------------------------------------------------------
+
+
+class Verdict(StrEnum):
+    """What an answer is worth."""
+
+    RIGHT = "right"
+    # It is wrong, and says that it may be.
+    IN_DOUBT = "in doubt"
+    # It is wrong without a word.
+    WRONG = "wrong"
+
+
+def judge(curve: Curve, atlas: Atlas) -> Verdict:
+    """Whether an atlas gives the curve's answer, or else says that it is in doubt."""
+    if Answer.of(atlas) == curve.answer:
+        return Verdict.RIGHT
+    is_undecided = any(
+        point.kind is Kind.UNDECIDED or point.note for point in atlas.points
+    )
+    is_in_doubt = atlas.completeness.statement.startswith(IN_DOUBT)
+    return Verdict.IN_DOUBT if is_undecided or is_in_doubt else Verdict.WRONG
+
+
+class Run(NamedTuple):
+    """One curve in one change from one seed."""
+
+    curve: str
+    change: Change
+    seed: int
+    verdict: Verdict
+    answer: Answer
+    seconds: float
+
+
+def run_curve(curve: Curve, change: Change, seed: int) -> Run:
+    """The verdict on one answer."""
+    began = time.process_time()
+    atlas = explore(change.problem(curve), seed=seed)
+    seconds = time.process_time() - began
+    verdict = judge(curve, atlas)
+    return Run(curve.name, change, seed, verdict, Answer.of(atlas), seconds)
+
+
+def _print_run(run: Run) -> None:
+    """One line for an answer that is not right, or slow."""
+    where = f"{run.curve}, {run.change.name}, seed {run.seed}"
+    if run.verdict is not Verdict.RIGHT:
+        print(f"{run.verdict}: {where}: {run.answer}", flush=True)
+    if run.seconds > SLOW:
+        print(f"slow: {where}: {run.seconds:.1f} s", flush=True)
+
+
+def _print_table(runs: Sequence[Run]) -> None:
+    """Counts by kind of change."""
+    print("| change | answers | right | in doubt | wrong | median s | most s |")
+    print("|---|---|---|---|---|---|---|")
+    kinds = list(dict.fromkeys(run.change.kind for run in runs))
+    for kind in [*kinds, "all"]:
+        group = [run for run in runs if kind in (run.change.kind, "all")]
+        counts = Counter(run.verdict for run in group)
+        seconds = [run.seconds for run in group]
+        cells = [kind, len(group), *(counts[verdict] for verdict in Verdict)]
+        cells += [f"{np.median(seconds):.2g}", f"{max(seconds):.2g}"]
+        print("| " + " | ".join(map(str, cells)) + " |")
+
+
+def main() -> None:
+    """Run the bank and print what is not right, and the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--changes", nargs="*", help="kinds of change; all of them")
+    parser.add_argument("--names", nargs="*", help="curves; all of them")
+    parser.add_argument("--seeds", type=int, default=1, help="random seeds from 0 on")
+    parser.add_argument("--every", type=int, default=1, help="only each k-th answer")
+    arguments = parser.parse_args()
+    runs: list[Run] = []
+    count = 0
+    for curve in load_curves():
+        if arguments.names and curve.name not in arguments.names:
+            continue
+        for change in changes_of(curve):
+            if arguments.changes and change.kind not in arguments.changes:
+                continue
+            for seed in range(arguments.seeds):
+                count += 1
+                if count % arguments.every:
+                    continue
+                run = run_curve(curve, change, seed)
+                _print_run(run)
+                runs.append(run)
+    _print_table(runs)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+"""The bank of curves is sound, and a quick sample of it comes out right."""
+
+import numpy as np
+import pytest
+
+from studies.curve_units import Verdict, changes_of, load_curves, run_curve
+
+CURVES = {curve.name: curve for curve in load_curves()}
+SAMPLE = [
+    ("folium of Descartes", "plain"),
+    ("astroid", "unknowns 1e-06"),
+    ("trifolium", "unknowns 1e+06"),
+    ("lemniscate of Bernoulli", "last unknown 1000"),
+    ("nodal cubic", "first equation 1e-06"),
+    ("two equal cylinders", "first equation 1e+06"),
+    ("twisted cubic by three quadrics", "mixed equations"),
+    ("circle", "shifted"),
+    ("lemniscate of Gerono", "turned 1"),
+    ("two circles on a torus", "shifted"),
+]
+
+
+def test_every_curve_has_a_source_and_a_name_of_its_own():
+    assert len(CURVES) == len(load_curves()) >= 60
+    for curve in CURVES.values():
+        assert curve.source
+        assert len(curve.bounds) == len(curve.unknowns) == len(curve.periods)
+        assert np.all(curve.bounds[:, 0] < curve.bounds[:, 1])
+
+
+@pytest.mark.parametrize(("name", "change"), SAMPLE)
+def test_a_curve_of_the_bank_comes_out_right_in_any_units(name, change):
+    curve = CURVES[name]
+    (chosen,) = [c for c in changes_of(curve) if c.name == change]
+    run = run_curve(curve, chosen, seed=0)
+    assert run.verdict is Verdict.RIGHT, run.answer
