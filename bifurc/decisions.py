@@ -272,8 +272,8 @@ is_far_smaller = Decision(
     "solutions fill so little of where they are looked for that they are looked at in "
     "units of their own",
     "what they span over the width of the region, in one unknown",
-    0.125,
-    "a curve as large as an eighth of the region is followed as well as a larger one",
+    0.03,
+    "a curve as large as a thirtieth of the region is followed as well as a larger one",
     Role.LOOK,
 )
 

@@ -37,7 +37,7 @@ STARTS, STARTS_OF_CALLABLE = 100, 24  # from which it is seen where solutions ar
 ROUNDS = 40  # in which the region shrinks or grows to them
 MARGIN = 0.25  # of what solutions span, on either side of them
 CLOSE = 0.5  # share of a region that has shrunk which solutions then span
-WIDEST_MIX = 8.0  # sizes that differ by no more are taken for one
+WIDEST_MIX = 32.0  # sizes that differ by no more are taken for one
 # Share of the bounds below which solutions that lie so near to each other are one point.
 POINT = 1e-10
 OFF_CENTER = 4.0  # widths from zero from which on an unknown is counted from its middle
