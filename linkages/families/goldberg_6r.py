@@ -321,6 +321,7 @@ def _grown_from_5r(detail: str) -> tuple[Relation, ...]:
 TYPICAL = _parameters(66, 50, 28, 83)
 SLENDER = _parameters(35, 62, 41, 22)
 FACTS = {"joints": 6, "mobility": 1}
+SONG = "Song (2013), section 5.4"
 
 ENTRIES = (
     Entry(
@@ -397,6 +398,7 @@ ENTRIES = (
         TYPICAL,
         conditions=(EQUAL_RATIOS, _links("b, a+c, d, b, c+d, a")),
         guesses=partial(difference_guesses, "gamma", 1, 5),
+        relations=(_case_of("generalized-serial-goldberg-variant-6r", SONG),),
         facts=FACTS,
     ),
     Entry(
@@ -407,6 +409,7 @@ ENTRIES = (
         TYPICAL,
         conditions=(EQUAL_RATIOS, _links("b+d, a, c, b, c+d, a")),
         guesses=partial(difference_guesses, "delta", 0, 3),
+        relations=(_case_of("generalized-l-shape-goldberg-variant-6r", SONG),),
         facts=FACTS,
     ),
     Entry(

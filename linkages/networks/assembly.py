@@ -137,7 +137,9 @@ def _scan(network: Network, order: Order, given: np.ndarray) -> np.ndarray:
     the others at ``given``."""
     values = np.linspace(-np.pi, np.pi, FINE + 1) + 0.1
     gaps = [_gaps(network, order, given, values, one) for one in order.check]
-    open_ones = [k for k, gap in enumerate(gaps) if not is_network_closed(np.abs(gap).max())]
+    open_ones = [
+        k for k, gap in enumerate(gaps) if not is_network_closed(np.abs(gap).max())
+    ]
     if not open_ones:
         chosen = values[:: FINE // GRID][:-1]
         return _follow(network, order, _rows(given, chosen))
