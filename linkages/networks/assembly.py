@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -72,14 +72,14 @@ def assemble(network: Network, locks: Mapping[str, float]) -> np.ndarray:
     """
     equations = constraints_of(network, locks)
     order = _order(len(network.plan.cells), equations)
-    free = list(order.given)
-    scanned = free.pop() if order.check else None
-    axes = [np.linspace(-np.pi, np.pi, GRID, endpoint=False) + 0.1 for _ in free]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(free))
-    if scanned is None:
-        return _follow(network, order, grid)
-    parts = [_scan(network, order, row) for row in grid]
-    return np.concatenate(parts) if parts else np.empty((0, len(network.plan.cells)))
+    is_scanned = bool(order.check and order.given)
+    gridded = len(order.given) - is_scanned
+    circle = np.linspace(-np.pi, np.pi, GRID, endpoint=False) + 0.1
+    rows = list(product(circle, repeat=gridded))
+    grid = np.array(rows).reshape(GRID**gridded, gridded)
+    if is_scanned:
+        return np.concatenate([_scan(network, order, row) for row in grid])
+    return _that_hold(network, order, _follow(network, order, grid))
 
 
 # --- order ----------------------------------------------------------------------------
@@ -87,7 +87,7 @@ def assemble(network: Network, locks: Mapping[str, float]) -> np.ndarray:
 
 def _order(cells: int, equations: Sequence[Equation]) -> Order:
     """The first order of assembly with the fewest cells given."""
-    for count in range(1, cells + 1):
+    for count in range(cells + 1):
         for given in combinations(range(cells), count):
             order = _order_from(given, equations)
             if len(order.given) + len(order.steps) == cells:
@@ -145,7 +145,11 @@ def _scan(network: Network, order: Order, given: np.ndarray) -> np.ndarray:
         return _follow(network, order, _rows(given, chosen))
     first = order.check[open_ones[0]]
     roots = _roots(network, order, given, values, gaps[open_ones[0]], first)
-    states = _follow(network, order, _rows(given, roots))
+    return _that_hold(network, order, _follow(network, order, _rows(given, roots)))
+
+
+def _that_hold(network: Network, order: Order, states: np.ndarray) -> np.ndarray:
+    """Those of the states (k, c) that satisfy the equations left to check."""
     holds = np.ones(len(states), dtype=bool)
     for one in order.check:
         missing = wrap_angles(network.sums(one.total, states) - one.value)

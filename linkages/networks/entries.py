@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -17,7 +16,7 @@ from linkages.networks.network import Network, build_network
 from linkages.networks.plan import Plan
 from linkages.networks.plans import FOUR_BENNETT, L_SHAPE, SERIAL
 
-__all__ = ["NETWORKS", "NetworkEntry", "nearest_network"]
+__all__ = ["NETWORKS", "NetworkEntry"]
 
 LENGTHS = ("b", "c", "d")
 
@@ -34,6 +33,7 @@ class NetworkEntry:
     source: str
     parameters: tuple[Parameter, ...]
     conditions: tuple[Condition, ...]
+    errata: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -55,13 +55,21 @@ class NetworkEntry:
         return build_network(self.plan, **{**defaults, **values})
 
 
-def nearest_network(name: str) -> tuple[str, ...]:
-    """The names of networks that are like ``name``."""
-    return tuple(difflib.get_close_matches(name, NETWORKS, n=2))
-
-
 PARAMETERS = (length_a(35), *twists_of_links(a=35, b=62, c=81, d=48))
 SOURCE = "Goldberg (1943); Baker (1983); Song (2013), section 5.4"
+
+# of table 5.4.1 and of the text beside it
+TABLE_MISPRINTS = (
+    'table 5.4.1 prints "1/3, 4/5, 5/7, 7/1"; it must be 1/3, 3/5, 5/7, 7/1',
+    "table 5.4.1 ends the list of pairs n/n+3 at 5/8; 6/1, 7/2 and 8/3 belong to it",
+    "three locks are said to leave nothing that moves; the triples 1/2/3, 3/4/5, 5/6/7 "
+    "and 7/8/1 leave mobility 1",
+)
+THREE_MISPRINTS = (
+    "the text on figure 5.4.14 exchanges (a) and (b); the caption is right",
+    "a Bennett loop is said to need a special geometry; with three loops two locks give "
+    "one",
+)
 
 _ENTRIES = (
     NetworkEntry(
@@ -73,6 +81,7 @@ _ENTRIES = (
             Condition("bars 12 = 67 = 08 = a, 23 = 56 = 04 = b, 34 = 81 = 02 = c"),
             Condition("bars 45 = 78 = 06 = d; no offsets"),
         ),
+        errata=TABLE_MISPRINTS,
     ),
     NetworkEntry(
         L_SHAPE,
@@ -83,6 +92,7 @@ _ENTRIES = (
             Condition("bars 12 = 08 = a, 23 = 56 = 04 = b, 34 = 81 = 02 = c"),
             Condition("bars 45 = 60 = d; no offsets"),
         ),
+        errata=THREE_MISPRINTS,
     ),
     NetworkEntry(
         SERIAL,
@@ -93,6 +103,7 @@ _ENTRIES = (
             Condition("rails U0U1 = V1V0 = a, U1U2 = V2V1 = b, U2U3 = V3V2 = c"),
             Condition("rungs V0U0 = U1V1 = U2V2 = U3V3 = d; no offsets"),
         ),
+        errata=THREE_MISPRINTS,
     ),
 )
 NETWORKS: Mapping[str, NetworkEntry] = {entry.name: entry for entry in _ENTRIES}

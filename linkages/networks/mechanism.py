@@ -79,14 +79,15 @@ def replaced_ring(network: Network, states: np.ndarray, joints: Sequence[str]) -
     loop = network.ring_loop
     axes = list(network.plan.ring)
     theta = network.ring_angles(states)
-    shown = []
+    kinks = [float(theta[axes.index(joint)]) for joint in joints]
     for joint in joints:
         place = axes.index(joint)
         kink = float(theta[place])
-        shown.append(f"{joint}={degrees(kink):.6g}")
         theta = locked_angles(loop, place + 1, kink, theta)
         loop = lock(loop, place + 1, kink)
         axes.remove(joint)
+    pairs = zip(joints, kinks, strict=True)
+    shown = [f"{joint}={degrees(kink):.6g}" for joint, kink in pairs]
     name = ", ".join([f"{network.name} without centre", *shown])
     return Loop(loop.lengths, loop.twists, loop.offsets, name)
 
