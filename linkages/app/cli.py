@@ -16,6 +16,7 @@ from linkages.app.commands.export_command import export_command
 from linkages.app.commands.identify_command import identify_command
 from linkages.app.commands.list_command import list_command
 from linkages.app.commands.map_command import map_command
+from linkages.app.commands.network_command import network_command
 from linkages.app.commands.route_command import route_command
 from linkages.app.commands.show_command import show_command
 from linkages.app.commands.sweep_command import sweep_command
@@ -125,6 +126,7 @@ for command in (
     show_command,
     identify_command,
     map_command,
+    network_command,
     view_command,
     route_command,
     export_command,

@@ -97,9 +97,7 @@ def without_centre(text: str, linkage: Linkage | Mechanism) -> Inputs:
     notes = (note,)
     if followers:
         names = ", ".join(followers)
-        notes += (
-            f"--without-centre: replaced as well, for it does not move: {names}",
-        )
+        notes += (f"--without-centre: replaced as well, for it does not move: {names}",)
     return Inputs(Linkage(loop), notes)
 
 

@@ -63,9 +63,7 @@ def describe_kinks(network: NetworkMechanism) -> str:
     return "Outer loop\n" + table(heads, rows)
 
 
-def describe_ring(
-    atlas: Atlas, readout: Readout, network: NetworkMechanism
-) -> str:
+def describe_ring(atlas: Atlas, readout: Readout, network: NetworkMechanism) -> str:
     """The range of the D-H angle of every outer joint along each form."""
     placed = network.placed
     ring = placed.network.plan.ring
@@ -78,7 +76,9 @@ def describe_ring(
             for axis, angle in zip(ring, reference, strict=True)
         ]
         rows.append((atlas.forms[index].name, *texts))
-    return section("Outer loop along the forms (D-H angles, deg)", ("form", *ring), rows)
+    return section(
+        "Outer loop along the forms (D-H angles, deg)", ("form", *ring), rows
+    )
 
 
 def _range(one: VariableRange, reference: float) -> str:

@@ -17,8 +17,8 @@ def show_command(name: str) -> None:
       bifurc show bennett
     """
     from linkages.app.entry_text import describe_entry
-    from linkages.app.output import say
     from linkages.app.network_text import describe_network
+    from linkages.app.output import say
     from linkages.catalogue import entry
     from linkages.networks.entries import NETWORKS
 
