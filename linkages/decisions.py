@@ -155,5 +155,12 @@ is_dependent_lock = Decision(
     1e-8,
     "what depends on each other gives 1e-15",
 )
+is_same_network_place = Decision(
+    "same place of a network",
+    "two configurations of a network are one",
+    "largest difference of the states of cells, rad",
+    1e-7,
+    "roots are exact to 1e-15 times the slope, double ones to 1e-8",
+)
 
 TABLE = decisions_in(globals())
