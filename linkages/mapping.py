@@ -80,14 +80,15 @@ def _map_mechanism(
         )
         return replace(atlas, subject={**atlas.subject, **mechanism_subject(mechanism)})
     if isinstance(mechanism, NetworkMechanism):
-        problem = NetworkClosure(mechanism)
-        atlas = explore(problem, settings=settings, seed=seed, progress=progress)
-        labelled = label_mechanism(atlas, problem)
-        network = {"network": network_subject(mechanism)}
-        return replace(labelled, subject={**labelled.subject, **network})
-    problem = MechanismClosure(mechanism)
+        problem: MechanismClosure = NetworkClosure(mechanism)
+    else:
+        problem = MechanismClosure(mechanism)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
-    return label_mechanism(atlas, problem)
+    labelled = label_mechanism(atlas, problem)
+    if not isinstance(mechanism, NetworkMechanism):
+        return labelled
+    network = {"network": network_subject(mechanism)}
+    return replace(labelled, subject={**labelled.subject, **network})
 
 
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:

@@ -94,7 +94,7 @@ def without_centre(text: str, linkage: Linkage | Mechanism) -> Inputs:
         "loop may have more: taking the middle away adds forms and bifurcations"
     )
     followers = [joint for joint in linkage.still if joint not in linkage.kinks]
-    notes = (note,)
+    notes: tuple[str, ...] = (note,)
     if followers:
         names = ", ".join(followers)
         notes += (f"--without-centre: replaced as well, for it does not move: {names}",)

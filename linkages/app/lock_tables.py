@@ -66,6 +66,6 @@ def _cells(state: LockedState) -> tuple[str, ...]:
         state.becomes,
         mobility,
         " ".join(state.left),
-        " ".join(state.still),
+        " ".join(state.still) if state.mobility else "",
         state.linkages[0] if state.linkages else "",
     )

@@ -36,6 +36,7 @@ def describe_network(entry: NetworkEntry) -> str:
         f"mobility: 3; Grübler's count is {mechanism.gruebler}",
         "lengths b, c, d follow from the Bennett ratio, and are checked where they are "
         "given",
+        *entry.remarks,
     ]
     parts = [
         f"{entry.name}\n{entry.title}\nSource: {entry.source}",
@@ -54,11 +55,11 @@ def describe_kinks(network: NetworkMechanism) -> str:
     """At which D-H angles the outer joints are in the reference configuration, and
     which of them are locked there."""
     placed = network.placed
-    angles = placed.network.ring_angles(placed.reference)
     rows = []
-    for axis, angle in zip(placed.network.plan.ring, angles, strict=True):
-        locked = "locked" if axis in placed.locks else "-"
-        rows.append((axis, placed.label(axis), in_degrees(float(angle)), locked))
+    for axis in placed.network.plan.ring:
+        locked = "locked" if axis in placed.kinks else "-"
+        angle = in_degrees(placed.turns[axis])
+        rows.append((axis, placed.label(axis), angle, locked))
     heads = ("outer joint", "variable", "D-H angle where it is 0 (deg)", "lock")
     return "Outer loop\n" + table(heads, rows)
 
@@ -67,13 +68,11 @@ def describe_ring(atlas: Atlas, readout: Readout, network: NetworkMechanism) -> 
     """The range of the D-H angle of every outer joint along each form."""
     placed = network.placed
     ring = placed.network.plan.ring
-    reference = placed.network.ring_angles(placed.reference)
     rows = []
     for index in np.argsort([form.name for form in atlas.forms]):
         ranges = {one.label: one for one in form_facts(atlas, index, readout).ranges}
         texts = [
-            _range(ranges[placed.label(axis)], float(angle))
-            for axis, angle in zip(ring, reference, strict=True)
+            _range(ranges[placed.label(axis)], placed.turns[axis]) for axis in ring
         ]
         rows.append((atlas.forms[index].name, *texts))
     return section(
@@ -94,9 +93,8 @@ def ring_values(
     """The D-H angles (rad) of the outer joints, by name, for ``values`` (rad) of the
     variables by label."""
     placed = network.placed
-    reference = placed.network.ring_angles(placed.reference)
     angles = {}
-    for axis, angle in zip(placed.network.plan.ring, reference, strict=True):
-        turned = float(angle) + values[placed.label(axis)]
+    for axis in placed.network.plan.ring:
+        turned = placed.turns[axis] + values[placed.label(axis)]
         angles[axis] = float(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
     return angles

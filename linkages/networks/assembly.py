@@ -197,7 +197,8 @@ def _roots(
         low = np.where(is_below, middle, low)
         at_low = np.where(is_below, at_middle, at_low)
         high = np.where(is_below, high, middle)
-    return 0.5 * (low + high)
+    roots: np.ndarray = 0.5 * (low + high)
+    return roots
 
 
 # --- motion ---------------------------------------------------------------------------
@@ -214,7 +215,7 @@ class Motion:
     @property
     def mobility(self) -> int:
         """How many freedoms are left."""
-        return self.cells.shape[1]
+        return int(self.cells.shape[1])
 
     def still(self, axes: Sequence[str]) -> tuple[str, ...]:
         """Those of the axes of the ring at which nothing turns."""

@@ -23,7 +23,8 @@ LENGTHS = ("b", "c", "d")
 
 @dataclass(frozen=True)
 class NetworkEntry:
-    """One network: its ``plan``, its free ``parameters``, and conditions in words.
+    """One network: its ``plan``, its free ``parameters``, conditions in words, further
+    ``remarks``, and misprints of the source.
 
     The lengths b, c, d follow from the Bennett ratio; they may be given as well, and
     are checked then.
@@ -33,6 +34,7 @@ class NetworkEntry:
     source: str
     parameters: tuple[Parameter, ...]
     conditions: tuple[Condition, ...]
+    remarks: tuple[str, ...] = ()
     errata: tuple[str, ...] = ()
 
     @property
@@ -58,6 +60,10 @@ class NetworkEntry:
 PARAMETERS = (length_a(35), *twists_of_links(a=35, b=62, c=81, d=48))
 SOURCE = "Goldberg (1943); Baker (1983); Song (2013), section 5.4"
 
+FOUR_JOINTS = (
+    "joints 2, 4, 6, 8 all straight (0) or all folded (180): a Bennett linkage if "
+    "tan(alpha/2) tan(beta/2) = tan(gamma/2) tan(delta/2), or else rigid"
+)
 # of table 5.4.1 and of the text beside it
 TABLE_MISPRINTS = (
     'table 5.4.1 prints "1/3, 4/5, 5/7, 7/1"; it must be 1/3, 3/5, 5/7, 7/1',
@@ -81,6 +87,7 @@ _ENTRIES = (
             Condition("bars 12 = 67 = 08 = a, 23 = 56 = 04 = b, 34 = 81 = 02 = c"),
             Condition("bars 45 = 78 = 06 = d; no offsets"),
         ),
+        remarks=(FOUR_JOINTS,),
         errata=TABLE_MISPRINTS,
     ),
     NetworkEntry(

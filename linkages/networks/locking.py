@@ -59,7 +59,9 @@ def locked_states(
     reference = lock_network(network, {}).placed.reference
     for axes in combinations(network.plan.ring, count):
         if not kinks:
-            yield _state_at(PlacedNetwork(network, reference, axes))
+            standing = PlacedNetwork(network, reference).turns
+            values = {axis: standing[axis] for axis in axes}
+            yield _state_at(PlacedNetwork(network, reference, values))
             continue
         values = dict(zip(axes, kinks, strict=True))
         try:
@@ -81,10 +83,10 @@ def _state_at(placed: PlacedNetwork) -> LockedState:
     motion = motion_at(network, placed.locks, placed.reference)
     at_rest = motion.still(ring)
     left = tuple(axis for axis in ring if axis not in at_rest)
-    still = tuple(axis for axis in at_rest if axis not in placed.locks)
+    still = tuple(axis for axis in at_rest if axis not in placed.kinks)
     names: tuple[str, ...] = ()
     if motion.mobility == 1 and len(left) >= MIN_JOINTS:
-        loop = replaced_ring(network, placed.reference, at_rest)
+        loop = replaced_ring(placed, at_rest)
         names = identify(loop, entries=_entries(), locking=False).names
     return LockedState(placed.kinks, motion.mobility, left, still, names)
 

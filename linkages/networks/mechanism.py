@@ -68,18 +68,18 @@ class NetworkMechanism(Mechanism):
 
         Raises `GeometryError` where fewer than four joints are left.
         """
-        placed = self.placed
-        return replaced_ring(placed.network, placed.reference, self.still)
+        return replaced_ring(self.placed, self.still)
 
 
-def replaced_ring(network: Network, states: np.ndarray, joints: Sequence[str]) -> Loop:
-    """The ring of a network at states (c,), each of the ``joints`` replaced together
+def replaced_ring(placed: PlacedNetwork, joints: Sequence[str]) -> Loop:
+    """The ring of a network, each of the ``joints`` replaced, where it stands, together
     with its two links by one link; raises `GeometryError` where fewer than four are
     left."""
+    network = placed.network
     loop = network.ring_loop
     axes = list(network.plan.ring)
-    theta = network.ring_angles(states)
-    kinks = [float(theta[axes.index(joint)]) for joint in joints]
+    theta = np.array([placed.turns[axis] for axis in axes])
+    kinks = [placed.turns[joint] for joint in joints]
     for joint in joints:
         place = axes.index(joint)
         kink = float(theta[place])
@@ -148,7 +148,7 @@ def network_subject(mechanism: NetworkMechanism) -> dict[str, Any]:
         "name": placed.network.name,
         "parameters": dict(placed.network.parameters),
         "reference": placed.reference.tolist(),
-        "locks": list(placed.locks),
+        "kinks": dict(placed.kinks),
     }
 
 
@@ -159,4 +159,4 @@ def network_of(atlas: Atlas) -> NetworkMechanism | None:
         return None
     network = NETWORKS[str(values["name"])].build(**values["parameters"])
     reference: Sequence[float] = values["reference"]
-    return _mechanism(PlacedNetwork(network, np.array(reference), values["locks"]))
+    return _mechanism(PlacedNetwork(network, np.array(reference), values["kinks"]))

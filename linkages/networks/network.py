@@ -32,6 +32,9 @@ from linkages.networks.plan import Plan
 __all__ = ["Network", "Sum", "build_network", "other_angle", "wrap_angles"]
 
 
+TWISTS = ("alpha", "beta", "gamma", "delta")
+
+
 class Sum(NamedTuple):
     """The sum of a ``constant`` and of angles of cells, each the corner of this number
     in the cell of this number."""
@@ -163,19 +166,28 @@ def other_angle(factor: np.ndarray | float, angle: np.ndarray) -> np.ndarray:
     return other
 
 
-def build_network(plan: Plan, **values: Number | None) -> Network:
+def build_network(
+    plan: Plan,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
+) -> Network:
     """The network with the length ``a`` and the twists ``alpha`` to ``delta`` (rad).
 
     The lengths ``b``, ``c``, ``d`` follow from the Bennett ratio, and are checked where
     they are given. Raises `GeometryError`; neighbouring links of a cell must have
     different twists, for a rhombus has no closed form.
     """
-    others = {}
-    for link, twist in (("b", "beta"), ("c", "gamma"), ("d", "delta")):
-        others[link] = (values[twist], values.get(link))
-    links = bennett_links(values["a"], values["alpha"], **others)
+    links = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
     named = dict(zip("abcd", links, strict=True))
-    given = {key: float(value) for key, value in values.items() if value is not None}
-    network = Network(plan, named, given)
+    parameters = {"a": float(a)}
+    for name, twist in zip(TWISTS, (alpha, beta, gamma, delta), strict=True):
+        parameters[name] = float(twist)
+    network = Network(plan, named, parameters)
     assert len(network.factors) == len(plan.cells)  # computed, and so checked
     return network

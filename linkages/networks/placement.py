@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from linkages.kinematics import joint_frames
-from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.joint import Joint, JointKind, Vector
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.network import Network, wrap_angles
 
@@ -20,7 +20,8 @@ LOCKED_IN_PLACE = 0.0
 
 class PlacedNetwork:
     """A ``network`` as the ``mechanism`` whose reference configuration are the states
-    ``reference`` (c,) of its cells, with the axes ``locks`` of the ring held there.
+    ``reference`` (c,) of its cells, with the axes of the ring in ``kinks`` held there,
+    at these D-H angles (rad).
 
     Every bar is a body, every axis a joint of all bars on it. The variables of the
     joint at an axis are measured from the first bar that comes to it in the ring; the
@@ -28,18 +29,26 @@ class PlacedNetwork:
     """
 
     def __init__(
-        self, network: Network, reference: np.ndarray, locks: Iterable[str] = ()
+        self,
+        network: Network,
+        reference: np.ndarray,
+        kinks: Mapping[str, float] | None = None,
     ):
         self.network = network
         self.reference = np.asarray(reference, dtype=float)
-        self.locks = tuple(locks)
+        self.kinks = {} if kinks is None else dict(kinks)
+
+    @property
+    def locks(self) -> tuple[str, ...]:
+        """The names of the locked joints."""
+        return tuple(self.kinks)
 
     @cached_property
-    def kinks(self) -> dict[str, float]:
-        """The D-H angles, rad, at which joints are locked."""
-        angles = self.network.ring_angles(self.reference)
-        ring = self.network.plan.ring
-        return {axis: float(angles[ring.index(axis)]) for axis in self.locks}
+    def turns(self) -> dict[str, float]:
+        """The D-H angles of the outer joints, rad, in the reference configuration."""
+        angles = self.network.ring_angles(self.reference).tolist()
+        turns = dict(zip(self.network.plan.ring, angles, strict=True))
+        return turns | self.kinks
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -69,17 +78,15 @@ class PlacedNetwork:
 
     # --- places -----------------------------------------------------------------------
 
-    def _axes(
-        self,
-    ) -> tuple[dict[str, tuple[float, ...]], dict[str, tuple[float, ...]]]:
+    def _axes(self) -> tuple[dict[str, Vector], dict[str, Vector]]:
         """A point of every axis, and its direction."""
-        points: dict[str, tuple[float, ...]] = {}
-        directions: dict[str, tuple[float, ...]] = {}
+        points: dict[str, Vector] = {}
+        directions: dict[str, Vector] = {}
         for number, base in self._bases().items():
             frames = base @ self._frames[number]
             for corner, axis in enumerate(self.network.plan.cells[number].axes):
-                points.setdefault(axis, tuple(frames[corner, :3, 3].tolist()))
-                directions.setdefault(axis, tuple(frames[corner, :3, 2].tolist()))
+                points.setdefault(axis, _vector(frames[corner, :3, 3]))
+                directions.setdefault(axis, _vector(frames[corner, :3, 2]))
         return points, directions
 
     @cached_property
@@ -173,6 +180,11 @@ class PlacedNetwork:
                 angle = angle + np.pi + angles[..., corner.cell, corner.number]
                 directions.setdefault((axis, corner.departure), angle)
         return directions
+
+
+def _vector(values: np.ndarray) -> Vector:
+    x, y, z = values.tolist()
+    return (x, y, z)
 
 
 def _turn(angle: float) -> np.ndarray:
