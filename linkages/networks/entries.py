@@ -71,10 +71,9 @@ TABLE_MISPRINTS = (
     "three locks are said to leave nothing that moves; the triples 1/2/3, 3/4/5, 5/6/7 "
     "and 7/8/1 leave mobility 1",
 )
+TWO_LOCKS = "two locks leave a Bennett linkage for 14 of the 28 pairs, at any geometry"
 THREE_MISPRINTS = (
     "the text on figure 5.4.14 exchanges (a) and (b); the caption is right",
-    "a Bennett loop is said to need a special geometry; with three loops two locks give "
-    "one",
 )
 
 _ENTRIES = (
@@ -99,6 +98,7 @@ _ENTRIES = (
             Condition("bars 12 = 08 = a, 23 = 56 = 04 = b, 34 = 81 = 02 = c"),
             Condition("bars 45 = 60 = d; no offsets"),
         ),
+        remarks=(TWO_LOCKS,),
         errata=THREE_MISPRINTS,
     ),
     NetworkEntry(
@@ -110,6 +110,7 @@ _ENTRIES = (
             Condition("rails U0U1 = V1V0 = a, U1U2 = V2V1 = b, U2U3 = V3V2 = c"),
             Condition("rungs V0U0 = U1V1 = U2V2 = U3V3 = d; no offsets"),
         ),
+        remarks=(TWO_LOCKS,),
         errata=THREE_MISPRINTS,
     ),
 )

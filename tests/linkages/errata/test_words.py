@@ -19,6 +19,8 @@ SEEN = {
     ),
     "section 4.2": "in 5 of 12 random ones both are one closed curve",
     "section 5.2.1": "4 of 12 random ones have more than one component",
+    "table 5.4.1, row n/n+3": "8 of 8 pairs leave a 6R of mobility 1",
+    "section 5.4.5": "1/2/3, 1/7/8, 3/4/5, 5/6/7 of 56 move",
 }
 
 
