@@ -11,19 +11,36 @@ with two link pairs replaced by one link each. How they move follows from
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from linkages.closed_forms.closed_form import (
+    HALF_TURN,
+    ClosedForm,
+    Pair,
+    constant,
+    cosine_of,
+    joint,
+    minus,
+    negative,
+    only,
+    plus,
+    ratio,
+    reciprocal,
+    sine_of,
+    tangent,
+)
+from linkages.construction import numbers
 from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
-from linkages.construction.constructions import isomerize, lock
+from linkages.construction.constructions import lock
 from linkages.construction.link import bennett_links, closed_chain
 from linkages.construction.numbers import Number
 from linkages.construction.possible_angles import kinks
 from linkages.construction.spatial_triangle import KinkAngle
 from linkages.construction.table_equations import zero_offsets
 from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
-from linkages.families.goldberg_6r import generalized_l_shape_goldberg
 from linkages.loop import Loop
 
 __all__ = [
@@ -87,8 +104,149 @@ def isomerized_l_shape(
     """The isomer of the L-shape Goldberg 6R with kink angles: links [b d], [a c], b, d,
     c, a, the pair a, c locked at ``kink_1`` and b, d at ``kink_2`` (rad, or a `Kink`).
     Source: Song (2013), case 3 of section 5.4.3."""
-    plain = generalized_l_shape_goldberg(a, alpha, beta, gamma, delta, kink_1, kink_2)
-    return isomerize(plain, 5)
+    link_a, link_b, link_c, link_d = bennett_links(
+        a, alpha, b=(beta, None), c=(gamma, None), d=(delta, None)
+    )
+    ring = closed_chain(link_d, link_b, link_a, link_c, link_b, link_d, link_c, link_a)
+    return lock(lock(ring, 4, kink_1), 2, kink_2)
+
+
+# --- closed forms
+
+
+class _Gains(NamedTuple):
+    """What the joints before and after a link of two gain, as pairs."""
+
+    before: Pair
+    after: Pair
+
+
+def _composite(
+    number: int, first: str, second: str
+) -> tuple[_Gains, dict[str, Number]]:
+    """The gains of the links with these twists, locked at the kink of this number, and
+    the constants in which they are written: the sine of the joint twist, and the
+    projections of the spatial triangle."""
+    u_1, u_2, u_kink = tangent(first), tangent(second), tangent(f"kink_{number}")
+    c_1, s_1 = cosine_of(u_1), sine_of(u_1)
+    c_2, s_2 = cosine_of(u_2), sine_of(u_2)
+    c_kink, s_kink = cosine_of(u_kink), sine_of(u_kink)
+    names = [f"{name}_{number}" for name in ("n", "x", "y", "z", "w")]
+    n, x, y, z, w = (constant(name) for name in names)
+    x_value = c_kink * s_2 * c_1 + c_2 * s_1
+    y_value = s_kink * s_2
+    constants = {
+        names[1]: x_value,
+        names[2]: y_value,
+        names[3]: c_kink * s_1 * c_2 + c_1 * s_2,
+        names[4]: s_kink * s_1,
+        names[0]: numbers.sqrt(x**2 + y**2),
+        f"k_{number}": u_kink,
+    }
+    return _Gains((y, n + x), (w, n + z)), constants
+
+
+def _kink(number: int) -> Pair:
+    return (constant(f"k_{number}"), 1)
+
+
+def _closed_form(
+    linkage: str, joints: Sequence[Pair], constants: Mapping[str, Number]
+) -> ClosedForm:
+    return ClosedForm(
+        linkage,
+        "form of the network",
+        f"from the network of Bennett loops of {SOURCE}",
+        ("alpha", "beta", "gamma", "delta", "kink_1", "kink_2"),
+        only(*joints),
+        constants,
+    )
+
+
+def _l_shape_formulas() -> tuple[ClosedForm, ...]:
+    """Three cells around a common axis, locked at joints 2 and 0: p is the angle of a
+    cell at its outer joint, v that at the joint before."""
+    b_d, of_first = _composite(1, "delta", "beta")
+    c_d, of_second = _composite(2, "gamma", "delta")
+    p_1 = minus(joint(1), b_d.before)
+    v_1 = reciprocal(p_1, constant("m_a"))
+    v_2 = plus(minus(v_1, HALF_TURN), _kink(1))
+    p_2 = reciprocal(v_2, constant("m_b"))
+    p_3 = negative(plus(_kink(2), plus(p_1, p_2)))
+    v_3 = reciprocal(p_3, constant("m_c"))
+    joints = (
+        joint(1),
+        plus(p_2, b_d.after),
+        plus(minus(HALF_TURN, v_2), v_3),
+        p_3,
+        plus(negative(v_3), c_d.before),
+        plus(v_1, c_d.after),
+    )
+    factors = {
+        "m_a": ratio("delta", "alpha"),
+        "m_b": ratio("alpha", "beta"),
+        "m_c": ratio("beta", "gamma"),
+    }
+    constants = {**factors, **of_first, **of_second}
+    return (_closed_form("generalized-l-shape-goldberg-variant-6r", joints, constants),)
+
+
+def _serial_formulas() -> tuple[ClosedForm, ...]:
+    """Three cells in a row, locked at joints U1 and V2."""
+    a_c, of_first = _composite(1, "alpha", "gamma")
+    d_c, of_second = _composite(2, "delta", "gamma")
+    p_1 = negative(joint(1))
+    v_1 = reciprocal(p_1, constant("m_a"))
+    v_2 = minus(minus(_kink(1), p_1), HALF_TURN)
+    p_2 = reciprocal(v_2, constant("m_c"))
+    p_3 = minus(minus(HALF_TURN, v_2), _kink(2))
+    v_3 = reciprocal(p_3, constant("m_d"))
+    joints = (
+        joint(1),
+        plus(v_1, a_c.before),
+        plus(plus(plus(p_2, v_3), HALF_TURN), a_c.after),
+        p_3,
+        plus(negative(v_3), d_c.before),
+        plus(minus(HALF_TURN, plus(v_1, p_2)), d_c.after),
+    )
+    factors = {
+        "m_a": ratio("beta", "alpha"),
+        "m_c": ratio("beta", "gamma"),
+        "m_d": ratio("beta", "delta"),
+    }
+    constants = {**factors, **of_first, **of_second}
+    return (_closed_form("generalized-serial-goldberg-variant-6r", joints, constants),)
+
+
+def _isomer_formulas() -> tuple[ClosedForm, ...]:
+    """Four cells around a common axis, locked at joints 2 and 4."""
+    b_d, of_second = _composite(2, "delta", "beta")
+    a_c, of_first = _composite(1, "alpha", "gamma")
+    p_1 = minus(joint(1), b_d.before)
+    v_1 = reciprocal(p_1, constant("m_a"))
+    v_2 = plus(minus(v_1, HALF_TURN), _kink(2))
+    p_2 = reciprocal(v_2, constant("m_b"))
+    v_3 = plus(minus(v_2, HALF_TURN), _kink(1))
+    p_3 = reciprocal(v_3, constant("m_c"))
+    p_4 = negative(plus(p_1, plus(p_2, p_3)))
+    v_4 = reciprocal(p_4, constant("m_d"))
+    joints = (
+        joint(1),
+        plus(plus(p_2, b_d.after), a_c.before),
+        plus(p_3, a_c.after),
+        plus(minus(HALF_TURN, v_3), v_4),
+        p_4,
+        plus(minus(HALF_TURN, v_4), v_1),
+    )
+    factors = {
+        "m_a": ratio("delta", "alpha"),
+        "m_b": ratio("alpha", "beta"),
+        "m_c": ratio("beta", "gamma"),
+        "m_d": ratio("gamma", "delta"),
+    }
+    constants = {**factors, **of_first, **of_second}
+    name = "isomerized-generalized-l-shape-goldberg-6r"
+    return (_closed_form(name, joints, constants),)
 
 
 # --- first guesses
@@ -154,7 +312,7 @@ def _isomer_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
 # --- entries
 
 
-def _kink(number: int, degrees: float, links: str) -> Parameter:
+def _angle(number: int, degrees: float, links: str) -> Parameter:
     meaning = f"angle between {links}"
     return Parameter.angle(f"kink_{number}", degrees, meaning, -120, 120)
 
@@ -172,13 +330,14 @@ ENTRIES = (
         "Variant of the serial Goldberg 6R with kink angles",
         SOURCE,
         generalized_serial_variant,
-        (*LINKS, _kink(1, 25, "a and c"), _kink(2, -40, "c and d")),
+        (*LINKS, _angle(1, 25, "a and c"), _angle(2, -40, "c and d")),
         conditions=(
             EQUAL_RATIOS,
             _condition("b, [a c], d, b, [c d], a"),
             Condition("R1 = R4 = 0", (zero_offsets(1, 4),)),
         ),
         guesses=_serial_guesses,
+        formulas=_serial_formulas,
         facts=FACTS,
     ),
     Entry(
@@ -186,13 +345,14 @@ ENTRIES = (
         "Variant of the L-shape Goldberg 6R with kink angles",
         SOURCE,
         generalized_l_shape_variant,
-        (*LINKS, _kink(1, 25, "b and d"), _kink(2, -40, "c and d")),
+        (*LINKS, _angle(1, 25, "b and d"), _angle(2, -40, "c and d")),
         conditions=(
             EQUAL_RATIOS,
             _condition("[b d], a, c, b, [c d], a"),
             Condition("R3 = R4 = 0", (zero_offsets(3, 4),)),
         ),
         guesses=_l_shape_guesses,
+        formulas=_l_shape_formulas,
         facts=FACTS,
     ),
     Entry(
@@ -200,13 +360,14 @@ ENTRIES = (
         "Isomer of the L-shape Goldberg 6R with kink angles",
         SOURCE,
         isomerized_l_shape,
-        (*LINKS, _kink(1, 25, "a and c"), _kink(2, -40, "b and d")),
+        (*LINKS, _angle(1, 25, "a and c"), _angle(2, -40, "b and d")),
         conditions=(
             EQUAL_RATIOS,
             _condition("[b d], [a c], b, d, c, a"),
             Condition("R4 = R5 = R6 = 0", (zero_offsets(4, 5, 6),)),
         ),
         guesses=_isomer_guesses,
+        formulas=_isomer_formulas,
         relations=(
             Relation(
                 RelationKind.ISOMER,
