@@ -135,17 +135,26 @@ def _state_of(factor: float, corner: int, angle: np.ndarray) -> np.ndarray:
 def _scan(network: Network, order: Order, given: np.ndarray) -> np.ndarray:
     """The states (k, c) that satisfy all equations, the last given cell being open and
     the others at ``given``."""
-    values = np.linspace(-np.pi, np.pi, FINE + 1) + 0.1
+    values = _circle(network.factors[order.given[-1]])
     gaps = [_gaps(network, order, given, values, one) for one in order.check]
     open_ones = [
         k for k, gap in enumerate(gaps) if not is_network_closed(np.abs(gap).max())
     ]
     if not open_ones:
-        chosen = values[:: FINE // GRID][:-1]
+        chosen = values[:: len(values) // GRID]
         return _follow(network, order, _rows(given, chosen))
     first = order.check[open_ones[0]]
     roots = _roots(network, order, given, values, gaps[open_ones[0]], first)
     return _that_hold(network, order, _follow(network, order, _rows(given, roots)))
+
+
+def _circle(factor: float) -> np.ndarray:
+    """States of a cell all around, fine in both its angles, the first one again at the
+    end."""
+    even = np.linspace(-np.pi, np.pi, FINE, endpoint=False) + 0.1
+    both = np.concatenate([even, other_angle(factor, even)])
+    values = np.unique(np.mod(both, 2 * np.pi))
+    return np.append(values, values[0] + 2 * np.pi)
 
 
 def _that_hold(network: Network, order: Order, states: np.ndarray) -> np.ndarray:

@@ -129,6 +129,45 @@ class _Node(NamedTuple):
     locks: Locks
 
 
+class _Cost(NamedTuple):
+    """What a way costs: how many switches, and then its length."""
+
+    switches: int
+    length: float
+
+
+class _Frontier:
+    """The nodes that were reached, with the least ``costs`` (Dijkstra)."""
+
+    def __init__(self) -> None:
+        self.costs: dict[_Node, _Cost] = {}
+        self._origins: dict[_Node, _Node | None] = {}
+        self._queue: list[tuple[_Cost, int, _Node]] = []
+        self._order = count()  # nodes are not compared
+
+    def reach(self, node: _Node, cost: _Cost, origin: _Node | None) -> None:
+        """Note a way to a node, if it costs less than those before."""
+        if node not in self.costs or cost < self.costs[node]:
+            self.costs[node] = cost
+            self._origins[node] = origin
+            heapq.heappush(self._queue, (cost, next(self._order), node))
+
+    def pop(self) -> _Node | None:
+        """The next node by cost; None where all were taken."""
+        while self._queue:
+            cost, _, node = heapq.heappop(self._queue)
+            if cost == self.costs[node]:
+                return node
+        return None
+
+    def chain(self, node: _Node) -> list[_Node]:
+        """The nodes of the way to a node, from its start."""
+        chain = [node]
+        while (origin := self._origins[chain[-1]]) is not None:
+            chain.append(origin)
+        return chain[::-1]
+
+
 class _Search:
     """What routes over locks are looked for in: places (c,) of the network, and the
     maps of its locked states, each made when it is first needed."""
@@ -239,33 +278,22 @@ class _Search:
         starts = self._starts
         if starts is None:
             starts = list(exchanges.get(self.before, {}))
-        order = count()
-        queue: list[tuple[tuple[int, float], int, _Node]] = []
-        origins: dict[_Node, _Node | None] = {}
-        costs: dict[_Node, tuple[int, float]] = {}
-
-        def reach(node: _Node, cost: tuple[int, float], origin: _Node | None) -> None:
-            if node not in costs or cost < costs[node]:
-                costs[node] = cost
-                origins[node] = origin
-                heapq.heappush(queue, (cost, next(order), node))
-
+        frontier = _Frontier()
         for place in starts:
-            reach(_Node(place, self.before), (0, 0.0), None)
-        while queue:
-            cost, _, node = heapq.heappop(queue)
-            if cost > costs[node]:
-                continue
+            frontier.reach(_Node(place, self.before), _Cost(0, 0.0), None)
+        while (node := frontier.pop()) is not None:
             if self._is_goal(node):
-                return self._route(node, origins, len(starts))
+                return self._route(frontier.chain(node), len(starts))
+            switches, length = frontier.costs[node]
             places = exchanges.get(node.locks, {})
             for other in places.get(node.place, ()):
-                reach(_Node(node.place, other), (cost[0] + 1, cost[1]), node)
+                there = _Node(node.place, other)
+                frontier.reach(there, _Cost(switches + 1, length), node)
             for target in self._targets(node, places):
                 route = self._way(node.locks, node.place, target)
                 if route is not None:
-                    length = cost[1] + route.length
-                    reach(_Node(target, node.locks), (cost[0], length), node)
+                    cost = _Cost(switches, length + route.length)
+                    frontier.reach(_Node(target, node.locks), cost, node)
         return None
 
     def _is_goal(self, node: _Node) -> bool:
@@ -306,13 +334,7 @@ class _Search:
         by_label = dict(zip(labels, values.tolist(), strict=True))
         return np.array([by_label[name] for name in atlas.names])
 
-    def _route(
-        self, node: _Node, origins: Mapping[_Node, _Node | None], starts: int
-    ) -> LockRoute:
-        chain = [node]
-        while (origin := origins[chain[-1]]) is not None:
-            chain.append(origin)
-        chain.reverse()
+    def _route(self, chain: list[_Node], starts: int) -> LockRoute:
         steps: list[Travel | Switch] = []
         for first, last in pairwise(chain):
             if first.locks != last.locks:
