@@ -79,7 +79,7 @@ def describe_lock_route(
     if route.starts > 1:
         parts.append(
             f"{route.starts} places are such as the start: the route leaves from that "
-            "from which it is shortest."
+            "from which it is shortest; name more angles behind @ for another one."
         )
     locked = network_of(last)
     assert locked is not None

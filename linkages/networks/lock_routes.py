@@ -41,7 +41,11 @@ Explore: TypeAlias = Callable[[NetworkMechanism], Atlas]
 @dataclass(frozen=True)
 class NetworkPlace:
     """Where a route begins or ends: ``locks``, and D-H angles (rad) of further outer
-    joints ``at`` the place; none where any place with these locks will do."""
+    joints ``at`` the place; none where any place with these locks will do.
+
+    The first of these angles is exact; others only tell places with the same first one
+    apart, and the place nearest to them is taken.
+    """
 
     locks: Mapping[str, float]
     at: Mapping[str, float] = field(default_factory=dict)
@@ -209,13 +213,31 @@ class _Search:
                 name = f"angle of joint {joint} at the {what}"
                 value = show_locks([(joint, place.at[joint])])
                 raise GeometryError(name, value, "left out, as the joint is locked")
-        numbers = self._isolated({**place.locks, **place.at})
+            self.network.require_axis(joint, f"joint at the {what}")
+        (joint, angle), *hints = place.at.items()
+        numbers = self._isolated({**place.locks, joint: angle})
         if not numbers:
             angles = show_locks({**place.locks, **place.at}.items())
             allowed = "angles that the network has at one place at least, and not all "
             allowed += "along a form"
             raise GeometryError(f"{what} of the route", angles, allowed)
-        return numbers
+        # of routes as long as each other the first is taken: that nearest to the
+        # reference configuration; rounded, so that it does not hang on the last bits
+        ordered = sorted(numbers, key=lambda number: self._distance(number, states))
+        if not hints:
+            return ordered
+        return [min(ordered, key=lambda number: self._misfit(number, dict(hints)))]
+
+    def _misfit(self, place: int, hints: Mapping[str, float]) -> float:
+        """How far outer joints are from where they are said to be, rad."""
+        angles = self.network.ring_angles(self._places[place])
+        ring = self.network.plan.ring
+        gaps = [angles[ring.index(joint)] - angle for joint, angle in hints.items()]
+        return round(float(np.linalg.norm(wrap_angles(np.array(gaps)))), 9)
+
+    def _distance(self, place: int, states: np.ndarray) -> float:
+        gaps = wrap_angles(self._places[place] - states)
+        return round(float(np.linalg.norm(gaps)), 9)
 
     def _isolated(self, angles: Mapping[str, float]) -> list[int]:
         """The numbers of all places with these D-H angles, where they are isolated."""

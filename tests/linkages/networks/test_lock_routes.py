@@ -64,6 +64,13 @@ def test_a_route_travels_to_the_exchange_and_on_to_the_goal():
     assert found.length == pytest.approx(first.length + last.length)
 
 
+def test_further_angles_choose_among_places():
+    near = in_radians(p4=90, p1=150)
+    found = route(NetworkPlace(CASE_4, near), NetworkPlace(CASE_3))
+    assert found.starts == 1
+    assert np.degrees(found.start[[0, 3]]) == pytest.approx([154.991, 90], abs=1e-3)
+
+
 def test_another_kink_of_one_joint_needs_two_exchanges():
     found = route(
         NetworkPlace(in_radians(p1=20, p5=30)), NetworkPlace(in_radians(p1=25, p5=30))
