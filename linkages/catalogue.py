@@ -19,6 +19,7 @@ from types import ModuleType
 import linkages.families
 from bifurc.errors import BifurcError
 from linkages.entry import Entry
+from linkages.networks.entries import NETWORKS
 
 __all__ = ["UnknownLinkageError", "catalogue", "entry", "families"]
 
@@ -73,13 +74,14 @@ def catalogue() -> dict[str, Entry]:
 
 def entry(name: str) -> Entry:
     """The entry called ``name``; raises `UnknownLinkageError`, which lists the nearest
-    names."""
+    names, also of networks."""
     entries = _entries()
     if name in entries:
         return entries[name]
     plain = name.strip().lower().replace("_", "-").replace(" ", "-")
-    nearest = difflib.get_close_matches(plain, entries, n=3, cutoff=0.5)
-    for other in entries:
+    known = [*entries, *NETWORKS]
+    nearest = difflib.get_close_matches(plain, known, n=3, cutoff=0.5)
+    for other in known:
         is_part = bool(plain) and (plain in other or other in plain)
         if is_part and other not in nearest:
             nearest.append(other)

@@ -141,4 +141,26 @@ is_dependent_constraint = Decision(
     "constraints that depend on each other give 1e-15",
 )
 
+is_network_closed = Decision(
+    "closed network",
+    "cells of a network close around an axis, or have a joint at its lock",
+    "angle that is missing, rad",
+    1e-9,
+    "bisection leaves 1e-15 times the slope; where there is no configuration 1e-2",
+)
+is_dependent_lock = Decision(
+    "redundant lock",
+    "a lock of a network holds nothing that the others do not, or a joint stands still",
+    "singular value, or rate of a joint, of the closed form with unit states",
+    1e-8,
+    "what depends on each other gives 1e-15",
+)
+is_same_network_place = Decision(
+    "same place of a network",
+    "two configurations of a network are one",
+    "largest difference of the states of cells, rad",
+    1e-7,
+    "roots are exact to 1e-15 times the slope, double ones to 1e-8",
+)
+
 TABLE = decisions_in(globals())

@@ -12,6 +12,7 @@ from linkages.entry import FormPattern
 from linkages.file import LinkageFileError, read_file
 from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import GeometryError, Loop, check_number
+from linkages.networks.entries import NETWORKS
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -52,8 +53,8 @@ class Linkage:
 
 
 def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
-    """The linkage called ``source`` in the catalogue, or the linkage or the mechanism
-    read from a TOML file.
+    """The linkage or the network called ``source`` in the catalogue, or the linkage or
+    the mechanism read from a TOML file.
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. Raises `UnknownLinkageError` with the nearest names,
@@ -71,6 +72,8 @@ def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
             raise GeometryError(f"parameters of {source}", names, allowed)
         content = read_file(source)
         return Linkage(content) if isinstance(content, Loop) else content
+    if str(source) in NETWORKS:
+        return _load_network(str(source), parameters)
     return _load_entry(str(source), parameters)
 
 
@@ -109,6 +112,16 @@ def _load_entry(name: str, parameters: dict[str, float]) -> Linkage:
     if family.patterns is None:
         return Linkage(loop)
     return Linkage(loop, family.patterns(**values))
+
+
+def _load_network(name: str, parameters: dict[str, float]) -> Mechanism:
+    """The member of a network with these parameters, nothing locked."""
+    # it imports networkx, which a loop does not need
+    from linkages.networks.mechanism import lock_network
+
+    for key, value in parameters.items():
+        check_number(f"parameter {key} of {name}", value)
+    return lock_network(NETWORKS[name].build(**parameters), {})
 
 
 def _check_for_files(name: str, error: UnknownLinkageError) -> None:

@@ -66,6 +66,11 @@ def _map_mechanism(
     from linkages.mechanisms.labels import label_mechanism
     from linkages.mechanisms.readout import Readout
     from linkages.mechanisms.subject import mechanism_subject
+    from linkages.networks.mechanism import (
+        NetworkClosure,
+        NetworkMechanism,
+        network_subject,
+    )
 
     readout = Readout(mechanism)
     single = readout.single_loop
@@ -74,9 +79,16 @@ def _map_mechanism(
             single.loop, settings=settings, seed=seed, progress=progress
         )
         return replace(atlas, subject={**atlas.subject, **mechanism_subject(mechanism)})
-    problem = MechanismClosure(mechanism)
+    if isinstance(mechanism, NetworkMechanism):
+        problem: MechanismClosure = NetworkClosure(mechanism)
+    else:
+        problem = MechanismClosure(mechanism)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
-    return label_mechanism(atlas, problem)
+    labelled = label_mechanism(atlas, problem)
+    if not isinstance(mechanism, NetworkMechanism):
+        return labelled
+    network = {"network": network_subject(mechanism)}
+    return replace(labelled, subject={**labelled.subject, **network})
 
 
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:

@@ -18,6 +18,7 @@ import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import combinations
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
@@ -42,6 +43,10 @@ from linkages.mapping import map_linkage
 from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.networks.assembly import assemble, motion_at
+from linkages.networks.entries import NETWORKS
+from linkages.networks.lock_routes import NetworkPlace, find_lock_route
+from linkages.networks.network import Network
 from studies.hard_cases import crossings
 from studies.near_misses import near_misses
 from studies.near_something_larger import FAMILIES
@@ -270,6 +275,29 @@ def _describe(mechanism: Mechanism) -> None:
     make_document(map_linkage(mechanism, settings=SETTINGS))
 
 
+def _networks() -> Iterator[Case]:
+    """Networks of Bennett loops under all pairs and triples of locks, and a route over
+    their locks."""
+    for name, entry in NETWORKS.items():
+        yield Case(name, partial(_lock_all, entry.build()))
+    four = NETWORKS["four-bennett-network"].build()
+    start = NetworkPlace({"2": 0.7, "6": -1.3}, {"4": 0.5})
+    goal = NetworkPlace({"1": 0.7, "5": 1.0}, {"4": 0.5})
+    explore_locked = partial(map_linkage, settings=SETTINGS)
+    search = partial(find_lock_route, four, start, goal, explore_locked)
+    yield Case("route over locks", search)
+
+
+def _lock_all(network: Network) -> None:
+    """Assemble a network at random kinks of every two and every three joints."""
+    rng = np.random.default_rng(0)
+    for count in (2, 3):
+        for axes in combinations(network.plan.ring, count):
+            kinks = dict(zip(axes, rng.uniform(-np.pi, np.pi, count), strict=True))
+            for states in assemble(network, kinks)[:3]:
+                motion_at(network, axes, states).still(network.plan.ring)
+
+
 def _plane_curves(count: int) -> Iterator[Case]:
     """Random plane curves."""
     rng = np.random.default_rng(0)
@@ -307,8 +335,8 @@ Every comparison on which a count, a kind, a level or a word hangs compares one 
 in `bifurc/decisions.py` and `linkages/decisions.py`; singular values and residuals are over the problem's magnitude,
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
 over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, surfaces,
-mechanisms, hard cases and random plane curves. `python -m studies.margins --nearest "same point"` says in which cases
-the quantities of a decision lie nearest to its threshold.
+mechanisms, networks, hard cases and random plane curves. `python -m studies.margins --nearest "same point"` says in
+which cases the quantities of a decision lie nearest to its threshold.
 
 A *verdict* decides a count, a kind, a level or a word. Its threshold stands in an empty gap of three decades or more.
 Where the truth itself has no gap (a linkage may miss a condition by any amount), it has a *third answer*: what is said
@@ -399,6 +427,7 @@ def main(members: int, near: int, target: bool, name: str | None) -> None:
         yield from _near_something_larger()
         yield from _surfaces()
         yield from _mechanisms()
+        yield from _networks()
         yield from _hard_curves()
         yield from _plane_curves(CURVES)
 

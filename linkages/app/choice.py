@@ -11,10 +11,11 @@ import numpy as np
 
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
-from linkages.entry import Entry, ParameterKind
+from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
+from linkages.networks.entries import NETWORKS, NetworkEntry
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -70,13 +71,20 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mecha
             parameters[0],
             "left out with a file, which holds the whole geometry",
         )
-    values = read_parameters(entry(text), parameters) if parameters else {}
+    values = {}
+    if parameters:
+        values = read_parameters(_family(text).parameters, parameters)
     try:
         linkage = load(text, **values)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
     _require_size(text, linkage)
     return linkage
+
+
+def _family(text: str) -> Entry | NetworkEntry:
+    """The entry or the network called ``text``; raises `UnknownLinkageError`."""
+    return NETWORKS[text] if text in NETWORKS else entry(text)
 
 
 def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
@@ -108,18 +116,20 @@ def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:
     if is_linkage_file(text):
         return read_precisely(text)
     family = entry(text)
-    values = family.complete(read_parameters(family, parameters))
+    values = family.complete(read_parameters(family.parameters, parameters))
     exact = {name: mpmath.mpf(value) for name, value in values.items()}
     return family.build(**exact)
 
 
-def read_parameters(family: Entry, texts: Sequence[str]) -> dict[str, float]:
-    """The parameters in "key=value", angles turned from degrees to rad; raises
-    `CommandError`.
+def read_parameters(
+    known: Sequence[Parameter], texts: Sequence[str]
+) -> dict[str, float]:
+    """The parameters in "key=value", those ``known`` as angles turned from degrees to
+    rad; raises `CommandError`.
 
-    Whether the family has parameters of these names is for `Entry.complete` to say.
+    Whether a family has parameters of these names is for `Entry.complete` to say.
     """
-    kinds = {parameter.name: parameter.kind for parameter in family.parameters}
+    kinds = {parameter.name: parameter.kind for parameter in known}
     values: dict[str, float] = {}
     for text in texts:
         name, value = split_parameter(text)

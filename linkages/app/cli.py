@@ -17,6 +17,7 @@ from linkages.app.commands.figure_command import figure_command
 from linkages.app.commands.identify_command import identify_command
 from linkages.app.commands.list_command import list_command
 from linkages.app.commands.map_command import map_command
+from linkages.app.commands.network_command import network_command
 from linkages.app.commands.route_command import route_command
 from linkages.app.commands.show_command import show_command
 from linkages.app.commands.solve_command import solve_command
@@ -128,6 +129,7 @@ for command in (
     show_command,
     identify_command,
     map_command,
+    network_command,
     view_command,
     figure_command,
     route_command,

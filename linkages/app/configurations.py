@@ -15,10 +15,12 @@ from linkages.app.texts import in_degrees
 
 if TYPE_CHECKING:
     from linkages.mechanisms.readout import Readout
+    from linkages.networks.mechanism import NetworkMechanism
 
 __all__ = [
     "heading",
     "joint_names",
+    "network_at",
     "numbers_at",
     "readout_of",
     "show_configuration",
@@ -40,6 +42,16 @@ def readout_of(atlas: Atlas) -> Readout | None:
 
     mechanism = mechanism_of(atlas)
     return None if mechanism is None else Readout(mechanism)
+
+
+@lru_cache(maxsize=2)
+def network_at(atlas: Atlas) -> NetworkMechanism | None:
+    """The network that an atlas is of; None for anything else."""
+    if "network" not in atlas.subject:
+        return None
+    from linkages.networks.mechanism import network_of
+
+    return network_of(atlas)
 
 
 def unknown_factors(atlas: Atlas) -> NDArray[np.float64]:

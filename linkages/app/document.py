@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
-from linkages.app.configurations import numbers_at, readout_of
+from linkages.app.configurations import network_at, numbers_at, readout_of
 from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels, loop_of
@@ -45,9 +45,11 @@ class CertificateDocument(TypedDict):
 
 
 class PlaceDocument(TypedDict):
-    """A configuration of a mechanism: its ``variables`` by the names of its joints."""
+    """A configuration of a mechanism: its ``variables`` by the names of its joints; of
+    a network also the D-H angles of its outer joints, rad."""
 
     variables: NotRequired[JointVariables]
+    ring_angles: NotRequired[dict[str, float]]
 
 
 class AssemblyDocument(PlaceDocument):
@@ -143,6 +145,15 @@ class CompletenessDocument(TypedDict):
     missed_probability: float
 
 
+class NetworkDocument(TypedDict):
+    """A network of Bennett loops: its parameters, twists in rad, and the D-H angles
+    (rad) at which outer joints are locked."""
+
+    name: str
+    parameters: dict[str, float]
+    kinks: dict[str, float]
+
+
 class MapDocument(TypedDict):
     """The whole document; docs/results.md says what each key holds."""
 
@@ -150,6 +161,7 @@ class MapDocument(TypedDict):
     mobility: int
     gruebler: int
     mechanism: NotRequired[MechanismDocument]
+    network: NotRequired[NetworkDocument]
     forms: list[FormDocument]
     bifurcations: list[BifurcationDocument]
     rank_drops: list[RankDropDocument]
@@ -196,6 +208,13 @@ def make_document(atlas: Atlas) -> MapDocument:
         from linkages.app.mechanism_document import describe_mechanism
 
         document["mechanism"] = describe_mechanism(atlas, readout)
+    network = network_at(atlas)
+    if network is not None:
+        document["network"] = {
+            "name": network.placed.network.name,
+            "parameters": dict(network.placed.network.parameters),
+            "kinks": network.kinks,
+        }
     return document
 
 
@@ -206,6 +225,13 @@ def _add_variables(
     readout = readout_of(atlas)
     if readout is not None:
         document["variables"] = readout.variables(theta)
+    network = network_at(atlas)
+    if readout is not None and network is not None:
+        from linkages.app.network_text import ring_values
+
+        values = readout.values(theta[None])[0].tolist()
+        by_label = dict(zip(readout.labels(), values, strict=True))
+        document["ring_angles"] = ring_values(network, by_label)
 
 
 def _assembly(

@@ -9,25 +9,27 @@ from linkages.app.texts import in_degrees, link_name, table
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.loop import Loop
 
-__all__ = ["describe_entry", "describe_geometry"]
+__all__ = ["describe_entry", "describe_geometry", "list_below", "parameter_table"]
 
 
 def describe_entry(entry: Entry) -> str:
     """Everything that the catalogue says of a linkage, angles in degrees."""
-    parameters = table(
-        ("name", "default", "kind", "meaning"),
-        [(p.name, _default(p), p.kind, p.meaning) for p in entry.parameters],
-    )
     facts = [f"{key}: {value}" for key, value in entry.facts.items()]
     parts = [
         f"{entry.name}\n{entry.title}\nSource: {entry.source}",
-        f"Parameters\n{parameters}",
-        _list("Conditions", [condition.text for condition in entry.conditions]),
+        parameter_table(entry.parameters),
+        list_below("Conditions", [condition.text for condition in entry.conditions]),
         describe_geometry(entry.build()),
-        _list("Published facts", facts),
-        _list("Misprints in the source", entry.errata),
+        list_below("Published facts", facts),
+        list_below("Misprints in the source", entry.errata),
     ]
     return "\n\n".join(part for part in parts if part)
+
+
+def parameter_table(parameters: Sequence[Parameter]) -> str:
+    """The parameters with their defaults."""
+    rows = [(p.name, _default(p), p.kind, p.meaning) for p in parameters]
+    return "Parameters\n" + table(("name", "default", "kind", "meaning"), rows)
 
 
 def describe_geometry(loop: Loop) -> str:
@@ -54,7 +56,8 @@ def _default(parameter: Parameter) -> str:
     return f"{parameter.default:.6g}"
 
 
-def _list(title: str, lines: Sequence[str]) -> str:
+def list_below(title: str, lines: Sequence[str]) -> str:
+    """Lines below their title; empty where there are none."""
     if not lines:
         return ""
     return "\n".join([title, *(f"  {line}" for line in lines)])

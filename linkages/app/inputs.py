@@ -14,7 +14,7 @@ from linkages.linkage import Linkage
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["Inputs", "with_inputs"]
+__all__ = ["Inputs", "read_kinks", "with_inputs", "without_centre"]
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def with_inputs(
             f"{option}: it takes a mechanism with joints by name, and {text} is a "
             "single loop, a table or axes"
         )
-    mechanism = linkage.with_locks(_read_locks(linkage, locks))
+    mechanism = _with_locks(linkage, locks)
     if driver is None:
         return Inputs(mechanism)
     from linkages.mechanisms.driving import joints_to_hold
@@ -57,6 +57,48 @@ def with_inputs(
             f"reference configuration: {names}",
         )
     return Inputs(mechanism.with_locks(held), notes)
+
+
+def _with_locks(mechanism: Mechanism, texts: Sequence[str]) -> Mechanism:
+    """The mechanism with the locks: those of a network are D-H angles of its outer
+    joints."""
+    from linkages.networks.mechanism import NetworkMechanism
+
+    if isinstance(mechanism, NetworkMechanism):
+        return mechanism.with_kinks(read_kinks(texts))
+    return mechanism.with_locks(_read_locks(mechanism, texts))
+
+
+def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]:
+    """The D-H angles, rad, by the names of joints, of "2=40", in degrees; raises
+    `CommandError` and `GeometryError`."""
+    kinks: dict[str, float] = {}
+    for text in texts:
+        joint, value = split_parameter(text, option)
+        if joint in kinks:
+            raise CommandError(f"{option} {joint}: it is given twice")
+        kinks[joint] = math.radians(read_number(joint, value, option))
+    return kinks
+
+
+def without_centre(text: str, linkage: Linkage | Mechanism) -> Inputs:
+    """The single loop that is left of a network without the bars inside; raises
+    `CommandError` for anything else."""
+    from linkages.networks.mechanism import NetworkMechanism
+
+    if not isinstance(linkage, NetworkMechanism):
+        raise CommandError(f"--without-centre: it takes a network, and {text} is none")
+    loop = linkage.without_centre()
+    note = (
+        "--without-centre: every motion of the network is one of this loop, and the "
+        "loop may have more: taking the middle away adds forms and bifurcations"
+    )
+    followers = [joint for joint in linkage.still if joint not in linkage.kinks]
+    notes: tuple[str, ...] = (note,)
+    if followers:
+        names = ", ".join(followers)
+        notes += (f"--without-centre: replaced as well, for it does not move: {names}",)
+    return Inputs(Linkage(loop), notes)
 
 
 def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:

@@ -13,6 +13,7 @@ from bifurc.singular.point import Kind
 from linkages.app.configurations import (
     heading,
     joint_names,
+    network_at,
     readout_of,
     show_configuration,
 )
@@ -65,7 +66,13 @@ def _geometry(atlas: Atlas) -> list[str]:
         return [describe_geometry(loop_of(atlas))]
     from linkages.app.mechanism_text import describe_joints, describe_loops
 
-    return [describe_joints(readout), describe_loops(atlas, readout)]
+    parts = [describe_joints(readout), describe_loops(atlas, readout)]
+    network = network_at(atlas)
+    if network is not None:
+        from linkages.app.network_text import describe_kinks
+
+        parts.insert(1, describe_kinks(network))
+    return parts
 
 
 def _motions(atlas: Atlas) -> list[str]:
@@ -75,7 +82,13 @@ def _motions(atlas: Atlas) -> list[str]:
         return []
     from linkages.app.mechanism_text import describe_motions
 
-    return [describe_motions(atlas, readout)]
+    parts = [describe_motions(atlas, readout)]
+    network = network_at(atlas)
+    if network is not None:
+        from linkages.app.network_text import describe_ring
+
+        parts.append(describe_ring(atlas, readout, network))
+    return parts
 
 
 def _forms(atlas: Atlas) -> str:

@@ -2,12 +2,12 @@
 point.
 
 The twists get rational half-angle tangents and the lengths and the input rational
-values, so that every entry of every T_i is a rational number, or lies in one quadratic
-extension of the rationals. The closure is then an identity of numbers, true or false.
+values, so that every entry of every T_i is a rational number, or holds square roots of
+such. The closure is then an identity of numbers, true or false.
 
 What that proves: multiplied by their denominators, the twelve entries of T_1 ... T_n -
 I are polynomials in the free tangents and lengths, of degree ``degree`` at most (with
-the conjugate over the square root, twice that). A polynomial that is not zero vanishes
+the conjugates over each square root, twice that). A polynomial that is not zero vanishes
 at a random point with probability at most its degree over the number of values that
 each variable is drawn from (Schwartz 1980, Zippel 1979). `Proof.doubt` is that bound
 for all points together.
@@ -15,10 +15,11 @@ for all points together.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import sympy as sp
@@ -49,6 +50,10 @@ __all__ = [
 
 # denominator of the random tangents and lengths: at least VALUES / 10 values of each
 VALUES = 1_000_000_007
+# degrees of the entries of a link, and what they and two offsets have more where it is
+# the link of a spatial triangle
+OF_LINK = 8
+OF_TRIANGLE = 40
 ATTEMPTS = 40  # random parameters that a constructor may refuse before a point is found
 # angles (`Angle`) and lengths (fractions), which share no operation but the sum
 ExactParameters: TypeAlias = dict[str, Any]
@@ -218,37 +223,64 @@ def _closes(loop: Loop, angles: list[list[Angle]]) -> bool:
     return all(defect == 0 for defect in defects)
 
 
+class _Degrees(NamedTuple):
+    """Bounds of the degrees of a fraction's numerator and denominator."""
+
+    top: int
+    bottom: int
+
+
 def degree(form: ClosedForm) -> int:
-    """A bound of the degree of the closure's numerators: twice that of each pair, and 8
-    for each link.
+    """A bound of the degree of the closure's numerators: twice that of each pair, 8 for
+    each link, and for each root of the constants what the link of a spatial triangle
+    has more, with its offsets.
 
-    A link of two basic links has a twist of degree 2 (4 in its sine) and a length of
-    degree 4; offsets and the links of spatial triangles stay below that as well.
+    A link of two basic links in line has a twist of degree 2 (4 in its sine) and a
+    length of degree 4.
     """
-    degrees: dict[Number, int] = {}
+    degrees: dict[Number, _Degrees] = {}
     for name, value in form.constants.items():
-        degrees[constant(name)] = _degree(sp.sympify(value), degrees)
+        degrees[constant(name)] = _degrees(sp.sympify(value), degrees)
     if form.relation is not None:
-        second = sum(_degree(x, degrees) for x in form.quadratic)
-        degrees.update(dict.fromkeys(joint(form.second), second))
-    total = 0
+        coefficients = [_degrees(x, degrees) for x in form.quadratic]
+        second = sum(one.top + one.bottom for one in coefficients)
+        degrees.update(dict.fromkeys(joint(form.second), _Degrees(second, second)))
+    total = OF_TRIANGLE * _roots(form)
     for pairs in form.half_tangents:
-        of_joint = max(_degree(sp.sympify(x), degrees) for x in pairs[0])
-        total += 2 * of_joint + 8
-    return 2 * total
+        y, x = (_degrees(sp.sympify(part), degrees) for part in pairs[0])
+        total += 2 * max(y.top + x.bottom, x.top + y.bottom) + OF_LINK
+    conjugates = _roots(form) + (form.relation is not None)
+    factor = 2 ** max(1, conjugates)
+    return int(factor * total)
 
 
-def _degree(value: sp.Expr, degrees: Mapping[Number, int]) -> int:
-    """A bound of the degree of numerator and denominator, some symbols having the
-    ``degrees`` given."""
+def _roots(form: ClosedForm) -> int:
+    """How many square roots the constants of the form hold."""
+    half = sp.Rational(1, 2)
+    powers = [
+        power
+        for value in form.constants.values()
+        for power in sp.sympify(value).atoms(sp.Pow)
+    ]
+    return sum(bool(power.exp == half) for power in powers)
+
+
+def _degrees(value: sp.Expr, degrees: Mapping[Number, _Degrees]) -> _Degrees:
+    """Bounds of the degrees of an expression, some symbols having the ``degrees``
+    given; a root counts as much as what stands below it."""
     if value.is_number:
-        return 0
+        return _Degrees(0, 0)
     if value.is_Symbol:
-        return degrees.get(value, 1)
-    parts = [_degree(part, degrees) for part in value.args]
+        return degrees.get(value, _Degrees(1, 0))
+    parts = [_degrees(part, degrees) for part in value.args]
     if value.is_Pow:
-        return int(parts[0] * max(1, abs(value.exp)))
-    return sum(parts)
+        times = math.ceil(abs(value.exp))
+        top, bottom = times * parts[0].top, times * parts[0].bottom
+        return _Degrees(top, bottom) if value.exp > 0 else _Degrees(bottom, top)
+    bottom = sum(part.bottom for part in parts)
+    if value.is_Mul:
+        return _Degrees(sum(part.top for part in parts), bottom)
+    return _Degrees(max(p.top + bottom - p.bottom for p in parts), bottom)
 
 
 def prove_symbolically(form: ClosedForm, linkage: Entry) -> bool:

@@ -1,4 +1,4 @@
-"""Exact numbers: rational numbers with one square root, and angles known by the tangent
+"""Exact numbers: rational numbers with square roots of such, and angles known by the tangent
 of their half.
 
 An angle whose half has a rational tangent has rational sine, cosine and tangent. The
@@ -42,20 +42,21 @@ def rational_sqrt(x: Fraction) -> Fraction | None:
 
 @dataclass(frozen=True)
 class Quadratic:
-    """The number a + b sqrt(d) with rational a, b, d; d is no square, and may be
-    negative.
+    """The number a + b sqrt(d) with exact a, b and a rational d; d is no square, and
+    may be negative.
 
-    Sums and products of two such numbers stay in one field, or raise `ArithmeticError`;
-    results without a root are plain fractions.
+    a and b are rational, or hold roots of smaller d. Results without the root are a
+    alone. Roots of different d count as independent unless the quotient of both d is a
+    square: a number that is zero by a further relation is not seen to be zero.
     """
 
-    a: Fraction
-    b: Fraction
+    a: Exact
+    b: Exact
     d: Fraction
 
-    def _alike(self, other: object) -> tuple[Fraction, Fraction] | None:
+    def _alike(self, other: object) -> tuple[Exact, Exact] | None:
         """``other`` as (a, b) over the root of this number; None for a type that is not
-        exact."""
+        exact, and for a number that holds a larger root."""
         if isinstance(other, int | Fraction):
             return Fraction(other), Fraction(0)
         if not isinstance(other, Quadratic):
@@ -63,19 +64,17 @@ class Quadratic:
         if other.d == self.d:
             return other.a, other.b
         root = rational_sqrt(other.d / self.d)
-        if root is None:
-            raise ArithmeticError(
-                f"sqrt({self.d}) and sqrt({other.d}) lie in different fields"
-            )
-        return other.a, other.b * root
+        if root is not None:
+            return other.a, other.b * root
+        return (other, Fraction(0)) if self.d > other.d else None
 
-    def _make(self, a: Fraction, b: Fraction) -> Exact:
+    def _make(self, a: Exact, b: Exact) -> Exact:
         return Quadratic(a, b, self.d) if b else a
 
     def __add__(self, other: ExactOrInt) -> Exact:
         pair = self._alike(other)
         if pair is None:
-            return NotImplemented
+            return other + self if isinstance(other, Quadratic) else NotImplemented
         a, b = pair
         return self._make(self.a + a, self.b + b)
 
@@ -93,7 +92,7 @@ class Quadratic:
     def __mul__(self, other: ExactOrInt) -> Exact:
         pair = self._alike(other)
         if pair is None:
-            return NotImplemented
+            return other * self if isinstance(other, Quadratic) else NotImplemented
         a, b = pair
         return self._make(self.a * a + self.d * self.b * b, self.a * b + self.b * a)
 

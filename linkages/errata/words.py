@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from linkages.identification.identify import identify
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.networks.assembly import motion_at
+from linkages.networks.entries import NETWORKS
+from linkages.networks.mechanism import NetworkMechanism, lock_network
 
 __all__ = ["WORDS", "WordErratum"]
 
@@ -153,6 +157,31 @@ def _identified(loop: Loop, names: Sequence[str]) -> str:
     return "it is " + (" and ".join(matches) or "none of these")
 
 
+def _freedoms(mechanism: NetworkMechanism, locks: Sequence[str]) -> tuple[int, int]:
+    """Mobility of a network with joints locked where they stand, and how many outer
+    joints move."""
+    placed = mechanism.placed
+    motion = motion_at(placed.network, locks, placed.reference)
+    ring = placed.network.plan.ring
+    return motion.mobility, len(ring) - len(motion.still(ring))
+
+
+def _pairs_three_apart() -> str:
+    network = lock_network(NETWORKS["four-bennett-network"].build(), {})
+    ring = network.placed.network.plan.ring
+    pairs = [(ring[k], ring[(k + 3) % 8]) for k in range(8)]
+    alike = [pair for pair in pairs if _freedoms(network, pair) == (1, 6)]
+    return f"{len(alike)} of {len(pairs)} pairs leave a 6R of mobility 1"
+
+
+def _moving_triples() -> str:
+    network = lock_network(NETWORKS["four-bennett-network"].build(), {})
+    triples = list(combinations(network.placed.network.plan.ring, 3))
+    moving = [triple for triple in triples if _freedoms(network, triple)[0]]
+    names = ", ".join("/".join(triple) for triple in moving)
+    return f"{names} of {len(triples)} move"
+
+
 WORDS: tuple[WordErratum, ...] = (
     WordErratum(
         THESIS,
@@ -200,6 +229,21 @@ WORDS: tuple[WordErratum, ...] = (
         "odd/odd+2: 1/3, 4/5, 5/7, 7/1",
         "3/5 for 4/5",
         lambda: "4/5 is no pair of odd joints, and stands in the row n/n+1 too",
+    ),
+    WordErratum(
+        THESIS,
+        "table 5.4.1, row n/n+3",
+        "n/n+3: 1/4 to 5/8",
+        "1/4 to 5/8, 6/1, 7/2, 8/3",
+        _pairs_three_apart,
+    ),
+    WordErratum(
+        THESIS,
+        "section 5.4.5",
+        "a third lock makes every 5R and 6R linkage of the network immobile",
+        "all but four triples are rigid: a 5R keeps its motion where the third joint "
+        "stands still anyway",
+        _moving_triples,
     ),
     WordErratum(
         THESIS,

@@ -13,6 +13,18 @@ from functools import partial
 
 import numpy as np
 
+from linkages.closed_forms.closed_form import (
+    HALF_TURN,
+    ClosedForm,
+    constant,
+    joint,
+    minus,
+    negative,
+    only,
+    plus,
+    ratio,
+    reciprocal,
+)
 from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
 from linkages.construction.constructions import lock, superpose
 from linkages.construction.link import (
@@ -51,6 +63,7 @@ __all__ = [
 ]
 
 POSITION = 70
+NETWORK = "from the network of Bennett loops of Song 2013, section 5.4"
 
 
 def serial_goldberg(
@@ -247,6 +260,64 @@ def _kinked_pair(a: Link, b: Link, c: Link, kink: KinkAngle) -> Loop:
     return lock(superpose(first, second), 4, kink)
 
 
+# --- closed forms
+
+
+def _l_shape_variant_formulas() -> tuple[ClosedForm, ...]:
+    """Three cells around a common axis, whose joints 2 and 0 are straight: p is the
+    angle of a cell at its outer joint, v that at the joint before."""
+    p_first = joint(1)
+    v_first = reciprocal(p_first, constant("m_a"))
+    v_second = minus(v_first, HALF_TURN)
+    p_second = reciprocal(v_second, constant("m_b"))
+    p_third = negative(plus(p_first, p_second))
+    v_third = reciprocal(p_third, constant("m_c"))
+    between = plus(minus(HALF_TURN, v_second), v_third)
+    form = ClosedForm(
+        "l-shape-goldberg-variant-6r",
+        "form of three Bennett loops",
+        NETWORK,
+        ("alpha", "beta", "gamma", "delta"),
+        only(p_first, p_second, between, p_third, negative(v_third), v_first),
+        {
+            "m_a": ratio("delta", "alpha"),
+            "m_b": ratio("alpha", "beta"),
+            "m_c": ratio("beta", "gamma"),
+        },
+    )
+    return (form,)
+
+
+def _serial_variant_formulas() -> tuple[ClosedForm, ...]:
+    """Three cells in a row, whose joints U1 and V2 are straight."""
+    p_first = negative(joint(1))
+    v_first = reciprocal(p_first, constant("m_a"))
+    v_second = minus(joint(1), HALF_TURN)
+    p_second = reciprocal(v_second, constant("m_c"))
+    p_third = minus(HALF_TURN, v_second)
+    v_third = reciprocal(p_third, constant("m_d"))
+    form = ClosedForm(
+        "serial-goldberg-variant-6r",
+        "form of three Bennett loops",
+        NETWORK,
+        ("alpha", "beta", "gamma", "delta"),
+        only(
+            joint(1),
+            v_first,
+            plus(plus(p_second, v_third), HALF_TURN),
+            p_third,
+            negative(v_third),
+            minus(HALF_TURN, plus(v_first, p_second)),
+        ),
+        {
+            "m_a": ratio("beta", "alpha"),
+            "m_c": ratio("beta", "gamma"),
+            "m_d": ratio("beta", "delta"),
+        },
+    )
+    return (form,)
+
+
 # --- first guesses
 
 
@@ -321,6 +392,7 @@ def _grown_from_5r(detail: str) -> tuple[Relation, ...]:
 TYPICAL = _parameters(66, 50, 28, 83)
 SLENDER = _parameters(35, 62, 41, 22)
 FACTS = {"joints": 6, "mobility": 1}
+SONG = "Song (2013), section 5.4"
 
 ENTRIES = (
     Entry(
@@ -397,6 +469,8 @@ ENTRIES = (
         TYPICAL,
         conditions=(EQUAL_RATIOS, _links("b, a+c, d, b, c+d, a")),
         guesses=partial(difference_guesses, "gamma", 1, 5),
+        formulas=_serial_variant_formulas,
+        relations=(_case_of("generalized-serial-goldberg-variant-6r", SONG),),
         facts=FACTS,
     ),
     Entry(
@@ -407,6 +481,8 @@ ENTRIES = (
         TYPICAL,
         conditions=(EQUAL_RATIOS, _links("b+d, a, c, b, c+d, a")),
         guesses=partial(difference_guesses, "delta", 0, 3),
+        formulas=_l_shape_variant_formulas,
+        relations=(_case_of("generalized-l-shape-goldberg-variant-6r", SONG),),
         facts=FACTS,
     ),
     Entry(

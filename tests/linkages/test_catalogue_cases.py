@@ -24,7 +24,7 @@ def build(case: dict) -> Loop:
 
 
 def test_all_cases_are_there():
-    assert len(CASES) == 84
+    assert len(CASES) == 87
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["case"])

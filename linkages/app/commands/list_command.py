@@ -18,9 +18,12 @@ def list_command() -> None:
     from linkages.app.output import say
     from linkages.app.texts import table
     from linkages.catalogue import catalogue
+    from linkages.networks.entries import NETWORKS
 
     rows = []
     for entry in catalogue().values():
         joints = entry.build().n
         rows.append((entry.name, str(joints), entry.title))
+    for network in NETWORKS.values():
+        rows.append((network.name, str(len(network.plan.axes)), network.title))
     say(table(("name", "joints", "title"), rows))

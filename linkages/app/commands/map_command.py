@@ -53,7 +53,8 @@ __all__ = ["map_command"]
     metavar="JOINT=VALUE",
     help=(
         "Hold a joint of a mechanism at a value, in degrees or in the unit of its "
-        "file; may be given several times."
+        "file, or an outer joint of a network at a D-H angle; may be given several "
+        "times."
     ),
 )
 @click.option(
@@ -77,6 +78,12 @@ __all__ = ["map_command"]
     metavar="I",
     help="Draw the singular values against this joint; needs --out.",
 )
+@click.option(
+    "--without-centre",
+    "is_without_centre",
+    is_flag=True,
+    help="Of a network with locks, map the single loop that its outer bars leave.",
+)
 @param_option
 @search_options
 @verbose_option
@@ -85,6 +92,7 @@ def map_command(
     parameters: tuple[str, ...],
     locks: tuple[str, ...],
     driver: str | None,
+    is_without_centre: bool,
     out: Path | None,
     as_json: bool,
     no_certify: bool,
@@ -104,12 +112,13 @@ def map_command(
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map my_linkage.toml --json > map.json
       bifurc map five_bar.toml --lock J1=40
+      bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
     from linkages.app.choice import choose_linkage
     from linkages.app.equations import is_of_loop
     from linkages.app.exploration import explore_linkage
-    from linkages.app.inputs import with_inputs
+    from linkages.app.inputs import with_inputs, without_centre
     from linkages.app.output import require_folder, say
     from linkages.app.status import say_more
     from linkages.app.verdict import judge
@@ -119,12 +128,16 @@ def map_command(
             "--digits: it has no place in the JSON document; leave out --json"
         )
     require_out(out, axes=axes, against=against)
+    if is_without_centre and digits:
+        raise CommandError("--digits: it does not go with --without-centre")
     if verbose:
         say_more()
     if out is not None:
         require_folder(out)
     chosen = choose_linkage(linkage, parameters)
     inputs = with_inputs(linkage, chosen, locks, driver)
+    if is_without_centre:
+        inputs = without_centre(linkage, inputs.mechanism)
     for note in inputs.notes:
         click.echo(note, err=True)
     over = figure_axes(inputs.mechanism, axes, against)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -23,15 +24,29 @@ __all__ = ["route_command"]
 
 @click.command("route", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
-@click.argument("start", metavar="FROM")
-@click.argument("goal", metavar="TO")
+@click.argument("start", metavar="[FROM]", required=False)
+@click.argument("goal", metavar="[TO]", required=False)
+@click.option(
+    "--from",
+    "start_locks",
+    metavar="LOCKS[@ANGLES]",
+    help="Locks of a network at the start, and D-H angles of other outer joints there.",
+)
+@click.option(
+    "--to",
+    "goal_locks",
+    metavar="LOCKS[@ANGLES]",
+    help="The same at the goal.",
+)
 @param_option
 @search_options
 @verbose_option
 def route_command(
     source: str,
-    start: str,
-    goal: str,
+    start: str | None,
+    goal: str | None,
+    start_locks: str | None,
+    goal_locks: str | None,
     parameters: tuple[str, ...],
     verbose: bool,
     search: SearchOptions,
@@ -40,12 +55,14 @@ def route_command(
     the way.
 
     FROM and TO are names of forms or surfaces as `bifurc map` shows them, or the part
-    of a name that tells them apart.
+    of a name that tells them apart. For a network --from and --to say which outer
+    joints are locked; on the way locks are exchanged.
 
     \b
     Examples:
       bifurc route special-double-subtractive-goldberg "Form I" "Bennett 4R"
       bifurc route out/atlas.nc "Form III" "Form IV"
+      bifurc route four-bennett-network --from "2=40,6=-75@p4=90" --to "2=40,4=90"
     """
     from linkages.app.atlas_source import atlas_of
     from linkages.app.output import say
@@ -55,6 +72,13 @@ def route_command(
 
     if verbose:
         say_more()
+    if start_locks is not None or goal_locks is not None:
+        if start is not None:
+            raise CommandError("--from, --to: they replace the names FROM and TO")
+        _route_over_locks(source, start_locks, goal_locks, parameters, search)
+        return
+    if start is None or goal is None:
+        raise click.UsageError("Missing argument 'FROM' or 'TO'.")
     atlas = atlas_of(source, parameters, search)
     if not atlas.forms and not atlas.surfaces:
         verdict = judge(atlas)
@@ -63,6 +87,51 @@ def route_command(
     goal_name = atlas.full_name(goal)
     route = _route_between(atlas, start_name, goal_name)
     say(describe_route(atlas, route, start_name, goal_name))
+
+
+def _route_over_locks(
+    source: str,
+    start: str | None,
+    goal: str | None,
+    parameters: tuple[str, ...],
+    search: SearchOptions,
+) -> None:
+    """Show the route of a network over its locks; raises `CommandError` where there is
+    none, or the source is no network."""
+    from bifurc.errors import RouteError
+    from linkages.app.choice import choose_linkage
+    from linkages.app.exploration import explore_linkage, require_uninterrupted
+    from linkages.app.lock_route_text import describe_lock_route, read_place
+    from linkages.app.output import say
+    from linkages.networks.entries import NETWORKS
+    from linkages.networks.lock_routes import find_lock_route
+    from linkages.networks.mechanism import NetworkMechanism, lock_network
+
+    if source not in NETWORKS:
+        names = ", ".join(NETWORKS)
+        raise CommandError(f"--from, --to: they take a network: {names}")
+    if start is None or goal is None:
+        raise CommandError("--from, --to: both must be given")
+    chosen = choose_linkage(source, parameters)
+    assert isinstance(chosen, NetworkMechanism)
+    network = chosen.placed.network
+    places = [
+        read_place(text, option, chosen)
+        for option, text in (("--from", start), ("--to", goal))
+    ]
+    uncertified = replace(search, certify=False)
+
+    def explore(mechanism: NetworkMechanism) -> Atlas:
+        atlas = explore_linkage(mechanism, uncertified)
+        require_uninterrupted(atlas)
+        return atlas
+
+    try:
+        route = find_lock_route(network, places[0], places[1], explore)
+    except RouteError as error:
+        raise CommandError(str(error), ExitCode.NO_ROUTE) from None
+    last = explore(lock_network(network, places[1].locks))
+    say(describe_lock_route(route, chosen, last))
 
 
 def _route_between(atlas: Atlas, start: str, goal: str) -> Route:

@@ -17,7 +17,12 @@ def show_command(name: str) -> None:
       bifurc show bennett
     """
     from linkages.app.entry_text import describe_entry
+    from linkages.app.network_text import describe_network
     from linkages.app.output import say
     from linkages.catalogue import entry
+    from linkages.networks.entries import NETWORKS
 
-    say(describe_entry(entry(name)))
+    if name in NETWORKS:
+        say(describe_network(NETWORKS[name]))
+    else:
+        say(describe_entry(entry(name)))

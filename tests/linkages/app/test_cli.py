@@ -16,6 +16,7 @@ from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import catalogue
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
+from linkages.networks.entries import NETWORKS
 
 MINE = """
 name = "my linkage"
@@ -74,11 +75,11 @@ def write(tmp_path):
 # --- list and show ------------------------------------------------------------------------------------
 
 
-def test_list_names_every_linkage_of_the_catalogue():
+def test_list_names_every_linkage_and_every_network():
     result = bifurc("list")
     assert result.exit_code == 0
     listed = [line.split()[:2] for line in result.stdout.splitlines()[1:]]
-    assert [name for name, _ in listed] == list(catalogue())
+    assert [name for name, _ in listed] == [*catalogue(), *NETWORKS]
     assert ["special-double-subtractive-goldberg", "6"] in listed
 
 

@@ -22,6 +22,8 @@ SEEN = {
     "section 4": ("short: theta = 120, phi = 0 deg; long: theta = 240, phi = 360 deg"),
     "section 2": "none of O2, O4, O6 meet at 75, 90, 105, 115 deg",
     "section 5.2.1": "4 of 12 random ones have more than one component",
+    "table 5.4.1, row n/n+3": "8 of 8 pairs leave a 6R of mobility 1",
+    "section 5.4.5": "1/2/3, 1/7/8, 3/4/5, 5/6/7 of 56 move",
 }
 
 

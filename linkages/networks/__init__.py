@@ -1,0 +1,1 @@
+"""Networks of Bennett loops whose joints are locked and released."""

@@ -1,0 +1,162 @@
+"""A network with locked joints, as the mechanism that is mapped."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from bifurc.atlas import Atlas
+from bifurc.seeds import Seeds
+from linkages.construction.constructions import lock, locked_angles
+from linkages.loop import GeometryError, Loop
+from linkages.mechanisms.closure import MechanismClosure
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.networks.assembly import assemble, motion_at
+from linkages.networks.entries import NETWORKS
+from linkages.networks.network import Network, wrap_angles
+from linkages.networks.placement import PlacedNetwork
+
+__all__ = [
+    "NetworkClosure",
+    "NetworkMechanism",
+    "lock_network",
+    "network_of",
+    "network_subject",
+]
+
+# What every cell turns by at its second axis in the reference configuration, rad, where
+# nothing is locked: in no special place.
+PRESET = 0.9, -1.3, 2.1, -1.7
+MOST_CONSTRUCTED = 48  # configurations from which a search of a network starts
+
+
+@dataclass(frozen=True)
+class NetworkMechanism(Mechanism):
+    """The mechanism of a network with joints locked; all its variables are 0 in the
+    configuration of ``placed``."""
+
+    placed: PlacedNetwork = field(kw_only=True, compare=False, repr=False)
+
+    @property
+    def kinks(self) -> dict[str, float]:
+        """The D-H angles (rad) of the locked outer joints."""
+        return self.placed.kinks
+
+    def with_kinks(self, values: Mapping[str, float]) -> NetworkMechanism:
+        """The network with outer joints, by name, locked at D-H angles (rad) besides
+        those that are locked. Raises as `lock_network`."""
+        kinks = self.kinks
+        for axis in values:
+            if axis in kinks:
+                raise GeometryError("lock", axis, "a joint that is not locked yet")
+        return lock_network(self.placed.network, {**kinks, **values})
+
+    @property
+    def still(self) -> tuple[str, ...]:
+        """The outer joints that do not move, locked ones among them."""
+        placed = self.placed
+        motion = motion_at(placed.network, placed.locks, placed.reference)
+        return motion.still(placed.network.plan.ring)
+
+    def without_centre(self) -> Loop:
+        """The single loop that is left where the bars inside are taken away, and every
+        joint that does not move is replaced together with its two links by one link.
+
+        Raises `GeometryError` where fewer than four joints are left.
+        """
+        return replaced_ring(self.placed, self.still)
+
+
+def replaced_ring(placed: PlacedNetwork, joints: Sequence[str]) -> Loop:
+    """The ring of a network, each of the ``joints`` replaced, where it stands, together
+    with its two links by one link; raises `GeometryError` where fewer than four are
+    left."""
+    network = placed.network
+    loop = network.ring_loop
+    axes = list(network.plan.ring)
+    theta = np.array([placed.turns[axis] for axis in axes])
+    kinks = [placed.turns[joint] for joint in joints]
+    for joint in joints:
+        place = axes.index(joint)
+        kink = float(theta[place])
+        theta = locked_angles(loop, place + 1, kink, theta)
+        loop = lock(loop, place + 1, kink)
+        axes.remove(joint)
+    pairs = zip(joints, kinks, strict=True)
+    shown = [f"{joint}={degrees(kink):.6g}" for joint, kink in pairs]
+    name = ", ".join([f"{network.name} without centre", *shown])
+    return Loop(loop.lengths, loop.twists, loop.offsets, name)
+
+
+def lock_network(network: Network, kinks: Mapping[str, float]) -> NetworkMechanism:
+    """A network with outer joints locked at ``kinks``, D-H angles in rad by name.
+
+    Its reference configuration is that nearest to the one without locks. Raises
+    `GeometryError` for what is no outer joint, and where the network cannot be
+    assembled.
+    """
+    states = assemble(network, kinks)
+    if not len(states):
+        shown = ", ".join(f"{axis}={degrees(kink):g}" for axis, kink in kinks.items())
+        allowed = "kinks at which the network can be assembled"
+        raise GeometryError(f"locks of {network.name}", shown, allowed)
+    gaps = wrap_angles(states - np.array(PRESET[: states.shape[1]]))
+    # rounded, so that of those as near as each other the first one is taken
+    distances = np.round(np.linalg.norm(gaps, axis=1), 9)
+    return _mechanism(PlacedNetwork(network, states[np.argmin(distances)], kinks))
+
+
+def _mechanism(placed: PlacedNetwork) -> NetworkMechanism:
+    plain = placed.mechanism
+    return NetworkMechanism(plain.joints, plain.name, placed=placed)
+
+
+# --- closure --------------------------------------------------------------------------
+
+
+class NetworkClosure(MechanismClosure):
+    """The closure of a network, with configurations by its closed form to start
+    from."""
+
+    def __init__(self, mechanism: NetworkMechanism):
+        super().__init__(mechanism)
+        self._placed = mechanism.placed
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        """Those of any mechanism, and configurations on every motion of one freedom."""
+        seeds = super().seeds(rng, count)
+        placed = self._placed
+        states = assemble(placed.network, placed.kinks)
+        if len(states) > MOST_CONSTRUCTED:  # more than one freedom
+            return seeds
+        free = list(self.structure.column_of)
+        points, _ = self.project(placed.variables(states)[:, free])
+        return seeds.with_constructed(points)
+
+
+# --- what an atlas keeps --------------------------------------------------------------
+
+
+def network_subject(mechanism: NetworkMechanism) -> dict[str, Any]:
+    """What the ``subject`` of an atlas says of a network, in values that JSON holds."""
+    placed = mechanism.placed
+    return {
+        "name": placed.network.name,
+        "parameters": dict(placed.network.parameters),
+        "reference": placed.reference.tolist(),
+        "kinks": dict(placed.kinks),
+    }
+
+
+def network_of(atlas: Atlas) -> NetworkMechanism | None:
+    """The network that an atlas is of; None for anything else."""
+    values = atlas.subject.get("network")
+    if not isinstance(values, Mapping):
+        return None
+    network = NETWORKS[str(values["name"])].build(**values["parameters"])
+    reference: Sequence[float] = values["reference"]
+    return _mechanism(PlacedNetwork(network, np.array(reference), values["kinks"]))

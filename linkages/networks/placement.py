@@ -1,0 +1,195 @@
+"""A network as a mechanism: where its axes lie, and its bars as bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from linkages.kinematics import joint_frames
+from linkages.mechanisms.joint import Joint, JointKind, Vector
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.networks.network import Network, wrap_angles
+
+__all__ = ["PlacedNetwork"]
+
+LOCKED_IN_PLACE = 0.0
+
+
+class PlacedNetwork:
+    """A ``network`` as the ``mechanism`` whose reference configuration are the states
+    ``reference`` (c,) of its cells, with the axes of the ring in ``kinks`` held there,
+    at these D-H angles (rad).
+
+    Every bar is a body, every axis a joint of all bars on it. The variables of the
+    joint at an axis are measured from the first bar that comes to it in the ring; the
+    first variable is the D-H angle of the ring, less that in the reference.
+    """
+
+    def __init__(
+        self,
+        network: Network,
+        reference: np.ndarray,
+        kinks: Mapping[str, float] | None = None,
+    ):
+        self.network = network
+        self.reference = np.asarray(reference, dtype=float)
+        self.kinks = {} if kinks is None else dict(kinks)
+
+    @property
+    def locks(self) -> tuple[str, ...]:
+        """The names of the locked joints."""
+        return tuple(self.kinks)
+
+    @cached_property
+    def turns(self) -> dict[str, float]:
+        """The D-H angles of the outer joints, rad, in the reference configuration."""
+        angles = self.network.ring_angles(self.reference).tolist()
+        turns = dict(zip(self.network.plan.ring, angles, strict=True))
+        return turns | self.kinks
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism, its locks at 0."""
+        points, directions = self._axes()
+        joints = []
+        for axis in self.network.plan.axes:
+            joint = Joint(
+                axis,
+                JointKind.REVOLUTE,
+                self.network.plan.bars_at(axis),
+                point=points[axis],
+                direction=directions[axis],
+            )
+            if axis in self.locks:
+                count = len(joint.parts)
+                joint = replace(joint, locked=(LOCKED_IN_PLACE, *[None] * (count - 1)))
+            joints.append(joint)
+        return Mechanism(tuple(joints), self.network.name)
+
+    def label(self, axis: str) -> str:
+        """What the variable of the mechanism is called that is the angle of the ring at
+        an axis."""
+        joint = self.mechanism.joint(axis)
+        part = joint.parts[0]
+        return f"{axis}.{part}" if part else axis
+
+    # --- places -----------------------------------------------------------------------
+
+    def _axes(self) -> tuple[dict[str, Vector], dict[str, Vector]]:
+        """A point of every axis, and its direction."""
+        points: dict[str, Vector] = {}
+        directions: dict[str, Vector] = {}
+        for number, base in self._bases().items():
+            frames = base @ self._frames[number]
+            for corner, axis in enumerate(self.network.plan.cells[number].axes):
+                points.setdefault(axis, _vector(frames[corner, :3, 3]))
+                directions.setdefault(axis, _vector(frames[corner, :3, 2]))
+        return points, directions
+
+    @cached_property
+    def _frames(self) -> list[np.ndarray]:
+        """For every cell the frames (5, 4, 4) of its axes before they turn."""
+        angles = self.network.corner_angles(self.reference)
+        frames = []
+        for number, of_cell in enumerate(angles):
+            loop = self.network.cell_loop(number)
+            frames.append(joint_frames(loop.arrays, of_cell))
+        return frames
+
+    def _bases(self) -> dict[int, np.ndarray]:
+        """Where every cell stands (4, 4), the first one at the origin: cells meet in
+        their common bar, through which they run in opposite senses."""
+        plan = self.network.plan
+        angles = self.network.corner_angles(self.reference)
+        bases = {0: np.eye(4)}
+        while len(bases) < len(plan.cells):
+            for number, cell in enumerate(plan.cells):
+                if number in bases:
+                    continue
+                for corner in range(4):
+                    bar = plan.bar(cell, corner)
+                    other = self._corner_of(bar, bases)
+                    if other is None:
+                        continue
+                    of, leaving = other
+                    turned = _turn(angles[of, leaving])
+                    there = bases[of] @ self._frames[of][leaving] @ turned
+                    here = self._frames[number][corner + 1] @ _turn(np.pi)
+                    bases[number] = there @ np.linalg.inv(here)
+                    break
+        return bases
+
+    def _corner_of(self, bar: str, cells: Iterable[int]) -> tuple[int, int] | None:
+        """The first of the cells that has the bar, and the corner from which the bar
+        leaves."""
+        plan = self.network.plan
+        for number in cells:
+            for corner in range(4):
+                if plan.bar(plan.cells[number], corner) == bar:
+                    return number, corner
+        return None
+
+    # --- variables --------------------------------------------------------------------
+
+    def variables(self, states: np.ndarray) -> np.ndarray:
+        """The variables (..., v) of the mechanism, in its order, at states (..., c)."""
+        now = self._directions(states)
+        before = self._directions(self.reference)
+        columns = []
+        for axis in self.network.plan.axes:
+            first, *others = self.network.plan.bars_at(axis)
+            for bar in others:
+                turned = now[axis, bar] - now[axis, first]
+                at_reference = before[axis, bar] - before[axis, first]
+                columns.append(turned - at_reference)
+        return wrap_angles(np.stack(np.broadcast_arrays(*columns), axis=-1))
+
+    def states(self, variables: np.ndarray) -> np.ndarray:
+        """The states (..., c) of the cells at variables (..., v) of the mechanism."""
+        variables = np.asarray(variables, dtype=float)
+        before = self._directions(self.reference)
+        places: dict[tuple[str, str], np.ndarray] = {}
+        column = 0
+        for axis in self.network.plan.axes:
+            first, *others = self.network.plan.bars_at(axis)
+            places[axis, first] = np.zeros(variables.shape[:-1])
+            for bar in others:
+                at_reference = before[axis, bar] - before[axis, first]
+                places[axis, bar] = variables[..., column] + at_reference
+                column += 1
+        columns = []
+        for cell in self.network.plan.cells:
+            axis = cell.axes[1]
+            arrival = self.network.plan.bar(cell, 0)
+            departure = self.network.plan.bar(cell, 1)
+            columns.append(places[axis, departure] - places[axis, arrival] - np.pi)
+        return wrap_angles(np.stack(columns, axis=-1))
+
+    def _directions(self, states: np.ndarray) -> dict[tuple[str, str], np.ndarray]:
+        """The angle about each axis at which each bar leads away from it, from the
+        first one."""
+        angles = self.network.corner_angles(states)
+        directions: dict[tuple[str, str], np.ndarray] = {}
+        for axis in self.network.plan.axes:
+            angle = np.zeros(angles.shape[:-2])
+            for corner in self.network.plan.corners(axis):
+                directions.setdefault((axis, corner.arrival), angle)
+                angle = angle + np.pi + angles[..., corner.cell, corner.number]
+                directions.setdefault((axis, corner.departure), angle)
+        return directions
+
+
+def _vector(values: np.ndarray) -> Vector:
+    x, y, z = values.tolist()
+    return (x, y, z)
+
+
+def _turn(angle: float) -> np.ndarray:
+    """The displacement (4, 4) that turns about z."""
+    turn = np.eye(4)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    turn[:2, :2] = [[cosine, -sine], [sine, cosine]]
+    return turn
