@@ -13,11 +13,9 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from linkages.catalogue import entry
-from linkages.closed_forms.bennett_network import ring_angles, ring_loop
 from linkages.closed_forms.translator import Stroke, contact_angle, stroke_angles
 from linkages.construction.constructions import ending_with, superpose
 from linkages.construction.link import Link, bennett_links, closed_chain
-from linkages.errata.erratum import HOLDS
 from linkages.families.mixed_double_goldberg import Kind, Order, double_goldberg_type
 from linkages.identification.identify import identify
 from linkages.linkage import load
@@ -107,20 +105,6 @@ def _bakers_variants() -> str:
         )
         texts.append(f"Type {order.name}: {_identified(loop, variants)}")
     return "; ".join(texts)
-
-
-def _locked_triple() -> str:
-    """With the joints 1 and 3 of the network of four Bennett linkages held, joint 2
-    does not turn either, and joint 5 is free."""
-    twists = dict(zip("abcd", np.radians([35, 62, 81, 48]), strict=True))
-    angles = np.linspace(0.0, 2 * np.pi, 361)
-    ring = np.array([ring_angles(twists, 1.0, -2.0, angle) for angle in angles])
-    gap = ring_loop(twists).closure_error(ring).max()
-    second = np.ptp(np.unwrap(ring[:, 1]))
-    is_free = gap < HOLDS and second < HOLDS
-    if not is_free:
-        return f"closure {gap:.1e}, joint 2 turns by {second:.1e}"
-    return "joints 1, 2, 3 stand still through a full turn of joint 5"
 
 
 def _end_of_the_long_stroke() -> str:
@@ -251,13 +235,6 @@ WORDS: tuple[WordErratum, ...] = (
         "(a) gives the L-shape linkages, (b) the serial ones",
         "(a) is the serial network, (b) the L-shape one, as in the caption",
         lambda: "the caption contradicts the text",
-    ),
-    WordErratum(
-        THESIS,
-        "section 5.4.5",
-        "a third lock on the network makes it immobile",
-        "for 52 of the 56 triples; 1/2/3, 3/4/5, 5/6/7 and 7/8/1 keep mobility 1",
-        _locked_triple,
     ),
     WordErratum(
         PAPER,

@@ -18,7 +18,6 @@ SEEN = {
         "2 2 1 1 1 1 turns for delta = 45 deg; 0 0 1 1 1 1 turns for delta = 83 deg"
     ),
     "section 4.2": "in 5 of 12 random ones both are one closed curve",
-    "section 5.4.5": "joints 1, 2, 3 stand still through a full turn of joint 5",
     "section 4": ("short: theta = 120, phi = 0 deg; long: theta = 240, phi = 360 deg"),
     "section 2": "none of O2, O4, O6 meet at 75, 90, 105, 115 deg",
     "section 5.2.1": "4 of 12 random ones have more than one component",
