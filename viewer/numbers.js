@@ -6,6 +6,7 @@ import { nextPass } from "./crossings.js";
 import { isCurve } from "./tracks.js";
 
 const DECADES = 16; // that the bars of singular values span
+const SHORT = 4; // letters of a name that a narrow cell has room for
 const ZERO = 1e-18; // rounding of rounding
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
@@ -15,7 +16,8 @@ export class Numbers {
     this.unknowns = unknowns;
     this.angles = [];
     this.values = [];
-    const angles = element("div", { class: "bv-cells" });
+    const isWide = unknowns.some(({ name }) => name.length > SHORT);
+    const angles = element("div", { class: isWide ? "bv-cells bv-wide" : "bv-cells" });
     const values = element("div", { class: "bv-cells" });
     for (const { name } of unknowns) this.angles.push(cell(angles, name, "bv-dial"));
     const count = figure.singularValues(unknowns.map(() => 0)).length;
@@ -47,7 +49,7 @@ export class Numbers {
 function cell(parent, name, kind) {
   const text = element("b", {});
   const mark = element("i", {});
-  parent.append(element("div", { class: "bv-cell" }, element("span", {}, name), text, element("div", { class: kind }, mark)));
+  parent.append(element("div", { class: "bv-cell" }, element("span", { title: name }, name), text, element("div", { class: kind }, mark)));
   return { text, mark };
 }
 
