@@ -3,6 +3,7 @@ look from."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -17,6 +18,7 @@ __all__ = [
     "best_view",
     "breadth",
     "clearance",
+    "clearest_view",
     "make_scene",
 ]
 
@@ -104,7 +106,13 @@ def _spherical_scene(directions: np.ndarray) -> Scene:
 
 def best_view(scene: Scene) -> View:
     """The view in which joints lie furthest apart and no axis is seen end on."""
-    look = max(_looks(), key=lambda look: _clarity(scene, look))
+    return clearest_view(lambda look: _clarity(scene, look))
+
+
+def clearest_view(clarity: Callable[[np.ndarray], float]) -> View:
+    """The view along a unit vector (3,), towards the eye, whose ``clarity`` is
+    largest."""
+    look = max(_looks(), key=clarity)
     elevation = np.degrees(np.arcsin(look[2]))
     azimuth = np.degrees(np.arctan2(look[1], look[0]))
     return View(float(elevation), float(azimuth))

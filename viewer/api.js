@@ -1,7 +1,5 @@
 // What a page offers to scripts, as `window.bifurc`.
 
-import { jointAxes, jointFrames } from "./kinematics.js";
-import { drawnParts, seatHeights } from "./rods.js";
 import { isCurve } from "./tracks.js";
 
 export function makeApi(viewer) {
@@ -28,22 +26,18 @@ export function makeApi(viewer) {
 
 function stateOf(viewer) {
   const { track, s, angles } = viewer.position;
-  const frames = jointFrames(viewer.table, angles);
   return {
     form: track.name,
     s,
     angles: Array.from(angles),
-    axes: jointAxes(frames),
-    end: Array.from(frames.slice(-12)),
-    singular_values: viewer.singularValuesAt(angles),
+    ...viewer.figure.state(angles),
     playing: viewer.player.isPlaying,
   };
 }
 
-/** The rods that are drawn, as [[from, to], ...] in the unit and the frame of the axes. */
-function rodsOf(viewer) {
-  const { size } = viewer.scene.loop;
-  const table = viewer.unitTable;
-  const { rods } = drawnParts(table, jointFrames(table, viewer.position.angles), seatHeights(table));
+/** The rods that are drawn, as [[from, to], ...] in the user's unit and the frame of axes or bodies. */
+function rodsOf({ figure, position }) {
+  const { size } = figure;
+  const { rods } = figure.parts(figure.frames(position.angles));
   return rods.map(({ from, to }) => [from, to].map((end) => end.map((x) => size * x)));
 }

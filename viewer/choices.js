@@ -56,8 +56,9 @@ function describe(track) {
 /** The branches that leave the singular point at which the linkage is. */
 export class BranchChoice {
   /** `leave({track, s, direction})` takes the linkage there. */
-  constructor(tracks, leave) {
+  constructor(tracks, unknowns, leave) {
     this.tracks = tracks;
+    this.unknowns = unknowns;
     this.leave = leave;
     this.node = element("div", { class: "bv-choice", "aria-live": "polite" });
   }
@@ -85,15 +86,16 @@ export class BranchChoice {
   }
 
   branches(point) {
-    const surfaces = point.surfaces.map((k) => surfaceAt(this.tracks, k, point));
+    const surfaces = point.surfaces.map((k) => surfaceAt(this.tracks, this.unknowns, k, point));
     return [...leavingBranches(point, this.tracks), ...surfaces];
   }
 }
 
 /** The configuration of a surface nearest to a singular point. */
-function surfaceAt(tracks, k, point) {
+function surfaceAt(tracks, unknowns, k, point) {
   const track = tracks.filter((candidate) => candidate.kind === "surface")[k];
-  const away = ({ theta }) => theta.reduce((sum, angle, i) => sum + 1 - Math.cos(angle - point.angles[i]), 0);
+  const gapOf = (i, gap) => (unknowns[i].isPeriodic ? 1 - Math.cos(gap) : gap ** 2 / 2);
+  const away = ({ theta }) => theta.reduce((sum, value, i) => sum + gapOf(i, value - point.angles[i]), 0);
   const nearest = track.samples.reduce((best, sample) => (away(sample) < away(best) ? sample : best));
   return { track, s: nearest.s, direction: 1 };
 }

@@ -1,6 +1,7 @@
 // The linkage in space: rods, joints and axes as a handful of instanced meshes, numbers as labels over the picture.
 
 import {
+  BoxGeometry,
   BufferAttribute,
   BufferGeometry,
   Color,
@@ -21,11 +22,10 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-import { compose, invert, jointFrames, linkTable } from "./kinematics.js";
-import { distance, drawnParts, seatHeights } from "./rods.js";
+import { compose, invert } from "./kinematics.js";
+import { distance } from "./rods.js";
 import { element } from "./elements.js";
 
-const MOST_RODS = 36; // of 12 joints
 const MOST_GHOSTS = 8;
 const FIELD_OF_VIEW = 26; // degrees
 const FRAMING_SAMPLES = 60; // places of a track, at least, that must all be in the picture
@@ -35,16 +35,24 @@ const BALL_ROUNDS = 100;
 const JOINT_LENGTH = 1.7; // of half the cylinder of a joint, in its radius
 const JOINT_REACH = Math.hypot(JOINT_LENGTH, 1); // of its farthest corner from its seat
 const THICKNESS = 0.03; // of a joint, in the size of the linkage
+const LETTER = 7.5; // pixels: the width of a letter of a name
+const NAME_GAP = 17; // pixels between the middles of two names, one above the other
+// symbols of joints, their axis along y, of the size of a joint's radius and of length 1
+const SHAPES = {
+  cylinder: () => new CylinderGeometry(1, 1, 1, 24),
+  box: () => new BoxGeometry(3.4, 1.7, 3.4),
+  plate: () => new BoxGeometry(7, 0.25, 7),
+  ball: () => new SphereGeometry(1.5, 20, 14).scale(1, 0.5 / JOINT_LENGTH, 1),
+};
 const UP = new Vector3(0, 1, 0); // the axis of a cylinder of three.js
 
 export class LinkageView {
-  /** A view in `container` of the loop of a scene, with room for all its tracks. */
-  constructor(container, scene, tracks) {
+  /** A view in `container` of the figure of a scene, with room for all its tracks. */
+  constructor(container, scene, figure, tracks) {
     this.container = container;
     this.tracks = tracks;
-    this.table = linkTable(scene.loop, scene.loop.size);
-    this.heights = seatHeights(this.table);
-    this.fixed = 0; // the frame that stands still: that of the link before this joint (from 0)
+    this.figure = figure;
+    this.fixed = figure.fixed; // the number of the frame that stands still
     this.hold = identity();
     this.ghosts = [];
     this.colors = { link: "#0072B2", fixed: "#888", joint: "#333", idle: "#999", axis: "#888" };
@@ -70,27 +78,30 @@ export class LinkageView {
     this.lamp = new DirectionalLight(0xffffff, 1.1);
     this.scene.add(this.lamp, this.lamp.target);
     const rod = new CylinderGeometry(1, 1, 1, 14);
-    this.rods = instances(rod, MOST_RODS);
-    this.elbows = instances(new SphereGeometry(1, 14, 10), 2 * MOST_RODS);
-    this.joints = instances(new CylinderGeometry(1, 1, 1, 24), this.table.n);
-    this.ghostRods = instances(rod, MOST_RODS * MOST_GHOSTS);
+    const { mostRods, mostAxes, shapes } = this.figure;
+    this.rods = instances(rod, mostRods);
+    this.elbows = instances(new SphereGeometry(1, 14, 10), 2 * mostRods);
+    this.symbols = Object.entries(shapes).map(([shape, count]) => ({ shape, mesh: instances(SHAPES[shape](), count) }));
+    this.ghostRods = instances(rod, mostRods * MOST_GHOSTS);
     this.ghostRods.material.transparent = true;
     this.ghostRods.material.opacity = 0.22;
     this.ghostRods.material.depthWrite = false;
     const lines = new BufferGeometry();
-    lines.setAttribute("position", new BufferAttribute(new Float32Array(6 * this.table.n), 3));
+    lines.setAttribute("position", new BufferAttribute(new Float32Array(6 * mostAxes), 3));
     this.axes = new LineSegments(lines, new LineDashedMaterial({ dashSize: 0.05, gapSize: 0.03 }));
     this.axes.frustumCulled = false;
-    this.scene.add(this.rods, this.elbows, this.joints, this.ghostRods, this.axes);
+    this.scene.add(this.rods, this.elbows, ...this.symbols.map(({ mesh }) => mesh), this.ghostRods, this.axes);
   }
 
   makeLabels() {
     this.numbers = [];
-    for (let i = 0; i < this.table.n; i += 1) {
-      const label = element("span", { class: "bv-joint-number" }, String(i + 1));
+    for (const name of this.figure.names) {
+      const label = element("span", { class: "bv-joint-number" }, name);
       this.numbers.push(label);
       this.labels.append(label);
     }
+    const longest = this.figure.names.reduce((most, name) => Math.max(most, name.length), 0);
+    this.nameWidth = Math.max(LETTER * longest, NAME_GAP);
   }
 
   /** The colours of the picture: {link, fixed, joint, idle, axis}. */
@@ -99,7 +110,7 @@ export class LinkageView {
     this.update();
   }
 
-  /** Keep the link before joint `frame` + 1 still, where it now is. */
+  /** Keep the body of this frame still, where it now is. */
   fixLink(frame) {
     this.hold = this.poseOf(this.frames, frame);
     this.fixed = frame;
@@ -119,16 +130,16 @@ export class LinkageView {
 
   /** The drawn parts of a configuration, in the picture's frame. */
   partsOf(theta) {
-    const frames = jointFrames(this.table, theta);
+    const frames = this.figure.frames(theta);
     const world = this.worldOf(frames);
     const turned = new Float64Array(frames.length);
-    for (let i = 0; i <= this.table.n; i += 1) {
-      turned.set(compose(world, frames.slice(12 * i, 12 * i + 12)), 12 * i);
+    for (let at = 0; at < frames.length; at += 12) {
+      turned.set(compose(world, frames.slice(at, at + 12)), at);
     }
-    return { frames, parts: drawnParts(this.table, turned, this.heights) };
+    return { frames, parts: this.figure.parts(turned) };
   }
 
-  /** Show a configuration; `idle` are the joints (from 1) that stand still along its form. */
+  /** Show a configuration; `idle` are the unknowns (from 1) that stand still along its form. */
   show(theta, idle = []) {
     this.theta = theta;
     this.idle = new Set(idle);
@@ -155,7 +166,7 @@ export class LinkageView {
       const step = Math.max(1, Math.floor(samples.length / FRAMING_SAMPLES));
       for (let k = 0; k < samples.length; k += step) {
         const { parts } = this.partsOf(samples[k].theta);
-        for (const joint of parts.joints) seats.push(joint.seat);
+        seats.push(...parts.seats);
         for (const rod of parts.rods) points.push(rod.from, rod.to);
         for (const axis of parts.axes) points.push(...axis);
       }
@@ -195,7 +206,7 @@ export class LinkageView {
   /** Thickness of joints and rods: in the size of the linkage, thinner where links are short. */
   sizeParts() {
     const { parts } = this.partsOf(this.tracks[0].samples[0].theta);
-    const radii = parts.joints.map((joint) => distance(joint.seat, parts.joints[0].seat));
+    const radii = parts.seats.map((seat) => distance(seat, parts.seats[0]));
     const size = Math.max(...radii, 1e-9) / this.unit;
     const lengths = parts.rods.map((rod) => distance(rod.from, rod.to) / this.unit);
     const shortest = Math.min(...lengths, 1);
@@ -217,10 +228,12 @@ export class LinkageView {
     this.rods.count = parts.rods.length;
     this.colorRods(parts.rods);
     this.placeElbows(parts.rods);
-    this.placeJoints(parts.joints);
+    for (const { shape, mesh } of this.symbols) {
+      this.placeSymbols(mesh, parts.symbols.filter((symbol) => symbol.shape === shape));
+    }
     this.placeAxes(parts.axes);
     this.placeGhosts();
-    this.labelPlaces = parts.axes.map((ends) => this.scaled(ends[1]));
+    this.labelPlaces = parts.labels.map(({ place, lift }) => ({ place: this.scaled(place), lift }));
     this.requestFrame();
   }
 
@@ -233,12 +246,13 @@ export class LinkageView {
     mesh.instanceMatrix.needsUpdate = true;
   }
 
-  /** Links in the colour of the form; the one that stands still in grey. */
+  /** Bodies in the colour of the form; the one that stands still in grey. */
   colorRods(rods) {
-    const still = (this.fixed + this.table.n - 1) % this.table.n;
+    if (!rods.length) return;
+    const still = this.figure.bodyOf(this.fixed);
     const color = new Color();
     rods.forEach((rod, k) => {
-      color.set(rod.link === still ? this.colors.fixed : this.colors.link);
+      color.set(rod.body === still ? this.colors.fixed : this.colors.link);
       this.rods.setColorAt(k, color);
       this.elbows.setColorAt(2 * k, color);
       this.elbows.setColorAt(2 * k + 1, color);
@@ -260,18 +274,21 @@ export class LinkageView {
     this.elbows.instanceMatrix.needsUpdate = true;
   }
 
-  placeJoints(joints) {
+  /** The symbols of joints of one shape; pale where all unknowns of a joint stand still. */
+  placeSymbols(mesh, symbols) {
     const color = new Color();
-    joints.forEach((joint, i) => {
-      const half = new Vector3(...joint.direction).multiplyScalar(JOINT_LENGTH * this.jointRadius);
-      const seat = this.scaled(joint.seat);
-      const [from, to] = [seat.clone().sub(half), seat.clone().add(half)];
-      this.joints.setMatrixAt(i, rodMatrix(from, to, this.jointRadius));
-      color.set(this.idle.has(i + 1) ? this.colors.idle : this.colors.joint);
-      this.joints.setColorAt(i, color);
+    symbols.forEach(({ seat, direction, columns }, i) => {
+      const half = (direction ? new Vector3(...direction) : UP.clone()).multiplyScalar(JOINT_LENGTH * this.jointRadius);
+      const middle = this.scaled(seat);
+      const [from, to] = [middle.clone().sub(half), middle.clone().add(half)];
+      mesh.setMatrixAt(i, rodMatrix(from, to, this.jointRadius));
+      const isIdle = columns?.every((column) => this.idle.has(column + 1));
+      color.set(isIdle ? this.colors.idle : this.colors.joint);
+      mesh.setColorAt(i, color);
     });
-    this.joints.instanceMatrix.needsUpdate = true;
-    this.joints.instanceColor.needsUpdate = true;
+    mesh.count = symbols.length;
+    mesh.instanceMatrix.needsUpdate = true;
+    mesh.instanceColor.needsUpdate = true;
   }
 
   placeAxes(axes) {
@@ -326,10 +343,14 @@ export class LinkageView {
   /** The numbers at the ends of the axes, pushed apart where they would overlap. */
   placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.container;
-    const spots = this.labelPlaces.map((place) => this.spotOf(place));
-    pushApart(spots, 17);
+    const spots = this.labelPlaces.map(({ place, lift }) => {
+      const { x, y } = this.spotOf(place);
+      return { x, y: y - lift };
+    });
+    pushApart(spots, this.nameWidth, NAME_GAP);
     spots.forEach(({ x, y }, i) => {
-      const [inX, inY] = [Math.min(Math.max(x, 10), width - 10), Math.min(Math.max(y, 10), height - 10)];
+      const half = Math.max(10, (LETTER * this.numbers[i].textContent.length) / 2);
+      const [inX, inY] = [Math.min(Math.max(x, half), width - half), Math.min(Math.max(y, 10), height - 10)];
       this.numbers[i].style.transform = `translate(-50%, -50%) translate(${inX.toFixed(1)}px, ${inY.toFixed(1)}px)`;
     });
   }
@@ -344,8 +365,8 @@ export class LinkageView {
   /** The size of the canvas and where the joints are on it, in pixels. */
   get canvasPlaces() {
     const { clientWidth: width, clientHeight: height } = this.container;
-    const { joints } = this.partsOf(this.theta).parts;
-    const spots = joints.map((joint) => this.spotOf(this.scaled(joint.seat)));
+    const { seats } = this.partsOf(this.theta).parts;
+    const spots = seats.map((seat) => this.spotOf(this.scaled(seat)));
     return { width, height, joints: spots.map(({ x, y }) => [x, y]) };
   }
 
@@ -360,10 +381,9 @@ export class LinkageView {
 }
 
 function instances(geometry, count) {
-  const mesh = new InstancedMesh(geometry, new MeshLambertMaterial(), count);
+  const mesh = new InstancedMesh(geometry, new MeshLambertMaterial(), Math.max(count, 1));
   mesh.frustumCulled = false;
   mesh.count = 0;
-  if (geometry.type === "CylinderGeometry") mesh.count = count;
   return mesh;
 }
 
@@ -404,21 +424,22 @@ function identity() {
   return Float64Array.of(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0);
 }
 
-/** Move spots away from each other until they are `gap` apart, or a few rounds have passed. */
-function pushApart(spots, gap) {
+/** Move spots away from each other until they are apart, as seen in units of `width` and `height`, or a few rounds have
+ * passed. */
+function pushApart(spots, width, height) {
   for (let round = 0; round < 12; round += 1) {
     for (let i = 0; i < spots.length; i += 1) {
       for (let j = i + 1; j < spots.length; j += 1) {
-        const dx = spots[j].x - spots[i].x;
-        const dy = spots[j].y - spots[i].y;
+        const dx = (spots[j].x - spots[i].x) / width;
+        const dy = (spots[j].y - spots[i].y) / height;
         const apart = Math.hypot(dx, dy);
-        if (apart >= gap) continue;
+        if (apart >= 1) continue;
         const [ux, uy] = apart > 1e-6 ? [dx / apart, dy / apart] : [1, 0];
-        const push = (gap - apart) / 2;
-        spots[i].x -= push * ux;
-        spots[i].y -= push * uy;
-        spots[j].x += push * ux;
-        spots[j].y += push * uy;
+        const push = (1 - apart) / 2;
+        spots[i].x -= push * ux * width;
+        spots[i].y -= push * uy * height;
+        spots[j].x += push * ux * width;
+        spots[j].y += push * uy * height;
       }
     }
   }

@@ -69,16 +69,20 @@ export class TransitionMap {
     const { side, left } = this;
     const top = MARGIN.top;
     const group = drawing("g", { class: "bv-frame" });
-    if (this.plane.isTorus) {
-      for (const tick of [-180, -90, 0, 90, 180]) {
-        const [x, y] = this.screen([tick, tick]);
-        group.append(
-          drawing("line", { x1: x, x2: x, y1: top, y2: top + side }),
-          drawing("line", { x1: left, x2: left + side, y1: y, y2: y }),
-          drawing("text", { x, y: top + side + 15, "text-anchor": "middle" }, minus(tick)),
-          drawing("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, minus(tick)),
-        );
-      }
+    const [across, up] = this.plane.ticks;
+    for (const tick of across) {
+      const [x] = this.screen([tick, 0]);
+      group.append(
+        drawing("line", { x1: x, x2: x, y1: top, y2: top + side }),
+        drawing("text", { x, y: top + side + 15, "text-anchor": "middle" }, minus(tick)),
+      );
+    }
+    for (const tick of up) {
+      const [, y] = this.screen([0, tick]);
+      group.append(
+        drawing("line", { x1: left, x2: left + side, y1: y, y2: y }),
+        drawing("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, minus(tick)),
+      );
     }
     const middle = top + side / 2;
     const turned = { x: left - 38, y: middle, transform: `rotate(-90 ${left - 38} ${middle})`, "text-anchor": "middle" };

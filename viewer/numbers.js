@@ -1,38 +1,41 @@
-// The numbers of a configuration: joint angles, singular values, and how far the next singular points are.
+// The numbers of a configuration: joint variables, singular values, and how far the next singular points are.
 
-import { angleName, DEGREES, inDegrees, wrapped } from "./angles.js";
+import { angleName, DEGREES } from "./angles.js";
 import { element } from "./elements.js";
 import { nextPass } from "./crossings.js";
 import { isCurve } from "./tracks.js";
 
 const DECADES = 16; // that the bars of singular values span
+const SHORT = 4; // letters of a name that a narrow cell has room for
 const ZERO = 1e-18; // rounding of rounding
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 export class Numbers {
-  constructor(n) {
+  /** Singular values are shown where the figure has them. */
+  constructor(unknowns, figure) {
+    this.unknowns = unknowns;
     this.angles = [];
     this.values = [];
-    const angles = element("div", { class: "bv-cells" });
+    const isWide = unknowns.some(({ name }) => name.length > SHORT);
+    const angles = element("div", { class: isWide ? "bv-cells bv-wide" : "bv-cells" });
     const values = element("div", { class: "bv-cells" });
-    for (let i = 0; i < n; i += 1) {
-      this.angles.push(cell(angles, angleName(i + 1), "bv-dial"));
-      this.values.push(cell(values, `σ${angleName(i + 1).slice(1)}`, "bv-level"));
-    }
+    for (const { name } of unknowns) this.angles.push(cell(angles, name, "bv-dial"));
+    const count = figure.singularValues(unknowns.map(() => 0)).length;
+    for (let i = 1; i <= count; i += 1) this.values.push(cell(values, `σ${angleName(i).slice(1)}`, "bv-level"));
     this.node = element(
       "div",
       { class: "bv-numbers" },
-      element("h2", {}, "joint angles (deg)"),
+      element("h2", {}, figure.valuesWord),
       angles,
-      element("h2", {}, "singular values"),
-      values,
+      ...(count ? [element("h2", {}, "singular values"), values] : []),
     );
   }
 
   show(angles, singularValues) {
     this.angles.forEach(({ text, mark }, i) => {
-      text.textContent = inDegrees(angles[i]).replace("-", "−");
-      mark.style.left = `${50 + (wrapped(angles[i]) * DEGREES) / 3.6}%`;
+      const unknown = this.unknowns[i];
+      text.textContent = unknown.text(angles[i]).replace("-", "−");
+      mark.style.left = `${100 * unknown.share(angles[i])}%`;
     });
     this.values.forEach(({ text, mark }, i) => {
       const value = singularValues[i];
@@ -46,7 +49,7 @@ export class Numbers {
 function cell(parent, name, kind) {
   const text = element("b", {});
   const mark = element("i", {});
-  parent.append(element("div", { class: "bv-cell" }, element("span", {}, name), text, element("div", { class: kind }, mark)));
+  parent.append(element("div", { class: "bv-cell" }, element("span", { title: name }, name), text, element("div", { class: kind }, mark)));
   return { text, mark };
 }
 

@@ -38,7 +38,7 @@ function isChord(table, i) {
   return isNothing(table.lengths[i]) && isNothing(table.offsets[i]) && isNothing(table.offsets[(i + 1) % table.n]);
 }
 
-/** {joints: [{seat, direction}], rods: [{from, to, link}], axes: [[from, to]]} of a configuration; links from 0. */
+/** {joints: [{seat, direction}], rods: [{from, to, body}], axes: [[from, to]]} of a configuration; bodies are links, from 0. */
 export function drawnParts(table, frames, heights) {
   const { n } = table;
   const joints = [];
@@ -63,13 +63,13 @@ export function drawnParts(table, frames, heights) {
 function rodsOfLink(table, joints, i) {
   const joint = joints[i];
   const next = joints[i + 1];
-  if (isChord(table, i)) return [{ from: joint.seat, to: next.seat, link: i }];
+  if (isChord(table, i)) return [{ from: joint.seat, to: next.seat, body: i }];
   const foot = along(joint.origin, joint.direction, table.offsets[i]);
   const corners = [joint.seat, foot, next.origin, next.seat];
   const rods = [];
   for (let k = 0; k < 3; k += 1) {
     const [from, to] = [corners[k], corners[k + 1]];
-    if (distance(from, to) > NOTHING) rods.push({ from, to, link: i });
+    if (distance(from, to) > NOTHING) rods.push({ from, to, body: i });
   }
   return rods;
 }

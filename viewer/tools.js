@@ -1,6 +1,6 @@
 // The buttons and lists around the pictures.
 
-import { angleName, DEGREES, linkName } from "./angles.js";
+import { DEGREES } from "./angles.js";
 import { element } from "./elements.js";
 import { KEYS_IN_WORDS } from "./keyboard.js";
 import { isCurve } from "./tracks.js";
@@ -34,18 +34,16 @@ export function legend(scene) {
 /** Above the linkage: which link stands still, ghosts, and the whole picture. */
 export class SpaceTools {
   /** `actions` are holdLink(frame), toggleGhosts() and resetView(). */
-  constructor(scene, actions) {
-    const n = scene.loop.lengths.length;
+  constructor(figure, actions) {
     const hold = () => actions.holdLink(Number(this.link.value));
     this.link = element("select", { "aria-label": "link that is held still", onchange: hold });
-    for (let frame = 0; frame < n; frame += 1) {
-      const joint = frame === 0 ? n : frame; // the link before joint 1 is the last one
-      this.link.append(element("option", { value: frame }, linkName(joint, n)));
-    }
+    figure.bodies.forEach((name, frame) => {
+      this.link.append(element("option", { value: frame, selected: frame === figure.fixed }, name));
+    });
     const ghosts = { title: "ghosts of earlier positions (G)", "aria-pressed": "false", onclick: () => actions.toggleGhosts() };
     this.ghosts = element("button", ghosts, "Ghosts");
     const all = element("button", { title: "see all again (R)", onclick: () => actions.resetView() }, "See all");
-    this.node = element("div", { class: "bv-space-tools" }, element("label", {}, "fixed link ", this.link), this.ghosts, all);
+    this.node = element("div", { class: "bv-space-tools" }, element("label", {}, `${figure.fixedWord} `, this.link), this.ghosts, all);
   }
 
   showGhosts(areOn) {
@@ -92,17 +90,16 @@ export class MotionTools {
 /** Above the map: its plane. */
 export class MapTools {
   /** `changed()` is called when another plane is chosen. */
-  constructor(scene, changed) {
-    const n = scene.loop.lengths.length;
+  constructor(scene, unknowns, changed) {
     const choose = () => {
       for (const axis of this.axes) axis.disabled = this.isPrincipal;
       changed();
     };
     this.axes = ["horizontal", "vertical"].map((word, k) => {
       const select = element("select", { "aria-label": `${word} axis of the map`, onchange: choose });
-      for (let i = 0; i < n; i += 1) {
-        select.append(element("option", { value: i, selected: i === scene.plane[k] }, angleName(i + 1)));
-      }
+      unknowns.forEach(({ name }, i) => {
+        select.append(element("option", { value: i, selected: i === scene.plane[k] }, name));
+      });
       return select;
     });
     this.principal = element("input", { type: "checkbox", onchange: choose });
@@ -119,8 +116,8 @@ export class MapTools {
     return this.principal.checked;
   }
 
-  /** The two joints of the plane, from 0. */
-  get joints() {
+  /** The two unknowns of the plane, from 0. */
+  get chosen() {
     return this.axes.map((axis) => Number(axis.value));
   }
 }

@@ -18,10 +18,14 @@ export function tracksOf(scene) {
   const alone = scene.points.filter((point) => !point.passes.length);
   if (alone.length) tracks.push(pointTrack(alone));
   if (!tracks.length) {
-    const zeros = scene.loop.lengths.map(() => 0);
-    tracks.push(listTrack("open", "open chain", [zeros]));
+    tracks.push(listTrack("open", "open chain", [unassembled(scene)]));
   }
   return tracks;
+}
+
+/** All unknowns at 0. */
+function unassembled({ loop, mechanism }) {
+  return (loop?.lengths ?? mechanism.unknowns).map(() => 0);
 }
 
 function formTrack(form) {

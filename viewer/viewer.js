@@ -5,18 +5,18 @@ import { leavingBranches, nextPass, passAt, passesOf } from "./crossings.js";
 import { element } from "./elements.js";
 import { FormGraph } from "./graph.js";
 import { listenToKeys } from "./keyboard.js";
-import { jointFrames, jointScrews, linkTable } from "./kinematics.js";
+import { figureOf } from "./figures.js";
 import { LinkageView } from "./linkage.js";
 import { TransitionMap } from "./map.js";
 import { DistanceBar, Numbers } from "./numbers.js";
-import { jointPlane, principalPlane } from "./planes.js";
+import { principalPlane, unknownPlane } from "./planes.js";
 import { Player } from "./player.js";
 import { Position } from "./position.js";
 import { arcsOf, lengthOf, middleOf, placeAlong, shortestRoute } from "./route.js";
-import { singularValues } from "./singular_values.js";
 import { Strip } from "./strip.js";
 import { header, legend, MapTools, MotionTools, SpaceTools } from "./tools.js";
 import { findTrack, inOrder, isCurve, tracksOf } from "./tracks.js";
+import { unknownsOf } from "./unknowns.js";
 
 const GHOST_SPACING = 1 / 30; // of a form, between ghosts
 const CHART_POINTS = 360;
@@ -34,8 +34,8 @@ export class Viewer {
     this.scene = scene;
     this.tracks = tracksOf(scene);
     this.listed = inOrder(this.tracks);
-    this.table = linkTable(scene.loop);
-    this.unitTable = linkTable(scene.loop, scene.loop.size);
+    this.unknowns = unknownsOf(scene, this.tracks);
+    this.figure = figureOf(scene);
     this.arcs = arcsOf(scene, this.tracks);
     this.passesByTrack = new Map(this.tracks.map((track) => [track, passesOf(scene, this.tracks, track)]));
     this.smallestByTrack = new Map();
@@ -66,9 +66,9 @@ export class Viewer {
     this.mapBox = element("div", { class: "bv-map-box" });
     this.graphBox = element("div", { class: "bv-graph-box" });
     this.formList = new FormList(this.listed, actions.goToTrack);
-    this.choice = new BranchChoice(tracks, (branch) => this.leave(branch));
+    this.choice = new BranchChoice(tracks, this.unknowns, (branch) => this.leave(branch));
     this.routeBar = new RouteBar(this.listed, (name) => this.playRoute(name));
-    this.numbers = new Numbers(scene.loop.lengths.length);
+    this.numbers = new Numbers(this.unknowns, this.figure);
     this.distanceBar = new DistanceBar(this.passes, (_, s) => this.goTo(this.position.track, s));
     this.strip = new Strip(this.passes, (track) => this.smallestAlong(track), (track) => this.missesOn(track), {
       moved: (s) => this.goTo(this.position.track, s),
@@ -76,8 +76,8 @@ export class Viewer {
     });
     this.root.classList.add("bifurc-viewer");
     this.root.setAttribute("tabindex", "0");
-    this.spaceTools = new SpaceTools(scene, this);
-    this.mapTools = new MapTools(scene, () => this.choosePlane());
+    this.spaceTools = new SpaceTools(this.figure, this);
+    this.mapTools = new MapTools(scene, this.unknowns, () => this.choosePlane());
     this.motionTools = new MotionTools(scene, this);
     const controls = [
       this.formList.node,
@@ -97,12 +97,12 @@ export class Viewer {
     this.graphBox.classList.toggle("bv-hidden", !scene.graph.names.length);
     this.makeSpace();
     this.space.append(this.choice.node);
-    this.map.setPlane(jointPlane(...scene.plane));
+    this.choosePlane();
   }
 
   makeSpace() {
     if (offersWebGL()) {
-      this.view = new LinkageView(this.space, this.scene, this.listed);
+      this.view = new LinkageView(this.space, this.scene, this.figure, this.listed);
       return;
     }
     const words = "The linkage cannot be drawn: this browser offers no WebGL 2. Map and numbers work without it.";
@@ -110,8 +110,9 @@ export class Viewer {
   }
 
   choosePlane() {
-    const { isPrincipal, joints } = this.mapTools;
-    this.map.setPlane(isPrincipal ? principalPlane(this.scene.principal, this.tracks) : jointPlane(...joints));
+    const { isPrincipal, chosen } = this.mapTools;
+    const { unknowns, scene, tracks } = this;
+    this.map.setPlane(isPrincipal ? principalPlane(scene.principal, unknowns, tracks) : unknownPlane(unknowns, ...chosen));
   }
 
   // --- colours -----------------------------------------------------------------------
@@ -165,7 +166,7 @@ export class Viewer {
     this.graph.show(position);
     this.formList.show(position);
     this.strip.show(position);
-    this.numbers.show(angles, this.singularValuesAt(angles));
+    this.numbers.show(angles, this.figure.singularValues(angles));
     this.distanceBar.show(position);
     this.showPoint();
     this.motionTools.show(position);
@@ -191,20 +192,15 @@ export class Viewer {
     this.view.update();
   }
 
-  singularValuesAt(angles) {
-    return singularValues(jointScrews(jointFrames(this.unitTable, angles)));
-  }
-
   /** {s, value} of the smallest regular singular value along a form. */
   smallestAlong(track) {
     if (!this.smallestByTrack.has(track)) {
-      const rank = track.form.rank;
       const places = [];
       for (let k = 0; k <= CHART_POINTS; k += 1) places.push((track.length * k) / CHART_POINTS);
       for (const pass of this.passes(track)) places.push(pass.s);
       places.sort((a, b) => a - b);
-      const values = places.map((s) => ({ s, value: this.singularValuesAt(track.at(s))[rank - 1] }));
-      this.smallestByTrack.set(track, values);
+      const drops = this.passes(track).filter(({ point }) => point.rank < track.form.rank);
+      this.smallestByTrack.set(track, this.figure.smallestAlong(track, places, drops.map(({ s }) => s)));
     }
     return this.smallestByTrack.get(track);
   }

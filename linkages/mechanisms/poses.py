@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,9 +11,19 @@ from linkages.mechanisms.displacements import displacement_of, transforms, turns
 from linkages.mechanisms.rods import Rod
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["Poses", "rotation_vectors"]
+__all__ = ["Poses", "TreeStep", "rotation_vectors"]
 
 SMALL = 1e-12  # sine below which two directions are parallel
+
+
+class TreeStep(NamedTuple):
+    """From a body to another one, by number, across a pair: from its base to its moved
+    body or, with the sign -1, the other way."""
+
+    origin: int
+    goal: int
+    pair: int
+    sign: int
 
 
 class Poses:
@@ -28,7 +39,7 @@ class Poses:
         in the unknowns of the structure."""
         bodies = self.mechanism.bodies
         poses = np.tile(np.eye(4), (len(points), len(bodies), 1, 1))
-        for origin, goal, number, sign in self._tree:
+        for origin, goal, number, sign in self.tree:
             motion = self._displacement(points, number)
             if sign < 0:
                 motion = _inverse(motion)
@@ -51,9 +62,8 @@ class Poses:
         return rotations
 
     @cached_property
-    def _tree(self) -> list[tuple[int, int, int, int]]:
-        """Steps (from body, to body, across pair, sign) that reach every body but the
-        idle ones, from one that is not."""
+    def tree(self) -> list[TreeStep]:
+        """Steps that reach every body but the idle ones, from one that is not."""
         pairs = self.structure.tree_pairs
         idle = {body for rod in self.structure.rods for body in rod.bodies}
         steps = []
@@ -65,7 +75,7 @@ class Poses:
                     (ends.moved, ends.base, -1),
                 ):
                     if here == body and there not in reached:
-                        steps.append((here, there, number, sign))
+                        steps.append(TreeStep(here, there, number, sign))
                         reached.append(there)
         return steps
 
@@ -102,8 +112,8 @@ class Poses:
         if rod.leg is not None:  # beyond length 0 it points the other way
             slide = self.structure.values(points, rod.leg.variable)
             now = now * np.sign(rod.length + rod.leg.sign * slide)[:, None]
-        inside = self._inside(rod)
-        holder = self._holder(rod, 1)
+        inside = self.inside_rod(rod)
+        holder = self.holder(rod, 1)
         far = (inside[holder] @ np.append(centers[1], 1.0))[:3]
         along = (far - centers[0]) / np.linalg.norm(far - centers[0])
         rotation = _shortest_rotations(along, now)
@@ -115,18 +125,18 @@ class Poses:
             for body in part:
                 poses[:, body] = pose @ inside[body]
 
-    def _holder(self, rod: Rod, end: int) -> int:
+    def holder(self, rod: Rod, end: int) -> int:
         """The body of a rod that its first or second spherical joint holds."""
         pair = self.mechanism.pairs[rod.pairs[end]]
         names = (pair.base, pair.moved)
         numbers = [self.mechanism.bodies.index(name) for name in names]
         return next(number for number in numbers if number in rod.parts[end])
 
-    def _inside(self, rod: Rod) -> dict[int, np.ndarray]:
+    def inside_rod(self, rod: Rod) -> dict[int, np.ndarray]:
         """The displacements (4, 4) of the bodies of a rod with respect to the one that
         its first joint holds, slides at 0."""
         bodies = self.mechanism.bodies
-        inside = {self._holder(rod, 0): np.eye(4)}
+        inside = {self.holder(rod, 0): np.eye(4)}
         pending = list(rod.inner)
         while pending:
             number = pending.pop(0)

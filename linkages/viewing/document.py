@@ -9,18 +9,24 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
-from typing import TypedDict
+from typing import NotRequired, TypedDict
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint, NearMotion, Surface
+from bifurc.checks import check_type
 from bifurc.figures.graph_layout import lay_out_graph
 from bifurc.figures.planes import choose_plane
 from bifurc.figures.style import color_on_dark, form_style
 from bifurc.torus import difference
 from linkages.labels import FormLabels, loop_of
 from linkages.loop import Loop
-from linkages.scene import best_view, make_scene
+from linkages.mechanisms.readout import Readout
+from linkages.mechanisms.structure import Structure
+from linkages.mechanisms.subject import mechanism_of
+from linkages.scene import View, best_view, make_scene
+from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
+from linkages.viewing.mechanism_drawing import best_view_of_mechanism
 
 __all__ = ["ViewDocument", "make_view_document"]
 
@@ -46,7 +52,11 @@ class LoopDocument(TypedDict):
 
 
 class FormDocument(TypedDict):
-    """A form: its branch as in `bifurc.branch.Branch`, and how it is drawn."""
+    """A form: its branch as in `bifurc.branch.Branch`, and how it is drawn.
+
+    For a mechanism there is ``smallest`` besides, the smallest regular singular value
+    at places of the form, as [s, value].
+    """
 
     name: str
     length: float
@@ -61,6 +71,7 @@ class FormDocument(TypedDict):
     color: str
     dark_color: str
     dashes: list[float]
+    smallest: NotRequired[list[list[float]]]
 
 
 class PointDocument(TypedDict):
@@ -115,7 +126,8 @@ class GraphDocument(TypedDict):
 
 class PrincipalDocument(TypedDict):
     """The plane in which (cos theta, sin theta), 2 n numbers, spread most: their
-    ``mean``, and two unit ``axes``."""
+    ``mean``, and two unit ``axes``. An unknown without a period stands for its own
+    cosine, and 0 for its sine."""
 
     mean: list[float]
     axes: list[list[float]]
@@ -128,14 +140,20 @@ class ViewDirection(TypedDict):
     azimuth: float
 
 
-class ViewDocument(TypedDict):
+class SubjectDocument(TypedDict):
+    """What moves: a ``loop`` or a ``mechanism``."""
+
+    loop: NotRequired[LoopDocument]
+    mechanism: NotRequired[MechanismDocument]
+
+
+class ViewDocument(SubjectDocument):
     """All that the viewer shows; ``note`` stands on the map where there is no form."""
 
     title: str
     verdict: str
     completeness: str
     note: str
-    loop: LoopDocument
     forms: list[FormDocument]
     points: list[PointDocument]
     near_misses: list[MissDocument]
@@ -153,15 +171,44 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
 
     Raises `linkages.NoLinkageError` where the atlas is not of a linkage.
     """
-    loop = loop_of(atlas)
+    structure = _structure_of(atlas)
+    if structure is None:
+        loop = loop_of(atlas)
+        title = loop.name or "linkage"
+        view = best_view(make_scene(loop, _first(atlas)))
+        return _document(atlas, title, verdict, {"loop": _loop(loop)}, view)
+    points = np.concatenate(_configurations(atlas))
+    title = structure.mechanism.name or "mechanism"
+    view = best_view_of_mechanism(structure, _first(atlas))
+    motion = describe_motion(structure, points)
+    document = _document(atlas, title, verdict, {"mechanism": motion}, view)
+    for form, shown in zip(atlas.forms, document["forms"], strict=True):
+        shown["smallest"] = _smallest(form)
+    return document
+
+
+def _structure_of(atlas: Atlas) -> Structure | None:
+    """The structure whose unknowns are those of an atlas; None where it is not of a
+    mechanism, or of one that is solved as a single loop."""
+    check_type("atlas", atlas, Atlas)
+    mechanism = mechanism_of(atlas)
+    if mechanism is None:
+        return None
+    readout = Readout(mechanism)
+    return readout.structure if readout.single_loop is None else None
+
+
+def _document(
+    atlas: Atlas, title: str, verdict: str, subject: SubjectDocument, view: View
+) -> ViewDocument:
     completeness = atlas.completeness
     return {
-        "title": loop.name or "linkage",
+        "title": title,
         "verdict": verdict,
         "completeness": f"Completeness ({completeness.level}): "
         f"{completeness.statement}.",
         "note": _note(atlas),
-        "loop": _loop(loop),
+        **subject,
         "forms": [_form(form, index) for index, form in enumerate(atlas.forms)],
         "points": [_point(point) for point in atlas.points],
         "near_misses": [
@@ -174,7 +221,7 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
         "graph": _graph(atlas),
         "plane": choose_plane(atlas),
         "principal": _principal(atlas),
-        "view": _view(atlas, loop),
+        "view": {"elevation": view.elevation, "azimuth": view.azimuth},
     }
 
 
@@ -284,7 +331,10 @@ def _graph(atlas: Atlas) -> GraphDocument:
 def _principal(atlas: Atlas) -> PrincipalDocument:
     """The first principal plane of all that is on the map."""
     theta = np.concatenate(_configurations(atlas))
-    features = np.concatenate([np.cos(theta), np.sin(theta)], axis=1)
+    is_periodic = np.isfinite(atlas.periods)
+    cosines = np.where(is_periodic, np.cos(theta), theta)
+    sines = np.where(is_periodic, np.sin(theta), 0.0)
+    features = np.concatenate([cosines, sines], axis=1)
     mean = features.mean(axis=0)
     _, _, directions = np.linalg.svd(features - mean, full_matrices=True)
     axes = directions[:2]
@@ -304,8 +354,17 @@ def _configurations(atlas: Atlas) -> Sequence[np.ndarray]:
     return parts or [np.zeros((1, len(atlas.names)))]
 
 
-def _view(atlas: Atlas, loop: Loop) -> ViewDirection:
-    """From where the first configuration on the map is seen best."""
+def _first(atlas: Atlas) -> np.ndarray:
+    """A configuration (n,) of what stands first on the map."""
     first = _configurations(atlas)[0]
-    view = best_view(make_scene(loop, first[len(first) // 2]))
-    return {"elevation": view.elevation, "azimuth": view.azimuth}
+    configuration: np.ndarray = first[len(first) // 2]
+    return configuration
+
+
+def _smallest(form: Form) -> list[list[float]]:
+    """The smallest regular singular value along a form, in order."""
+    profile = form.profile
+    rows = np.stack([profile.arclength.ravel(), profile.smallest.ravel()], axis=1)
+    ordered = rows[np.argsort(rows[:, 0], kind="stable")]
+    values: list[list[float]] = ordered.tolist()
+    return values

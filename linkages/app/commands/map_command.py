@@ -116,7 +116,6 @@ def map_command(
       bifurc map special-double-subtractive-goldberg --digits 50
     """
     from linkages.app.choice import choose_linkage
-    from linkages.app.equations import is_of_loop
     from linkages.app.exploration import explore_linkage
     from linkages.app.inputs import with_inputs, without_centre
     from linkages.app.output import require_folder, say
@@ -156,8 +155,7 @@ def map_command(
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
         paths += draw_figures(atlas, out, over)
-        if is_of_loop(atlas):
-            paths.append(write_map_page(atlas, out))
+        paths.append(write_map_page(atlas, out))
         names = ", ".join(path.name for path in paths)
         click.echo(f"wrote {names} to {out}", err=True)
     verdict = judge(atlas)

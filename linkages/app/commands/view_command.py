@@ -48,7 +48,7 @@ def view_command(
       bifurc view my_linkage.toml --out my_linkage.html --no-open
       bifurc view out/atlas.nc
     """
-    from linkages.app.atlas_source import loop_atlas_of
+    from linkages.app.atlas_source import atlas_of
     from linkages.app.output import require_ending, require_writable, writing_to
     from linkages.app.status import say_more
     from linkages.app.verdict import exit_by, judge
@@ -60,7 +60,7 @@ def view_command(
     path = out or Path(Path(source).stem + PAGE)
     require_ending("--out", path, PAGE)
     require_writable(path)
-    atlas = loop_atlas_of(source, parameters, search)
+    atlas = atlas_of(source, parameters, search)
     verdict = judge(atlas)
     document = make_view_document(atlas, verdict.sentence)
     with writing_to(path):

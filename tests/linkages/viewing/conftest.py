@@ -15,8 +15,13 @@ from linkages.app.verdict import judge
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
+from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.test_curvature import one_of_each, rods
+from tests.linkages.mechanisms.test_poses import platform, rsrs
 
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 FLAGS = (
@@ -73,10 +78,62 @@ def rounded(loop):
     return Loop(lengths, twists, offsets, "nearly Bennett")
 
 
+UP = (0, 0, 1)
+
+
+def slider_crank():
+    """A crank, a rod, and a slider on a line through the pivot of the crank."""
+    return Mechanism(
+        (
+            Joint("J1", "revolute", ("frame", "crank"), (0, 0, 0), UP),
+            Joint("J2", "revolute", ("crank", "rod"), (1, 0, 0), UP),
+            Joint("J3", "revolute", ("rod", "slider"), (4, 0, 0), UP),
+            Joint("J4", "prismatic", ("frame", "slider"), direction=(1, 0, 0)),
+        ),
+        "slider-crank",
+    )
+
+
+def watt():
+    """Two four-bars that share the coupler and the rocker of the first one."""
+    places = {
+        ("frame", "crank"): (0, 0, 0),
+        ("crank", "coupler"): (0.4, 1.2, 0),
+        ("coupler", "rocker"): (2.3, 1.8, 0),
+        ("frame", "rocker"): (2.8, 0, 0),
+        ("coupler", "arm"): (1.6, 3.0, 0),
+        ("arm", "hand"): (3.6, 3.4, 0),
+        ("rocker", "hand"): (4.0, 1.4, 0),
+    }
+    joints = [
+        Joint(name, "revolute", bodies, place, UP)
+        for name, (bodies, place) in zip("ABCDEFG", places.items(), strict=True)
+    ]
+    return Mechanism(tuple(joints), "Watt six-bar")
+
+
+def case(name):
+    return lambda: mechanism_of_case(cases()[name])
+
+
+MECHANISMS = {
+    "slider-crank": slider_crank,
+    "Watt": watt,
+    "Sarrus": case("Sarrus with a P joint between base and platform"),
+    "Kempe": case("Kempe's four antiparallelograms (planar limit of thesis 5.4.5)"),
+    "CRCR": case("Bennett geometry with joints CRCR"),
+    "platform": lambda: platform((0.0, 0.02, -0.03, 0.05, 0.0, None)),
+    "RSRS": lambda: rsrs().with_locks({"R1": 0.0}),
+    "one of each": one_of_each,
+    "rods": rods,
+}
+
+
 @cache
 def mapped(name):
     """The atlas of a linkage of the catalogue, or of one of those above."""
-    return map_linkage(LOOPS[name]() if name in LOOPS else load(name))
+    made = (LOOPS | MECHANISMS).get(name)
+    return map_linkage(made() if made else load(name))
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,204 @@
+"""A mechanism as the viewer reads it: how its bodies move, as a product of elementary
+motions along a tree of bodies, and what of them is drawn.
+
+Lengths are in characteristic lengths, but for what is said to be in the user's unit.
+Places and directions are those of the reference configuration. Bodies and unknowns are
+given by their numbers, from 0.
+"""
+
+from __future__ import annotations
+
+from typing import TypedDict
+
+import numpy as np
+
+from linkages.mechanisms.poses import Poses, TreeStep
+from linkages.mechanisms.rods import Rod
+from linkages.mechanisms.structure import Structure, Unknown
+from linkages.viewing.mechanism_drawing import (
+    BodyDrawing,
+    SymbolDrawing,
+    draw_bodies,
+    draw_symbols,
+)
+
+__all__ = ["MechanismDocument", "UnknownDocument", "describe_motion"]
+
+
+class UnknownDocument(TypedDict):
+    """An unknown: times ``factor`` it is in rad or the user's unit of length.
+    ``is_angle`` says which; a number of an embedded rotation is neither."""
+
+    name: str
+    is_angle: bool
+    is_length: bool
+    factor: float
+    period: float | None
+
+
+class FactorDocument(TypedDict):
+    """An elementary motion, as `linkages.mechanisms.joint.Motion`, by the unknown of
+    this ``column``, or by a ``value`` where the variable is locked."""
+
+    is_turn: bool
+    direction: list[float]
+    point: list[float]
+    advance: float
+    column: int | None
+    value: float
+
+
+class RotationDocument(TypedDict):
+    """A rotation about ``center`` whose first two columns are the unknowns of these
+    ``columns``; the last three of nine are a translation."""
+
+    columns: list[int]
+    center: list[float]
+
+
+class StepDocument(TypedDict):
+    """A step from a body to another one: the product of its ``factors``, or a
+    ``rotation``; the inverse of it where the ``sign`` is -1."""
+
+    origin: int
+    goal: int
+    sign: int
+    factors: list[FactorDocument]
+    rotation: RotationDocument | None
+
+
+class RodPartDocument(TypedDict):
+    """Bodies that move as one at an end of a rod, with their displacements (three rows
+    of four) from its first body; ``start`` comes to the spherical joint of this
+    end."""
+
+    start: list[float]
+    bodies: list[int]
+    inside: list[list[float]]
+
+
+class LegDocument(TypedDict):
+    """The slide of a leg: its length is ``length`` + ``sign`` times the unknown."""
+
+    column: int
+    sign: int
+    length: float
+
+
+class RodDocument(TypedDict):
+    """A rod between points ``centers`` of the bodies ``ends``."""
+
+    ends: list[int]
+    centers: list[list[float]]
+    parts: list[RodPartDocument]
+    leg: LegDocument | None
+
+
+class MechanismDocument(TypedDict):
+    """The mechanism of a page; ``size`` is the characteristic length in the user's
+    unit, ``frame`` the body at rest."""
+
+    size: float
+    frame: int
+    unknowns: list[UnknownDocument]
+    steps: list[StepDocument]
+    rods: list[RodDocument]
+    bodies: list[BodyDrawing]
+    symbols: list[SymbolDrawing]
+
+
+def describe_motion(structure: Structure, points: np.ndarray) -> MechanismDocument:
+    """The document of a mechanism; slides are drawn as long as they are used at
+    ``points`` (k, n), the configurations on the map."""
+    poses = Poses(structure)
+    mechanism = structure.mechanism
+    return {
+        "size": structure.unit,
+        "frame": mechanism.bodies.index(mechanism.frame),
+        "unknowns": [
+            _unknown(unknown, float(factor))
+            for unknown, factor in zip(
+                structure.unknowns, structure.scales, strict=True
+            )
+        ],
+        "steps": [_step(structure, step) for step in poses.tree],
+        "rods": [_rod(poses, rod) for rod in structure.rods],
+        "bodies": draw_bodies(structure, points),
+        "symbols": draw_symbols(structure),
+    }
+
+
+def _unknown(unknown: Unknown, factor: float) -> UnknownDocument:
+    return {
+        "name": unknown.label,
+        "is_angle": unknown.is_angle,
+        "is_length": not unknown.is_angle and unknown.variable >= 0,
+        "factor": factor,
+        "period": unknown.period if np.isfinite(unknown.period) else None,
+    }
+
+
+def _step(structure: Structure, step: TreeStep) -> StepDocument:
+    rotation: RotationDocument | None = None
+    columns = structure.embedded.get(step.pair)
+    if columns is not None:
+        center = structure.center(step.pair) / structure.unit
+        rotation = {"columns": list(columns), "center": center.tolist()}
+    numbers = structure.variables_of(step.pair)
+    factors = [_factor(structure, number) for number in numbers]
+    return {
+        "origin": step.origin,
+        "goal": step.goal,
+        "sign": step.sign,
+        "factors": factors,
+        "rotation": rotation,
+    }
+
+
+def _factor(structure: Structure, number: int) -> FactorDocument:
+    variable = structure.mechanism.variables[number]
+    motion = variable.motion
+    value = variable.locked or 0.0
+    return {
+        "is_turn": motion.is_turn,
+        "direction": motion.direction.tolist(),
+        "point": (motion.point / structure.unit).tolist(),
+        "advance": motion.advance / structure.unit,
+        "column": structure.column_of.get(number),
+        "value": value if motion.is_turn else value / structure.unit,
+    }
+
+
+def _rod(poses: Poses, rod: Rod) -> RodDocument:
+    structure = poses.structure
+    unit = structure.unit
+    centers = [structure.center(pair) for pair in rod.pairs]
+    inside = poses.inside_rod(rod)
+    far = (inside[poses.holder(rod, 1)] @ np.append(centers[1], 1.0))[:3]
+    parts: list[RodPartDocument] = []
+    for bodies, start in zip(rod.parts, (centers[0], far), strict=True):
+        rows = [_rows(inside[body], unit) for body in bodies]
+        parts.append(
+            {"start": (start / unit).tolist(), "bodies": list(bodies), "inside": rows}
+        )
+    leg: LegDocument | None = None
+    if rod.leg is not None:
+        leg = {
+            "column": structure.column_of[rod.leg.variable],
+            "sign": rod.leg.sign,
+            "length": rod.length / unit,
+        }
+    return {
+        "ends": list(rod.ends),
+        "centers": [(center / unit).tolist() for center in centers],
+        "parts": parts,
+        "leg": leg,
+    }
+
+
+def _rows(transform: np.ndarray, unit: float) -> list[float]:
+    """The upper three rows of a transform (4, 4), one after the other."""
+    rows = transform[:3].copy()
+    rows[:, 3] /= unit
+    numbers: list[float] = rows.ravel().tolist()
+    return numbers

@@ -1,0 +1,296 @@
+"""What is drawn of a mechanism: the lines of its bodies and the symbols of its joints,
+in the reference configuration, in characteristic lengths."""
+
+from __future__ import annotations
+
+from itertools import combinations, pairwise
+from typing import NamedTuple, TypedDict
+
+import numpy as np
+
+from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.mechanism import Mechanism, Pair
+from linkages.mechanisms.poses import Poses
+from linkages.mechanisms.structure import Structure
+from linkages.scene import View, breadth, clearest_view
+
+__all__ = [
+    "BodyDrawing",
+    "SymbolDrawing",
+    "best_view_of_mechanism",
+    "draw_bodies",
+    "draw_symbols",
+]
+
+SAME = 1e-6  # characteristic lengths: places that are closer are drawn as one
+ASIDE = 0.7  # how far along its axis a joint is drawn that would cover another one
+RAIL_END = 0.15  # how far a rail goes on beyond the places that the slide comes to
+ENOUGH_OF_AN_AXIS = 0.35  # of its length: showing more of it makes no view better
+TRIANGLE = 3  # joints of a body that is drawn as a polygon; one of more is a star
+TURNING = (JointKind.REVOLUTE, JointKind.CYLINDRICAL, JointKind.HELICAL)
+SLIDING = (JointKind.PRISMATIC, JointKind.CYLINDRICAL, JointKind.HELICAL)
+PLACELESS = (JointKind.PRISMATIC, JointKind.PLANAR, JointKind.RIGID)
+# joints whose bodies all share one symbol, however many they are
+SHARED = (JointKind.REVOLUTE, JointKind.SPHERICAL)
+
+Segment = list[list[float]]
+
+
+class BodyDrawing(TypedDict):
+    """A body, and the lines (from, to) that are drawn of it."""
+
+    name: str
+    lines: list[Segment]
+
+
+class SymbolDrawing(TypedDict):
+    """The symbol of a joint on its body ``holder``, and the body ``other``.
+
+    ``directions`` holds that of the axis, the slide or the normal, with the second one
+    of a universal joint, which is on the body ``other``, and none where a joint has
+    none. ``columns`` are the unknowns of the joint; None where what it does is not
+    among them. A joint between several bodies has its ``label`` once, on the first
+    symbol.
+    """
+
+    label: str
+    kind: str
+    place: list[float]
+    directions: list[list[float]]
+    holder: int
+    other: int
+    columns: list[int] | None
+
+
+class _Sides(NamedTuple):
+    """The bodies of a slide: the one that has the rail and the one that moves along
+    it; the sign says whether the latter is the moved body of the pair."""
+
+    rail: str
+    box: str
+    sign: int
+
+
+# --- bodies ---------------------------------------------------------------------------
+
+
+def draw_bodies(structure: Structure, points: np.ndarray) -> list[BodyDrawing]:
+    """The bodies with their lines: straight from joint to joint, triangles, stars where
+    joints are more, and rails as long as slides are used at ``points`` (k, n)."""
+    mechanism = structure.mechanism
+    places = _places(structure)
+    rails = _rails(structure, points, places)
+    drawings: list[BodyDrawing] = []
+    for body in mechanism.bodies:
+        numbers = [k for k, one in enumerate(mechanism.joints) if body in one.bodies]
+        lines = _lines(places[numbers])
+        drawings.append({"name": body, "lines": lines + rails.get(body, [])})
+    return drawings
+
+
+def _lines(places: np.ndarray) -> list[Segment]:
+    """The lines between the places (k, 3) of the joints of a body."""
+    corners: list[np.ndarray] = []
+    for place in places:
+        if all(np.linalg.norm(place - one) > SAME for one in corners):
+            corners.append(place)
+    if len(corners) <= 1:
+        return []
+    if len(corners) <= TRIANGLE:
+        around = pairwise([*corners, corners[0]])
+        sides = list(around)[: len(corners) if len(corners) == TRIANGLE else 1]
+        return [_segment(start, end) for start, end in sides]
+    middle = np.mean(corners, axis=0)
+    return [
+        _segment(middle, corner)
+        for corner in corners
+        if np.linalg.norm(corner - middle) > SAME
+    ]
+
+
+def _segment(start: np.ndarray, end: np.ndarray) -> Segment:
+    return [start.tolist(), end.tolist()]
+
+
+def _rails(
+    structure: Structure, points: np.ndarray, places: np.ndarray
+) -> dict[str, list[Segment]]:
+    """The rails on every body that has any."""
+    mechanism = structure.mechanism
+    numbers = {joint.name: k for k, joint in enumerate(mechanism.joints)}
+    rails: dict[str, list[Segment]] = {}
+    for pair in mechanism.pairs:
+        number = numbers[pair.joint]
+        joint = mechanism.joints[number]
+        if joint.kind not in SLIDING:
+            continue
+        sides = _sides(mechanism, pair)
+        shifts = sides.sign * _shifts(structure, pair, points)
+        along = joint.motions[0].direction
+        low = places[number] + (min(0.0, shifts.min()) - RAIL_END) * along
+        high = places[number] + (max(0.0, shifts.max()) + RAIL_END) * along
+        rails.setdefault(sides.rail, []).append(_segment(low, high))
+    return rails
+
+
+def _shifts(structure: Structure, pair: Pair, points: np.ndarray) -> np.ndarray:
+    """How far a pair has slid at ``points`` (k, n), in characteristic lengths."""
+    total = np.zeros(len(points))
+    for number in pair.variables:
+        advance = structure.mechanism.variables[number].motion.advance
+        total += advance * structure.values(points, number) / structure.unit
+    return total
+
+
+def _sides(mechanism: Mechanism, pair: Pair) -> _Sides:
+    """The frame has the rail; elsewhere the base of the pair has it."""
+    if pair.moved == mechanism.frame:
+        return _Sides(pair.moved, pair.base, -1)
+    return _Sides(pair.base, pair.moved, 1)
+
+
+# --- joints ---------------------------------------------------------------------------
+
+
+def draw_symbols(structure: Structure) -> list[SymbolDrawing]:
+    """The symbols of all joints: one for every pair of bodies, but for joints whose
+    bodies share one."""
+    mechanism = structure.mechanism
+    places = _places(structure)
+    symbols: list[SymbolDrawing] = []
+    first = 0
+    for number, joint in enumerate(mechanism.joints):
+        pairs = range(first, first + len(joint.bodies) - 1)
+        first += len(pairs)
+        groups = [pairs] if joint.kind in SHARED else [[pair] for pair in pairs]
+        for k, group in enumerate(groups):
+            label = joint.name if k == 0 else ""
+            symbols.append(_symbol(structure, label, list(group), places[number]))
+    return symbols
+
+
+def _symbol(
+    structure: Structure, label: str, pairs: list[int], place: np.ndarray
+) -> SymbolDrawing:
+    mechanism = structure.mechanism
+    pair = mechanism.pairs[pairs[0]]
+    joint = mechanism.joint(pair.joint)
+    holder, other = pair.base, pair.moved
+    if joint.kind in SLIDING:
+        sides = _sides(mechanism, pair)
+        holder, other = sides.box, sides.rail
+    elif joint.kind is JointKind.PLANAR:
+        holder, other = pair.moved, pair.base
+    return {
+        "label": label,
+        "kind": joint.kind.value,
+        "place": place.tolist(),
+        "directions": _directions(joint),
+        "holder": mechanism.bodies.index(holder),
+        "other": mechanism.bodies.index(other),
+        "columns": _columns(structure, pairs),
+    }
+
+
+def _directions(joint: Joint) -> list[list[float]]:
+    if joint.kind is JointKind.PLANAR:
+        return [joint.motions[-1].direction.tolist()]
+    turns = (
+        joint.motions[:2] if joint.kind is JointKind.UNIVERSAL else joint.motions[:1]
+    )
+    return [motion.direction.tolist() for motion in turns]
+
+
+def _columns(structure: Structure, pairs: list[int]) -> list[int] | None:
+    """The unknowns of some pairs; None for a spherical joint that is cut."""
+    columns: list[int] = []
+    for number in pairs:
+        pair = structure.mechanism.pairs[number]
+        if pair.center is not None:
+            if number not in structure.embedded:
+                return None
+            columns += structure.embedded[number]
+        free = [k for k in pair.variables if k in structure.column_of]
+        columns += [structure.column_of[k] for k in free]
+    return columns
+
+
+# --- places ---------------------------------------------------------------------------
+
+
+def _places(structure: Structure) -> np.ndarray:
+    """Where each of the k joints is drawn (k, 3): on its axis, so that bodies are
+    short, and apart from the others of its bodies."""
+    mechanism = structure.mechanism
+    places = structure.size.points / structure.unit
+    for number, joint in enumerate(mechanism.joints):
+        if joint.kind in PLACELESS and joint.point is not None:
+            places[number] = joint.place / structure.unit
+        elif joint.kind in PLACELESS and mechanism.frame in joint.bodies:
+            places[number] = _place_on_slider(mechanism, number, places)
+    return places + _steps_aside(mechanism, places)
+
+
+def _place_on_slider(
+    mechanism: Mechanism, number: int, places: np.ndarray
+) -> np.ndarray:
+    """The middle (3,) of the other joints of the body that slides in the frame."""
+    joint = mechanism.joints[number]
+    slider = next(body for body in joint.bodies if body != mechanism.frame)
+    others = [
+        k
+        for k, one in enumerate(mechanism.joints)
+        if slider in one.bodies and k != number
+    ]
+    middle: np.ndarray = places[others].mean(axis=0)
+    return middle
+
+
+def _steps_aside(mechanism: Mechanism, places: np.ndarray) -> np.ndarray:
+    """By how much (k, 3) joints are drawn farther out on their axes, where two axes of
+    a body meet and their joints would be in one place (k, 3)."""
+    steps = np.zeros_like(places)
+    for first, second in combinations(range(len(places)), 2):
+        joints = mechanism.joints[first], mechanism.joints[second]
+        is_joined = set(joints[0].bodies) & set(joints[1].bodies)
+        if not is_joined or np.linalg.norm(places[first] - places[second]) > SAME:
+            continue
+        if any(joint.kind in PLACELESS for joint in joints):
+            continue
+        for number, joint in zip((first, second), joints, strict=True):
+            if joint.kind in TURNING:
+                steps[number] = ASIDE * joint.motions[0].direction
+    return steps
+
+
+# --- where to look from ---------------------------------------------------------------
+
+
+def best_view_of_mechanism(structure: Structure, point: np.ndarray) -> View:
+    """From where the joints of a configuration (n,) are seen farthest apart."""
+    mechanism = structure.mechanism
+    poses = Poses(structure).at(point[None])[0]
+    places = _places(structure)
+    spots, axes = [], []
+    for place, joint in zip(places, mechanism.joints, strict=True):
+        pose = poses[mechanism.bodies.index(joint.bodies[0])]
+        spots.append(pose[:3, :3] @ place + pose[:3, 3] / structure.unit)
+        if joint.kind in TURNING:
+            axes.append(pose[:3, :3] @ joint.motions[0].direction)
+    return clearest_view(lambda look: _clarity(np.array(spots), axes, look))
+
+
+def _clarity(spots: np.ndarray, axes: list[np.ndarray], look: np.ndarray) -> float:
+    """How well the joints at ``spots`` (k, 3) are told apart, and how much is seen of
+    every one of their ``axes``, unit vectors."""
+    seen = spots - np.outer(spots @ look, look)
+    first, second = np.triu_indices(len(spots), 1)
+    real = np.linalg.norm(spots[first] - spots[second], axis=1)
+    shown = np.linalg.norm(seen[first] - seen[second], axis=1)
+    is_apart = real > SAME
+    size = float(real.max(initial=SAME))
+    closest = float(shown[is_apart].min(initial=size)) / size
+    end_on = max((abs(float(axis @ look)) for axis in axes), default=0.0)
+    visible = float(np.sqrt(max(1.0 - end_on**2, 0.0)))
+    spread = 4 * closest + 4 * breadth(seen) / size
+    return spread + min(visible, ENOUGH_OF_AN_AXIS)

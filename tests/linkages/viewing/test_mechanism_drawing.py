@@ -1,0 +1,97 @@
+"""What is drawn of a mechanism: lines from joint to joint, rails, and symbols."""
+
+import json
+
+import numpy as np
+import pytest
+
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.structure import Structure
+from linkages.viewing.document import make_view_document
+from linkages.viewing.mechanism_drawing import draw_bodies, draw_symbols
+
+UP = (0, 0, 1)
+
+
+def body_called(document, name):
+    return next(b for b in document["mechanism"]["bodies"] if b["name"] == name)
+
+
+def test_a_loop_has_no_mechanism_and_a_mechanism_no_loop(atlas_of):
+    loop = make_view_document(atlas_of("bennett"))
+    mechanism = make_view_document(atlas_of("slider-crank"))
+    assert "mechanism" not in loop
+    assert "smallest" not in loop["forms"][0]
+    assert list(loop)[:5] == ["title", "verdict", "completeness", "note", "loop"]
+    assert "loop" not in mechanism
+    json.dumps(mechanism, allow_nan=False)
+
+
+def test_bodies_of_three_joints_are_triangles(atlas_of):
+    document = make_view_document(atlas_of("Watt"))
+    counts = {b["name"]: len(b["lines"]) for b in document["mechanism"]["bodies"]}
+    assert counts == {
+        "frame": 1,
+        "crank": 1,
+        "coupler": 3,
+        "rocker": 3,
+        "arm": 1,
+        "hand": 1,
+    }
+
+
+def test_the_rail_of_a_slide_is_as_long_as_the_slide_is_used(atlas_of):
+    atlas = atlas_of("slider-crank")
+    document = make_view_document(atlas)
+    size = document["mechanism"]["size"]
+    *_, rail = body_called(document, "frame")["lines"]
+    low, high = size * np.array(rail)[:, 0]
+    # the slider is between 2 and 4 on either side of the pivot of the crank
+    assert -4.0 - 0.2 * size < low < -4.0
+    assert 4.0 < high < 4.0 + 0.2 * size
+    assert body_called(document, "slider")["lines"] == []
+
+
+def test_every_joint_has_a_symbol_on_the_body_that_moves_along_it(atlas_of):
+    document = make_view_document(atlas_of("slider-crank"))["mechanism"]
+    names = [body["name"] for body in document["bodies"]]
+    symbols = {symbol["label"]: symbol for symbol in document["symbols"]}
+    assert list(symbols) == ["J1", "J2", "J3", "J4"]
+    slide = symbols["J4"]
+    assert names[slide["holder"]] == "slider"
+    assert names[slide["other"]] == "frame"
+    assert slide["place"] == symbols["J3"]["place"]
+    assert slide["columns"] == [3]
+
+
+def test_joints_whose_axes_meet_are_drawn_apart():
+    turns = [(0, 0, 1), (0, 0.6, 0.8), (0.6, 0.3, 0.9), (0.7, -0.1, 0.8), (0.3, -1, 1)]
+    bodies = ["a", "b", "c", "d", "e", "a"]
+    joints = [
+        Joint(f"J{k}", "revolute", (bodies[k], bodies[k + 1]), (1, 2, 3), turn)
+        for k, turn in enumerate(turns)
+    ]
+    structure = Structure(Mechanism(tuple(joints), "spherical five-bar"))
+    places = [symbol["place"] for symbol in draw_symbols(structure)]
+    distances = [np.linalg.norm(np.subtract(p, q)) for p in places for q in places]
+    assert sum(distance < 0.1 for distance in distances) == len(places)
+    drawn = draw_bodies(structure, np.zeros((1, 5)))
+    assert all(len(body["lines"]) == 1 for body in drawn)
+
+
+def test_a_joint_of_several_bodies_has_one_name():
+    joints = (
+        Joint("A", "cylindrical", ("frame", "b", "c"), (0, 0, 0), UP),
+        Joint("B", "revolute", ("b", "c"), (1, 0, 0), (0, 1, 0)),
+    )
+    symbols = draw_symbols(Structure(Mechanism(joints)))
+    assert [symbol["label"] for symbol in symbols] == ["A", "", "B"]
+
+
+@pytest.mark.parametrize("name", ["RSRS", "platform"])
+def test_what_a_cut_spherical_joint_does_is_not_said_to_stand_still(atlas_of, name):
+    symbols = make_view_document(atlas_of(name))["mechanism"]["symbols"]
+    spherical = [one["columns"] for one in symbols if one["kind"] == "spherical"]
+    assert None in spherical
+    assert [] not in spherical

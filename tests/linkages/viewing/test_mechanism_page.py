@@ -1,0 +1,144 @@
+"""The page of a mechanism in a browser: its bodies are where Python says that they
+are, and map, choices and routes work as those of a loop."""
+
+import numpy as np
+import pytest
+
+from linkages.mechanisms.readout import Readout
+from linkages.mechanisms.subject import mechanism_of
+from tests.linkages.viewing.test_viewer import drawn_share, picture_of
+
+GO = "([name, places]) => places.map((s) => bifurc.go(name, s))"
+ALL = ["slider-crank", "Watt", "Sarrus", "CRCR", "platform", "RSRS", "one of each"]
+
+
+def poses_in_browser(shown, name, places):
+    """The poses (k, b, 3, 4) that the page says at places of a track."""
+    states = shown.page.evaluate(GO, [name, [float(s) for s in places]])
+    rows = [[body["pose"] for body in state["bodies"]] for state in states]
+    return np.array(rows).reshape(len(places), -1, 3, 4)
+
+
+def largest_gap(readout, found, points):
+    """By how much poses miss those at configurations (k, n), lengths in
+    characteristic lengths."""
+    gap = np.abs(found - readout.poses(points)[:, :, :3])
+    gap[..., 3] /= readout.structure.unit
+    return gap.max()
+
+
+@pytest.mark.parametrize("name", [*ALL, "rods"])
+def test_the_poses_in_the_browser_are_those_of_python_everywhere(show_shared, name):
+    shown = show_shared(name)
+    readout = Readout(mechanism_of(shown.atlas))
+    for form in shown.atlas.forms:
+        places = np.linspace(0.0, form.branch.length, 24)[:-1]
+        found = poses_in_browser(shown, form.name, places)
+        assert largest_gap(readout, found, form.branch(places)) < 1e-9
+    for one in shown.bifurc("lists"):
+        places = range(min(one["count"], 10))
+        states = shown.page.evaluate(GO, [one["name"], list(places)])
+        points = np.array([state["angles"] for state in states])
+        found = poses_in_browser(shown, one["name"], places)
+        assert largest_gap(readout, found, points) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["slider-crank", "Sarrus"])
+def test_the_rods_that_are_drawn_move_with_their_bodies(show_shared, name):
+    shown = show_shared(name)
+    readout = Readout(mechanism_of(shown.atlas))
+    form = shown.atlas.forms[0]
+    call = "([f, s]) => { bifurc.go(f, s); return bifurc.rods(); }"
+    at_first, later = (
+        np.array(shown.page.evaluate(call, [form.name, s])) for s in (0.0, 1.0)
+    )
+    lengths = np.linalg.norm(at_first[:, 1] - at_first[:, 0], axis=1)
+    assert np.linalg.norm(later[:, 1] - later[:, 0], axis=1) == pytest.approx(lengths)
+    first, last = readout.poses(form.branch(np.array([0.0, 1.0])))
+    moves = last @ np.linalg.inv(first)
+    for before, after in zip(at_first, later, strict=True):
+        carried = [before @ move[:3, :3].T + move[:3, 3] for move in moves]
+        assert min(np.abs(one - after).max() for one in carried) < 1e-9
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_page_opens_from_disk_without_a_word_and_draws_the_mechanism(
+    show_shared, name
+):
+    shown = show_shared(name)
+    assert shown.messages == []
+    assert len(shown.requests) == 1
+    assert drawn_share(shown) > 0.001
+    assert 0 < shown.bifurc("drawCalls") < 100
+
+
+@pytest.mark.parametrize("width", [400, 1280])
+def test_nothing_is_wider_than_the_window(show, width):
+    shown = show("platform", window={"width": width, "height": 800})
+    wide = shown.page.evaluate("() => document.documentElement.scrollWidth")
+    assert wide <= width
+    inside = "e => { const b = e.getBoundingClientRect(); return b.x >= 0 && b.right <= innerWidth + 1 }"
+    for label in shown.page.locator(".bv-joint-number, .bv-cell b").all():
+        assert label.evaluate(inside)
+
+
+def test_another_body_can_be_held_still(show):
+    shown = show("Watt")
+    select = shown.page.locator(".bv-space-tools select")
+    assert select.locator("option:checked").inner_text() == "frame"
+    bodies = shown.bifurc("state().bodies")
+    before = picture_of(shown)
+    select.select_option("coupler")
+    assert picture_of(shown) != before
+    assert shown.bifurc("state().bodies") == bodies
+
+
+def test_a_click_on_a_bifurcation_offers_the_branches(show):
+    shown = show("Kempe")
+    shown.click(".bv-map [data-point=B2]")
+    offered = shown.page.locator(".bv-choice button").all_inner_texts()
+    assert len(offered) == 4
+    assert any("Form 2" in text for text in offered)
+
+
+def test_a_route_plays_to_its_end(show):
+    shown = show("Kempe")
+    shown.bifurc("go('Form 1')")
+    shown.bifurc("playRoute('Form 2', 0.5)")
+    shown.page.wait_for_function("() => !bifurc.state().playing", timeout=20_000)
+    assert shown.bifurc("state().form") == "Form 2"
+
+
+def test_a_slide_has_an_axis_in_the_unit_of_the_file(show):
+    shown = show("slider-crank")
+    shown.page.locator("select[aria-label^=horizontal]").select_option("J4")
+    titles = shown.page.locator(".bv-axis").all_text_contents()
+    assert titles == ["J4", "J2 (deg)"]
+    ticks = shown.page.locator(".bv-frame text:not(.bv-axis)").all_text_contents()
+    assert {"−8", "0", "90"} <= set(ticks)
+    curves = shown.page.locator(".bv-map .bv-curve")
+    assert "M" in curves.first.get_attribute("d")
+    form = shown.atlas.forms[0]
+    readout = Readout(mechanism_of(shown.atlas))
+    shown.page.evaluate("f => bifurc.go(f, 1.0)", form.name)
+    said = shown.page.locator(".bv-cell", has_text="J4").locator("b").inner_text()
+    slide = readout.variables(form.branch(1.0))["J4"]
+    assert float(said.replace("−", "-")) == pytest.approx(slide, rel=1e-3)
+
+
+def test_the_strip_shows_where_the_rank_drops(show):
+    shown = show("Kempe")
+    path = shown.page.locator(".bv-smallest").get_attribute("d")
+    heights = [float(pair.split()[1]) for pair in path[1:].split("L")]
+    stops = shown.page.locator(".bv-stop").count()
+    assert stops == 2
+    assert sum(height > 42 for height in heights) >= stops
+
+
+def test_scripts_get_bodies_by_name_and_no_singular_values(show_shared):
+    state = show_shared("slider-crank").bifurc("go(1, 0.5)")
+    names = [body["name"] for body in state["bodies"]]
+    assert names == ["frame", "crank", "rod", "slider"]
+    assert state["bodies"][0]["pose"] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
+    assert "axes" not in state
+    assert "singular_values" not in state

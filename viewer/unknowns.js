@@ -1,0 +1,65 @@
+// The unknowns: what they are called, in what they are shown, and which of them are periodic.
+
+import { angleName, DEGREES, inDegrees, wrapped } from "./angles.js";
+
+const DIGITS = 4; // of numbers that are no angles
+
+/** The unknowns of a document; `tracks` say how far those without a period go.
+ *
+ * Each has its `name`, its `label` on an axis, `shown(u)` in the unit of the screen, whether it `isPeriodic`, the
+ * ends `low` and `high` of its axis, and `text(u)`.
+ */
+export function unknownsOf(scene, tracks) {
+  if (scene.loop) return scene.loop.lengths.map((_, i) => periodicAngle(angleName(i + 1)));
+  return scene.mechanism.unknowns.map((unknown, i) => {
+    if (unknown.is_angle && unknown.period !== null) return periodicAngle(unknown.name);
+    const factor = unknown.is_angle ? DEGREES : unknown.factor;
+    return openUnknown(unknown, factor, shownRange(tracks, i, factor));
+  });
+}
+
+function periodicAngle(name) {
+  return {
+    name,
+    label: `${name} (deg)`,
+    shown: (u) => u * DEGREES,
+    isPeriodic: true,
+    low: -180,
+    high: 180,
+    text: (u) => inDegrees(u),
+    share: (u) => 0.5 + (wrapped(u) * DEGREES) / 360,
+  };
+}
+
+function openUnknown({ name, is_angle: isAngle }, factor, [low, high]) {
+  return {
+    name,
+    label: isAngle ? `${name} (deg)` : name,
+    shown: (u) => u * factor,
+    isPeriodic: false,
+    low,
+    high,
+    text: (u) => plain(isAngle ? (u * factor).toFixed(2) : (u * factor).toPrecision(DIGITS)),
+    share: (u) => (u * factor - low) / (high - low),
+  };
+}
+
+/** From where to where an axis goes that shows all places of an unknown on all tracks, with room around them. */
+function shownRange(tracks, i, factor) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const { samples } of tracks) {
+    for (const { theta } of samples) {
+      low = Math.min(low, theta[i] * factor);
+      high = Math.max(high, theta[i] * factor);
+    }
+  }
+  const middle = (low + high) / 2;
+  const half = Math.max(0.55 * (high - low), 0.01 * Math.abs(factor));
+  return [middle - half, middle + half];
+}
+
+/** No zero with a sign, and no power of ten for what is rounding. */
+function plain(text) {
+  const value = Number(text);
+  return Math.abs(value) < 1e-12 ? "0" : text;
+}
