@@ -14,7 +14,7 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
     points = [[0, 0, 0], [1, 0, 0], ...]
     directions = [[0, 0, 1], [0, 1, 1], ...]
 
-What has ``[[joints]]``, or ``bars`` between ``[points]``, is a mechanism
+What has ``[[joints]]``, ``[[loops]]``, or ``bars`` between ``[points]``, is a mechanism
 (`linkages.mechanisms.file`).
 """
 
@@ -53,6 +53,7 @@ Content: TypeAlias = Mapping[str, object]
 
 TABLE = ("lengths", "twists", "offsets")
 AXES = ("points", "directions")
+OF_MECHANISMS = ("joints", "bars", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
 FULL_TURN = 2 * math.pi
 
@@ -92,7 +93,7 @@ def read_file(path: Path | str) -> Loop | Mechanism:
 def _is_of_mechanism(content: Content) -> bool:
     """Whether the content of a file is a mechanism, and no single loop."""
     has_points = isinstance(content.get("points"), Mapping)
-    return "joints" in content or "bars" in content or has_points
+    return has_points or any(key in content for key in OF_MECHANISMS)
 
 
 def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:

@@ -1,7 +1,9 @@
 """Reading a mechanism from the content of a TOML file.
 
-Two formats, told apart by their keys: ``[[joints]]``, axes in one closed configuration,
-and ``bars`` between ``[points]`` of a plane (`linkages.mechanisms.bars`).
+Three formats, told apart by their keys: ``[[joints]]``, axes in one closed
+configuration, ``[[loops]]``, tables of Denavit and Hartenberg that share joints
+(`linkages.mechanisms.loops`), and ``bars`` between ``[points]`` of a plane
+(`linkages.mechanisms.bars`).
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint, Motion
+from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["read_mechanism"]
@@ -24,6 +27,7 @@ Content: TypeAlias = Mapping[str, Any]
 
 OF_FILE = ("name", "angles", "joints")
 OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars")
+OF_LOOPS = ("name", "angles", "loops")
 OF_JOINT = (
     "name",
     "kind",
@@ -47,6 +51,9 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     given = content.get("name", name)
     if not isinstance(given, str):
         raise GeometryError("name", quoted(given), "a text in quotes")
+    if "loops" in content and "joints" not in content:
+        _check_keys("key", content, OF_LOOPS)
+        return read_loops(content["loops"], given, _angle_unit(content))
     if "joints" not in content:
         _check_keys("key", content, OF_BARS)
         return read_bars(content, given)
