@@ -53,6 +53,7 @@ Content: TypeAlias = Mapping[str, object]
 
 TABLE = ("lengths", "twists", "offsets")
 AXES = ("points", "directions")
+FOLD = ".fold"
 OF_MECHANISMS = ("joints", "bars", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
 FULL_TURN = 2 * math.pi
@@ -75,9 +76,11 @@ class LinkageFileError(BifurcError, ValueError):
 
 
 def read_file(path: Path | str) -> Loop | Mechanism:
-    """The loop or the mechanism that a TOML file describes; without a name it is called
+    """The loop or the mechanism that a TOML file or a FOLD file describes; without a name it is called
     after the file. Raises `LinkageFileError`."""
     path = Path(path)
+    if path.suffix == FOLD:
+        return _read_fold_file(path)
     content = _parse(path)
     if not _is_of_mechanism(content):
         loop, _ = read_linkage(path)
@@ -86,6 +89,15 @@ def read_file(path: Path | str) -> Loop | Mechanism:
 
     try:
         return read_mechanism(content, path.stem)
+    except GeometryError as error:
+        raise LinkageFileError(path, str(error)) from None
+
+
+def _read_fold_file(path: Path) -> Mechanism:
+    from linkages.mechanisms.fold import read_fold
+
+    try:
+        return read_fold(_text(path), path.stem)
     except GeometryError as error:
         raise LinkageFileError(path, str(error)) from None
 
@@ -150,10 +162,18 @@ def read_precisely(path: Path | str) -> Loop:
 
 
 def _parse(path: Path) -> Content:
+    try:
+        return tomllib.loads(_text(path))
+    except tomllib.TOMLDecodeError as error:
+        # its message ends with the line and the column
+        raise LinkageFileError(path, f"is not valid TOML: {error}") from None
+
+
+def _text(path: Path) -> str:
     if path.is_dir():
         raise LinkageFileError(path, "is a folder, and a linkage is a file")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return path.read_text(encoding="utf-8")
     except FileNotFoundError:
         raise LinkageFileError(path, "there is no such file") from None
     except OSError as error:
@@ -161,9 +181,6 @@ def _parse(path: Path) -> Content:
     except UnicodeDecodeError as error:
         message = f"is not UTF-8 text: byte {error.start} is wrong"
         raise LinkageFileError(path, message) from None
-    except tomllib.TOMLDecodeError as error:
-        # its message ends with the line and the column
-        raise LinkageFileError(path, f"is not valid TOML: {error}") from None
 
 
 def _check_keys(content: Content) -> None:

@@ -7,6 +7,7 @@ each further one is placed by the joints that it shares with those before it.
 from __future__ import annotations
 
 import difflib
+import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
@@ -15,13 +16,15 @@ import numpy as np
 
 from bifurc.decisions import is_start_solved
 from linkages.closure.loop_closure import LoopClosure
-from linkages.decisions import is_parallel_axis, meets_in_one_point
+from linkages.decisions import is_parallel_axis, keeps_angle, meets_in_one_point
 from linkages.loop import GeometryError, Loop, check_number, quoted
 from linkages.mechanisms.displacements import transforms
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["read_loops"]
+
+log = logging.getLogger(__name__)
 
 Table: TypeAlias = Mapping[str, Any]
 
@@ -237,6 +240,13 @@ def _closed(what: str, loop: Loop, angles: np.ndarray) -> np.ndarray:
         value += f" {gaps[0]:.3g} is left,"
         raise GeometryError(f"configuration of {what}", value, "near a closed one")
     closed: np.ndarray = points[0]
+    change = float(np.abs(closed - angles).max())
+    if not keeps_angle(change):
+        log.warning(
+            "the configuration of %s is moved by up to %.3g degrees to be closed",
+            what,
+            np.degrees(change),
+        )
     return closed
 
 
