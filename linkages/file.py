@@ -14,7 +14,7 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
     points = [[0, 0, 0], [1, 0, 0], ...]
     directions = [[0, 0, 1], [0, 1, 1], ...]
 
-What has ``[[joints]]``, or ``bars`` between ``[points]``, is a mechanism
+What has ``[[joints]]``, ``[[loops]]``, or ``bars`` between ``[points]``, is a mechanism
 (`linkages.mechanisms.file`).
 """
 
@@ -53,6 +53,8 @@ Content: TypeAlias = Mapping[str, object]
 
 TABLE = ("lengths", "twists", "offsets")
 AXES = ("points", "directions")
+FOLD = ".fold"
+OF_MECHANISMS = ("joints", "bars", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
 FULL_TURN = 2 * math.pi
 
@@ -74,9 +76,11 @@ class LinkageFileError(BifurcError, ValueError):
 
 
 def read_file(path: Path | str) -> Loop | Mechanism:
-    """The loop or the mechanism that a TOML file describes; without a name it is called
+    """The loop or the mechanism that a TOML file or a FOLD file describes; without a name it is called
     after the file. Raises `LinkageFileError`."""
     path = Path(path)
+    if path.suffix == FOLD:
+        return _read_fold_file(path)
     content = _parse(path)
     if not _is_of_mechanism(content):
         loop, _ = read_linkage(path)
@@ -89,10 +93,19 @@ def read_file(path: Path | str) -> Loop | Mechanism:
         raise LinkageFileError(path, str(error)) from None
 
 
+def _read_fold_file(path: Path) -> Mechanism:
+    from linkages.mechanisms.fold import read_fold
+
+    try:
+        return read_fold(_text(path), path.stem)
+    except GeometryError as error:
+        raise LinkageFileError(path, str(error)) from None
+
+
 def _is_of_mechanism(content: Content) -> bool:
     """Whether the content of a file is a mechanism, and no single loop."""
     has_points = isinstance(content.get("points"), Mapping)
-    return "joints" in content or "bars" in content or has_points
+    return has_points or any(key in content for key in OF_MECHANISMS)
 
 
 def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
@@ -149,10 +162,18 @@ def read_precisely(path: Path | str) -> Loop:
 
 
 def _parse(path: Path) -> Content:
+    try:
+        return tomllib.loads(_text(path))
+    except tomllib.TOMLDecodeError as error:
+        # its message ends with the line and the column
+        raise LinkageFileError(path, f"is not valid TOML: {error}") from None
+
+
+def _text(path: Path) -> str:
     if path.is_dir():
         raise LinkageFileError(path, "is a folder, and a linkage is a file")
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return path.read_text(encoding="utf-8")
     except FileNotFoundError:
         raise LinkageFileError(path, "there is no such file") from None
     except OSError as error:
@@ -160,9 +181,6 @@ def _parse(path: Path) -> Content:
     except UnicodeDecodeError as error:
         message = f"is not UTF-8 text: byte {error.start} is wrong"
         raise LinkageFileError(path, message) from None
-    except tomllib.TOMLDecodeError as error:
-        # its message ends with the line and the column
-        raise LinkageFileError(path, f"is not valid TOML: {error}") from None
 
 
 def _check_keys(content: Content) -> None:

@@ -54,7 +54,7 @@ class Linkage:
 
 def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
     """The linkage or the network called ``source`` in the catalogue, or the linkage or
-    the mechanism read from a TOML file.
+    the mechanism read from a TOML file or, an origami crease pattern, from a FOLD file.
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. Raises `UnknownLinkageError` with the nearest names,
@@ -88,12 +88,12 @@ def load_linkage(source: str | Path, **parameters: float) -> Linkage:
 
 
 def is_linkage_file(source: str | Path) -> bool:
-    """Whether ``source`` names a file: it is a path, it ends with .toml, or there is a
-    file."""
+    """Whether ``source`` names a file: it is a path, it ends with .toml or .fold, or there is
+    a file."""
     if isinstance(source, Path):
         return True
     try:
-        return source.endswith(".toml") or Path(source).is_file()
+        return source.endswith((".toml", ".fold")) or Path(source).is_file()
     except OSError:  # a text that no file can be called, such as one far too long
         return False
 

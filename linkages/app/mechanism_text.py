@@ -10,6 +10,7 @@ from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.texts import in_degrees, section
 from linkages.mechanisms.facts import VariableRange, form_facts
 from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
 
 __all__ = ["describe_joints", "describe_loops", "describe_motions"]
@@ -30,6 +31,9 @@ def describe_joints(readout: Readout) -> str:
     ]
     if limits:
         text += f"\n\nFollowed within limits: {', '.join(limits)}."
+    coupled = _couplings(readout.mechanism)
+    if coupled:
+        text += f"\n\nCoupled: {', '.join(coupled)}."
     idle = readout.structure.idle_bodies
     if idle:
         text += (
@@ -37,6 +41,21 @@ def describe_joints(readout: Readout) -> str:
             "spherical joints, which moves nothing else."
         )
     return text
+
+
+def _couplings(mechanism: Mechanism) -> list[str]:
+    """An equation for every coupled variable."""
+    is_turn = {one.label: one.motion.is_turn for one in mechanism.variables}
+    equations = []
+    for joint in mechanism.joints:
+        for label, coupling in zip(joint.labels, joint.coupled, strict=True):
+            if coupling is None:
+                continue
+            equation = f"{label} = {coupling.ratio:.10g} {coupling.to}"
+            if coupling.offset:
+                equation += f" + {_shown(coupling.offset, is_turn[label])}"
+            equations.append(equation)
+    return equations
 
 
 def _joint_row(joint: Joint) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ are left, as of a 7R loop.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 import numpy as np
@@ -20,7 +20,7 @@ from bifurc.problem import March, MarchSettings
 from linkages.closure.loop_closure import LoopClosure, march
 from linkages.loop import GeometryError, Loop
 
-__all__ = ["CoupledClosure", "locked_joints"]
+__all__ = ["CoupledClosure", "common_period", "locked_joints"]
 
 LARGEST_DENOMINATOR = 1000  # of a gear ratio whose angles come back to where they were
 RATIO_ROUNDING = 1e-12  # by which a gear ratio may differ from a fraction, of itself
@@ -49,7 +49,7 @@ class CoupledClosure(NumericalProblem):
         count = self.matrix.shape[1]
         self.names = tuple(f"v{j + 1}" for j in range(count))
         self.units = ("rad",) * count
-        self.periods = np.array([_period(column) for column in self.matrix.T])
+        self.periods = np.array([common_period(column) for column in self.matrix.T])
         self.bounds = np.full((count, 2), [-np.inf, np.inf])
         self._closure = LoopClosure(loop)
         self._coupling = np.column_stack([self.matrix, self.offset])
@@ -146,9 +146,9 @@ def _check_finite(name: str, values: np.ndarray) -> None:
         raise GeometryError(name, values[is_wrong][0], "finite numbers")
 
 
-def _period(ratios: np.ndarray) -> float:
+def common_period(ratios: Iterable[float]) -> float:
     """The smallest turn (rad) of an unknown that brings all joints round that it turns
-    at these ``ratios`` (n,); inf where none is short."""
+    at these ``ratios``; inf where none is short."""
     turning = []
     for ratio in ratios:
         fraction = Fraction(float(ratio)).limit_denominator(LARGEST_DENOMINATOR)

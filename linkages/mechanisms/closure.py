@@ -101,16 +101,16 @@ class MechanismClosure(NumericalProblem):
         return [slice(int(a), int(b)) for a, b in pairwise(ends)]
 
     def columns_of_joint(self, name: str) -> list[int]:
-        """The numbers of the unknowns that belong to a joint."""
+        """The numbers of the unknowns that move a joint."""
         structure = self.structure
-        columns = []
+        columns: list[int] = []
         for number, pair in enumerate(self.mechanism.pairs):
             if pair.joint != name:
                 continue
             free = [k for k in pair.variables if k in structure.column_of]
             columns += [structure.column_of[k] for k in free]
             columns += structure.embedded.get(number, ())
-        return columns
+        return sorted(set(columns))
 
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations;

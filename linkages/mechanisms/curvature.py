@@ -14,7 +14,7 @@ import numpy as np
 
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.placement import Placement
-from linkages.mechanisms.structure import Closure, ClosureKind, Structure
+from linkages.mechanisms.structure import Closure, ClosureKind, Share, Structure
 
 __all__ = ["CurvatureBounds"]
 
@@ -26,11 +26,13 @@ LARGEST_EXPONENT = 300.0  # beyond it a bound is of no use
 
 @dataclass(frozen=True, eq=False)
 class _Element:
-    """An elementary motion in a chain: its unknown, None where it is locked, whether it
-    turns, its ``direction`` and a ``point`` (3,) of its axis, its ``advance`` a radian,
-    and how far it shifts what follows at most."""
+    """An elementary motion in a chain: its unknown, None where it is locked, how fast
+    (``rate``) it follows it, whether it turns, its ``direction`` and a ``point`` (3,)
+    of its axis, its ``advance`` a radian, and how far it shifts what follows at
+    most."""
 
     column: int | None
+    rate: float
     is_turn: bool
     direction: np.ndarray
     point: np.ndarray
@@ -59,21 +61,32 @@ class CurvatureBounds:
         the limits.
 
         All derivatives by further unknowns have the same bounds as the second ones;
-        the Taylor series in the imaginary parts y sums up to exp(|y_1| + ... + |y_n|)
-        times them, and for squares of distances to the square of that.
+        the Taylor series in the imaginary parts y of all variables sums up to
+        exp(|y_1| + ...) times them, and for squares of distances to the square of that.
         """
         squares = np.zeros((self._n, self._n))
         for closure in self.structure.closures:
             squares += _Chain(self.structure, closure).anywhere() ** 2
         kinds = {closure.kind for closure in self.structure.closures}
         power = 2.0 if ClosureKind.ROD in kinds else 1.0
-        exponents = np.minimum(power * np.sqrt(self._n) * reach, LARGEST_EXPONENT)
+        exponents = np.minimum(power * self._spread * reach, LARGEST_EXPONENT)
         growth: np.ndarray = np.exp(exponents)
         return _largest_eigenvalue(np.sqrt(squares)) * growth
 
     @property
     def _n(self) -> int:
         return len(self.structure.unknowns)
+
+    @property
+    def _spread(self) -> float:
+        """The largest sum of the changes of all variables where the unknowns change by
+        a vector of length 1."""
+        rates = np.zeros(self._n)
+        for number in self.structure.column_of:
+            share = self.structure.share(number)
+            assert share is not None
+            rates[share.column] += abs(share.rate)
+        return float(np.linalg.norm(rates))
 
 
 def _largest_eigenvalue(matrix: np.ndarray) -> float:
@@ -164,7 +177,8 @@ class _Chain:
         for i, first in enumerate(self.elements):
             for j, second in enumerate(self.elements):
                 if first.column is not None and second.column is not None:
-                    result[first.column, second.column] += bounds[i, j]
+                    rates = first.rate * second.rate
+                    result[first.column, second.column] += rates * bounds[i, j]
         return result
 
     # --- reach ------------------------------------------------------------------------
@@ -210,29 +224,32 @@ def _elements(
     elements = []
     for number in structure.variables_of(pair)[::sign]:
         variable = structure.mechanism.variables[number]
-        column = structure.column_of.get(number)
-        if column is None:
+        share = structure.share(number)
+        if share is None:
             assert variable.locked is not None
             unit = 1.0 if variable.motion.is_turn else structure.unit
-            largest = abs(variable.locked) / unit
+            share = Share(-1, 0.0, variable.locked / unit)
+            largest = abs(share.offset)
         else:
-            unknown = structure.unknowns[column]
+            unknown = structure.unknowns[share.column]
             largest = max(abs(unknown.low), abs(unknown.high))
-        motion = variable.motion
-        elements.append(_element(placement, motion, column, largest))
+            largest = abs(share.rate) * largest + abs(share.offset)
+        elements.append(_element(placement, variable.motion, share, largest))
     return elements
 
 
 def _element(
-    placement: Placement, motion: Motion, column: int | None, largest: float
+    placement: Placement, motion: Motion, share: Share, largest: float
 ) -> _Element:
+    column = share.column if share.column >= 0 else None
+    rate = abs(share.rate)
     direction = placement.direction(motion)
     if not motion.is_turn:
-        return _Element(column, False, direction, np.zeros(3), 0.0, largest)
+        return _Element(column, rate, False, direction, np.zeros(3), 0.0, largest)
     advance = motion.advance / placement.unit
     shift = abs(advance) * largest if advance else 0.0
     point = placement.point_on_axis(motion)
-    return _Element(column, True, direction, point, advance, shift)
+    return _Element(column, rate, True, direction, point, advance, shift)
 
 
 def _extent(elements: list[_Element], start: np.ndarray, end: np.ndarray) -> float:

@@ -23,12 +23,14 @@ def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
     problem = MechanismClosure(mechanism)
     unknowns = problem.structure.unknowns
     labels = [unknown.label for unknown in unknowns if unknown.variable >= 0]
-    if driver not in labels:
-        allowed = f"one of the joint variables {', '.join(labels)}"
+    free = problem.structure.column_of
+    columns = {mechanism.variables[number].label: free[number] for number in free}
+    if driver not in columns:
+        allowed = f"one of the joint variables {', '.join(columns)}"
         raise GeometryError("drive", quoted(driver), allowed)
     points, _ = problem.project(problem.reference[None])
     motions = _null_space(problem.jacobians(points)[0])
-    row = labels.index(driver)
+    row = columns[driver]
     if _stands_still(motions[row]):
         allowed = "a joint that moves in the reference configuration"
         raise GeometryError("drive", quoted(driver), allowed)

@@ -29,7 +29,7 @@ from linkages.mechanisms.motors import (
     slide,
     turn,
 )
-from linkages.mechanisms.structure import Closure, ClosureKind, Structure
+from linkages.mechanisms.structure import Closure, ClosureKind, Share, Structure
 
 __all__ = ["Equations", "write_equations"]
 
@@ -67,14 +67,21 @@ def _values(structure: Structure, writer: Recorder) -> list[Number]:
     """The value of every variable: an unknown, or the number at which it is locked."""
     values: list[Number] = []
     for number, variable in enumerate(structure.mechanism.variables):
-        column = structure.column_of.get(number)
-        if column is not None:
-            values.append(_unknown(writer, column))
+        share = structure.share(number)
+        if share is not None:
+            values.append(_followed(_unknown(writer, share.column), share))
         else:
             assert variable.locked is not None
             unit = 1.0 if variable.motion.is_turn else structure.unit
             values.append(variable.locked / unit)
     return values
+
+
+def _followed(value: Number, share: Share) -> Number:
+    """The value of a variable from that of its unknown."""
+    if share.rate != 1.0:
+        value = share.rate * value
+    return value + share.offset if share.offset != 0.0 else value
 
 
 def _slots(writer: Recorder, residuals: Sequence[Number]) -> list[int]:

@@ -1,7 +1,9 @@
 """Reading a mechanism from the content of a TOML file.
 
-Two formats, told apart by their keys: ``[[joints]]``, axes in one closed configuration,
-and ``bars`` between ``[points]`` of a plane (`linkages.mechanisms.bars`).
+Three formats, told apart by their keys: ``[[joints]]``, axes in one closed
+configuration, ``[[loops]]``, tables of Denavit and Hartenberg that share joints
+(`linkages.mechanisms.loops`), and ``bars`` between ``[points]`` of a plane
+(`linkages.mechanisms.bars`).
 """
 
 from __future__ import annotations
@@ -14,7 +16,9 @@ from typing import Any, TypeAlias
 
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.bars import read_bars
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint, Motion
+from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["read_mechanism"]
@@ -23,6 +27,7 @@ Content: TypeAlias = Mapping[str, Any]
 
 OF_FILE = ("name", "angles", "joints")
 OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars")
+OF_LOOPS = ("name", "angles", "loops")
 OF_JOINT = (
     "name",
     "kind",
@@ -33,8 +38,10 @@ OF_JOINT = (
     "pitch",
     "limits",
     "locked",
+    "coupled",
 )
-OF_VALUES = ("limits", "locked")
+OF_VALUES = ("limits", "locked", "coupled")
+OF_COUPLING = ("to", "ratio", "offset")
 UNITS = {"deg": math.pi / 180, "rad": 1.0}
 
 
@@ -44,6 +51,9 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     given = content.get("name", name)
     if not isinstance(given, str):
         raise GeometryError("name", quoted(given), "a text in quotes")
+    if "loops" in content and "joints" not in content:
+        _check_keys("key", content, OF_LOOPS)
+        return read_loops(content["loops"], given, _angle_unit(content))
     if "joints" not in content:
         _check_keys("key", content, OF_BARS)
         return read_bars(content, given)
@@ -94,7 +104,8 @@ def _read_joint(number: int, table: object, unit: float) -> Joint:
     motions = joint.motions * (len(joint.bodies) - 1)
     limits = _read_limits(name, table.get("limits"), motions, unit)
     locked = _read_locked(name, table.get("locked"), motions, unit)
-    return replace(joint, limits=limits, locked=locked)
+    coupled = _read_coupled(name, table.get("coupled"), motions, unit)
+    return replace(joint, limits=limits, locked=locked, coupled=coupled)
 
 
 def _read_limits(
@@ -130,6 +141,40 @@ def _read_locked(
         raise GeometryError(what, quoted(given), allowed)
     pairs = zip(values, motions, strict=True)
     return tuple(_in_rad(what, [value], motion, unit)[0] for value, motion in pairs)
+
+
+def _read_coupled(
+    name: str, given: object, motions: tuple[Motion, ...], unit: float
+) -> tuple[Coupling | None, ...]:
+    if given is None:
+        return ()
+    what = f"coupled of joint {name}"
+    tables = given if isinstance(given, list) else [given]
+    if len(tables) != len(motions):
+        allowed = f"{len(motions)} tables" if len(motions) != 1 else "a table"
+        raise GeometryError(what, quoted(given), f"{allowed} {{to, ratio, offset}}")
+    pairs = zip(tables, motions, strict=True)
+    return tuple(_read_coupling(what, table, motion, unit) for table, motion in pairs)
+
+
+def _read_coupling(
+    what: str, table: object, motion: Motion, unit: float
+) -> Coupling | None:
+    """A coupling from its table; None from an empty one."""
+    if not isinstance(table, Mapping):
+        raise GeometryError(what, quoted(table), "a table {to, ratio, offset}")
+    if not table:
+        return None
+    _check_keys(f"key of {what}", table, OF_COUPLING)
+    for key in ("to", "ratio"):
+        if key not in table:
+            raise GeometryError(f"{key} of {what}", "a missing key", "given")
+    (offset,) = _in_rad(f"offset of {what}", [table.get("offset", 0.0)], motion, unit)
+    check_number(f"ratio of {what}", table["ratio"])
+    if table["ratio"] == 0:
+        allowed = "other than 0; a joint that stands still is locked"
+        raise GeometryError(f"ratio of {what}", 0, allowed)
+    return Coupling(table["to"], table["ratio"], offset)
 
 
 def _in_rad(

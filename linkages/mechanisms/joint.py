@@ -16,6 +16,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from linkages.loop import GeometryError, check_number, quoted
+from linkages.mechanisms.couplings import Coupling
 
 __all__ = ["Joint", "JointKind", "Limits", "Motion", "Vector"]
 
@@ -78,9 +79,9 @@ class Joint:
     one. ``point`` and ``direction`` give the axis, the direction of a slide, or the
     normal of a planar joint, ``second_direction`` the second axis of a universal joint
     or the first slide of a planar one, ``pitch`` the advance of a helical joint in a
-    full turn. ``limits`` and ``locked`` have one entry a variable, None where there is
-    none, in radians and in the unit of length. Raises `GeometryError` for anything that
-    is no joint.
+    full turn. ``limits``, ``locked`` and ``coupled`` have one entry a variable, None
+    where there is none, in radians and in the unit of length. Raises `GeometryError`
+    for anything that is no joint.
     """
 
     name: str
@@ -92,6 +93,7 @@ class Joint:
     pitch: float | None = None
     limits: tuple[Limits | None, ...] = ()
     locked: tuple[float | None, ...] = ()
+    coupled: tuple[Coupling | None, ...] = ()
 
     def __post_init__(self) -> None:
         _check_name(self.name)
@@ -111,6 +113,7 @@ class Joint:
         limits = _checked_limits(self)
         object.__setattr__(self, "limits", limits)
         object.__setattr__(self, "locked", _checked_locks(self, limits))
+        object.__setattr__(self, "coupled", _checked_couplings(self))
 
     @property
     def place(self) -> np.ndarray:
@@ -136,6 +139,13 @@ class Joint:
                     words.append(motion.part)
                 parts.append(".".join(words))
         return tuple(parts)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What every variable is called in the mechanism."""
+        return tuple(
+            f"{self.name}.{part}" if part else self.name for part in self.parts
+        )
 
     @property
     def freedoms(self) -> int:
@@ -327,3 +337,21 @@ def _checked_locks(
         if pair is not None and not pair[0] <= value <= pair[1]:
             raise GeometryError(what, value, f"within the limits {list(pair)}")
     return locked
+
+
+def _checked_couplings(joint: Joint) -> tuple[Coupling | None, ...]:
+    count = len(joint.parts)
+    coupled = tuple(joint.coupled) or (None,) * count
+    what = f"coupled of joint {joint.name}"
+    if len(coupled) != count:
+        allowed = f"{count}, one for each variable"
+        raise GeometryError(f"number of values of {what}", len(coupled), allowed)
+    for coupling, value in zip(coupled, joint.locked, strict=True):
+        if coupling is None:
+            continue
+        if not isinstance(coupling, Coupling):
+            raise GeometryError(what, quoted(coupling), "a `Coupling`")
+        if value is not None:
+            allowed = f"left out, as the variable is coupled to {coupling.to}"
+            raise GeometryError(f"locked of joint {joint.name}", value, allowed)
+    return coupled

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from linkages.loop import GeometryError, check_number, quoted
+from linkages.mechanisms.couplings import Coupling, Leader, leaders
 from linkages.mechanisms.joint import Joint, JointKind, Limits, Motion, Vector
 
 if TYPE_CHECKING:
@@ -23,13 +24,16 @@ FRAMES = ("frame", "ground", "base", "world")  # names of the body that is drawn
 
 class Variable(NamedTuple):
     """A joint variable: its ``label`` ("J1", or "C1.slide" in a joint of several), the
-    name of its ``joint``, the ``motion``, and what it may be."""
+    name of its ``joint``, the ``motion``, what it may be, the value at which it is
+    ``locked``, be it by the variable that it follows, and its ``leader``: itself where
+    it follows none."""
 
     label: str
     joint: str
     motion: Motion
     limits: Limits | None
     locked: float | None
+    leader: Leader
 
 
 class Pair(NamedTuple):
@@ -50,7 +54,7 @@ class Mechanism:
     ``is_planar``: it was given in a plane, so that a body has three freedoms for
     Grübler's count.
     Raises `GeometryError` where a joint is named twice, a body hangs on one joint only,
-    or the bodies do not hang together.
+    the bodies do not hang together, or joints are coupled in a circle.
     """
 
     joints: tuple[Joint, ...]
@@ -60,6 +64,7 @@ class Mechanism:
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
         _check_graph(self)
+        _check_followers(self)
 
     # --- bodies -----------------------------------------------------------------------
 
@@ -107,14 +112,36 @@ class Mechanism:
     def variables(self) -> tuple[Variable, ...]:
         """The variables of all joints but the spherical ones, in the order of the
         joints."""
-        variables = []
+        locks = [value for joint in self.joints for value in joint.locked]
+        variables: list[Variable] = []
         for joint in self.joints:
             motions = joint.motions * (len(joint.bodies) - 1)
-            rows = zip(joint.parts, motions, joint.limits, joint.locked, strict=True)
-            for part, motion, limits, locked in rows:
-                label = f"{joint.name}.{part}" if part else joint.name
-                variables.append(Variable(label, joint.name, motion, limits, locked))
+            rows = zip(joint.labels, motions, joint.limits, strict=True)
+            for label, motion, limits in rows:
+                leader = self._leaders[len(variables)]
+                held = locks[leader.number]
+                value = None if held is None else leader.value(held)
+                variables.append(
+                    Variable(label, joint.name, motion, limits, value, leader)
+                )
         return tuple(variables)
+
+    @cached_property
+    def _leaders(self) -> tuple[Leader, ...]:
+        """What every variable follows."""
+        labels = [label for joint in self.joints for label in joint.labels]
+        couplings = {
+            label: coupling
+            for joint in self.joints
+            for label, coupling in zip(joint.labels, joint.coupled, strict=True)
+            if coupling is not None
+        }
+        return leaders(labels, couplings)
+
+    @property
+    def is_coupled(self) -> bool:
+        """Whether a variable follows another one."""
+        return any(leader.number != k for k, leader in enumerate(self._leaders))
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
@@ -138,13 +165,16 @@ class Mechanism:
 
     @property
     def gruebler(self) -> int:
-        """Grübler's count: the freedoms of the joints that are not locked, less six for
-        every independent loop, or three in a plane. Only the rank tells the true
-        mobility."""
+        """Grübler's count: the freedoms of the joints that are neither locked nor coupled
+        to others, less six for every independent loop, or three in a plane. Only the
+        rank tells the true mobility."""
         freedoms = sum(joint.freedoms for joint in self.joints)
-        locked = sum(variable.locked is not None for variable in self.variables)
+        bound = sum(
+            variable.locked is not None or variable.leader.number != number
+            for number, variable in enumerate(self.variables)
+        )
         of_body = 3 if self.is_planar else 6
-        return freedoms - locked - of_body * self.independent_loops
+        return freedoms - bound - of_body * self.independent_loops
 
     @property
     def extent(self) -> float:
@@ -157,25 +187,62 @@ class Mechanism:
 
     def with_locks(self, values: Mapping[str, float]) -> Mechanism:
         """The mechanism with variables, by label, locked at ``values`` (rad and unit of
-        length); raises `GeometryError` for a label that it does not have."""
+        length), or those that they follow at what that takes; raises `GeometryError`
+        for a label that it does not have, and for two locks of coupled variables."""
         labels = [variable.label for variable in self.variables]
         for label in values:
             if label not in labels:
                 raise GeometryError(
                     "lock", quoted(label), f"one of {', '.join(labels)}"
                 )
-        joints = [_locked(joint, values) for joint in self.joints]
+        of_leaders = self._locks_of_leaders(values)
+        joints = [_locked(joint, of_leaders) for joint in self.joints]
         return replace(self, joints=tuple(joints))
+
+    def _locks_of_leaders(self, values: Mapping[str, float]) -> dict[str, float]:
+        """The locks by label of the variables that those with these locks follow."""
+        locks: dict[str, float] = {}
+        for variable in self.variables:
+            if variable.label not in values:
+                continue
+            value = values[variable.label]
+            leader = self.variables[variable.leader.number].label
+            if leader in locks:
+                allowed = f"given once for {leader} and all that is coupled to it"
+                raise GeometryError("lock", quoted(variable.label), allowed)
+            locks[leader] = variable.leader.value_of_leader(value)
+        return locks
 
     def scaled(self, factor: float) -> Mechanism:
         """The mechanism with all lengths times ``factor``."""
+        check_number("factor", factor)
+        if not factor > 0:
+            raise GeometryError("factor", factor, "positive")
         joints = [_scaled(joint, factor) for joint in self.joints]
-        return replace(self, joints=tuple(joints))
+        factors = {
+            variable.label: 1.0 if variable.motion.is_turn else factor
+            for variable in self.variables
+        }
+        return self._with_values_times(joints, factors)
 
     def mirrored(self) -> Mechanism:
         """The mirror image in the plane z = 0; turns change their sign."""
         joints = [_mirrored(joint) for joint in self.joints]
-        return replace(self, joints=tuple(joints))
+        signs = {
+            label: sign
+            for joint in self.joints
+            for label, sign in zip(joint.labels, _signs_in_mirror(joint), strict=True)
+        }
+        return self._with_values_times(joints, signs)
+
+    def _with_values_times(
+        self, joints: Iterable[Joint], factors: Mapping[str, float]
+    ) -> Mechanism:
+        """The mechanism of other ``joints`` with the values of all variables times
+        ``factors``, by label: limits, locks and couplings."""
+        return replace(
+            self, joints=tuple(_with_values_times(joint, factors) for joint in joints)
+        )
 
     def __repr__(self) -> str:
         kinds = [joint.kind.value for joint in self.joints]
@@ -190,38 +257,45 @@ class Mechanism:
 # --- other mechanisms -----------------------------------------------------------------
 
 
-def _labels(joint: Joint) -> list[str]:
-    return [f"{joint.name}.{part}" if part else joint.name for part in joint.parts]
-
-
 def _locked(joint: Joint, values: Mapping[str, float]) -> Joint:
-    pairs = zip(_labels(joint), joint.locked, strict=True)
+    pairs = zip(joint.labels, joint.locked, strict=True)
     locked = tuple(values.get(label, value) for label, value in pairs)
     return replace(joint, locked=locked)
 
 
 def _scaled(joint: Joint, factor: float) -> Joint:
-    check_number("factor", factor)
-    if not factor > 0:
-        raise GeometryError("factor", factor, "positive")
-    factors = [1.0 if motion.is_turn else factor for motion in joint.motions]
-    factors *= len(joint.bodies) - 1
-    limits = [
-        None if pair is None else (one * pair[0], one * pair[1])
-        for one, pair in zip(factors, joint.limits, strict=True)
-    ]
-    locked = [
-        None if value is None else one * value
-        for one, value in zip(factors, joint.locked, strict=True)
-    ]
     point = joint.point
     return replace(
         joint,
         point=None if point is None else tuple(factor * np.array(point)),
         pitch=None if joint.pitch is None else factor * joint.pitch,
-        limits=tuple(limits),
-        locked=tuple(locked),
     )
+
+
+def _with_values_times(joint: Joint, factors: Mapping[str, float]) -> Joint:
+    own = [factors[label] for label in joint.labels]
+    limits = []
+    for factor, pair in zip(own, joint.limits, strict=True):
+        ends = None if pair is None else sorted(factor * end for end in pair)
+        limits.append(None if ends is None else (ends[0], ends[1]))
+    locked = [
+        None if value is None else factor * value
+        for factor, value in zip(own, joint.locked, strict=True)
+    ]
+    coupled = [
+        None if coupling is None else _coupling_times(coupling, factor, factors)
+        for factor, coupling in zip(own, joint.coupled, strict=True)
+    ]
+    return replace(
+        joint, limits=tuple(limits), locked=tuple(locked), coupled=tuple(coupled)
+    )
+
+
+def _coupling_times(
+    coupling: Coupling, factor: float, factors: Mapping[str, float]
+) -> Coupling:
+    ratio = coupling.ratio * factor / factors[coupling.to]
+    return Coupling(coupling.to, ratio, coupling.offset * factor)
 
 
 def _mirrored(joint: Joint) -> Joint:
@@ -243,6 +317,13 @@ def _mirrored(joint: Joint) -> Joint:
         second_direction=reflected(joint.second_direction),
         pitch=None if joint.pitch is None else -joint.pitch,
     )
+
+
+def _signs_in_mirror(joint: Joint) -> list[float]:
+    """What the variables of a joint are multiplied with in the mirror."""
+    signs = {JointKind.CYLINDRICAL: [1.0, -1.0], JointKind.PLANAR: [1.0, -1.0, -1.0]}
+    of_body = signs.get(joint.kind, [1.0] * len(joint.motions))
+    return of_body * (len(joint.bodies) - 1)
 
 
 # --- checks ---------------------------------------------------------------------------
@@ -279,3 +360,16 @@ def _check_graph(mechanism: Mechanism) -> None:
             joint = next(j.name for j in mechanism.joints if body in j.bodies)
             allowed = "two joints or more on every body"
             raise GeometryError(f"body {body}", f"one joint only, {joint},", allowed)
+
+
+def _check_followers(mechanism: Mechanism) -> None:
+    """Variables that others hold are within their limits."""
+    for variable in mechanism.variables:
+        if variable.locked is None or variable.limits is None:
+            continue
+        low, high = variable.limits
+        leader = mechanism.variables[variable.leader.number]
+        if not low <= variable.locked <= high:
+            what = f"{variable.label}, which follows {leader.label},"
+            allowed = f"within its limits {[low, high]}"
+            raise GeometryError(what, variable.locked, allowed)

@@ -76,19 +76,19 @@ class Readout:
     def periods(self) -> np.ndarray:
         """The periods (v,) of the variables, inf where there is none."""
         periods = np.full(len(self.mechanism.variables), np.inf)
-        for unknown in self.structure.unknowns:
-            if unknown.variable >= 0:
-                periods[unknown.variable] = unknown.period
+        for number, column in self.structure.column_of.items():
+            if np.isfinite(self.structure.unknowns[column].period):
+                periods[number] = 2 * np.pi
         return periods
 
     def limits(self) -> dict[str, tuple[float, float]]:
         """The limits within which variables are followed, by label, in rad and the
         user's unit; angles without limits are left out."""
         limits = {}
-        for unknown in self.structure.unknowns:
-            if unknown.variable >= 0 and np.isfinite(unknown.high):
-                unit = 1.0 if unknown.is_angle else self.structure.unit
-                limits[unknown.label] = (unit * unknown.low, unit * unknown.high)
+        for number, variable in enumerate(self.mechanism.variables):
+            pair = self.structure.limits(number)
+            if pair is not None:
+                limits[variable.label] = pair
         return limits
 
     def variables(self, point: np.ndarray) -> JointVariables:

@@ -28,9 +28,11 @@ class SingleLoop:
 
 def as_single_loop(structure: Structure) -> SingleLoop | None:
     """The mechanism as one loop of 4 to 12 revolute joints; None where it is none, or
-    where joints have limits or stand locked elsewhere than at 0."""
+    where joints have limits, are coupled or stand locked elsewhere than at 0."""
     mechanism = structure.mechanism
-    if mechanism.independent_loops != 1 or not _has_plain_turns_only(mechanism):
+    if mechanism.independent_loops != 1 or mechanism.is_coupled:
+        return None
+    if not _has_plain_turns_only(mechanism):
         return None
     (closure,) = structure.closures
     if closure.kind is not ClosureKind.CYCLE:

@@ -18,7 +18,9 @@ from typing import NamedTuple
 import numpy as np
 from networkx.utils import UnionFind
 
+from linkages.closure.coupled import common_period
 from linkages.loop import GeometryError
+from linkages.mechanisms.couplings import Leader
 from linkages.mechanisms.cycles import (
     Chain,
     Ends,
@@ -32,9 +34,11 @@ from linkages.mechanisms.placement import Placement
 from linkages.mechanisms.rods import Rod, find_rods
 from linkages.mechanisms.size import Size
 
-__all__ = ["Closure", "ClosureKind", "FreePair", "Structure", "Unknown"]
+__all__ = ["Closure", "ClosureKind", "FreePair", "Share", "Structure", "Unknown"]
 
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
+# limits, rad, of a turn that its coupling to others brings never back to where it was
+TURNS_REACH = 10 * 2 * np.pi
 FREE = 6  # freedoms of a free pair
 # numbers of an embedded rotation, two orthonormal vectors, and of a translation
 ROTATION = ("ax", "ay", "az", "bx", "by", "bz")
@@ -75,10 +79,20 @@ class FreePair(NamedTuple):
     center: np.ndarray
 
 
+class Share(NamedTuple):
+    """What an unknown makes of a variable: ``rate`` times the unknown of this
+    ``column``, plus ``offset``, in rad and in the structure's unit."""
+
+    column: int
+    rate: float
+    offset: float
+
+
 @dataclass(frozen=True)
 class Unknown:
     """An unknown: the number of its ``variable`` (-1 for a number of an embedded
-    spherical joint), its period and its limits, in rad or in the structure's unit."""
+    spherical joint), which others may follow, its period and its limits, in rad or in
+    the structure's unit."""
 
     label: str
     variable: int
@@ -260,11 +274,9 @@ class Structure:
 
     @cached_property
     def unknowns(self) -> tuple[Unknown, ...]:
-        """The variables that are not locked, then the numbers of embedded joints."""
-        unknowns = []
-        for number, variable in enumerate(self.mechanism.variables):
-            if variable.locked is None:
-                unknowns.append(self._unknown(number))
+        """The variables that are neither locked nor coupled to others, then the numbers
+        of embedded joints."""
+        unknowns = [self._unknown(number) for number in self._leading]
         for pair in self._kept_spherical:
             joint = self.mechanism.pairs[pair].joint
             unknowns += [_number_of(joint, part) for part in ROTATION]
@@ -282,29 +294,66 @@ class Structure:
 
     @cached_property
     def column_of(self) -> dict[int, int]:
-        """The number of the unknown that every free variable is, by its number."""
-        free = [
-            number
+        """The number of the unknown that every free variable is or follows, by its
+        number."""
+        columns = {variable: column for column, variable in enumerate(self._leading)}
+        return {
+            number: columns[variable.leader.number]
             for number, variable in enumerate(self.mechanism.variables)
             if variable.locked is None
+        }
+
+    @cached_property
+    def _leading(self) -> list[int]:
+        """The variables, by number, that are neither locked nor coupled to others."""
+        return [
+            number
+            for number, variable in enumerate(self.mechanism.variables)
+            if variable.locked is None and variable.leader.number == number
         ]
-        return {variable: column for column, variable in enumerate(free)}
+
+    def share(self, variable: int) -> Share | None:
+        """What an unknown makes of a variable, by number; None where it is locked."""
+        column = self.column_of.get(variable)
+        if column is None:
+            return None
+        leader = self.mechanism.variables[variable].leader
+        unit = self._unit_of(variable)
+        rate = leader.ratio * self._unit_of(leader.number) / unit
+        return Share(column, rate, leader.offset / unit)
+
+    def _unit_of(self, variable: int) -> float:
+        """What a variable, by number, is counted in: rad or the structure's unit."""
+        return 1.0 if self.mechanism.variables[variable].motion.is_turn else self.unit
 
     def values(self, points: np.ndarray, variable: int) -> np.ndarray:
         """The values (k,) of a variable, by number, at configurations (k, n): in rad
         and in the user's unit, the same everywhere where it is locked."""
-        column = self.column_of.get(variable)
-        if column is None:
+        share = self.share(variable)
+        if share is None:
             return np.full(len(points), self.mechanism.variables[variable].locked)
-        is_turn = self.mechanism.variables[variable].motion.is_turn
-        values: np.ndarray = points[:, column] * (1.0 if is_turn else self.unit)
+        shares = share.rate * points[:, share.column] + share.offset
+        values: np.ndarray = shares * self._unit_of(variable)
         return values
+
+    def limits(self, variable: int) -> tuple[float, float] | None:
+        """The limits within which a variable, by number, is followed, in rad and the
+        user's unit; None where it is locked or has none."""
+        share = self.share(variable)
+        if share is None or not np.isfinite(self.unknowns[share.column].high):
+            return None
+        unknown = self.unknowns[share.column]
+        ends = np.array([[unknown.low], [unknown.high]])
+        points = np.zeros((2, len(self.unknowns)))
+        points[:, [share.column]] = ends
+        low, high = sorted(self.values(points, variable).tolist())
+        return low, high
 
     @cached_property
     def embedded(self) -> dict[int, tuple[int, ...]]:
         """The numbers of the unknowns of every embedded spherical pair, six, and of
         every free one, nine."""
-        first = len(self.column_of)
+        first = len(self._leading)
         embedded = {}
         for pair in (*self._kept_spherical, *self.free_pairs):
             count = len(ROTATION)
@@ -323,19 +372,43 @@ class Structure:
         return center
 
     def _unknown(self, number: int) -> Unknown:
+        """The unknown that the variable of this number is, within the limits of all
+        that follow it."""
+        variable = self.mechanism.variables[number]
+        is_angle = variable.motion.is_turn
+        unit = self._unit_of(number)
+        ratios = []
+        low, high = -np.inf, np.inf
+        for follower, other in enumerate(self.mechanism.variables):
+            if other.leader.number != number:
+                continue
+            ratios.append(other.leader.ratio)
+            start, end = _range_of_leader(other.leader, self._range(follower))
+            low, high = max(low, start), min(high, end)
+            if not low < high:
+                what = f"limits of {variable.label} and what is coupled to it"
+                raise GeometryError(what, [low, high], "such that they overlap")
+        if np.isfinite(high):
+            low, high = low / unit, high / unit
+            return Unknown(variable.label, number, np.inf, low, high, is_angle)
+        period = common_period(ratios)
+        if not np.isfinite(period):
+            low, high = -TURNS_REACH, TURNS_REACH
+        return Unknown(variable.label, number, period, low, high, is_angle)
+
+    def _range(self, number: int) -> tuple[float, float]:
+        """From where to where a variable is followed, in rad and the user's unit:
+        infinite for a turn without advance and limits."""
         variable = self.mechanism.variables[number]
         motion = variable.motion
-        unit = 1.0 if motion.is_turn else self.unit
-        is_periodic = motion.is_turn and motion.advance == 0.0
         if variable.limits is not None:
-            low, high = (value / unit for value in variable.limits)
-            return Unknown(variable.label, number, np.inf, low, high, motion.is_turn)
-        if is_periodic:
-            return Unknown(variable.label, number, 2 * np.pi, -np.inf, np.inf, True)
-        limit = self._reach(number) / self.unit
+            return variable.limits
+        if motion.is_turn and motion.advance == 0.0:
+            return -np.inf, np.inf
+        reach = self._reach(number)
         if motion.is_turn:
-            limit /= abs(motion.advance) / self.unit
-        return Unknown(variable.label, number, np.inf, -limit, limit, motion.is_turn)
+            reach /= abs(motion.advance)
+        return -reach, reach
 
     def _variables_around(self, closure: Closure) -> set[int]:
         """The variables, by number, of the joints round a loop."""
@@ -356,6 +429,14 @@ class Structure:
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
+
+
+def _range_of_leader(
+    leader: Leader, limits: tuple[float, float]
+) -> tuple[float, float]:
+    """Between which values of its leader a variable is within its limits."""
+    low, high = sorted(leader.value_of_leader(value) for value in limits)
+    return low, high
 
 
 def _number_of(name: str, part: str) -> Unknown:

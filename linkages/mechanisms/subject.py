@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from bifurc.atlas import Atlas
 from linkages.labels import NoLinkageError
 from linkages.loop import GeometryError
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -52,6 +54,10 @@ def joint_values(joint: Joint) -> dict[str, Any]:
         ]
     if any(value is not None for value in joint.locked):
         values["locked"] = list(joint.locked)
+    if any(coupling is not None for coupling in joint.coupled):
+        values["coupled"] = [
+            None if coupling is None else asdict(coupling) for coupling in joint.coupled
+        ]
     return values
 
 
@@ -65,8 +71,12 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     for value in values:
         try:
             limits = [None if p is None else tuple(p) for p in value.get("limits", [])]
-            others = {key: v for key, v in value.items() if key != "limits"}
-            joints.append(Joint(**{**others, "limits": tuple(limits)}))
+            coupled = [
+                None if coupling is None else Coupling(**coupling)
+                for coupling in value.get("coupled", [])
+            ]
+            lists = {"limits": tuple(limits), "coupled": tuple(coupled)}
+            joints.append(Joint(**{**value, **lists}))
         except TypeError as error:
             raise GeometryError("joint", repr(value), f"a joint: {error}") from None
     assert isinstance(given, dict)
