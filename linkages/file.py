@@ -15,7 +15,8 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
     directions = [[0, 0, 1], [0, 1, 1], ...]
 
 What has ``[[joints]]``, or ``bars`` between ``[points]``, is a mechanism
-(`linkages.mechanisms.file`).
+(`linkages.mechanisms.file`), and so are the files of other programs, told by the
+endings of their names (`linkages.mechanisms.formats`).
 """
 
 from __future__ import annotations
@@ -45,7 +46,13 @@ from linkages.loop import (
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["LinkageFileError", "read_file", "read_linkage", "read_precisely"]
+__all__ = [
+    "FOREIGN_ENDINGS",
+    "LinkageFileError",
+    "read_file",
+    "read_linkage",
+    "read_precisely",
+]
 
 log = logging.getLogger(__name__)
 
@@ -54,6 +61,7 @@ Content: TypeAlias = Mapping[str, object]
 TABLE = ("lengths", "twists", "offsets")
 AXES = ("points", "directions")
 KEYS = ("name", "angles", *TABLE, *AXES)
+FOREIGN_ENDINGS = (".world", ".xml", ".mjcf", ".sdf")  # of other programs
 FULL_TURN = 2 * math.pi
 
 
@@ -74,9 +82,11 @@ class LinkageFileError(BifurcError, ValueError):
 
 
 def read_file(path: Path | str) -> Loop | Mechanism:
-    """The loop or the mechanism that a TOML file describes; without a name it is called
+    """The loop or the mechanism that a file describes; without a name it is called
     after the file. Raises `LinkageFileError`."""
     path = Path(path)
+    if path.suffix.lower() in FOREIGN_ENDINGS:
+        return _read_foreign(path)
     content = _parse(path)
     if not _is_of_mechanism(content):
         loop, _ = read_linkage(path)
@@ -85,6 +95,20 @@ def read_file(path: Path | str) -> Loop | Mechanism:
 
     try:
         return read_mechanism(content, path.stem)
+    except GeometryError as error:
+        raise LinkageFileError(path, str(error)) from None
+
+
+def _read_foreign(path: Path) -> Mechanism:
+    """The mechanism in a file of another program."""
+    from linkages.mechanisms.formats.reading import read_foreign_file
+
+    try:
+        return read_foreign_file(path)
+    except FileNotFoundError:
+        raise LinkageFileError(path, "there is no such file") from None
+    except OSError as error:
+        raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
     except GeometryError as error:
         raise LinkageFileError(path, str(error)) from None
 
@@ -104,8 +128,9 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
     file that says radians are used as they stand, with a warning in the log.
     """
     path = Path(path)
-    content = _parse(path)
-    if _is_of_mechanism(content):
+    is_foreign = path.suffix.lower() in FOREIGN_ENDINGS
+    content: Content = {} if is_foreign else _parse(path)
+    if is_foreign or _is_of_mechanism(content):
         message = (
             "describes a mechanism, and this takes a single loop of revolute joints"
         )
