@@ -244,7 +244,11 @@ def _read_transform(cursor: Cursor) -> np.ndarray:
     cursor.expect("(")
     value = cursor.number()
     cursor.expect(")")
-    result = translation(value * np.array(SLIDES[word])) if word in SLIDES else rotation(TURNS[word], value)
+    result = (
+        translation(value * np.array(SLIDES[word]))
+        if word in SLIDES
+        else rotation(TURNS[word], value)
+    )
     if cursor.token.text == "^" and cursor.ahead(1) == "-" and cursor.ahead(2) == "1":
         cursor.place += 3
         return np.linalg.inv(result)
