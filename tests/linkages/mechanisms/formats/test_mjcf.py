@@ -234,3 +234,111 @@ def test_a_malformed_model_is_refused_with_its_place(what, tmp_path):
         read(tmp_path, text)
     assert message in str(error.value)
     assert "m.xml" in str(error.value)
+
+
+# body, parent, pos, xyaxes, joint type, ref, range: the left leg of agility_cassie in
+# google-deepmind/mujoco_menagerie, rounded as it is there
+CASSIE_LEG = [
+    ("hip", None, "0 0 0", "", None, 0, None),
+    (
+        "rod",
+        "hip",
+        "0 0 0.045",
+        "0.7922 -0.60599 -0.072096 0.60349 0.79547 -0.054922",
+        "ball",
+        0,
+        None,
+    ),
+    (
+        "knee",
+        "hip",
+        "0.12 0 0.0045",
+        "0.70711 -0.70711 0 0.70711 0.70711 0",
+        "hinge",
+        -45,
+        "-164 -37",
+    ),
+    ("shin", "knee", "0.06068 0.04741 0", "", "hinge", 0, "-20 20"),
+    (
+        "tarsus",
+        "shin",
+        "0.43476 0.02 0",
+        "0.52992 0.84805 0 -0.84805 0.52992 0",
+        "hinge",
+        58,
+        "50 170",
+    ),
+    (
+        "heel",
+        "tarsus",
+        "-0.01269 -0.03059 0.00092",
+        "-0.91211 0.40829 0.036948 -0.40992 -0.90952 -0.068841",
+        "hinge",
+        0,
+        None,
+    ),
+    ("crank", "tarsus", "0.058 -0.034 0.02275", "", "hinge", 0, "-140 -30"),
+    ("plantar", "crank", "0.055 0 -0.00791", "", "hinge", 0, None),
+    ("foot", "tarsus", "0.408 -0.04 0", "", "hinge", 0, "-140 -30"),
+]
+
+
+def body_text(name):
+    _, _, pos, axes, kind, ref, limits = next(
+        row for row in CASSIE_LEG if row[0] == name
+    )
+    turned = f' xyaxes="{axes}"' if axes else ""
+    limited = f' range="{limits}"' if limits else ""
+    joint = f'<joint name="{name}" type="{kind}" ref="{ref}"{limited}/>' if kind else ""
+    inner = "".join(body_text(row[0]) for row in CASSIE_LEG if row[1] == name)
+    return f'<body name="{name}" pos="{pos}"{turned}><geom size="0.01"/>{joint}{inner}</body>'
+
+
+def cassie_leg():
+    return (
+        f'<mujoco model="leg"><worldbody>{body_text("hip")}</worldbody><equality>'
+        '<connect body1="plantar" body2="foot" anchor="0.35012 0 0"/>'
+        '<connect body1="rod" body2="heel" anchor="0.5012 0 0"/></equality></mujoco>'
+    )
+
+
+def test_the_leg_of_a_robot_has_two_loops_in_the_places_of_mujoco(tmp_path):
+    mechanism = read(tmp_path, cassie_leg())
+    assert mechanism.independent_loops == 2
+    model = mujoco.MjModel.from_xml_string(cassie_leg())
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    for number in range(model.njnt):
+        name = model.joint(number).name
+        np.testing.assert_allclose(
+            mechanism.joint(name).place, data.xanchor[number], atol=1e-9
+        )
+    # angles begin at qpos0, which is ref: -45 of -164 to -37 degrees at the knee
+    low, high = mechanism.joint("knee").limits[0]
+    assert np.degrees([low, high]) == pytest.approx([-119, 8])
+
+
+def test_joints_between_two_loops_are_held_and_those_at_an_end_left_out(
+    tmp_path, caplog
+):
+    twice = (
+        four_bar()
+        .replace(
+            '    <body name="ball"',
+            '''
+    <body name="neck" pos="0 0 5"><joint name="N"/>
+      <body name="u" pos="0 1 0"><joint name="U"/><body name="v" pos="1 0 0"><joint name="V"/></body></body>
+      <body name="w" pos="2 0 0"><joint name="W"/></body>
+    </body>
+    <body name="ball"''',
+        )
+        .replace(
+            "</equality>",
+            """
+    <connect name="X.1" body1="v" body2="w" anchor="0.5 0 0"/>
+    <connect name="X.2" body1="v" body2="w" anchor="0.5 0 1"/></equality>""",
+        )
+    )
+    mechanism = read(tmp_path, twice)
+    assert "held, as they lie in no loop: joints N" in caplog.text
+    assert mechanism.independent_loops == 2
