@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linkages.decisions import is_one_joint
 from linkages.mechanisms.formats.assembly import frame_along, translation
 from linkages.mechanisms.formats.xml_tree import Element
 from linkages.mechanisms.joint import JointKind, Limits
 
 __all__ = ["Axis", "WorldJoint", "joints_of_axes"]
 
-SAME = 1e-12  # sine of the angle, or distance over the size, of axes that are one
+TINY = 1e-300  # of coordinates that are all 0
 
 
 class Axis(NamedTuple):
@@ -76,15 +77,17 @@ def _is_one_axis(turn: Axis, slide: Axis) -> bool:
     """Whether a slide is along the axis of a turn, in the same direction."""
     first, second = _unit(turn.direction), _unit(slide.direction)
     sine = np.linalg.norm(np.cross(first, second))
-    return bool(sine < SAME and first @ second > 0)
+    return is_one_joint(float(sine)) and bool(first @ second > 0)
 
 
 def _is_universal(axes: list[Axis]) -> bool:
     first, second = axes
-    size = max(np.abs(first.point).max(), np.abs(second.point).max())
-    is_one_point = bool(np.linalg.norm(first.point - second.point) <= SAME * size)
+    points = np.array([first.point, second.point])
+    size = float(np.abs(points).max(initial=TINY))
+    distance = float(np.linalg.norm(points[1] - points[0]))
     sine = np.linalg.norm(np.cross(_unit(first.direction), _unit(second.direction)))
-    return is_one_point and bool(sine > 1e-6)
+    is_parallel = is_one_joint(float(sine))
+    return is_one_joint(distance, size) and not is_parallel
 
 
 def _opposite(axis: Axis) -> Axis:
@@ -94,7 +97,7 @@ def _opposite(axis: Axis) -> Axis:
 
 def _is_plane(axes: list[Axis]) -> bool:
     x, y, normal = (_unit(axis.direction) for axis in axes)
-    return bool(np.linalg.norm(np.cross(normal, x) - y) < SAME)
+    return is_one_joint(float(np.linalg.norm(np.cross(normal, x) - y)))
 
 
 def _name(axes: list[Axis]) -> str:

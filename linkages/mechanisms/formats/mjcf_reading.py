@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from linkages.decisions import is_one_anchor
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.formats.assembly import (
     Assembly,
@@ -36,8 +37,8 @@ __all__ = ["read_mjcf"]
 WORLD = "world"
 NOT_READ = ("include", "attach", "replicate", "composite", "flexcomp")
 COUPLINGS = ("tendon", "flex", "flexvert", "flexstrain", "distance")
+TINY = 1e-300  # of coordinates that are all 0
 NUMBERED = re.compile(r"\.\d+$")
-IN_ONE_POINT = 1e-9  # distance of anchors, over the largest coordinate, that is none
 
 
 @dataclass
@@ -390,15 +391,15 @@ def _name_of_anchors(anchors: list[_Anchor]) -> str:
 def _kind_of_points(points: np.ndarray) -> tuple[JointKind, tuple[int, ...]]:
     """The kind of a joint that shares ``points`` (k, 3), and the numbers of those that,
     with the first one, give its axis or its plane."""
-    size = IN_ONE_POINT * np.abs(points).max(initial=1e-300)
+    size = float(np.abs(points).max(initial=TINY))
     gaps = points - points[0]
     distances = np.linalg.norm(gaps, axis=1)
     far = int(np.argmax(distances))
-    if distances[far] <= size:
+    if is_one_anchor(float(distances[far]), size):
         return JointKind.SPHERICAL, ()
     along = gaps[far] / distances[far]
     across = np.linalg.norm(np.cross(gaps, along), axis=1)
     wide = int(np.argmax(across))
-    if across[wide] <= size:
+    if is_one_anchor(float(across[wide]), size):
         return JointKind.REVOLUTE, (far,)
     return JointKind.RIGID, (far, wide)
