@@ -140,6 +140,34 @@ is_dependent_constraint = Decision(
     1e-8,
     "constraints that depend on each other give 1e-15",
 )
+is_file_closed = Decision(
+    "file that closes",
+    "the joints of a mechanism in a file of another program fit in a configuration",
+    "largest distance of a joint's points over the characteristic length, or sine",
+    1e-10,
+    "joints of exact numbers fit to 1e-14, of numbers with 8 digits to 1e-8",
+)
+is_file_nearly_closed = Decision(
+    "file of rounded numbers",
+    "what the joints of a mechanism in a file miss each other by is from rounding",
+    "largest distance of a joint's points over the characteristic length, or sine",
+    1e-2,
+    "three digits are rounded to 1e-3; what cannot be closed misses by 1e-1 and more",
+)
+is_one_anchor = Decision(
+    "one anchor",
+    "points that two bodies of an MJCF file share are one point, or on one line",
+    "distance, over the largest coordinate",
+    1e-9,
+    "rounding of poses gives 1e-15; anchors that make an axis are 1e-3 and more apart",
+)
+is_one_joint = Decision(
+    "axes of one joint",
+    "joints of an MJCF body make a cylindrical, universal, planar or helical joint",
+    "sine of an angle, or distance over the largest coordinate, that is to be 0",
+    1e-12,
+    "rounding of poses gives 1e-15; read as joints one after the other, they move alike",
+)
 
 is_network_closed = Decision(
     "closed network",

@@ -15,7 +15,9 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
     directions = [[0, 0, 1], [0, 1, 1], ...]
 
 What has ``[[joints]]``, ``[[loops]]``, or ``bars`` between ``[points]``, is a mechanism
-(`linkages.mechanisms.file`).
+(`linkages.mechanisms.file`), and so are crease patterns and the files of other
+programs, told by the endings of their names (`linkages.mechanisms.fold`,
+`linkages.mechanisms.formats`).
 """
 
 from __future__ import annotations
@@ -45,7 +47,13 @@ from linkages.loop import (
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["LinkageFileError", "read_file", "read_linkage", "read_precisely"]
+__all__ = [
+    "FOREIGN_ENDINGS",
+    "LinkageFileError",
+    "read_file",
+    "read_linkage",
+    "read_precisely",
+]
 
 log = logging.getLogger(__name__)
 
@@ -56,6 +64,7 @@ AXES = ("points", "directions")
 FOLD = ".fold"
 OF_MECHANISMS = ("joints", "bars", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
+FOREIGN_ENDINGS = (".world", ".xml", ".mjcf", ".sdf")  # of other programs
 FULL_TURN = 2 * math.pi
 
 
@@ -76,11 +85,14 @@ class LinkageFileError(BifurcError, ValueError):
 
 
 def read_file(path: Path | str) -> Loop | Mechanism:
-    """The loop or the mechanism that a TOML file or a FOLD file describes; without a name it is called
+    """The loop or the mechanism that a file describes; without a name it is called
     after the file. Raises `LinkageFileError`."""
     path = Path(path)
-    if path.suffix == FOLD:
+    ending = path.suffix.lower()
+    if ending == FOLD:
         return _read_fold_file(path)
+    if ending in FOREIGN_ENDINGS:
+        return _read_foreign(path)
     content = _parse(path)
     if not _is_of_mechanism(content):
         loop, _ = read_linkage(path)
@@ -102,6 +114,20 @@ def _read_fold_file(path: Path) -> Mechanism:
         raise LinkageFileError(path, str(error)) from None
 
 
+def _read_foreign(path: Path) -> Mechanism:
+    """The mechanism in a file of another program."""
+    from linkages.mechanisms.formats.reading import read_foreign_file
+
+    try:
+        return read_foreign_file(path)
+    except FileNotFoundError:
+        raise LinkageFileError(path, "there is no such file") from None
+    except OSError as error:
+        raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
+    except GeometryError as error:
+        raise LinkageFileError(path, str(error)) from None
+
+
 def _is_of_mechanism(content: Content) -> bool:
     """Whether the content of a file is a mechanism, and no single loop."""
     has_points = isinstance(content.get("points"), Mapping)
@@ -117,8 +143,9 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
     file that says radians are used as they stand, with a warning in the log.
     """
     path = Path(path)
-    content = _parse(path)
-    if _is_of_mechanism(content):
+    is_foreign = path.suffix.lower() in FOREIGN_ENDINGS
+    content: Content = {} if is_foreign else _parse(path)
+    if is_foreign or _is_of_mechanism(content):
         message = (
             "describes a mechanism, and this takes a single loop of revolute joints"
         )

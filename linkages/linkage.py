@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import FormPattern
-from linkages.file import LinkageFileError, read_file
+from linkages.file import FOLD, FOREIGN_ENDINGS, LinkageFileError, read_file
 from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import GeometryError, Loop, check_number
 from linkages.networks.entries import NETWORKS
@@ -54,7 +54,7 @@ class Linkage:
 
 def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
     """The linkage or the network called ``source`` in the catalogue, or the linkage or
-    the mechanism read from a TOML file or, an origami crease pattern, from a FOLD file.
+    the mechanism read from a file: TOML, FOLD, MJCF, SDF or a CUIK world.
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. Raises `UnknownLinkageError` with the nearest names,
@@ -63,7 +63,7 @@ def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
     linkage.
     """
     if not isinstance(source, str | Path):
-        allowed = "a name of the catalogue or the path of a TOML file"
+        allowed = "a name of the catalogue or the path of a file"
         raise GeometryError("linkage", repr(source), allowed)
     if is_linkage_file(source):
         if parameters:
@@ -88,12 +88,13 @@ def load_linkage(source: str | Path, **parameters: float) -> Linkage:
 
 
 def is_linkage_file(source: str | Path) -> bool:
-    """Whether ``source`` names a file: it is a path, it ends with .toml or .fold, or there is
-    a file."""
+    """Whether ``source`` names a file: it is a path, it ends like one, with .toml or as
+    those of other programs do, or there is a file."""
     if isinstance(source, Path):
         return True
     try:
-        return source.endswith((".toml", ".fold")) or Path(source).is_file()
+        has_ending = source.lower().endswith((".toml", FOLD, *FOREIGN_ENDINGS))
+        return has_ending or Path(source).is_file()
     except OSError:  # a text that no file can be called, such as one far too long
         return False
 

@@ -12,6 +12,7 @@ import click
 
 from bifurc.errors import BifurcError
 from linkages.app.commands.clearance_command import clearance_command
+from linkages.app.commands.convert_command import convert_command
 from linkages.app.commands.export_command import export_command
 from linkages.app.commands.figure_command import figure_command
 from linkages.app.commands.identify_command import identify_command
@@ -135,6 +136,7 @@ for command in (
     route_command,
     export_command,
     clearance_command,
+    convert_command,
     sweep_command,
     tolerance_command,
     verify_command,

@@ -1,0 +1,72 @@
+"""The command `bifurc convert`: a mechanism from one format of files to another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from linkages.app.exit_codes import CommandError, exit_code_table
+from linkages.app.output import require_ending, require_writable, say, writing_to
+from linkages.linkage import Linkage
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["convert_command"]
+
+ENDINGS = (".toml", ".xml", ".mjcf", ".sdf")
+
+
+@click.command("convert", epilog=exit_code_table())
+@click.argument("source", metavar="IN")
+@click.argument("out", metavar="OUT", type=click.Path(path_type=Path, dir_okay=False))
+def convert_command(source: str, out: Path) -> None:
+    """Write a mechanism to a file of another format.
+
+    \b
+    IN   .toml, .xml or .mjcf (MJCF), .sdf, .world (CUIK)
+    OUT  .toml, .xml or .mjcf (MJCF), .sdf
+
+    The configuration written is the reference configuration, where all joint variables
+    are 0.
+    """
+    require_ending("OUT", out, *ENDINGS)
+    mechanism = _mechanism(source)
+    text = _text(mechanism, out)
+    require_writable(out)
+    from bifurc.files.atomic import replace_file
+
+    with writing_to(out):
+        replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
+    say(f"{out}: {mechanism!r}")
+
+
+def _mechanism(source: str) -> Mechanism:
+    """The mechanism of a file; raises `CommandError` for a single loop that is given as
+    a table or as axes."""
+    from linkages.app.choice import choose_linkage
+
+    chosen = choose_linkage(source)
+    if isinstance(chosen, Linkage):
+        raise CommandError(
+            f"{source}: it is a single loop, a table or axes; convert takes mechanisms"
+        )
+    return chosen
+
+
+def _text(mechanism: Mechanism, out: Path) -> str:
+    match out.suffix.lower():
+        case ".toml":
+            from linkages.mechanisms.toml_text import mechanism_toml
+
+            return mechanism_toml(mechanism)
+        case ".sdf":
+            from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
+
+            return mechanism_sdf(mechanism)
+        case _:
+            from linkages.mechanisms.formats.mjcf_writing import mechanism_mjcf
+
+            return mechanism_mjcf(mechanism)

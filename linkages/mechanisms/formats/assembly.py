@@ -1,0 +1,112 @@
+"""A mechanism as files of other programs give it: each joint in the frames of the two
+bodies that it joins, with no closed configuration or one that is rounded."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkages.loop import GeometryError, quoted
+from linkages.mechanisms.joint import JointKind, Limits
+
+__all__ = ["Assembly", "BodyJoint", "frame_along", "translation"]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyJoint:
+    """A joint between two ``bodies``, with a frame (4, 4) in each of them.
+
+    The third axis of a frame is the axis, the direction of a slide or the normal of a
+    planar joint; of a universal joint it is the axis that is fixed in that body, and
+    ``cosine`` is that of the angle between both. All variables are 0 where the frames
+    coincide. A helical joint goes on by ``pitch`` in a full turn. ``limits``
+    and ``locked`` have an entry for each variable, or none: rad and the file's unit of
+    length.
+    """
+
+    name: str
+    kind: JointKind
+    bodies: tuple[str, str]
+    frames: tuple[np.ndarray, np.ndarray]
+    cosine: float = 0.0
+    pitch: float | None = None
+    limits: tuple[Limits | None, ...] = ()
+    locked: tuple[float | None, ...] = ()
+
+    @property
+    def points(self) -> tuple[np.ndarray, np.ndarray]:
+        """The origins (3,) of both frames, each in its body."""
+        first, second = self.frames
+        return first[:3, 3], second[:3, 3]
+
+
+@dataclass(frozen=True, eq=False)
+class Assembly:
+    """``bodies`` and the ``joints`` between them.
+
+    ``poses`` (4, 4), by body, are a configuration in which the joints fit, or nearly
+    so; empty where the file gives none. ``notes`` say what of a file was left out.
+    Raises `GeometryError` where a joint names a body that is not there, or a name is
+    given twice.
+    """
+
+    name: str
+    bodies: tuple[str, ...]
+    joints: tuple[BodyJoint, ...]
+    poses: dict[str, np.ndarray] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        _check_names("name of a body", self.bodies)
+        _check_names("name of a joint", [joint.name for joint in self.joints])
+        known = set(self.bodies)
+        for joint in self.joints:
+            for body in joint.bodies:
+                if body not in known:
+                    what = f"body of joint {joint.name}"
+                    allowed = f"one of {', '.join(self.bodies)}"
+                    raise GeometryError(what, quoted(body), allowed)
+            if joint.bodies[0] == joint.bodies[1]:
+                what = f"bodies of joint {joint.name}"
+                raise GeometryError(what, list(joint.bodies), "two different bodies")
+
+
+def _check_names(what: str, names: Sequence[str]) -> None:
+    seen = set()
+    for name in names:
+        if name in seen:
+            raise GeometryError(what, quoted(name), "given once")
+        seen.add(name)
+
+
+def translation(point: Sequence[float] | np.ndarray) -> np.ndarray:
+    """The transform (4, 4) that moves the origin to ``point`` (3,)."""
+    result = np.eye(4)
+    result[:3, 3] = point
+    return result
+
+
+def frame_along(
+    point: Sequence[float] | np.ndarray,
+    direction: Sequence[float] | np.ndarray,
+    reference: Sequence[float] | np.ndarray | None = None,
+) -> np.ndarray:
+    """A frame (4, 4) at ``point`` (3,) with its third axis along ``direction`` (3,).
+
+    The first axis is along ``reference`` (3,), as far as that is across, or along the
+    coordinate axis that is most across. The direction must not be 0, the reference not
+    along it.
+    """
+    third = np.asarray(direction, dtype=float)
+    third = third / np.abs(third).max()
+    third = third / np.linalg.norm(third)
+    if reference is None:
+        reference = np.eye(3)[np.argmin(np.abs(third))]
+    first = np.asarray(reference, dtype=float)
+    first = first - (first @ third) * third
+    first = first / np.linalg.norm(first)
+    result = translation(point)
+    result[:3, :3] = np.column_stack([first, np.cross(third, first), third])
+    return result

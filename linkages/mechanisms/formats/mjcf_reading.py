@@ -1,0 +1,405 @@
+"""Mechanisms in MJCF, the files of MuJoCo (Todorov, Erez and Tassa 2012).
+
+Bodies stand in a tree, in the configuration qpos0. Loops are closed by <equality>: one
+<connect> between two bodies is a spherical joint, two are a revolute joint, more of
+them or a <weld> join the bodies rigidly. Several joints of a body follow each other;
+those that make a cylindrical, a universal, a planar or a helical joint are read as
+such. Masses, shapes, actuators and tendons are left out.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkages.decisions import is_one_anchor
+from linkages.loop import GeometryError, quoted
+from linkages.mechanisms.formats.assembly import (
+    Assembly,
+    BodyJoint,
+    frame_along,
+    translation,
+)
+from linkages.mechanisms.formats.mjcf_composites import Axis, joints_of_axes
+from linkages.mechanisms.formats.mjcf_poses import (
+    Settings,
+    pose_of,
+    read_settings,
+    rotation_of_quaternion,
+)
+from linkages.mechanisms.formats.xml_tree import Element
+from linkages.mechanisms.joint import JointKind, Limits
+
+__all__ = ["read_mjcf"]
+
+WORLD = "world"
+NOT_READ = ("include", "attach", "replicate", "composite", "flexcomp")
+COUPLINGS = ("tendon", "flex", "flexvert", "flexstrain", "distance")
+TINY = 1e-300  # of coordinates that are all 0
+NUMBERED = re.compile(r"\.\d+$")
+
+
+@dataclass
+class _Body:
+    """A body that may move: its ``name``, its ``pose`` (4, 4) at qpos0."""
+
+    name: str
+    pose: np.ndarray
+
+
+@dataclass
+class _Model:
+    """What was read so far. ``names`` leads from every <body> to the `_Body` that it is
+    rigid with, ``sites`` to body and pose (4, 4) in the world."""
+
+    settings: Settings
+    bodies: list[_Body] = field(default_factory=list)
+    names: dict[str, _Body] = field(default_factory=dict)
+    element_poses: dict[str, np.ndarray] = field(default_factory=dict)
+    sites: dict[str, tuple[_Body, np.ndarray]] = field(default_factory=dict)
+    axes: dict[str, Axis] = field(default_factory=dict)
+    chains: list[tuple[_Body, _Body, list[Axis]]] = field(default_factory=list)
+    joints: list[BodyJoint] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    locks: dict[str, float] = field(default_factory=dict)
+    couplings: dict[str, tuple[str, float, Element]] = field(default_factory=dict)
+
+
+def read_mjcf(root: Element, name: str) -> Assembly:
+    """The assembly that an MJCF model describes; raises `GeometryError`."""
+    for element in root.children:
+        if element.tag in NOT_READ:
+            _refuse_element(element)
+    model = _Model(read_settings(root))
+    world = _Body(WORLD, np.eye(4))
+    model.bodies.append(world)
+    model.names[WORLD] = world
+    for worldbody in root.all("worldbody"):
+        _read_children(worldbody, world, np.eye(4), None, model)
+    for equality in root.all("equality"):
+        _read_couplings(equality, model)
+    _add_chains(model)
+    for equality in root.all("equality"):
+        _read_closures(equality, model)
+    bodies = tuple(body.name for body in model.bodies)
+    poses = {body.name: body.pose for body in model.bodies}
+    title = root.attributes.get("model", name)
+    return Assembly(title, bodies, tuple(model.joints), poses, tuple(model.notes))
+
+
+def _refuse_element(element: Element) -> None:
+    allowed = "left out; put the whole model in one file"
+    raise GeometryError(f"line {element.line}", f"<{element.tag}>", allowed)
+
+
+# --- the tree of bodies ---------------------------------------------------------------
+
+
+def _read_children(
+    element: Element,
+    body: _Body,
+    pose: np.ndarray,
+    childclass: str | None,
+    model: _Model,
+) -> None:
+    """Read the bodies, frames and sites in an element at ``pose`` (4, 4) in the world,
+    which belongs to ``body``."""
+    for child in element.children:
+        if child.tag in NOT_READ:
+            _refuse_element(child)
+        elif child.tag == "site":
+            site = model.settings.attributes(child, childclass)
+            place = pose @ pose_of(site, model.settings)
+            model.sites[site.attributes.get("name", "")] = (body, place)
+        elif child.tag == "frame":
+            inner = child.attributes.get("childclass", childclass)
+            place = pose @ pose_of(child, model.settings)
+            _read_children(child, body, place, inner, model)
+        elif child.tag == "body":
+            _read_body(child, body, pose, childclass, model)
+
+
+def _read_body(
+    element: Element,
+    parent: _Body,
+    pose: np.ndarray,
+    childclass: str | None,
+    model: _Model,
+) -> None:
+    """Read a body and what is in it; without joints it is one with its parent."""
+    childclass = element.attributes.get("childclass", childclass)
+    name = element.attributes.get("name", f"body{len(model.names)}")
+    if name in model.names:
+        element.refuse("name", quoted(name), "given once")
+    pose = pose @ pose_of(element, model.settings)
+    joints = [
+        model.settings.attributes(joint, childclass)
+        for joint in element.all("joint", "freejoint")
+    ]
+    body = parent
+    if joints:
+        body = _Body(name, pose)
+        model.bodies.append(body)
+    model.names[name] = body
+    model.element_poses[name] = pose
+    is_free = any(
+        joint.tag == "freejoint" or joint.attributes.get("type") == "free"
+        for joint in joints
+    )
+    if joints and not is_free:
+        axes = [_read_axis(joint, pose, model) for joint in joints]
+        model.chains.append((parent, body, axes))
+    _read_children(element, body, pose, childclass, model)
+
+
+def _read_axis(joint: Element, pose: np.ndarray, model: _Model) -> Axis:
+    """A joint of a body at ``pose`` (4, 4)."""
+    kind = joint.choice("type", ("hinge", "slide", "ball"), "hinge")
+    name = joint.attributes.get("name", f"J{len(model.axes) + 1}")
+    if name in model.axes:
+        joint.refuse("name", quoted(name), "given once")
+    point = np.array(joint.numbers("pos", (3,)) or (0.0, 0.0, 0.0))
+    direction = np.array(joint.numbers("axis", (3,)) or (0.0, 0.0, 1.0))
+    if kind != "ball" and not np.any(direction):
+        value = quoted(joint.attributes["axis"])
+        joint.refuse("axis", value, "of a length other than zero")
+    unit = model.settings.angle_unit if kind == "hinge" else 1.0
+    limits = None if kind == "ball" else _read_limits(joint, unit, model.settings)
+    if kind == "ball" and "range" in joint.attributes:
+        model.notes.append(f"left out: the range of the ball joint {name}")
+    place = pose[:3, :3] @ point + pose[:3, 3]
+    axis = Axis(name, kind, place, pose[:3, :3] @ direction, limits)
+    model.axes[name] = axis
+    return axis
+
+
+def _read_limits(joint: Element, unit: float, settings: Settings) -> Limits | None:
+    """The limits of a joint, from where it is at qpos0."""
+    limited = joint.choice("limited", ("true", "false", "auto"), "auto")
+    given = joint.numbers("range", (2,))
+    is_limited = limited == "true" or (limited == "auto" and settings.has_auto_limits)
+    if given is None or not is_limited:
+        return None
+    low, high = given
+    if not low < high:
+        joint.refuse("range", [low, high], "a smaller number and a larger one")
+    reference = (joint.numbers("ref", (1,)) or [0.0])[0]
+    return (unit * (low - reference), unit * (high - reference))
+
+
+def _add_chains(model: _Model) -> None:
+    """Add the joints of the tree, with bodies between several joints of one body."""
+    for parent, body, axes in model.chains:
+        joints = joints_of_axes(axes, model.couplings, model.locks)
+        first = parent
+        for number, joint in enumerate(joints, start=1):
+            second = body
+            if number < len(joints):
+                second = _Body(f"{body.name}.{number}", body.pose)
+                model.bodies.append(second)
+            base, moved = (second, first) if joint.is_reversed else (first, second)
+            frames = (
+                np.linalg.inv(base.pose) @ joint.first,
+                np.linalg.inv(moved.pose) @ joint.second,
+            )
+            model.joints.append(
+                BodyJoint(
+                    joint.name,
+                    joint.kind,
+                    (base.name, moved.name),
+                    frames,
+                    cosine=float(joint.first[:3, 2] @ joint.second[:3, 2]),
+                    pitch=joint.pitch,
+                    limits=joint.limits,
+                    locked=joint.locked,
+                )
+            )
+            first = second
+    for one, (other, _, element) in model.couplings.items():
+        value = f"a coupling of joints {one} and {other}"
+        element.refuse("joint1, joint2", value, "those of a helical joint")
+
+
+# --- equality -------------------------------------------------------------------------
+
+
+def _is_active(element: Element) -> bool:
+    return element.choice("active", ("true", "false"), "true") == "true"
+
+
+def _read_couplings(equality: Element, model: _Model) -> None:
+    """Read what is said of joints: one alone is locked, two are coupled. Raises
+    `GeometryError` for a coupling that no joint makes."""
+    for element in equality.children:
+        element = model.settings.attributes(element, None)
+        if element.tag in COUPLINGS and _is_active(element):
+            value = f"<{element.tag}>"
+            allowed = "<connect>, <weld> or <joint>"
+            raise GeometryError(f"equality on line {element.line}", value, allowed)
+        if element.tag != "joint" or not _is_active(element):
+            continue
+        names = [element.attributes.get(key) for key in ("joint1", "joint2")]
+        for key, name in zip(("joint1", "joint2"), names, strict=True):
+            if (name is None and key == "joint2") or name in model.axes:
+                continue
+            allowed = f"one of the joints {', '.join(model.axes)}"
+            element.refuse(key, quoted(name), allowed)
+        first, second = names
+        given = element.numbers("polycoef", (1, 2, 3, 4, 5)) or [0.0, 1.0]
+        coefficients = [*given, 0.0, 0.0][:2]
+        assert first is not None
+        if second is None:
+            model.locks[first] = coefficients[0]
+        elif any(given[2:]) or coefficients[0]:
+            value = f"a coupling of joints {first} and {second}"
+            element.refuse("polycoef", value, "that of a helical joint")
+        else:
+            model.couplings[first] = (second, coefficients[1], element)
+
+
+def _read_closures(equality: Element, model: _Model) -> None:
+    """Read the joints that close loops."""
+    groups: dict[tuple[str, str], list[_Anchor]] = {}
+    for number, element in enumerate(equality.children, start=1):
+        element = model.settings.attributes(element, None)
+        if element.tag not in ("connect", "weld") or not _is_active(element):
+            continue
+        name = element.attributes.get("name", f"{element.tag}{number}")
+        if element.tag == "weld":
+            model.joints.append(_read_weld(element, name, model))
+            continue
+        anchor = _read_connect(element, name, model)
+        key = anchor.bodies[0].name, anchor.bodies[1].name
+        if key[::-1] in groups:
+            anchor = anchor.reversed()
+            key = key[::-1]
+        groups.setdefault(key, []).append(anchor)
+    model.joints += [_joint_of_anchors(anchors) for anchors in groups.values()]
+
+
+@dataclass
+class _Anchor:
+    """A point that two ``bodies`` share: where it is in the world at qpos0 as a point
+    of the one and of the other."""
+
+    name: str
+    bodies: tuple[_Body, _Body]
+    points: tuple[np.ndarray, np.ndarray]
+
+    def reversed(self) -> _Anchor:
+        """The anchor with its bodies exchanged."""
+        return _Anchor(self.name, self.bodies[::-1], self.points[::-1])
+
+
+def _read_bodies(element: Element, model: _Model) -> tuple[_Body, _Body]:
+    first = element.attributes.get("body1")
+    second = element.attributes.get("body2", WORLD)
+    for key, name in (("body1", first), ("body2", second)):
+        if name not in model.names:
+            shown = "missing" if name is None else quoted(name)
+            allowed = f"one of the bodies {', '.join(model.names)}"
+            element.refuse(key, shown, allowed)
+    assert first is not None
+    return model.names[first], model.names[second]
+
+
+def _read_sites(
+    element: Element, model: _Model
+) -> tuple[tuple[_Body, np.ndarray], tuple[_Body, np.ndarray]] | None:
+    """The two sites of an equality; None where it has none."""
+    if "site1" not in element.attributes and "site2" not in element.attributes:
+        return None
+    sites = []
+    for key in ("site1", "site2"):
+        name = element.attributes.get(key)
+        if name is None or name not in model.sites:
+            shown = "missing" if name is None else quoted(name)
+            element.refuse(key, shown, "the name of a site")
+        sites.append(model.sites[name])
+    return sites[0], sites[1]
+
+
+def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:
+    sites = _read_sites(element, model)
+    if sites is not None:
+        (first, one), (second, other) = sites
+        return _Anchor(name, (first, second), (one[:3, 3], other[:3, 3]))
+    bodies = _read_bodies(element, model)
+    anchor = element.numbers("anchor", (3,))
+    if anchor is None:
+        element.refuse("anchor", "missing", "a point in body1, or two sites")
+    pose = _pose_of_element(element.attributes["body1"], model)
+    point = pose[:3, :3] @ np.array(anchor) + pose[:3, 3]
+    return _Anchor(name, bodies, (point, point))
+
+
+def _pose_of_element(name: str, model: _Model) -> np.ndarray:
+    """The pose (4, 4) of a <body>, which may be one with its parent."""
+    return model.element_poses.get(name, np.eye(4))
+
+
+def _read_weld(element: Element, name: str, model: _Model) -> BodyJoint:
+    """Bodies that are joined as they are at qpos0, or in a given pose."""
+    sites = _read_sites(element, model)
+    if sites is not None:
+        (first, one), (second, other) = sites
+    else:
+        first, second = _read_bodies(element, model)
+        one = other = _pose_of_element(element.attributes["body1"], model)
+        given = element.numbers("relpose", (7,))
+        if given is not None and any(given[3:]):
+            relative = translation(given[:3])
+            relative[:3, :3] = rotation_of_quaternion(np.array(given[3:]))
+            one = one @ relative
+            far = element.attributes.get("body2", WORLD)
+            other = _pose_of_element(far, model)
+    frames = np.linalg.inv(first.pose) @ one, np.linalg.inv(second.pose) @ other
+    return BodyJoint(name, JointKind.RIGID, (first.name, second.name), frames)
+
+
+def _joint_of_anchors(anchors: list[_Anchor]) -> BodyJoint:
+    """The joint that two bodies have when they share these points."""
+    bodies = anchors[0].bodies
+    inverses = [np.linalg.inv(body.pose) for body in bodies]
+    places = [np.array([a.points[side] for a in anchors]) for side in (0, 1)]
+    kind, columns = _kind_of_points(places[0])
+    name = _name_of_anchors(anchors)
+    frames = []
+    for inverse, points in zip(inverses, places, strict=True):
+        frame = translation(points[0])
+        if kind is JointKind.REVOLUTE:
+            frame = frame_along(points[0], points[columns[0]] - points[0])
+        elif kind is JointKind.RIGID:
+            across, other = (points[column] - points[0] for column in columns)
+            frame = frame_along(points[0], np.cross(across, other), across)
+        frames.append(inverse @ frame)
+    pair = bodies[0].name, bodies[1].name
+    return BodyJoint(name, kind, pair, (frames[0], frames[1]))
+
+
+def _name_of_anchors(anchors: list[_Anchor]) -> str:
+    """What anchors "J.1" and "J.2" are called together: "J"; else the first name."""
+    names = [anchor.name for anchor in anchors]
+    stems = {NUMBERED.sub("", name) for name in names}
+    if len(names) > 1 and len(stems) == 1:
+        return stems.pop()
+    return names[0]
+
+
+def _kind_of_points(points: np.ndarray) -> tuple[JointKind, tuple[int, ...]]:
+    """The kind of a joint that shares ``points`` (k, 3), and the numbers of those that,
+    with the first one, give its axis or its plane."""
+    size = float(np.abs(points).max(initial=TINY))
+    gaps = points - points[0]
+    distances = np.linalg.norm(gaps, axis=1)
+    far = int(np.argmax(distances))
+    if is_one_anchor(float(distances[far]), size):
+        return JointKind.SPHERICAL, ()
+    along = gaps[far] / distances[far]
+    across = np.linalg.norm(np.cross(gaps, along), axis=1)
+    wide = int(np.argmax(across))
+    if is_one_anchor(float(across[wide]), size):
+        return JointKind.REVOLUTE, (far,)
+    return JointKind.RIGID, (far, wide)

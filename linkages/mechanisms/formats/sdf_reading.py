@@ -1,0 +1,287 @@
+"""Mechanisms in SDFormat 1.5 to 1.11, the files of Gazebo (sdformat.org).
+
+Links are posed in their model, or in what ``relative_to`` names, joints in their child
+link. Masses, shapes, sensors and plugins are left out.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linkages.loop import quoted
+from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, frame_along
+from linkages.mechanisms.formats.xml_tree import Element
+from linkages.mechanisms.joint import JointKind, Limits
+
+__all__ = ["read_sdf"]
+
+OLDEST, NEWEST = (1, 5), (1, 11)
+FRAMES_SINCE = (1, 7)  # relative_to and expressed_in
+PITCH_SINCE = (1, 10)  # screw_thread_pitch, in length a turn
+WORLD, MODEL = "world", "__model__"
+UNLIMITED = 1e16  # SDF's word for no limit
+KINDS = {
+    "revolute": JointKind.REVOLUTE,
+    "continuous": JointKind.REVOLUTE,
+    "prismatic": JointKind.PRISMATIC,
+    "ball": JointKind.SPHERICAL,
+    "universal": JointKind.UNIVERSAL,
+    "screw": JointKind.HELICAL,
+    "fixed": JointKind.RIGID,
+}
+
+
+@dataclass
+class _Posed:
+    """A link, a frame or a joint: its ``element``, and what its pose is relative to
+    where the file does not say."""
+
+    element: Element
+    relative_to: str
+
+
+@dataclass
+class _Model:
+    """A model while it is read: what has a pose, by name, and the poses (4, 4) in the
+    model that are known."""
+
+    element: Element
+    version: tuple[int, int]
+    posed: dict[str, _Posed] = field(default_factory=dict)
+    poses: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+def read_sdf(root: Element, name: str) -> Assembly:
+    """The assembly that the one model of an SDF file describes; raises
+    `GeometryError`."""
+    version = _version(root)
+    worlds = list(root.all("world"))
+    models = [m for parent in (root, *worlds) for m in parent.all("model")]
+    jointed = [model for model in models if model.first("joint") is not None]
+    if len(jointed) != 1:
+        names = ", ".join(m.attributes.get("name", "?") for m in jointed) or "none"
+        root.refuse("models with joints", names, "one")
+    model = _Model(jointed[0], version)
+    for tag in ("model", "include"):
+        inner = model.element.first(tag)
+        if inner is not None:
+            value = f"on line {inner.line}"
+            model.element.refuse(f"<{tag}>", value, "left out; models are not nested")
+    _collect(model)
+    joints = tuple(_read_joint(element, model) for element in _joints(model))
+    links = [link.attributes["name"] for link in model.element.all("link")]
+    is_on_world = any(WORLD in joint.bodies for joint in joints)
+    bodies = (WORLD, *links) if is_on_world else tuple(links)
+    poses = {body: _pose(body, model) for body in bodies}
+    title = model.element.attributes.get("name", name)
+    return Assembly(title, bodies, joints, poses)
+
+
+def _version(root: Element) -> tuple[int, int]:
+    text = root.attributes.get("version", "")
+    match = re.fullmatch(r"(\d+)\.(\d+)", text)
+    version = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not OLDEST <= version <= NEWEST:
+        root.refuse("version", quoted(text), "from 1.5 to 1.11")
+    return version
+
+
+def _joints(model: _Model) -> list[Element]:
+    return list(model.element.all("joint"))
+
+
+# --- poses ----------------------------------------------------------------------------
+
+
+def _collect(model: _Model) -> None:
+    """Enter every link, frame and joint of the model by name."""
+    for element in model.element.all("link", "frame", "joint"):
+        name = element.attributes.get("name")
+        if not name:
+            element.refuse("name", "missing", "a name")
+        if name in model.posed or name in (WORLD, MODEL):
+            element.refuse("name", quoted(name), "given once")
+        relative_to = MODEL
+        if element.tag == "joint":
+            relative_to = _link_name(element, "child")
+        elif element.tag == "frame":
+            relative_to = element.attributes.get("attached_to", MODEL) or MODEL
+        model.posed[name] = _Posed(element, relative_to)
+
+
+def _link_name(joint: Element, tag: str) -> str:
+    child = joint.first(tag)
+    if child is None or not child.text.strip():
+        joint.refuse(f"<{tag}>", "missing", "the name of a link")
+    return child.text.strip()
+
+
+def _pose(name: str, model: _Model, path: tuple[str, ...] = ()) -> np.ndarray:
+    """The pose (4, 4) of a link, a frame or a joint in the model."""
+    if name == MODEL:
+        return np.eye(4)
+    if name == WORLD:
+        return np.linalg.inv(_own_pose(model.element)[0])
+    if name in model.poses:
+        return model.poses[name]
+    posed = model.posed[name]
+    element = posed.element
+    if name in path:
+        element.refuse("<pose>", "relative to itself", "relative to another frame")
+    own, relative_to = _own_pose(element)
+    if relative_to is not None and model.version < FRAMES_SINCE:
+        allowed = "left out before version 1.7"
+        element.refuse("relative_to", quoted(relative_to), allowed)
+    base = relative_to or posed.relative_to
+    if base not in model.posed and base not in (MODEL, WORLD):
+        allowed = f"one of {', '.join(model.posed)}"
+        element.refuse("relative_to", quoted(base), allowed)
+    model.poses[name] = _pose(base, model, (*path, name)) @ own
+    return model.poses[name]
+
+
+def _own_pose(element: Element) -> tuple[np.ndarray, str | None]:
+    """The transform (4, 4) in <pose>, and what it says that it is relative to."""
+    from scipy.spatial.transform import Rotation
+
+    child = element.first("pose")
+    result = np.eye(4)
+    if child is None:
+        return result, None
+    relative_to = child.attributes.get("relative_to") or None
+    text = child.text.strip()
+    kind = child.choice("rotation_format", ("euler_rpy", "quat_xyzw"), "euler_rpy")
+    if not text:
+        return result, relative_to
+    count = 6 if kind == "euler_rpy" else 7
+    numbers = element.parsed_numbers("<pose>", text, (count,))
+    result[:3, 3] = numbers[:3]
+    turn = np.array(numbers[3:])
+    if kind == "quat_xyzw":
+        if not np.any(turn):
+            element.refuse("<pose>", quoted(text), "with a quaternion other than 0")
+        result[:3, :3] = Rotation.from_quat(turn).as_matrix()
+    elif np.any(turn):
+        if child.attributes.get("degrees") in ("true", "1"):
+            turn = np.radians(turn)
+        result[:3, :3] = Rotation.from_euler("xyz", turn).as_matrix()
+    return result, relative_to
+
+
+# --- joints ---------------------------------------------------------------------------
+
+
+def _read_joint(element: Element, model: _Model) -> BodyJoint:
+    """A joint with its frames in both links."""
+    name = element.attributes["name"]
+    word = element.attributes.get("type", "")
+    if word not in KINDS:
+        allowed = f"one of {', '.join(KINDS)}"
+        element.refuse("type", quoted(word), allowed)
+    kind = KINDS[word]
+    first, second = (_body(element, tag, model) for tag in ("parent", "child"))
+    place = _pose(name, model)
+    one = other = place
+    limits: tuple[Limits | None, ...] = ()
+    if kind not in (JointKind.SPHERICAL, JointKind.RIGID):
+        axis = _axis(element, "axis", place, model)
+        one = other = frame_along(place[:3, 3], axis)
+        limits = (_limits(element, "axis", word),)
+    cosine = 0.0
+    if kind is JointKind.UNIVERSAL:
+        second_axis = _axis(element, "axis2", place, model)
+        if np.linalg.norm(np.cross(axis, second_axis)) < 1e-9:
+            element.refuse("<axis2>", "along <axis>", "another direction")
+        other = frame_along(place[:3, 3], second_axis)
+        cosine = float(one[:3, 2] @ other[:3, 2])
+        limits = (*limits, _limits(element, "axis2", word))
+    frames = (
+        np.linalg.inv(_pose(first, model)) @ one,
+        np.linalg.inv(_pose(second, model)) @ other,
+    )
+    pitch = _pitch(element, model) if kind is JointKind.HELICAL else None
+    bodies = first, second
+    return BodyJoint(name, kind, bodies, frames, cosine, pitch, limits)
+
+
+def _body(joint: Element, tag: str, model: _Model) -> str:
+    """The link that a joint names, or that the frame is attached to that it names."""
+    name = _link_name(joint, tag)
+    seen: set[str] = set()
+    while name != WORLD:
+        posed = model.posed.get(name)
+        if posed is None or name in seen:
+            links = ", ".join(
+                link.attributes["name"] for link in model.element.all("link")
+            )
+            joint.refuse(f"<{tag}>", quoted(name), f"world or one of the links {links}")
+        if posed.element.tag == "link":
+            break
+        seen.add(name)
+        name = posed.relative_to
+    return name
+
+
+def _axis(element: Element, tag: str, place: np.ndarray, model: _Model) -> np.ndarray:
+    """The direction (3,) of an axis in the model."""
+    axis = element.first(tag)
+    if axis is None:
+        element.refuse(f"<{tag}>", "missing", "given for a joint of this type")
+    xyz = axis.first("xyz")
+    text = "0 0 1" if xyz is None else xyz.text
+    direction = np.array(element.parsed_numbers(f"<{tag}><xyz>", text, (3,)))
+    if not np.any(direction):
+        allowed = "of a length other than zero"
+        element.refuse(f"<{tag}><xyz>", quoted(text.strip()), allowed)
+    frame = place
+    expressed = "" if xyz is None else xyz.attributes.get("expressed_in", "")
+    if expressed:
+        if expressed not in model.posed and expressed not in (MODEL, WORLD):
+            allowed = f"one of {', '.join(model.posed)}"
+            element.refuse("expressed_in", quoted(expressed), allowed)
+        frame = _pose(expressed, model)
+    flag = axis.first("use_parent_model_frame")
+    if flag is not None and flag.text.strip() in ("1", "true"):
+        frame = np.eye(4)
+    turned: np.ndarray = frame[:3, :3] @ direction
+    return turned
+
+
+def _limits(element: Element, tag: str, word: str) -> Limits | None:
+    """The limits of an axis, None where there are none, or one end is open."""
+    axis = element.first(tag)
+    limit = None if axis is None else axis.first("limit")
+    if limit is None or word == "continuous":
+        return None
+    ends = []
+    for key, default in (("lower", -UNLIMITED), ("upper", UNLIMITED)):
+        child = limit.first(key)
+        text = str(default) if child is None else child.text.strip()
+        if text.lower().lstrip("+-") in ("inf", "infinity"):
+            return None
+        ends.append(element.parsed_numbers(f"<{key}>", text, (1,))[0])
+    low, high = ends
+    if min(-low, high) >= UNLIMITED or low <= -UNLIMITED or high >= UNLIMITED:
+        return None
+    if low > high:  # SDF's other word for no limit
+        return None
+    if low == high:
+        element.refuse("<limit>", [low, high], "a smaller number and a larger one")
+    return (low, high)
+
+
+def _pitch(element: Element, model: _Model) -> float:
+    """The advance of a screw in a full turn."""
+    new, old = element.first("screw_thread_pitch"), element.first("thread_pitch")
+    if new is not None and model.version >= PITCH_SINCE:
+        return element.parsed_numbers("<screw_thread_pitch>", new.text, (1,))[0]
+    if old is None:
+        element.refuse("<thread_pitch>", "missing", "given for a screw")
+    turn = element.parsed_numbers("<thread_pitch>", old.text, (1,))[0]
+    if turn == 0:
+        element.refuse("<thread_pitch>", turn, "other than 0")
+    return -2 * math.pi / turn  # rad a length, left-handed

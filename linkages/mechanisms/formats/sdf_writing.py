@@ -1,0 +1,142 @@
+"""Mechanisms as SDFormat 1.11, the files of Gazebo (sdformat.org).
+
+The frames of all links coincide in the reference configuration, so that every number of
+the mechanism stands in the file as it is. The body at rest is the world. Cylindrical
+and planar joints, which SDF does not know, are chains with links between them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from xml.sax.saxutils import escape, quoteattr
+
+from linkages.loop import GeometryError
+from linkages.mechanisms.joint import JointKind, Motion
+from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
+from linkages.mechanisms.size import Size
+
+__all__ = ["mechanism_sdf"]
+
+WORLD = "world"
+
+
+def mechanism_sdf(mechanism: Mechanism) -> str:
+    """The text of an SDF file with one model in the reference configuration; masses are
+    made up. Raises `GeometryError` where a joint is locked elsewhere than at 0, for
+    which SDF has no word."""
+    moment = repr(Size(mechanism).characteristic_length ** 2)
+    links = [body for body in mechanism.bodies if body != mechanism.frame]
+    joints = []
+    for pair in mechanism.pairs:
+        lines, between = _pair(mechanism, pair)
+        joints += lines
+        links += between
+    lines = [
+        '<?xml version="1.0"?>',
+        '<sdf version="1.11">',
+        f"  <model name={quoteattr(mechanism.name or 'mechanism')}>",
+    ]
+    for link in links:
+        lines += _link(_body_name(mechanism, link), moment)
+    return "\n".join([*lines, *joints, "  </model>", "</sdf>"]) + "\n"
+
+
+def _body_name(mechanism: Mechanism, body: str) -> str:
+    if body == mechanism.frame:
+        return WORLD
+    return f"{body}.body" if body == WORLD else body
+
+
+def _link(name: str, moment: str) -> list[str]:
+    diagonal = "".join(f"<{key}>{moment}</{key}>" for key in ("ixx", "iyy", "izz"))
+    return [
+        f"    <link name={quoteattr(name)}>",
+        f"      <inertial><mass>1</mass><inertia>{diagonal}</inertia></inertial>",
+        "    </link>",
+    ]
+
+
+def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
+    """The lines of the joints of a pair, and the links between them."""
+    joint = mechanism.joint(pair.joint)
+    variables = [mechanism.variables[number] for number in pair.variables]
+    for variable in variables:
+        if variable.locked:
+            allowed = "0, or left out, in an SDF file"
+            what = f"locked of joint {variable.label}"
+            raise GeometryError(what, variable.locked, allowed)
+    base, moved = (_body_name(mechanism, body) for body in (pair.base, pair.moved))
+    name = pair.joint
+    if len(joint.bodies) > 2:
+        name = f"{pair.joint}.{pair.moved}"
+    place = joint.place
+    if joint.kind is JointKind.SPHERICAL:
+        return _joint(name, "ball", base, moved, place, []), []
+    if joint.kind is JointKind.RIGID:
+        return _joint(name, "fixed", base, moved, place, []), []
+    is_free = all(variable.locked is None for variable in variables)
+    if joint.kind is JointKind.UNIVERSAL and is_free:
+        axes = _axis("axis", variables[0]) + _axis("axis2", variables[1])
+        return _joint(name, "universal", base, moved, place, axes), []
+    between = [f"{variable.label}.link" for variable in variables[:-1]]
+    bodies = [base, *between, moved]
+    lines = []
+    for variable, first, second in zip(variables, bodies, bodies[1:], strict=False):
+        axis = _axis("axis", variable)
+        kind = _kind(variable)
+        if kind == "screw":
+            pitch = 2 * math.pi * variable.motion.advance
+            text = f"<screw_thread_pitch>{pitch!r}</screw_thread_pitch>"
+            axis.append(text)
+        lines += _joint(variable.label, kind, first, second, place, axis)
+    return lines, between
+
+
+def _kind(variable: Variable) -> str:
+    if variable.locked is not None:
+        return "fixed"
+    if not variable.motion.is_turn:
+        return "prismatic"
+    return "screw" if variable.motion.advance else "revolute"
+
+
+def _axis(tag: str, variable: Variable) -> list[str]:
+    """The axis of a variable; none where it is locked."""
+    if variable.locked is not None:
+        return []
+    return [f"<{tag}>{_direction(variable.motion)}{_limit(variable)}</{tag}>"]
+
+
+def _direction(motion: Motion) -> str:
+    return f"<xyz>{_row(motion.direction)}</xyz>"
+
+
+def _limit(variable: Variable) -> str:
+    if variable.limits is None:
+        return ""
+    low, high = (repr(float(value)) for value in variable.limits)
+    return f"<limit><lower>{low}</lower><upper>{high}</upper></limit>"
+
+
+def _joint(
+    name: str,
+    kind: str,
+    parent: str,
+    child: str,
+    place: Iterable[float],
+    axes: list[str],
+) -> list[str]:
+    return [
+        f'    <joint name={quoteattr(name)} type="{kind}">',
+        f"      <pose>{_row(place)} 0 0 0</pose>",
+        f"      <parent>{escape(parent)}</parent>",
+        f"      <child>{escape(child)}</child>",
+        *(f"      {line}" for line in axes),
+        "    </joint>",
+    ]
+
+
+def _row(numbers: Iterable[float]) -> str:
+    """Numbers with all their digits."""
+    return " ".join(repr(float(number) + 0.0) for number in numbers)

@@ -1,0 +1,143 @@
+"""XML elements with their lines, of files without entities."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NoReturn
+from xml.parsers import expat
+
+from linkages.loop import GeometryError, check_number, quoted
+
+__all__ = ["Element", "parse_xml"]
+
+DEEPEST = 500  # elements inside each other
+
+
+@dataclass
+class Element:
+    """An element: its ``tag``, ``attributes``, ``text`` and ``children``, and the
+    ``line`` that it begins on."""
+
+    tag: str
+    line: int
+    attributes: dict[str, str] = field(default_factory=dict)
+    text: str = ""
+    children: list[Element] = field(default_factory=list)
+
+    @property
+    def place(self) -> str:
+        """The element as error messages name it."""
+        name = self.attributes.get("name")
+        shown = f'<{self.tag} name="{name}">' if name else f"<{self.tag}>"
+        return f"{shown} on line {self.line}"
+
+    def all(self, *tags: str) -> Iterator[Element]:
+        """The children with one of these tags."""
+        return (child for child in self.children if child.tag in tags)
+
+    def first(self, tag: str) -> Element | None:
+        """The first child with this tag, if there is one."""
+        return next(self.all(tag), None)
+
+    def refuse(self, attribute: str, value: object, allowed: str) -> NoReturn:
+        """Raise `GeometryError` for an attribute, or the text, of this element."""
+        raise GeometryError(f"{attribute} of {self.place}", value, allowed)
+
+    def numbers(self, attribute: str, counts: tuple[int, ...]) -> list[float] | None:
+        """The numbers of an attribute; None where there is none. Raises
+        `GeometryError` unless there are so many, or one of so many."""
+        text = self.attributes.get(attribute)
+        if text is None:
+            return None
+        return self.parsed_numbers(attribute, text, counts)
+
+    def parsed_numbers(
+        self, what: str, text: str, counts: tuple[int, ...]
+    ) -> list[float]:
+        """The numbers of a text; raises `GeometryError` unless there are so many."""
+        allowed = f"{' or '.join(str(count) for count in counts)} numbers"
+        if counts == (1,):
+            allowed = "a number"
+        try:
+            numbers = [float(word) for word in text.split()]
+        except ValueError:
+            self.refuse(what, quoted(text), allowed)
+        if len(numbers) not in counts:
+            self.refuse(what, quoted(text), allowed)
+        for number in numbers:
+            check_number(f"{what} of {self.place}", number)
+        return numbers
+
+    def choice(self, attribute: str, allowed: tuple[str, ...], default: str) -> str:
+        """The value of an attribute that is one of some words; raises
+        `GeometryError`."""
+        value = self.attributes.get(attribute, default)
+        if value not in allowed:
+            self.refuse(attribute, quoted(value), f"one of {', '.join(allowed)}")
+        return value
+
+
+def parse_xml(content: bytes) -> Element:
+    """The first element of a document.
+
+    A document type is refused, and with it every entity that a file could define.
+    Raises `GeometryError` with the line.
+    """
+    builder = _Builder()
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+    parser.CharacterDataHandler = builder.add_text
+    parser.StartDoctypeDeclHandler = builder.refuse_document_type
+    parser.buffer_text = True
+    builder.parser = parser
+    try:
+        parser.Parse(content, True)
+    except expat.ExpatError as error:
+        reason = expat.ErrorString(error.code)
+        what = f"line {error.lineno}, column {error.offset + 1}"
+        raise GeometryError(what, reason, "well-formed XML") from None
+    except (ValueError, LookupError) as error:  # an encoding that expat does not know
+        if isinstance(error, GeometryError):
+            raise
+        raise GeometryError("encoding", error, "UTF-8") from None
+    assert builder.root is not None
+    return builder.root
+
+
+class _Builder:
+    """The elements that are open while a document is parsed."""
+
+    parser: expat.XMLParserType
+
+    def __init__(self) -> None:
+        self.root: Element | None = None
+        self._open: list[Element] = []
+
+    def start(self, tag: str, attributes: dict[str, str]) -> None:
+        """Open an element."""
+        element = Element(tag, self.parser.CurrentLineNumber, attributes)
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self.root = element
+        self._open.append(element)
+        if len(self._open) > DEEPEST:
+            allowed = f"at most {DEEPEST} elements inside each other"
+            raise GeometryError(f"line {element.line}", f"<{tag}>", allowed)
+
+    def end(self, tag: str) -> None:
+        """Close the element that is open."""
+        self._open.pop()
+
+    def add_text(self, text: str) -> None:
+        """Add characters to the element that is open."""
+        if self._open:
+            self._open[-1].text += text
+
+    def refuse_document_type(self, name: str, *others: object) -> None:
+        """Raise `GeometryError`: entities may be large beyond measure, or files."""
+        what = f"line {self.parser.CurrentLineNumber}"
+        allowed = "left out; entities are not read"
+        raise GeometryError(what, f"<!DOCTYPE {name}>", allowed)

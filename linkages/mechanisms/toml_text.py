@@ -1,0 +1,43 @@
+"""A mechanism as the text of a TOML file that `linkages.mechanisms.file` reads."""
+
+from __future__ import annotations
+
+import json
+
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.subject import joint_values
+
+__all__ = ["mechanism_toml"]
+
+
+def mechanism_toml(mechanism: Mechanism) -> str:
+    """The text of a TOML file that describes the mechanism, angles in rad.
+
+    Limits and locks of a joint are kept where all of its variables have them; a TOML
+    list has no place for one that is not there. Raises `GeometryError` where only some
+    have.
+    """
+    lines = [f"name = {_quoted(mechanism.name)}", 'angles = "rad"']
+    for joint in mechanism.joints:
+        lines += ["", "[[joints]]", *_joint_lines(joint)]
+    return "\n".join(lines) + "\n"
+
+
+def _joint_lines(joint: Joint) -> list[str]:
+    lines = []
+    for key, value in joint_values(joint).items():
+        if isinstance(value, list) and None in value:
+            from linkages.loop import GeometryError
+
+            allowed = "given for all of its variables, or for none, in a TOML file"
+            raise GeometryError(f"{key} of joint {joint.name}", value, allowed)
+        if isinstance(value, str):
+            lines.append(f"{key} = {_quoted(value)}")
+        else:
+            lines.append(f"{key} = {json.dumps(value)}")
+    return lines
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

@@ -1,0 +1,56 @@
+import pytest
+from click.testing import CliRunner
+
+from linkages import load
+from linkages.app.cli import main
+from linkages.mechanisms.toml_text import mechanism_toml
+from tests.linkages.mechanisms.formats.examples import EXAMPLES
+
+
+def bifurc(*arguments):
+    return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def slider_crank(tmp_path):
+    path = tmp_path / "slider_crank.toml"
+    path.write_text(mechanism_toml(EXAMPLES["slider_crank"]), encoding="utf-8")
+    return path
+
+
+def test_toml_is_read_as_it_was_written(slider_crank):
+    mechanism = load(slider_crank)
+    assert mechanism == EXAMPLES["slider_crank"]
+
+
+@pytest.mark.parametrize("ending", ["xml", "mjcf", "sdf", "toml"])
+def test_a_mechanism_goes_to_another_format_and_back(ending, slider_crank, tmp_path):
+    out = tmp_path / f"other.{ending}"
+    result = bifurc("convert", slider_crank, out)
+    assert result.exit_code == 0, result.output
+    back = tmp_path / "back.toml"
+    assert bifurc("convert", out, back).exit_code == 0
+    mechanism = load(back)
+    assert len(mechanism.joints) == 4
+    assert mechanism.joint("J4").limits == ((-5.0, 1.0),)
+
+
+@pytest.mark.parametrize(
+    ("source", "out", "message"),
+    [
+        ("slider_crank.toml", "a.step", "it must end with"),
+        ("missing.world", "a.xml", "there is no such file"),
+        ("bennett", "a.xml", "it is a single loop"),
+        ("broken.sdf", "a.xml", "broken.sdf: line 1"),
+        ("slider_crank.toml", "no/a.xml", "nothing can be written there"),
+    ],
+)
+def test_nothing_is_written_where_it_cannot_be(
+    source, out, message, slider_crank, tmp_path
+):
+    (tmp_path / "broken.sdf").write_text("<sdf", encoding="utf-8")
+    given = source if source == "bennett" else tmp_path / source
+    result = bifurc("convert", given, tmp_path / out)
+    assert result.exit_code == 2
+    assert message in result.stderr
+    assert not (tmp_path / out).exists()
