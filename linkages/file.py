@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = [
+    "FOLD",
     "FOREIGN_ENDINGS",
     "LinkageFileError",
     "read_file",
