@@ -228,7 +228,8 @@ def _places(structure: Structure) -> np.ndarray:
             places[number] = joint.place / structure.unit
         elif joint.kind in PLACELESS and mechanism.frame in joint.bodies:
             places[number] = _place_on_slider(mechanism, number, places)
-    return places + _steps_aside(mechanism, places)
+    apart: np.ndarray = places + _steps_aside(mechanism, places)
+    return apart
 
 
 def _place_on_slider(
