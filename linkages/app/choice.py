@@ -53,7 +53,8 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     if single is None:
         raise CommandError(
             f"{text}: it is a mechanism, which `bifurc map`, `bifurc view` and "
-            "`bifurc route` take; this command takes single loops of 4 to 12 revolute joints so far"
+            "`bifurc route` take; this command takes single loops of 4 to 12 "
+            "revolute joints so far"
         )
     return single.loop
 

@@ -222,14 +222,14 @@ def _places(structure: Structure) -> np.ndarray:
     """Where each of the k joints is drawn (k, 3): on its axis, so that bodies are
     short, and apart from the others of its bodies."""
     mechanism = structure.mechanism
-    places: np.ndarray = structure.size.points / structure.unit
+    places = structure.size.points / structure.unit
     for number, joint in enumerate(mechanism.joints):
         if joint.kind in PLACELESS and joint.point is not None:
             places[number] = joint.place / structure.unit
         elif joint.kind in PLACELESS and mechanism.frame in joint.bodies:
             places[number] = _place_on_slider(mechanism, number, places)
-    places += _steps_aside(mechanism, places)
-    return places
+    apart: np.ndarray = places + _steps_aside(mechanism, places)
+    return apart
 
 
 def _place_on_slider(
