@@ -11,7 +11,7 @@ import numpy as np
 
 from bifurc.checks import check_type, rows_of
 from bifurc.decisions import is_start_solved
-from bifurc.equations.system import LARGEST_DENSE, ScaledTape
+from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import (
     March,
@@ -31,6 +31,10 @@ if TYPE_CHECKING:
     from scipy.sparse import sparray
 
 __all__ = ["MechanismClosure"]
+
+# unknowns up to which the compiled methods, with dense matrices, take no longer than
+# collocation: redundant equations leave that to dense factorisations as well
+LARGEST_COMPILED = 250
 
 
 class MechanismClosure(NumericalProblem):
@@ -138,7 +142,7 @@ class MechanismClosure(NumericalProblem):
     @cached_property
     def _is_dense(self) -> bool:
         """Whether the methods that are compiled factor the matrices."""
-        return self.n <= LARGEST_DENSE
+        return self.n <= LARGEST_COMPILED
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings

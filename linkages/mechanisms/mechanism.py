@@ -143,6 +143,17 @@ class Mechanism:
         """Whether a variable follows another one."""
         return any(leader.number != k for k, leader in enumerate(self._leaders))
 
+    def check_uncoupled(self, what: str) -> None:
+        """Raises `GeometryError` where a variable follows another one, where ``what``
+        cannot say so."""
+        for number, variable in enumerate(self.variables):
+            if variable.leader.number != number:
+                leader = self.variables[variable.leader.number].label
+                allowed = f"left out in {what}"
+                raise GeometryError(
+                    f"coupled of {variable.label}", f"to {leader}", allowed
+                )
+
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
         """The pairs of bodies that joints join: k - 1 for a joint of k bodies."""

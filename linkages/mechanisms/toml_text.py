@@ -27,6 +27,9 @@ def mechanism_toml(mechanism: Mechanism) -> str:
 def _joint_lines(joint: Joint) -> list[str]:
     lines = []
     for key, value in joint_values(joint).items():
+        if key == "coupled":
+            lines.append(f"coupled = {_couplings(joint)}")
+            continue
         if isinstance(value, list) and None in value:
             from linkages.loop import GeometryError
 
@@ -37,6 +40,18 @@ def _joint_lines(joint: Joint) -> list[str]:
         else:
             lines.append(f"{key} = {json.dumps(value)}")
     return lines
+
+
+def _couplings(joint: Joint) -> str:
+    """A list with an inline table for each variable, empty where it is free."""
+    tables = []
+    for coupling in joint.coupled:
+        if coupling is None:
+            tables.append("{}")
+            continue
+        numbers = f"ratio = {coupling.ratio!r}, offset = {coupling.offset!r}"
+        tables.append(f"{{to = {_quoted(coupling.to)}, {numbers}}}")
+    return f"[{', '.join(tables)}]"
 
 
 def _quoted(text: str) -> str:

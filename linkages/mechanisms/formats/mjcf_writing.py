@@ -29,7 +29,9 @@ WORLD = "world"
 
 def mechanism_mjcf(mechanism: Mechanism) -> str:
     """The text of an MJCF model in which qpos0 is the reference configuration and joint
-    coordinates, called after the variables, have their values. Masses are made up."""
+    coordinates, called after the variables, have their values. Masses are made up.
+    Raises `GeometryError` where joints are coupled."""
+    mechanism.check_uncoupled("an MJCF file")
     return _Writer(mechanism).text()
 
 

@@ -23,8 +23,9 @@ WORLD = "world"
 
 def mechanism_sdf(mechanism: Mechanism) -> str:
     """The text of an SDF file with one model in the reference configuration; masses are
-    made up. Raises `GeometryError` where a joint is locked elsewhere than at 0, for
-    which SDF has no word."""
+    made up. Raises `GeometryError` where a joint is coupled, or locked elsewhere than
+    at 0, for which SDF has no word."""
+    mechanism.check_uncoupled("an SDF file")
     moment = repr(Size(mechanism).characteristic_length ** 2)
     links = [body for body in mechanism.bodies if body != mechanism.frame]
     joints = []

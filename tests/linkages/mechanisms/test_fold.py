@@ -11,7 +11,7 @@ from bifurc.singular.point import Kind
 from linkages.file import LinkageFileError
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.poses import Poses
-from tests.linkages.mechanisms.miura import SECTOR, miura
+from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
 
 

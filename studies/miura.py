@@ -1,11 +1,15 @@
 """Miura-ori of any size as the content of a FOLD file (Miura 1970)."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 SECTOR = np.radians(70)  # angle of the parallelograms
 
 
-def miura(columns, rows, fold=0.0):
+def miura(columns: int, rows: int, fold: float = 0.0) -> dict[str, Any]:
     """A flat sheet of parallelograms, straight creases along x, zigzags along y, with
     fold angles where ``fold`` (rad), that of the zigzags, is not 0.
 
@@ -13,14 +17,16 @@ def miura(columns, rows, fold=0.0):
     as their ratio (Schenk and Guest 2013).
     """
     straight = 2 * np.arctan(np.tan(fold / 2) * np.cos(SECTOR))
-    place = {}
+    place: dict[tuple[int, int], tuple[int, list[float]]] = {}
     for j in range(rows + 1):
         for i in range(columns + 1):
             x = i + (j % 2) * np.cos(SECTOR)
             place[i, j] = (len(place), [x, j * np.sin(SECTOR)])
     faces, edges, letters, angles = [], [], [], []
 
-    def edge(first, second, is_inner, angle):
+    def edge(
+        first: tuple[int, int], second: tuple[int, int], is_inner: bool, angle: float
+    ) -> None:
         edges.append([place[first][0], place[second][0]])
         letters.append(("V" if angle >= 0 else "M") if is_inner else "B")
         angles.append(float(np.degrees(angle)) if is_inner else 0.0)
