@@ -26,7 +26,7 @@ def convert_command(source: str, out: Path) -> None:
     """Write a mechanism to a file of another format.
 
     \b
-    IN   .toml, .xml or .mjcf (MJCF), .sdf, .world (CUIK)
+    IN   .toml, .xml or .mjcf (MJCF), .sdf, .world (CUIK), or a network by name
     OUT  .toml, .xml or .mjcf (MJCF), .sdf
 
     The configuration written is the reference configuration, where all joint variables
@@ -40,7 +40,8 @@ def convert_command(source: str, out: Path) -> None:
 
     with writing_to(out):
         replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
-    say(f"{out}: {mechanism!r}")
+    bodies, joints = len(mechanism.bodies), len(mechanism.joints)
+    say(f"{out}: {mechanism.name}, {bodies} bodies, {joints} joints")
 
 
 def _mechanism(source: str) -> Mechanism:
