@@ -351,9 +351,11 @@ def in_one_size(own: UnitProblem) -> UnitProblem:
 
 def _first_region(problem: Problem) -> np.ndarray:
     """The bounds (n, 2), those of one period on a circle."""
-    half = 0.5 * problem.periods[:, None] * np.array([-1.0, 1.0])
-    region: np.ndarray = np.where(np.isinf(problem.bounds), half, problem.bounds)
-    return region
+    is_circle = np.isinf(problem.bounds).all(axis=1)
+    low, high = np.where(is_circle[:, None], 0.0, problem.bounds).T
+    middles = 0.5 * (low + high)
+    half = 0.5 * np.where(is_circle, problem.periods, high - low)
+    return np.column_stack([middles - half, middles + half])
 
 
 def _region_of(
