@@ -1,239 +1,296 @@
-"""Curves with known answers, in five scales of the unknowns and five of the equations.
+"""Curves with known answers, in any units: how many come out right.
 
-    python -m studies.curve_bank [--only TEXT] [--seed 0] [--own-scale] [--budget 20]
+Every curve of `data/curves.json` has a source and a known number of forms, closed and
+open, of bifurcations with their half-branches, of cusps, of points where the rank drops
+on a single branch, and of isolated points. A cusp ends a form; through a point like
+that of x^3 = y^4, with half-branches to opposite sides, a single one passes. Each is
+explored as it stands, with its unknowns or its equations in other units, turned,
+shifted, and from other random starts. An answer is right, or wrong and said to be in
+doubt, or wrong without a word, as an exception is. Seconds are those of the processor.
 
-`data/curves.json` lists curves with the number of forms, bifurcations, cusps and
-isolated points that they have, and a source for each. A run of one of them is right,
-or undecided, if the atlas says that it is in doubt, or silently wrong. Equations are
-scaled row by row, each by another power of the factor.
+    python -m studies.curve_bank --changes plain unknowns --seeds 2
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import click
 import numpy as np
-import sympy
 
-import bifurc
-from bifurc.equations.expression import Part, parse_expression
-from bifurc.text_tables import table
+from bifurc import Atlas, FunctionProblem, Kind, Level, SearchSettings, explore
+from bifurc.search.completeness import IN_DOUBT
 
-__all__ = ["Answer", "BankCurve", "Outcome", "Scales", "judge", "load_bank", "run"]
+__all__ = ["Answer", "Change", "Curve", "Verdict", "changes_of", "judge", "load_curves"]
 
-BANK = Path(__file__).parents[1] / "data" / "curves.json"
-FACTORS = (1.0, 1e-6, 1e-3, 1e3, 1e6)
-
-
-class Outcome(StrEnum):
-    """What an answer is worth."""
-
-    RIGHT = "right"
-    UNDECIDED = "undecided"
-    SILENT_WRONG = "silent wrong"
+BANK = Path(__file__).parent.parent / "data" / "curves.json"
+SCALES = (1e-6, 1e-3, 10.0, 1e3, 1e6)
+SLOW = 5.0  # s, from which on an answer is listed
+FUNCTIONS = {
+    name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt")
+}
 
 
 class Answer(NamedTuple):
-    """How many there are of each kind."""
+    """What is counted in an atlas: forms ``closed`` and ``open``, the numbers of
+    half-branches of the ``bifurcations`` in order, ``cusps``, ``rank_drops``,
+    ``isolated`` points, ``others`` (surfaces, points of another kind) and the
+    ``multiplicity`` of the forms."""
 
-    forms: int
-    bifurcations: int
+    closed: int
+    open: int
+    bifurcations: tuple[int, ...]
     cusps: int
+    rank_drops: int
     isolated: int
+    others: int = 0
+    multiplicity: int = 1
 
-
-class Scales(NamedTuple):
-    """Factors of the unknowns without a period, and of the equations."""
-
-    unknowns: float = 1.0
-    equations: float = 1.0
-
-
-@dataclass(frozen=True)
-class BankCurve:
-    """A curve of the bank: ``equations`` as texts, bounds of the ``unknowns``, their
-    ``periods`` as texts, and what is known of it."""
-
-    name: str
-    equations: Sequence[str]
-    unknowns: dict[str, tuple[float, float]]
-    periods: dict[str, str]
-    expected: Answer
-
-    def problem(self, scales: Scales) -> bifurc.SymbolicProblem:
-        """Its equations in other units."""
-        own = {name: Part(sympy.Symbol(name)) for name in self.unknowns}
-        constants: dict[str, Part] = {}
-        periods = {
-            name: float(parse_expression(text, constants).value or 0.0)
-            for name, text in self.periods.items()
-        }
-        factors = {
-            name: 1.0 if name in periods else scales.unknowns for name in self.unknowns
-        }
-        changed = {
-            part.expression: part.expression / sympy.Float(factors[name], 30)
-            for name, part in own.items()
-            if factors[name] != 1.0
-        }
-        expressions = []
-        for row, text in enumerate(self.equations):
-            left, _, right = text.partition("=")
-            difference = (
-                parse_expression(left, own).expression
-                - parse_expression(right or "0", own).expression
-            )
-            weight = scales.equations ** (1.0 if row % 2 == 0 else -1.0)
-            expressions.append(weight * difference.subs(changed))
-        bounds = [
-            (factors[name] * low, factors[name] * high)
-            for name, (low, high) in self.unknowns.items()
-        ]
-        for k, name in enumerate(self.unknowns):
-            if name in periods:
-                bounds[k] = (0.0, periods[name])
-        return bifurc.SymbolicProblem(
-            expressions,
-            [own[name].expression for name in self.unknowns],
-            bounds,
-            periods=[periods.get(name, np.inf) for name in self.unknowns],
+    @staticmethod
+    def of(atlas: Atlas) -> Answer:
+        """The answer of an atlas."""
+        kinds = Counter(point.kind for point in atlas.points)
+        closed = sum(form.branch.closed for form in atlas.forms)
+        counted = (Kind.BIFURCATION, Kind.CUSP, Kind.RANK_DROP, Kind.ISOLATED)
+        sizes = [len(point.point.half_branches) for point in atlas.bifurcations]
+        return Answer(
+            closed=closed,
+            open=len(atlas.forms) - closed,
+            bifurcations=tuple(sorted(sizes)),
+            cusps=kinds[Kind.CUSP],
+            rank_drops=kinds[Kind.RANK_DROP],
+            isolated=kinds[Kind.ISOLATED] + len(atlas.rigid),
+            others=len(atlas.surfaces)
+            + sum(kinds[kind] for kind in kinds if kind not in counted),
+            multiplicity=max((form.multiplicity for form in atlas.forms), default=1),
         )
 
 
-def load_bank() -> list[BankCurve]:
+@dataclass(frozen=True)
+class Curve:
+    """A curve with its ``equations`` in the ``unknowns``, ``bounds`` (n, 2) and
+    ``periods`` (n,), its ``source`` and its right ``answer``."""
+
+    name: str
+    source: str
+    unknowns: tuple[str, ...]
+    equations: tuple[str, ...]
+    bounds: np.ndarray
+    periods: np.ndarray
+    answer: Answer
+
+    def function(self) -> Callable[[np.ndarray], list[Any]]:
+        """F (m,) of a point (n,)."""
+        codes = [compile(text, self.name, "eval") for text in self.equations]
+
+        def values(point: np.ndarray) -> list[Any]:
+            names = dict(zip(self.unknowns, point, strict=True))
+            return [eval(code, FUNCTIONS, names) for code in codes]
+
+        return values
+
+
+def load_curves() -> list[Curve]:
     """The curves of the bank."""
-    content = json.loads(BANK.read_text(encoding="utf-8"))
-    return [_curve(entry) for entry in content["curves"]]
+    return [_curve(entry) for entry in json.loads(BANK.read_text())]
 
 
-def _curve(entry: dict[str, Any]) -> BankCurve:
-    return BankCurve(
+def _curve(entry: dict[str, Any]) -> Curve:
+    n = len(entry["unknowns"])
+    periods = entry.get("periods", [None] * n)
+    ends = ((-np.inf, np.inf),) * n
+    bounds = [
+        [end if value is None else value for value, end in zip(row, limit, strict=True)]
+        for row, limit in zip(entry["bounds"], ends, strict=True)
+    ]
+    return Curve(
         name=entry["name"],
-        equations=entry["equations"],
-        unknowns={name: tuple(ends) for name, ends in entry["unknowns"].items()},
-        periods=entry.get("periods", {}),
-        expected=Answer(*(entry[key] for key in Answer._fields)),
+        source=entry["source"],
+        unknowns=tuple(entry["unknowns"]),
+        equations=tuple(entry["equations"]),
+        bounds=np.array(bounds, dtype=float),
+        periods=np.array([np.inf if p is None else p for p in periods]),
+        answer=Answer(
+            closed=entry["closed"],
+            open=entry["open"],
+            bifurcations=tuple(entry["bifurcations"]),
+            cusps=entry["cusps"],
+            rank_drops=entry["rank_drops"],
+            isolated=entry["isolated"],
+            multiplicity=entry.get("multiplicity", 1),
+        ),
     )
 
 
-# --- runs -----------------------------------------------------------------------------
+# --- other units ----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Change:
+    """Unknowns u = ``matrix`` v + ``shift`` and equations ``mixing`` F, with a
+    ``name``, of a ``kind``."""
+
+    kind: str
+    name: str
+    matrix: np.ndarray
+    shift: np.ndarray
+    mixing: np.ndarray
+
+    def problem(self, curve: Curve) -> FunctionProblem:
+        """The curve's equations so changed, in v."""
+        function = curve.function()
+
+        def changed(point: np.ndarray) -> np.ndarray:
+            values = np.array(function(self.matrix @ point + self.shift))
+            mixed: np.ndarray = self.mixing @ values
+            return mixed
+
+        inverse = np.linalg.inv(self.matrix)
+        is_diagonal = np.array_equal(self.matrix, np.diag(np.diag(self.matrix)))
+        bounds = curve.bounds - self.shift[:, None]
+        if is_diagonal:
+            bounds = np.diag(inverse)[:, None] * bounds
+            periods = np.diag(inverse) * curve.periods
+            return FunctionProblem(changed, bounds, periods=periods)
+        corners = np.array(list(product(*bounds))) @ inverse.T
+        around = np.column_stack([corners.min(axis=0), corners.max(axis=0)])
+        return FunctionProblem(changed, around.tolist())
+
+
+def changes_of(curve: Curve) -> Iterator[Change]:
+    """The curve as it stands, and its changes: five scales of the unknowns, the same for
+    the last of them alone, five of the equations, mixed equations, a shift and two
+    turns.
+
+    Turns are for closed curves that leave no bounds, and not for angles.
+    """
+    n, m = len(curve.unknowns), len(curve.equations)
+    one, still, same = np.eye(n), np.zeros(n), np.eye(m)
+    yield Change("plain", "plain", one, still, same)
+    for scale in SCALES:
+        yield Change("unknowns", f"unknowns {scale:g}", scale * one, still, same)
+        last = np.diag([1.0] * (n - 1) + [scale])
+        yield Change("unknown", f"last unknown {scale:g}", last, still, same)
+        weights = np.diag([scale] + [1.0] * (m - 1))
+        yield Change("equations", f"first equation {scale:g}", one, still, weights)
+    rng = np.random.default_rng(0)
+    mixing = np.linalg.qr(rng.normal(size=(m, m)))[0] @ np.diag(np.geomspace(1, 5, m))
+    yield Change("mixed", "mixed equations", one, still, mixing)
+    yield Change("shift", "shifted", one, rng.normal(size=n), same)
+    is_plain = not np.any(np.isfinite(curve.periods))
+    if is_plain and not curve.answer.open and np.all(np.isfinite(curve.bounds)):
+        for number in range(2):
+            turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
+            yield Change("turned", f"turned {number + 1}", turn, still, same)
+
+
+# --- verdicts -------------------------------------------------------------------------
+
+
+class Verdict(StrEnum):
+    """What an answer is worth."""
+
+    RIGHT = "right"
+    # It is wrong, and says that it may be.
+    IN_DOUBT = "in doubt"
+    # It is wrong without a word.
+    WRONG = "wrong"
+
+
+def judge(curve: Curve, atlas: Atlas) -> Verdict:
+    """Whether an atlas gives the curve's answer, or else says that it is in doubt."""
+    if Answer.of(atlas) == curve.answer:
+        return Verdict.RIGHT
+    is_undecided = any(
+        point.kind is Kind.UNDECIDED or point.note for point in atlas.points
+    )
+    is_in_doubt = atlas.completeness.statement.startswith(IN_DOUBT)
+    is_late = atlas.completeness.level is Level.OUT_OF_TIME
+    is_open = is_undecided or is_in_doubt or is_late
+    return Verdict.IN_DOUBT if is_open else Verdict.WRONG
 
 
 class Run(NamedTuple):
-    """One run: what came out, what that is worth, and the seconds it took."""
+    """One curve in one change from one seed."""
 
     curve: str
-    scales: Scales
+    change: Change
+    seed: int
+    verdict: Verdict
     answer: Answer | str
-    outcome: Outcome
     seconds: float
 
 
-def answer_of(atlas: bifurc.Atlas) -> Answer:
-    """How many there are of each kind in an atlas."""
-    kinds = Counter(point.kind for point in atlas.points)
-    return Answer(
-        forms=len(atlas.forms),
-        bifurcations=kinds[bifurc.Kind.BIFURCATION],
-        cusps=kinds[bifurc.Kind.CUSP],
-        isolated=kinds[bifurc.Kind.ISOLATED] + len(atlas.rigid),
-    )
-
-
-def judge(atlas: bifurc.Atlas, expected: Answer) -> Outcome:
-    """What an atlas is worth where the ``expected`` answer is known."""
-    if answer_of(atlas) == expected:
-        return Outcome.RIGHT
-    is_open = any(point.kind is bifurc.Kind.UNDECIDED for point in atlas.points)
-    is_in_doubt = atlas.completeness.statement.startswith("in doubt")
-    is_late = atlas.completeness.level is bifurc.Level.OUT_OF_TIME
-    if is_open or is_in_doubt or is_late:
-        return Outcome.UNDECIDED
-    return Outcome.SILENT_WRONG
-
-
-def run(curve: BankCurve, scales: Scales, seed: int, budget: float) -> Run:
-    """One run; an exception counts as silently wrong."""
-    settings = bifurc.SearchSettings(budget=budget)
-    began = time.perf_counter()
+def run_curve(curve: Curve, change: Change, seed: int, budget: float) -> Run:
+    """The verdict on one answer, found within a ``budget`` of seconds."""
+    began = time.process_time()
+    answer: Answer | str
     try:
-        problem = curve.problem(scales)
-        atlas = bifurc.explore(problem, settings=settings, seed=seed)
+        settings = SearchSettings(budget=budget)
+        atlas = explore(change.problem(curve), settings=settings, seed=seed)
+        verdict, answer = judge(curve, atlas), Answer.of(atlas)
     except Exception as error:  # whatever it is, a user would see it
-        seconds = time.perf_counter() - began
-        words = f"{type(error).__name__}: {error}"
-        return Run(curve.name, scales, words, Outcome.SILENT_WRONG, seconds)
-    seconds = time.perf_counter() - began
-    outcome = judge(atlas, curve.expected)
-    return Run(curve.name, scales, answer_of(atlas), outcome, seconds)
+        verdict, answer = Verdict.WRONG, f"{type(error).__name__}: {error}"
+    seconds = time.process_time() - began
+    return Run(curve.name, change, seed, verdict, answer, seconds)
 
 
-def all_scales() -> Iterator[Scales]:
-    """Five scales of the unknowns, and then five of the equations."""
-    for factor in FACTORS:
-        yield Scales(unknowns=factor)
-    for factor in FACTORS[1:]:
-        yield Scales(equations=factor)
+def _print_run(run: Run) -> None:
+    """One line for an answer that is not right, or slow."""
+    where = f"{run.curve}, {run.change.name}, seed {run.seed}"
+    if run.verdict is not Verdict.RIGHT:
+        print(f"{run.verdict}: {where}: {run.answer}", flush=True)
+    if run.seconds > SLOW:
+        print(f"slow: {where}: {run.seconds:.1f} s", flush=True)
 
 
-# --- report ---------------------------------------------------------------------------
+def _print_table(runs: Sequence[Run]) -> None:
+    """Counts by kind of change."""
+    print("| change | answers | right | in doubt | wrong | median s | most s |")
+    print("|---|---|---|---|---|---|---|")
+    kinds = list(dict.fromkeys(run.change.kind for run in runs))
+    for kind in [*kinds, "all"]:
+        group = [run for run in runs if kind in (run.change.kind, "all")]
+        counts = Counter(run.verdict for run in group)
+        seconds = [run.seconds for run in group]
+        cells = [kind, len(group), *(counts[verdict] for verdict in Verdict)]
+        cells += [f"{np.median(seconds):.2g}", f"{max(seconds):.2g}"]
+        print("| " + " | ".join(map(str, cells)) + " |")
 
 
-def summary(runs: Sequence[Run]) -> str:
-    """Right, undecided and silently wrong, for each pair of scales."""
-    rows = []
-    for scales in dict.fromkeys(one.scales for one in runs):
-        own = [one for one in runs if one.scales == scales]
-        counts = Counter(one.outcome for one in own)
-        median = 1e3 * np.median([one.seconds for one in own])
-        row = [f"{scales.unknowns:g}", f"{scales.equations:g}"]
-        row += [str(counts[outcome]) for outcome in Outcome]
-        rows.append([*row, f"{median:.0f}", f"{max(o.seconds for o in own):.1f}"])
-    heads = ["unknowns x", "equations x", *Outcome, "median ms", "longest s"]
-    return table(heads, rows)
-
-
-def failures(runs: Sequence[Run], bank: Sequence[BankCurve]) -> str:
-    """Every run that was not right."""
-    expected = {curve.name: curve.expected for curve in bank}
-    rows = []
-    for one in runs:
-        if one.outcome is Outcome.RIGHT:
+def main() -> None:
+    """Run the bank and print what is not right, and the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--changes", nargs="*", help="kinds of change; all of them")
+    parser.add_argument("--names", nargs="*", help="curves; all of them")
+    parser.add_argument("--seeds", type=int, default=1, help="random seeds from 0 on")
+    parser.add_argument("--budget", type=float, default=60.0, help="seconds for each")
+    parser.add_argument("--every", type=int, default=1, help="only each k-th answer")
+    arguments = parser.parse_args()
+    runs: list[Run] = []
+    count = 0
+    for curve in load_curves():
+        if arguments.names and curve.name not in arguments.names:
             continue
-        shown = one.answer
-        if isinstance(shown, Answer):
-            shown = " ".join(map(str, shown))
-        wanted = " ".join(map(str, expected[one.curve]))
-        scales = f"{one.scales.unknowns:g} {one.scales.equations:g}"
-        rows.append([one.outcome.value, one.curve, scales, wanted, shown[:60]])
-    heads = ("outcome", "curve", "scales", "known", "found")
-    return table(heads, rows)
-
-
-@click.command()
-@click.option("--only", default="", help="Curves whose name holds this text.")
-@click.option("--seed", default=0, help="Seed of the random starts.")
-@click.option("--own-scale", is_flag=True, help="Each curve as it is listed only.")
-@click.option("--budget", default=20.0, help="Seconds for each run.")
-def main(only: str, seed: int, own_scale: bool, budget: float) -> None:
-    """Run the bank and print what came out."""
-    bank = [curve for curve in load_bank() if only in curve.name]
-    scales = [Scales()] if own_scale else list(all_scales())
-    runs = []
-    for curve in bank:
-        for pair in scales:
-            runs.append(run(curve, pair, seed, budget))
-    click.echo(summary(runs))
-    click.echo("\nnot right (forms, bifurcations, cusps, isolated points)")
-    click.echo(failures(runs, bank))
+        for change in changes_of(curve):
+            if arguments.changes and change.kind not in arguments.changes:
+                continue
+            for seed in range(arguments.seeds):
+                count += 1
+                if count % arguments.every:
+                    continue
+                run = run_curve(curve, change, seed, arguments.budget)
+                _print_run(run)
+                runs.append(run)
+    _print_table(runs)
 
 
 if __name__ == "__main__":

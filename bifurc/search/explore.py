@@ -14,20 +14,13 @@ from bifurc.checks import check_callable, check_type
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
-from bifurc.function_problem import FunctionProblem
 from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
-from bifurc.search.rescaled import (
-    RescaledProblem,
-    in_unit_of_problem,
-    seeds_in_unit,
-    unit_of,
-)
 from bifurc.search.restated import restated
 from bifurc.search.search import Search
 from bifurc.search.settings import SearchSettings
+from bifurc.search.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.seeds import Seeds
-from bifurc.unit_problem import UnitProblem, in_one_size, in_own_units
 
 __all__ = ["explore"]
 
@@ -80,7 +73,7 @@ def explore(
     began = time.perf_counter()
     own = in_own_units(problem)
     if own is None:
-        atlas = _explored_in_one_unit(problem, settings, seed, seeds, progress, began)
+        atlas = _explored(problem, settings, seed, seeds, progress, began)
     else:
         atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
         has_lengths = bool(atlas.surfaces or atlas.near_motions)
@@ -95,24 +88,6 @@ def explore(
     return replace(atlas, diagram=diagram)
 
 
-def _explored_in_one_unit(
-    problem: Problem,
-    settings: SearchSettings,
-    seed: int,
-    seeds: Seeds | None,
-    progress: Callable[[str, int], None] | None,
-    began: float,
-) -> Atlas:
-    """The atlas of a problem with its unknowns counted in one unit near its scale."""
-    searched, unit = _in_its_own_unit(problem)
-    if seeds is not None:
-        seeds = seeds_in_unit(seeds, unit)
-    atlas = _explored(searched, settings, seed, seeds, progress, began)
-    if isinstance(searched, RescaledProblem):
-        return in_unit_of_problem(atlas, problem, unit)
-    return atlas
-
-
 def _explored_in_units(
     own: UnitProblem,
     settings: SearchSettings,
@@ -124,9 +99,7 @@ def _explored_in_units(
     """The atlas of a problem in units of its own, in these units; the ``seeds`` are in
     those of the user."""
     if seeds is not None:
-        units = own.own_units
-        points, missed = units.inwards(seeds.points), units.inwards(seeds.missed)
-        seeds = replace(seeds, points=points, missed=missed)
+        seeds = own.seeds_inwards(seeds)
     return _explored(own, settings, seed, seeds, progress, began)
 
 
@@ -164,12 +137,3 @@ def _explored(
         seconds=time.perf_counter() - began,
     )
     return assemble_atlas(problem, search.findings, provenance)
-
-
-def _in_its_own_unit(problem: Problem) -> tuple[Problem, float]:
-    """The problem with its unknowns counted in a unit near its scale, and that unit;
-    a problem that is no function counts as it likes."""
-    if not isinstance(problem, FunctionProblem):
-        return problem, 1.0
-    unit = unit_of(problem)
-    return (problem, 1.0) if unit == 1.0 else (RescaledProblem(problem, unit), unit)

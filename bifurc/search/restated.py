@@ -48,7 +48,7 @@ def restated(
     of a ``multiplicity``."""
     courses = [restated_branch(f.branch, units, problem.periods) for f in atlas.forms]
     forms = [
-        _form(form, course, multiplicity)
+        _form(form, course, units, multiplicity)
         for form, course in zip(atlas.forms, courses, strict=True)
     ]
     return replace(
@@ -223,11 +223,11 @@ def _places(speed: np.ndarray, gains: np.ndarray, targets: np.ndarray) -> np.nda
 # --- forms and points -----------------------------------------------------------------
 
 
-def _form(form: Form, course: Course, multiplicity: int) -> Form:
+def _form(form: Form, course: Course, units: Units, multiplicity: int) -> Form:
     arclength = course.arclengths(form.profile.arclength)
     certificate = form.certificate
     if certificate is not None:
-        certificate = _certificate(certificate, course)
+        certificate = _certificate(certificate, course, units)
     return replace(
         form,
         branch=course.branch,
@@ -237,11 +237,13 @@ def _form(form: Form, course: Course, multiplicity: int) -> Form:
     )
 
 
-def _certificate(certificate: Certificate, course: Course) -> Certificate:
+def _certificate(certificate: Certificate, course: Course, units: Units) -> Certificate:
+    """A certificate; a bound is known in units of one size only."""
     return replace(
         certificate,
         gaps=course.arclengths(certificate.gaps),
         blurred=course.arclengths(certificate.blurred),
+        bound=certificate.bound / float(units.sizes[0]),
     )
 
 

@@ -4,37 +4,44 @@ The sizes of the unknowns are those of the region in which solutions are, not th
 the bounds: a curve far smaller than its bounds is looked for about where it is. The
 equations count by their gradients there. So a search sees the same numbers whatever the
 user's units are; `bifurc.search.restated` takes its answer back into these.
+
+Large systems, and classes that answer some question in a way of their own, have all
+their unknowns counted in one unit, that of their scale.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bifurc import torus
 from bifurc.decisions import is_far_smaller, is_flat_equation, is_on_the_way
 from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.recording import Recording
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
 from bifurc.function_problem import EXACT_HESSIAN, PROBES, FunctionProblem
-from bifurc.numerics.bordered import as_dense
 from bifurc.problem import PreciseResidual, Problem
+from bifurc.search.restated import restated_branch
 from bifurc.seeding import random_seeds
-from bifurc.seeds import Seeds
+from bifurc.seeds import Audit, Seeds
 from bifurc.units import Units
 
 if TYPE_CHECKING:
     import mpmath
 
-__all__ = ["FARTHEST", "UnitProblem", "in_own_units"]
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import sparray
 
-FARTHEST = 100.0  # times the region: so far an unknown without bounds is followed
+    from bifurc.branch import Branch
+
+__all__ = ["UnitProblem", "in_one_size", "in_own_units"]
+
 STARTS, STARTS_OF_CALLABLE = 100, 24  # from which it is seen where solutions are
-ROUNDS = 40  # in which the region shrinks or grows to them
+ROUNDS = 40  # in which the region shrinks to them
 MARGIN = 0.25  # of what solutions span, on either side of them
 CLOSE = 0.5  # share of a region that has shrunk which solutions then span
 WIDEST_MIX = 32.0  # sizes that differ by no more are taken for one
@@ -45,38 +52,37 @@ HIGHEST, MOST_EQUATIONS = 6, 60  # multiplicity that is looked for, and equation
 FEWEST = 5  # ends of starts by which a multiplicity is told
 REGULAR = 1e-6  # smallest regular singular value at an end that is where it belongs
 OF_CURVES = 1e-4  # the same: at points of higher order where starts stop it is 2e-6
-METHODS = (
+# What a class may answer in its own way: in its own units only, or in any one unit.
+OF_EQUATIONS = (
     "residuals",
     "jacobian",
     "jacobians",
-    "hessian",
     "march",
     "project",
     "project_to_sphere",
-    "seeds",
     "bridge",
     "missed",
     "excess",
-    "curvature_bound",
-    "complex_curvature",
 )
-OUTER = 0.1  # share of solutions on either side that does not make a region grow
+OF_ONE_UNIT = ("hessian", "seeds", "curvature_bound", "complex_curvature")
+OUTER = 0.1  # share of the ends of starts that may lie elsewhere than the rest
 
 
 class UnitProblem(FunctionProblem):
     """The equations of a function in ``units``, with solutions looked for in the
     ``region`` (n, 2) besides the bounds of the ``problem``; both in the user's units.
+    Without a region the scale and the magnitude are those of the problem, whose units
+    then have one size.
 
-    An unknown whose bounds hold a whole period has none: it is a circle. Where every
-    solution is a ``multiplicity``-fold one, the equations are those of ``tape``: F and
-    the derivatives that vanish with it.
+    Where every solution is a ``multiplicity``-fold one, the equations are those of
+    ``tape``: F and the derivatives that vanish with it.
     """
 
     def __init__(
         self,
         problem: FunctionProblem,
         units: Units,
-        region: np.ndarray,
+        region: np.ndarray | None = None,
         tape: Tape | None = None,
         multiplicity: int = 1,
     ):
@@ -86,40 +92,43 @@ class UnitProblem(FunctionProblem):
         self.names, self.units = problem.names, problem.units
         self.derivatives, self.equations = problem.derivatives, problem.equations
         self.periods = problem.periods / units.sizes
-        self.region = units.inwards(region.T).T
-        self.bounds = self._followed_bounds(problem)
-        self.scale = float(np.median(np.diff(self.region, axis=1))) / 4.0
+        self.bounds = units.inwards(problem.bounds.T).T
+        own_region = _first_region(problem) if region is None else region
+        self.region = units.inwards(own_region.T).T
         self._function = self._restated_function
         self._jacobian = None if problem._jacobian is None else self._restated_jacobian
         self._rows = len(units.weights)
-        self._scaled = None
         self.tape = problem.recording.tape if tape is None else tape
-        tape = self.tape
-        self.recording = Recording(None, problem.recording.reason)
-        if tape is not None:
-            self.hessian_error = EXACT_HESSIAN
-            self.is_exact = True
-            own = tape.in_units(units.origin, units.sizes, units.weights)
-            self.recording = Recording(own)
-            self._scaled = self._scaled_tape(own, 1.0)
-        sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
-        self.magnitude = float(np.median(sizes)) if sizes else 1.0
-        self.magnitude = self.magnitude or 1.0
-        if self.recording.tape is not None:
-            self._scaled = self._scaled_tape(self.recording.tape, self.magnitude)
+        if region is None:
+            size = float(units.sizes[0])
+            self.scale = problem.scale / size
+            self.curvature_residual = problem.curvature_residual / size
+            self._take_equations(size * problem.magnitude)
+        else:
+            self.scale = float(np.median(np.diff(self.region, axis=1))) / 4.0
+            self._take_equations(1.0)
+            self._take_equations(self._typical_magnitude())
+        if _has_own(problem, "hessian"):
+            self.hessian_error = problem.hessian_error
 
-    def _followed_bounds(self, problem: FunctionProblem) -> np.ndarray:
-        """The bounds (n, 2) in which curves are followed: none on a circle, and far
-        from the region where the user gives none."""
-        bounds = self.own_units.inwards(problem.bounds.T).T
-        widths = np.diff(self.region, axis=1)[:, 0]
-        middles = self.region.mean(axis=1)
-        rim = middles[:, None] + FARTHEST * widths[:, None] * np.array([-0.5, 0.5])
-        is_circle = _is_circle(problem)[:, None]
-        is_open = np.isinf(bounds)
-        followed = np.where(is_open, rim, bounds)
-        nowhere = np.array([-np.inf, np.inf])
-        return np.where(is_circle, nowhere, followed)
+    def _take_equations(self, magnitude: float) -> None:
+        """Compile the tape, where there is one, for F' of this ``magnitude``."""
+        self.magnitude = magnitude
+        self._scaled = None
+        self.recording = Recording(None, self.problem.recording.reason)
+        if self.tape is None:
+            return
+        units = self.own_units
+        tape = self.tape.in_units(units.origin, units.sizes, units.weights)
+        self.recording = Recording(tape)
+        self._scaled = self._scaled_tape(tape, magnitude)
+        self.hessian_error = EXACT_HESSIAN
+        self.is_exact = True
+
+    def _typical_magnitude(self) -> float:
+        """The size of F' in the region."""
+        sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
+        return float(np.median(sizes)) or 1.0 if sizes else 1.0
 
     def _scaled_tape(self, tape: Tape, magnitude: float) -> ScaledTape:
         return ScaledTape(
@@ -137,12 +146,17 @@ class UnitProblem(FunctionProblem):
         weighted: np.ndarray = self.own_units.weights * np.asarray(value)
         return weighted
 
-    def _restated_jacobian(self, point: np.ndarray) -> np.ndarray:
+    def _restated_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) of the user at a point (n,) in these units, weighted."""
-        own = self.problem._given_jacobian(self.own_units.outwards(point))
-        rows = self.own_units.weights[:, None]
-        matrix: np.ndarray = rows * as_dense(own) * self.own_units.sizes
-        return matrix
+        units = self.own_units
+        own = self.problem._given_jacobian(units.outwards(point))
+        if isinstance(own, np.ndarray):
+            matrix: np.ndarray = units.weights[:, None] * own * units.sizes
+            return matrix
+        from scipy.sparse import diags_array
+
+        sparse: sparray = diags_array(units.weights) @ own @ diags_array(units.sizes)
+        return sparse
 
     def _matrices(self) -> list[np.ndarray]:
         """F' (m, n) at random points of the region where it is finite."""
@@ -170,12 +184,37 @@ class UnitProblem(FunctionProblem):
 
         return residual
 
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,)."""
+        if not _has_own(self.problem, "hessian"):
+            return super().hessian(point)
+        units = self.own_units
+        by_sizes = units.sizes[:, None] * units.sizes
+        own = self.problem.hessian(units.outwards(point))
+        hessian: np.ndarray = units.weights[:, None, None] * by_sizes * own
+        return hessian
+
+    def curvature_bound(self) -> float | None:
+        """A constant of Lipschitz for F' over the magnitude, where the problem has
+        one."""
+        bound = self.problem.curvature_bound()
+        return None if bound is None else float(self.own_units.sizes[0]) * bound
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
+        """Bounds (k,) on |F''| over the magnitude, where the problem has them."""
+        size = float(self.own_units.sizes[0])
+        bounds = self.problem.complex_curvature(size * reach)
+        return None if bounds is None else size * bounds
+
+    # --- seeds ------------------------------------------------------------------------
+
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Solutions reached from ``count`` random starts, half of them from the region
-        where that is smaller than the bounds."""
-        is_whole = np.isinf(self.bounds) | np.isinf(self.own_bounds)
-        is_whole |= np.isclose(self.bounds, self.region)
-        if np.all(is_whole):
+        where that is smaller than the bounds; or those that the problem has in a way of
+        its own."""
+        if _has_own(self.problem, "seeds"):
+            return self.seeds_inwards(self.problem.seeds(rng, count))
+        if np.allclose(self.own_box, self.region):
             return random_seeds(self, rng, count, self.region)
         near = random_seeds(self, rng, count - count // 2, self.region)
         anywhere = random_seeds(self, rng, count // 2, self.own_box)
@@ -186,18 +225,31 @@ class UnitProblem(FunctionProblem):
             missed=np.concatenate([near.missed, anywhere.missed]),
         )
 
-    @property
-    def own_bounds(self) -> np.ndarray:
-        """The user's bounds (n, 2) in these units."""
-        return self.own_units.inwards(self.problem.bounds.T).T
+    def seeds_inwards(self, seeds: Seeds) -> Seeds:
+        """Seeds of the user in these units; an audit of theirs sees the user's
+        branches."""
+        units, judge = self.own_units, seeds.audit
+
+        def audit(branches: Sequence[Branch], seconds: float) -> Audit:
+            assert judge is not None
+            periods = self.problem.periods
+            own = [restated_branch(one, units, periods).branch for one in branches]
+            verdict = judge(own, seconds)
+            return replace(verdict, starts=units.inwards(verdict.starts))
+
+        return replace(
+            seeds,
+            points=units.inwards(seeds.points),
+            gaps=seeds.gaps * self.problem.magnitude / self.magnitude,
+            missed=units.inwards(seeds.missed),
+            audit=None if judge is None else audit,
+        )
 
     @property
     def own_box(self) -> np.ndarray:
-        """The bounds (n, 2) in these units as far as they are finite, else the
-        region."""
-        bounds = self.own_bounds
-        is_bounded = np.isfinite(bounds).all(axis=1) & ~_is_circle(self.problem)
-        return np.where(is_bounded[:, None], bounds, self.region)
+        """The bounds (n, 2), and on a circle the region."""
+        box: np.ndarray = np.where(np.isinf(self.bounds), self.region, self.bounds)
+        return box
 
     def ends(self, count: int) -> np.ndarray:
         """Points (k, n), in the user's units, at which ``count`` random starts in the
@@ -226,12 +278,37 @@ class UnitProblem(FunctionProblem):
 
 def in_own_units(problem: Problem) -> UnitProblem | None:
     """The equations of a function in units of their own; None for any other problem,
-    for more unknowns than are factored as dense matrices, and where they are in such
-    units as they stand."""
-    if not isinstance(problem, FunctionProblem) or not _is_plain(problem):
+    and where they are in such units as they stand."""
+    if not isinstance(problem, FunctionProblem):
         return None
-    if problem.n > LARGEST_DENSE:
+    if any(_has_own(problem, name) for name in OF_EQUATIONS):
         return None
+    has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
+    if has_own_answers or problem.n > LARGEST_DENSE:
+        own = _in_unit_of_scale(problem)
+    else:
+        own = _in_units_of_solutions(problem)
+    return None if _is_as_it_stands(problem, own) else own
+
+
+def _has_own(problem: FunctionProblem, name: str) -> bool:
+    """Whether the class of a problem has a method of its own of this ``name``."""
+    return getattr(type(problem), name) is not getattr(FunctionProblem, name)
+
+
+def _in_unit_of_scale(problem: FunctionProblem) -> UnitProblem:
+    """The equations with all unknowns counted in the power of 2 next to the scale."""
+    sizes = np.full(problem.n, _unit_of(problem))
+    units = Units(np.zeros(problem.n), sizes, np.ones(problem._rows))
+    return UnitProblem(problem, units)
+
+
+def _unit_of(problem: FunctionProblem) -> float:
+    return float(2.0 ** round(math.log2(problem.scale)))
+
+
+def _in_units_of_solutions(problem: FunctionProblem) -> UnitProblem:
+    """The equations in units of the region where random starts end."""
     whole = _first_region(problem)
     region, is_point = whole, np.zeros(problem.n, dtype=bool)
     count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
@@ -249,7 +326,7 @@ def in_own_units(problem: Problem) -> UnitProblem | None:
     own = _deflated(own)
     if not np.array_equal(region, whole) and not _has_curves(own):
         own = _deflated(_problem_on(problem, whole))
-    return None if _is_as_it_stands(problem, own) else own
+    return own
 
 
 def _is_a_point(region: np.ndarray, whole: np.ndarray) -> np.ndarray:
@@ -269,37 +346,15 @@ def in_one_size(own: UnitProblem) -> UnitProblem:
     return UnitProblem(own.problem, units, region, own.tape, own.multiplicity)
 
 
-def _is_plain(problem: FunctionProblem) -> bool:
-    """Whether a problem is its function and nothing else: a class that answers some
-    question in another way, a bound on F'' for instance, does so in its own units."""
-    kind = type(problem)
-    return all(
-        getattr(kind, name) is getattr(FunctionProblem, name) for name in METHODS
-    )
-
-
-def _is_circle(problem: Problem) -> np.ndarray:
-    """Which unknowns (n,) take all values of their period."""
-    widths = np.diff(problem.bounds, axis=1)[:, 0]
-    is_whole = widths >= problem.periods * (1.0 - torus.SEAM)
-    is_circle: np.ndarray = np.isfinite(problem.periods) & is_whole
-    return is_circle
-
-
 # --- where solutions are --------------------------------------------------------------
 
 
 def _first_region(problem: Problem) -> np.ndarray:
-    """The bounds (n, 2), those of one period on a circle, and about the finite end, or
-    from -1 to 1, where there are none."""
-    low, high = problem.bounds.T
-    low, high = (
-        np.where(np.isfinite(low), low, np.where(np.isfinite(high), high - 2.0, -1.0)),
-        np.where(np.isfinite(high), high, np.where(np.isfinite(low), low + 2.0, 1.0)),
-    )
+    """The bounds (n, 2), those of one period on a circle."""
+    is_circle = np.isinf(problem.bounds).all(axis=1)
+    low, high = np.where(is_circle[:, None], 0.0, problem.bounds).T
     middles = 0.5 * (low + high)
-    is_circle = _is_circle(problem)
-    half = np.where(is_circle, 0.5 * problem.periods, 0.5 * (high - low))
+    half = 0.5 * np.where(is_circle, problem.periods, high - low)
     return np.column_stack([middles - half, middles + half])
 
 
@@ -307,8 +362,8 @@ def _region_of(
     problem: Problem, ends: np.ndarray, region: np.ndarray, is_point: np.ndarray
 ) -> np.ndarray | None:
     """The part of a ``region`` (n, 2) that holds the ``ends`` (k, n) of starts, where
-    that is far smaller, or larger for an unknown without bounds; None where it is not.
-    The unknowns that are a point (n,) are left as they are."""
+    that is far smaller; None where it is not. The unknowns that are a point (n,) are
+    left as they are."""
     if not len(ends):
         return None
     widths = np.diff(region, axis=1)[:, 0]
@@ -321,18 +376,12 @@ def _region_of(
     unit = np.where(is_shrunk, CLOSE / is_far_smaller.threshold, 1.0)
     is_constant = spans <= POINT * np.maximum(widths, np.abs(ends).max(axis=0))
     is_small = is_free & is_far_smaller(spans, unit * widths) & ~is_constant
-    is_endless = is_free & ~np.isfinite(problem.bounds).all(axis=1)
-    inner = np.quantile(ends, [OUTER, 1.0 - OUTER], axis=0)
-    is_large = is_endless & is_far_smaller(widths, np.diff(inner, axis=0)[0])
-    is_beside = is_endless & ((inner[0] > region[:, 1]) | (inner[1] < region[:, 0]))
-    is_changed = is_small | is_large | is_beside
-    if not np.any(is_changed):
+    if not np.any(is_small):
         return None
-    low, high = np.where(is_small, low, inner[0]), np.where(is_small, high, inner[1])
-    margins = np.maximum(MARGIN * (high - low), np.where(is_small, 0.0, 0.5 * widths))
+    margins = MARGIN * spans
     closer = np.column_stack([low - margins, high + margins])
     closer = np.clip(closer, problem.bounds[:, :1], problem.bounds[:, 1:])
-    return np.where(is_changed[:, None], closer, region)
+    return np.where(is_small[:, None], closer, region)
 
 
 # --- multiplicity ---------------------------------------------------------------------
@@ -430,10 +479,10 @@ def _weights(own: UnitProblem) -> np.ndarray:
     return ones
 
 
-def _is_as_it_stands(problem: Problem, own: UnitProblem) -> bool:
+def _is_as_it_stands(problem: FunctionProblem, own: UnitProblem) -> bool:
     """Whether nothing is gained by other units."""
     units = own.own_units
     is_same = not np.any(units.origin) and own.multiplicity == 1
     has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
-    has_bounds = not np.array_equal(own.bounds, problem.bounds)
-    return is_same and not has_sizes and not has_bounds
+    is_near_scale = _unit_of(problem) == 1.0
+    return is_same and not has_sizes and is_near_scale

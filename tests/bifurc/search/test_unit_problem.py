@@ -1,0 +1,305 @@
+"""A search in units of its own: the same atlas whatever the user's units are."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.sparse import diags_array, vstack
+from scipy.special import ellipe
+
+import bifurc
+from bifurc.curves.certificate import CertificateStatus
+from bifurc.search.unit_problem import in_own_units
+from bifurc.seeds import Audit
+
+BOX = [(-2.0, 2.0), (-2.0, 2.0)]
+
+
+def lemniscate(size):
+    def function(u):
+        x, y = u
+        return [(x**2 + y**2) ** 2 - size**2 * (x**2 - y**2)]
+
+    return function
+
+
+def circle(radius):
+    return lambda u: [u[0] ** 2 + u[1] ** 2 - radius**2]
+
+
+def counts(atlas):
+    kinds = sorted(point.kind.value for point in atlas.points)
+    closed = sorted(form.branch.closed for form in atlas.forms)
+    return closed, kinds, len(atlas.surfaces), len(atlas.rigid)
+
+
+def explored(function, bounds=BOX, **options):
+    return bifurc.explore(bifurc.FunctionProblem(function, bounds, **options))
+
+
+def test_a_problem_that_is_in_such_units_stays_as_it_is():
+    assert in_own_units(bifurc.FunctionProblem(circle(1.0), BOX)) is None
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-3, 1.0])
+def test_a_curve_far_smaller_than_its_bounds_is_found_with_its_crossing(size):
+    atlas = explored(lemniscate(size))
+    assert counts(atlas) == ([True], ["bifurcation"], 0, 0)
+    # twice the lemniscate constant
+    assert atlas.forms[0].branch.length == pytest.approx(5.244115108584240 * size)
+
+
+def explored_of_size(size):
+    bounds = [(-2 * size, 2 * size)] * 2
+    problem = bifurc.FunctionProblem(lemniscate(size), bounds, names=["x", "y"])
+    return bifurc.explore(problem, parameter="x")
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-6, 1e-3, 30.0, 1e6, 1e9])
+def test_a_lemniscate_of_any_size_is_the_same(size) -> None:
+    atlas = explored_of_size(size)
+    reference = explored_of_size(1.0)
+    assert len(atlas.forms) == len(reference.forms) == 1
+    (form,), (expected,) = atlas.forms, reference.forms
+    assert form.branch.closed
+    assert form.branch.length == pytest.approx(size * expected.branch.length, rel=1e-9)
+    s = expected.branch.arclengths(20)
+    gaps = form.branch(size * s) - size * expected.branch(s)
+    assert np.abs(gaps).max() < 1e-8 * size
+    (point,) = atlas.bifurcations
+    assert np.abs(point.point.u).max() < 1e-9 * size
+    assert len(atlas.dead_points) == len(reference.dead_points)
+    assert len(atlas.diagram.folds) == 2
+    largest = form.profile.values.max()
+    assert largest == pytest.approx(expected.profile.values.max(), rel=1e-2)
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_a_circle_of_a_million_is_one_closed_form(is_recorded):
+    bounds = [(-2e6, 2e6)] * 2
+    atlas = explored(circle(1e6), bounds, is_recorded=is_recorded)
+    assert counts(atlas) == ([True], [], 0, 0)
+    assert atlas.forms[0].branch.length == pytest.approx(2e6 * np.pi, rel=1e-12)
+
+
+@pytest.mark.parametrize("width", [1e-2, 1e-5])
+def test_a_narrow_ellipse_is_closed_and_stated_in_the_users_arclength(width):
+    atlas = explored(lambda u: [(u[0] / width) ** 2 + u[1] ** 2 - 1.0])
+    assert counts(atlas) == ([True], [], 0, 0)
+    branch = atlas.forms[0].branch
+    assert branch.length == pytest.approx(4.0 * ellipe(1.0 - width**2), rel=1e-9)
+    x, y = branch.sample(200).T
+    assert np.abs((x / width) ** 2 + y**2 - 1.0).max() < 1e-9
+    speeds = np.linalg.norm(branch(np.linspace(0.1, 3.9, 50), 1), axis=1)
+    assert np.abs(speeds - 1.0).max() < 1e-6
+
+
+@pytest.mark.parametrize("factor", [1e-6, 1e3, 1e6])
+def test_an_equation_times_a_factor_changes_nothing(factor):
+    def function(u):
+        x, y, z = u
+        return [x**2 + y**2 + z**2 - 1.0, factor * (z - 0.3 * x)]
+
+    atlas = explored(function, [(-2.0, 2.0)] * 3)
+    assert counts(atlas) == ([True], [], 0, 0)
+
+
+def test_two_lines_close_to_each_other_are_two():
+    atlas = explored(lambda u: [u[1] * (u[1] - 1e-5)])
+    assert counts(atlas) == ([False, False], [], 0, 0)
+
+
+def test_two_circles_closer_than_their_pieces_are_long_are_two():
+    outer = circle(1.0001)
+    inner = circle(1.0)
+    atlas = explored(lambda u: [inner(u)[0] * outer(u)[0]])
+    assert counts(atlas) == ([True, True], [], 0, 0)
+
+
+def test_an_isolated_point_is_not_looked_for_ever_closer():
+    atlas = explored(lambda u: [u[0] ** 2 + u[1] ** 4])
+    assert counts(atlas) == ([], ["isolated"], 0, 0)
+
+
+# --- unknowns without bounds, and circles ---------------------------------------------
+
+ANYWHERE = [(-np.inf, np.inf)] * 2
+
+
+def test_a_curve_without_bounds_is_one_form_and_says_that_it_goes_on() -> None:
+    problem = bifurc.FunctionProblem(lambda u: [u[1] - u[0] ** 2], ANYWHERE)
+    (form,) = bifurc.explore(problem).forms
+    assert form.branch.outcome is bifurc.Outcome.LEFT_REGION
+    ends = form.branch(np.array([0.0, form.branch.length]))
+    assert np.abs(ends[:, 1]).min() > 10
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+@pytest.mark.parametrize("radius", [1e-6, 1e-2, 1.0, 1e6])
+def test_a_circle_without_bounds_is_found_whatever_its_size(radius, is_recorded):
+    problem = bifurc.FunctionProblem(
+        circle(radius),
+        ANYWHERE,
+        is_recorded=is_recorded,
+    )
+    (form,) = bifurc.explore(problem, settings=bifurc.SearchSettings(starts=40)).forms
+    assert form.branch.closed
+    assert form.branch.length == pytest.approx(2 * np.pi * radius, rel=1e-11)
+
+
+def test_bounds_on_one_side_are_kept() -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [u[1] - u[0] ** 2], [(500.0, np.inf), (-np.inf, np.inf)]
+    )
+    assert problem.bounds[0, 0] == 500.0
+    assert problem.bounds[0, 1] > 1000.0
+
+
+@pytest.mark.parametrize("begin", [0.0, -np.pi, 1.0])
+def test_bounds_of_one_period_are_a_circle(begin):
+    bounds = [(begin, begin + 2 * np.pi), (-2.0, 2.0)]
+    atlas = explored(
+        lambda u: [np.sin(u[0]) - u[1]], bounds, periods=[2 * np.pi, np.inf]
+    )
+    assert counts(atlas) == ([True], [], 0, 0)
+    assert atlas.forms[0].branch.winding.tolist() == [1, 0]
+
+
+def test_narrower_bounds_are_limits_on_a_circle():
+    bounds = [(2.0, 5.0), (-2.0, 2.0)]
+    atlas = explored(
+        lambda u: [np.sin(u[0]) - u[1]], bounds, periods=[2 * np.pi, np.inf]
+    )
+    assert counts(atlas) == ([False], [], 0, 0)
+    ends = atlas.forms[0].branch(np.array([0.0, atlas.forms[0].branch.length]))
+    assert sorted(ends[:, 0]) == pytest.approx([2.0, 5.0])
+
+
+# --- multiplicity and points of higher order ------------------------------------------
+
+
+@pytest.mark.parametrize("multiplicity", [2, 3])
+def test_a_multiple_curve_is_one_with_its_multiplicity(multiplicity):
+    atlas = explored(lambda u: [(u[0] ** 2 + u[1] ** 2 - 1.0) ** multiplicity])
+    assert counts(atlas) == ([True], [], 0, 0)
+    assert atlas.forms[0].multiplicity == multiplicity
+    again = bifurc.from_dataset(bifurc.to_dataset(atlas))
+    assert again.forms[0].multiplicity == multiplicity
+
+
+def test_a_multiple_curve_has_the_crossings_of_the_simple_one():
+    atlas = explored(lambda u: [lemniscate(1.0)(u)[0] ** 2])
+    assert counts(atlas) == ([True], ["bifurcation"], 0, 0)
+
+
+def test_a_ramphoid_cusp_is_one_point_where_the_exact_equations_have_it():
+    atlas = explored(lambda u: [(u[1] - u[0] ** 2) ** 2 - u[0] ** 5])
+    (point,) = atlas.points
+    assert point.kind is bifurc.Kind.CUSP
+    assert np.linalg.norm(point.point.u) < 1e-7
+
+
+def test_a_contact_of_high_order_is_one_bifurcation():
+    atlas = explored(lambda u: [u[1] ** 2 - u[0] ** 8])
+    assert counts(atlas) == ([False, False], ["bifurcation"], 0, 0)
+    assert len(atlas.points[0].point.half_branches) == 4
+
+
+def test_one_branch_passes_where_its_curvature_is_infinite():
+    atlas = explored(lambda u: [u[0] ** 5 - u[1] ** 3])
+    assert counts(atlas) == ([False], ["rank drop"], 0, 0)
+    assert len(atlas.points[0].passes) == 1
+
+
+def test_crossings_next_to_each_other_have_their_own_half_branches():
+    atlas = explored(lambda u: [u[1] * (u[1] - 1e-3) * (u[0] ** 2 + u[1] ** 2 - 1.0)])
+    assert counts(atlas)[1] == ["bifurcation"] * 4
+    assert all(len(point.point.half_branches) == 4 for point in atlas.points)
+
+
+# --- classes with answers of their own, and many unknowns -----------------------------
+
+
+class Hyperbola(bifurc.FunctionProblem):
+    """x y = (size / 10)^2 within 2 sizes, with a bound on F'' and an audit."""
+
+    def __init__(self, size):
+        gap = 0.01 * size**2
+        super().__init__(lambda u: [u[0] * u[1] - gap], [(-2 * size, 2 * size)] * 2)
+        self.audited = []
+
+    def hessian(self, point):
+        return np.array([[[0.0, 1.0], [1.0, 0.0]]])
+
+    def curvature_bound(self):
+        return 1.0 / self.magnitude
+
+    def complex_curvature(self, reach):
+        return np.full_like(reach, 1.0 / self.magnitude)
+
+    def seeds(self, rng, count):
+        def audit(branches, seconds):
+            self.audited.extend(branches)
+            return Audit(bifurc.Level.PROVED, "nothing is missing", np.empty((0, 2)))
+
+        return replace(super().seeds(rng, count), audit=audit)
+
+
+@pytest.mark.parametrize("size", [1e-5, 1.0, 1e6])
+def test_what_a_class_answers_in_its_own_way_counts_in_any_unit(size):
+    problem = Hyperbola(size)
+    settings = bifurc.SearchSettings(starts=40, certify=True)
+    atlas = bifurc.explore(problem, settings=settings)
+    assert counts(atlas) == ([False, False], [], 0, 0)
+    assert atlas.completeness.level is bifurc.Level.PROVED
+    for branch in problem.audited:
+        assert np.abs(problem.residuals(branch.sample(9))).max() < 1e-12 * size**2
+    for form in atlas.forms:
+        assert form.certificate.status is CertificateStatus.CERTIFIED
+        assert form.certificate.bound == pytest.approx(problem.curvature_bound())
+
+
+@pytest.mark.parametrize("size", [1e-5, 1e5])
+def test_a_hessian_of_a_class_is_restated(size):
+    problem = Hyperbola(size)
+    own = in_own_units(problem)
+    point = np.array([0.3, 0.2])
+    exact = bifurc.FunctionProblem.hessian(own, point)
+    assert own.hessian(point) == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_class_with_a_march_of_its_own_stays_as_it_is():
+    class Marching(bifurc.FunctionProblem):
+        def march(self, start, tangent, settings):
+            return super().march(start, tangent, settings)
+
+    assert in_own_units(Marching(circle(1e3), [(-2e3, 2e3)] * 2)) is None
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_many_unknowns_are_counted_in_one_unit_with_a_sparse_jacobian(is_recorded):
+    n, size = 120, 1e6
+
+    def function(u):
+        first = [u[0] ** 2 + u[1] ** 2 - size**2]
+        return np.concatenate([first, u[2:] - 0.5 * u[1:-1]])
+
+    def jacobian(u):
+        own = diags_array([-0.5, 1.0], offsets=[1, 2], shape=(n - 2, n))
+        first = np.concatenate([2 * u[:2], np.zeros(n - 2)])
+        return vstack([first[None], own]).tocsc()
+
+    problem = bifurc.FunctionProblem(
+        function,
+        [(-2 * size, 2 * size)] * n,
+        jacobian=jacobian,
+        is_recorded=is_recorded,
+    )
+    own = in_own_units(problem)
+    unit = 2.0**20
+    assert np.all(own.own_units.sizes == unit)
+    point = np.linspace(-1.0, 1.0, n)
+    assert np.array_equal(own.residuals(point)[0], problem.residuals(unit * point)[0])
+    expected = unit * problem.jacobian(unit * point).toarray()
+    assert own.jacobian(point).toarray() == pytest.approx(expected, rel=1e-12)
+    assert own.magnitude == unit * problem.magnitude
