@@ -33,7 +33,7 @@ def test_bars_that_are_just_long_enough_do_not_move():
     atlas = linkages.map_linkage(stretched(), settings=QUICK)
     assert not atlas.forms
     assert not atlas.surfaces
-    assert len(atlas.singular_points) + len(atlas.rigid) == 1
+    assert len(atlas.points) + len(atlas.rigid) == 1
 
 
 @pytest.mark.parametrize("length", [SHORTEST, LONGEST])
