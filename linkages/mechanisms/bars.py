@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -370,7 +371,8 @@ def _joints(system: _Bars, places: Mapping[str, complex]) -> list[Joint]:
 def _bodies(system: _Bars, places: Mapping[str, complex]) -> dict[str, list[str]]:
     """The points on every body, the frame first.
 
-    A bar between two points of one body is rigid with it, and no body of its own.
+    A bar between two points of one body is rigid with it, and no body of its own,
+    wherever it stands in the list.
     """
     bodies: dict[str, list[str]] = {}
     if system.fixed:
@@ -380,15 +382,36 @@ def _bodies(system: _Bars, places: Mapping[str, complex]) -> dict[str, list[str]
         length = abs(places[bar.end] - places[bar.start])
         if length == 0.0:
             raise GeometryError(f"bar {bar.name}", "of length 0", "longer")
-        if any({bar.start, bar.end} <= set(points) for points in bodies.values()):
-            continue
         bodies[bar.name] = [bar.start, bar.end]
-        _add_points_on(bodies, system)
+    _add_points_on(bodies, system)
+    bodies = _without_parts(bodies, system, places)
     for name, one in system.on_bars.items():
         if not any(name in points for points in bodies.values()):
             ends = f"{one.start} and {one.end}"
             allowed = f"on a bar; there is none between {ends}"
             raise GeometryError(f"points_on_bars {name}", f"{ends}", allowed)
+    return bodies
+
+
+def _without_parts(
+    bodies: dict[str, list[str]], system: _Bars, places: Mapping[str, complex]
+) -> dict[str, list[str]]:
+    """The bodies, those that share two points or more at different places as one.
+
+    That is called as the frame is, or as the one with the most points, so that it does
+    not depend on the order of the bars.
+    """
+    ranked = sorted(bodies, key=lambda name: (name != FRAME, -len(bodies[name])))
+    for first, second in combinations(ranked, 2):
+        common = [point for point in bodies[first] if point in bodies[second]]
+        if len({places[point] for point in common}) < 2:
+            continue
+        joined = dict(bodies)
+        others = joined.pop(second)
+        new = [point for point in others if point not in joined[first]]
+        joined[first] = joined[first] + new
+        _add_points_on(joined, system)
+        return _without_parts(joined, system, places)
     return bodies
 
 

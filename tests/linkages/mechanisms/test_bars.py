@@ -66,3 +66,16 @@ def test_the_gap_that_is_told_is_the_smallest(length):
         four_bar(length)
     told = float(str(error.value).rsplit(" ", 1)[1])
     assert told == pytest.approx(least, rel=1e-2)
+
+
+@pytest.mark.parametrize("fixed", [["A", "D"], ["A", "P", "D"], ["A", "P"]])
+def test_bodies_do_not_depend_on_the_order_of_the_bars(fixed):
+    bars = [["A", "B"], ["B", "C"], ["C", "D"], ["P", "A"], ["P", "B"], ["D", "A"]]
+    on_bars = {"P": ["A", "B", [0.5, 0.3]]}
+    counts = set()
+    for shift in range(len(bars)):
+        turned = bars[shift:] + bars[:shift]
+        content = {"fixed": fixed, "bars": turned, "points": POINTS}
+        mechanism = read_bars({**content, "points_on_bars": on_bars}, "four-bar")
+        counts.add((frozenset(mechanism.bodies), mechanism.gruebler))
+    assert len(counts) == 1

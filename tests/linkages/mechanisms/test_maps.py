@@ -10,6 +10,7 @@ from bifurc.atlas import Atlas
 from bifurc.branch import Outcome
 from bifurc.search.settings import SearchSettings
 from bifurc.singular.point import Kind
+from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
@@ -280,3 +281,14 @@ def test_a_leg_between_two_fixed_points_is_rigid_with_its_slide_at_a_limit(limit
     )
     atlas = linkages.map_linkage(Mechanism(joints), settings=FEW)
     assert counts(atlas) == (0, [], [], 1)
+
+
+def test_a_form_that_ends_at_limits_makes_no_turns():
+    first = replace(slider_crank(2.0).joints[0], limits=((-3.0, 3.2),))
+    mechanism = Mechanism((first, *slider_crank(2.0).joints[1:]))
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    readout = Readout(mechanism)
+    for index, form in enumerate(atlas.forms):
+        assert not form.branch.closed
+        ranges = form_facts(atlas, index, readout).ranges
+        assert [one.turns for one in ranges] == [0] * len(ranges)
