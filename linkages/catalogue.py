@@ -36,6 +36,8 @@ class UnknownLinkageError(BifurcError, KeyError):
         super().__init__(name)
 
     def __str__(self) -> str:
+        if self.name.endswith(".toml"):
+            return f"{self.name}: a name of the catalogue is needed here, and no file"
         hint = "no name is like it"
         if self.nearest:
             hint = "the nearest names are " + ", ".join(self.nearest)

@@ -129,9 +129,9 @@ is_bar_assembled = Decision(
     "assembled bars",
     "bars have the lengths that are given for them",
     "largest difference of a length, over the extent of the points",
-    1e-11,
-    "the rounding of coordinates; least squares converge to 1e-15 where bars can be "
-    "assembled",
+    1e-13,
+    "the rounding of coordinates: bars that can be assembled are to 1e-15, singular "
+    "assemblies among them",
 )
 is_dependent_constraint = Decision(
     "redundant constraint",

@@ -136,8 +136,8 @@ def trace_near_motion(
     )
     place = _clearest(valley, places, missed)
     branch = trace_branch(valley, place, None, settings)
-    if not len(branch.pieces):
-        return None
+    if not len(branch.pieces) or is_same_point(branch.length, problem.scale):
+        return None  # it leaves the region where it begins
     course = _course(valley, branch, settings.tolerance)
     points, heights = course.extremes()
     return NearMotionTrace(

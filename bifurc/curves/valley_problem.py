@@ -133,7 +133,12 @@ class ValleyProblem(NumericalProblem):
         return excess
 
     def missed(self, points: np.ndarray) -> np.ndarray:
-        """What points (k, n) miss where the valley is not single (k,), else 0."""
+        """What points (k, n) miss where the valley is not single (k,), else 0.
+
+        A single unknown is its own valley: there is nothing across it.
+        """
+        if self.rank == 0:
+            return np.zeros(len(points))
         at = decompose(self.of, points)
         gaps = np.linalg.norm(at.residuals, axis=1)
         squares = np.maximum(at.sigma[:, self.rank - 1], TINY) ** 2
@@ -145,6 +150,8 @@ class ValleyProblem(NumericalProblem):
 
     def clearness(self, point: np.ndarray) -> float:
         """How far a point (n,) is from where the valley may split, negative within."""
+        if self.rank == 0:
+            return np.inf
         at = decompose(self.of, point[None])
         gap = max(float(np.linalg.norm(at.residuals[0])), TINY)
         square = float(at.sigma[0, self.rank - 1]) ** 2

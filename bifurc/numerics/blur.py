@@ -135,8 +135,11 @@ def distance_to_singular(
     V are as many weakest directions and W what the other ones leave of the equations:
     on V the largest of those singular values changes at the rate |W^T F''(V, V)|. On a
     surface both vanish, and beside one both are small: it is their quotient that tells.
+    Infinite where there are fewer unknowns than the nullity.
     """
     weakest = problem.n - nullity
+    if weakest < 0:
+        return np.inf
     decomposition = decompose(problem, point[None])
     if decomposition.sigma.shape[1] <= weakest:
         return 0.0

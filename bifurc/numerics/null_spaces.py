@@ -141,8 +141,10 @@ class Decomposition:
         sigma_i.
 
         They go across the null space and not along it. A singular value below ``floor``
-        times the largest is taken for that.
+        times the largest is taken for that, and where there are fewer equations than the
+        rank, so is what none of them says anything of.
         """
+        rank = min(rank, self.sigma.shape[1])
         left = self.left[:, :, :rank]
         sigma = self.sigma[:, :rank]
         right = self.right[:, :rank]

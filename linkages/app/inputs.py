@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from linkages.app.choice import read_number, split_parameter
 from linkages.app.exit_codes import CommandError
 from linkages.linkage import Linkage
+from linkages.loop import GeometryError
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -29,8 +30,9 @@ class Inputs:
 def with_inputs(
     text: str, linkage: Linkage | Mechanism, locks: Sequence[str], driver: str | None
 ) -> Inputs:
-    """The mechanism called ``text`` with the ``locks``, each "J=40", in degrees or in
-    the unit of the file, and what else has to be held for one joint to drive it.
+    """The mechanism called ``text`` with the ``locks``, each "J=40", angles in
+    degrees, and slides in the file's unit of length, and what else has to be held for
+    one joint to drive it.
 
     Raises `CommandError` for a linkage that takes none, `GeometryError` for a joint
     that it does not have.
@@ -111,4 +113,22 @@ def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
             raise CommandError(f"--lock {label}: it is given twice")
         number = read_number(label, value, "--lock")
         values[label] = math.radians(number) if is_turn.get(label) else number
+    _check_limits(mechanism, values)
     return values
+
+
+def _check_limits(mechanism: Mechanism, values: dict[str, float]) -> None:
+    """Raise `GeometryError`, in degrees, for a lock outside the limits of a file."""
+    for one in mechanism.variables:
+        value = values.get(one.label)
+        if value is None or one.limits is None:
+            continue
+        low, high = one.limits
+        if low <= value <= high:
+            continue
+        unit = math.radians(1.0) if one.motion.is_turn else 1.0
+        word = " deg" if one.motion.is_turn else ""
+        allowed = f"within its limits {low / unit:.10g} to {high / unit:.10g}{word}"
+        raise GeometryError(
+            f"--lock {one.label}", f"{value / unit:.10g}{word}", allowed
+        )

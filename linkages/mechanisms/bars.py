@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -22,7 +23,10 @@ __all__ = ["read_bars"]
 Content: TypeAlias = Mapping[str, Any]
 
 FRAME = "frame"
-POLISHING_STEPS = 5
+POLISHING_STEPS = 12
+EPSILON = float(np.finfo(float).eps)
+ROUNDING = 16 * EPSILON  # of a length, over the extent
+NEAR_SINGULAR = 1e-3  # singular value, and way to the singular assembly, to look for it
 RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 TINY = 1e-300  # length of a bar that has none
 
@@ -177,7 +181,7 @@ def _assembled(system: _Bars) -> dict[str, complex]:
     places = _places(system, system.points)
     size = max(abs(place - next(iter(places.values()))) for place in places.values())
     misfit = np.abs(_misfits(system, places)).max(initial=0.0)
-    if misfit == 0.0 or is_bar_assembled(float(misfit), size):
+    if misfit == 0.0:
         return places
     free = [name for name in system.points if name not in system.fixed]
     places = _least_squares(system, free)
@@ -210,16 +214,54 @@ def _least_squares(system: _Bars, free: Sequence[str]) -> dict[str, complex]:
     from scipy.optimize import least_squares
 
     shape = _Shape(system, free)
-    start = np.array([system.points[name] for name in free])
-    solution = least_squares(shape.gaps, _pairs(start), shape.derivatives).x
-    for _ in range(POLISHING_STEPS):
-        step = np.linalg.lstsq(
-            shape.derivatives(solution), -shape.gaps(solution), rcond=RANK
-        )[0]
-        solution = solution + step
+    start = _pairs(np.array([system.points[name] for name in free]))
+    exact = {"ftol": EPSILON, "xtol": EPSILON, "gtol": EPSILON}
+    solution = least_squares(shape.gaps, start, shape.derivatives, **exact).x
+    solution = _polished(shape, solution)
     moved = zip(free, _complex_numbers(solution), strict=True)
     points = dict(system.points) | {name: complex(place) for name, place in moved}
     return _places(system, points)
+
+
+def _polished(shape: _Shape, solution: np.ndarray) -> np.ndarray:
+    """The places (2 k,) with the gaps of a ``solution`` or with smaller ones.
+
+    Newton's method closes gaps to rounding where the assembly is regular. Where it is
+    singular, as with bars that are just long enough, gaps of 1e-16 leave points 1e-8
+    beside it, and the bars would have a motion of that size: there the singular
+    assembly itself is solved for.
+    """
+    for _ in range(POLISHING_STEPS):
+        slope = shape.derivatives(solution)
+        gaps = shape.gaps(solution)
+        trial = solution - np.linalg.lstsq(slope, gaps, rcond=RANK)[0]
+        if not np.linalg.norm(shape.gaps(trial)) < np.linalg.norm(gaps):
+            break
+        solution = trial
+    singular = _singular_assembly(shape, solution)
+    return solution if singular is None else singular
+
+
+def _singular_assembly(shape: _Shape, near: np.ndarray) -> np.ndarray | None:
+    """The assembly (2 k,) next to ``near`` in which the bars carry a stress without
+    load; None where there is none.
+
+    Solves gaps = 0, J^T stress = 0, |stress| = 1 for places and stress: regular where
+    the assembly is isolated, although J is singular.
+    """
+    left, sigma, _ = np.linalg.svd(shape.derivatives(near))
+    if len(sigma) < len(left) or sigma[-1] > NEAR_SINGULAR * sigma[0]:
+        return None
+    count = len(near)
+    unknowns = np.append(near, left[:, -1])
+    for _ in range(POLISHING_STEPS):
+        values, slope = shape.stressed(unknowns[:count], unknowns[count:])
+        unknowns = unknowns - np.linalg.lstsq(slope, values, rcond=RANK)[0]
+    places = unknowns[:count]
+    size = float(np.abs(near).max() + shape.lengths.max())
+    is_near = float(np.linalg.norm(places - near)) < NEAR_SINGULAR * size
+    is_closed = float(np.abs(shape.gaps(places)).max()) < ROUNDING * size
+    return places if is_near and is_closed else None
 
 
 def _pairs(numbers: np.ndarray) -> np.ndarray:
@@ -271,6 +313,33 @@ class _Shape:
         derivatives[:, 1::2] = -rates.imag
         return derivatives
 
+    def stressed(
+        self, values: np.ndarray, stress: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The values (b + 2 k + 1,) of the gaps, J^T stress and |stress|^2 - 1, and
+        their derivatives by the places (2 k,) and the ``stress`` (b,)."""
+        slope = self.derivatives(values)
+        residuals = [self.gaps(values), slope.T @ stress, [stress @ stress - 1.0]]
+        bars, count = slope.shape
+        derivatives = np.zeros((bars + count + 1, count + bars))
+        derivatives[:bars, :count] = slope
+        derivatives[bars:-1, :count] = self._bending(values, stress)
+        derivatives[bars:-1, count:] = slope.T
+        derivatives[-1, count:] = 2.0 * stress
+        return np.concatenate(residuals), derivatives
+
+    def _bending(self, values: np.ndarray, stress: np.ndarray) -> np.ndarray:
+        """The second derivatives (2 k, 2 k) of the lengths, weighted with a ``stress``
+        (b,): a length grows with the square of the motion across its bar."""
+        along = self._along(values)
+        lengths = np.maximum(np.abs(along), TINY)
+        across = (1j * np.conj(along) / lengths)[:, None] * self.factors
+        rates = np.empty((len(along), 2 * self.factors.shape[1]))
+        rates[:, ::2] = across.real
+        rates[:, 1::2] = -across.imag
+        bending: np.ndarray = rates.T @ ((stress / lengths)[:, None] * rates)
+        return bending
+
 
 def _vectors(system: _Bars, points: Mapping[str, complex]) -> np.ndarray:
     """The vectors (b,) along all bars, as complex numbers."""
@@ -302,7 +371,8 @@ def _joints(system: _Bars, places: Mapping[str, complex]) -> list[Joint]:
 def _bodies(system: _Bars, places: Mapping[str, complex]) -> dict[str, list[str]]:
     """The points on every body, the frame first.
 
-    A bar between two points of one body is rigid with it, and no body of its own.
+    A bar between two points of one body is rigid with it, and no body of its own,
+    wherever it stands in the list.
     """
     bodies: dict[str, list[str]] = {}
     if system.fixed:
@@ -312,15 +382,36 @@ def _bodies(system: _Bars, places: Mapping[str, complex]) -> dict[str, list[str]
         length = abs(places[bar.end] - places[bar.start])
         if length == 0.0:
             raise GeometryError(f"bar {bar.name}", "of length 0", "longer")
-        if any({bar.start, bar.end} <= set(points) for points in bodies.values()):
-            continue
         bodies[bar.name] = [bar.start, bar.end]
-        _add_points_on(bodies, system)
+    _add_points_on(bodies, system)
+    bodies = _without_parts(bodies, system, places)
     for name, one in system.on_bars.items():
         if not any(name in points for points in bodies.values()):
             ends = f"{one.start} and {one.end}"
             allowed = f"on a bar; there is none between {ends}"
             raise GeometryError(f"points_on_bars {name}", f"{ends}", allowed)
+    return bodies
+
+
+def _without_parts(
+    bodies: dict[str, list[str]], system: _Bars, places: Mapping[str, complex]
+) -> dict[str, list[str]]:
+    """The bodies, those that share two points or more at different places as one.
+
+    That is called as the frame is, or as the one with the most points, so that it does
+    not depend on the order of the bars.
+    """
+    ranked = sorted(bodies, key=lambda name: (name != FRAME, -len(bodies[name])))
+    for first, second in combinations(ranked, 2):
+        common = [point for point in bodies[first] if point in bodies[second]]
+        if len({places[point] for point in common}) < 2:
+            continue
+        joined = dict(bodies)
+        others = joined.pop(second)
+        new = [point for point in others if point not in joined[first]]
+        joined[first] = joined[first] + new
+        _add_points_on(joined, system)
+        return _without_parts(joined, system, places)
     return bodies
 
 

@@ -93,7 +93,7 @@ def _rank(matrix: np.ndarray) -> int:
 class VariableRange:
     """The range of a variable along a form, from ``low`` to ``high`` (rad, the user's
     unit) as it is followed from where its angle lies between -pi and pi, and its
-    ``turns``, where the form is closed."""
+    ``turns``, 0 where the form is not closed."""
 
     label: str
     low: float
@@ -123,14 +123,17 @@ def form_facts(atlas: Atlas, index: int, readout: Readout) -> FormFacts:
         problem = MechanismClosure(readout.mechanism)
         rounding = change_by_rounding(problem, branch)
     groups = _groups(readout, samples, unit_over_rounding(keeps_angle, rounding))
-    return FormFacts(_ranges(readout, points), _still(readout, groups), groups)
+    ranges = _ranges(readout, points, branch.closed)
+    return FormFacts(ranges, _still(readout, groups), groups)
 
 
-def _ranges(readout: Readout, points: np.ndarray) -> tuple[VariableRange, ...]:
+def _ranges(
+    readout: Readout, points: np.ndarray, is_closed: bool
+) -> tuple[VariableRange, ...]:
     """The ranges of all variables at ``points`` (k, n) of a form, of which the first
-    two are its ends."""
+    two are its ends; turns are 0 where it is not closed."""
     values = readout.values(points)
-    travel = whole_turns(values[1] - values[0], readout.periods)
+    travel = whole_turns(values[1] - values[0], readout.periods) * is_closed
     begin = wrap(values[0], readout.periods)
     values = values + (begin - values[0])
     lowest, highest = values.min(axis=0), values.max(axis=0)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias
 
@@ -104,6 +104,7 @@ def _read_joint(number: int, table: object, unit: float) -> Joint:
     motions = joint.motions * (len(joint.bodies) - 1)
     limits = _read_limits(name, table.get("limits"), motions, unit)
     locked = _read_locked(name, table.get("locked"), motions, unit)
+    _check_locked(name, locked, limits, motions, unit)
     coupled = _read_coupled(name, table.get("coupled"), motions, unit)
     return replace(joint, limits=limits, locked=locked, coupled=coupled)
 
@@ -125,6 +126,8 @@ def _read_limits(
         if not isinstance(row, list) or len(row) != 2:
             raise GeometryError(what, quoted(given), allowed)
         low, high = _in_rad(what, row, motion, unit)
+        if not low < high:
+            raise GeometryError(what, row, "a smaller number and a larger one")
         limits.append((low, high))
     return tuple(limits)
 
@@ -141,6 +144,24 @@ def _read_locked(
         raise GeometryError(what, quoted(given), allowed)
     pairs = zip(values, motions, strict=True)
     return tuple(_in_rad(what, [value], motion, unit)[0] for value, motion in pairs)
+
+
+def _check_locked(
+    name: str,
+    locked: Sequence[float],
+    limits: Sequence[tuple[float, float] | None],
+    motions: Sequence[Motion],
+    unit: float,
+) -> None:
+    """Raise `GeometryError`, in the units of the file, for a lock outside limits."""
+    for value, pair, motion in zip(locked, limits, motions, strict=False):
+        if pair is None or pair[0] <= value <= pair[1]:
+            continue
+        factor = unit if motion.is_turn else 1.0
+        low, high = (f"{end / factor:.10g}" for end in pair)
+        given = f"{value / factor:.10g}"
+        allowed = f"within the limits [{low}, {high}]"
+        raise GeometryError(f"locked of joint {name}", given, allowed)
 
 
 def _read_coupled(

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Mechanism", "Pair", "Variable"]
 
+MIRROR = np.array([1.0, 1.0, -1.0])  # a vector in the plane z = 0
 FRAMES = ("frame", "ground", "base", "world")  # names of the body that is drawn at rest
 
 
@@ -311,7 +312,11 @@ def _coupling_times(
 
 def _mirrored(joint: Joint) -> Joint:
     """A joint in the mirror: a turn about the mirrored direction has the other sense,
-    so that the direction is turned round as well; slides go with theirs."""
+    so that the direction is turned round as well.
+
+    Where a variable of the mirror image is the negative one, so are its limits and the
+    value at which it is locked.
+    """
     x, y, z = joint.place
     turns = joint.kind not in (JointKind.PRISMATIC, JointKind.PLANAR)
     sign = -1.0 if turns else 1.0
@@ -321,13 +326,35 @@ def _mirrored(joint: Joint) -> Joint:
             return None
         return (sign * vector[0], sign * vector[1], -sign * vector[2])
 
-    return replace(
+    image = replace(
         joint,
         point=None if joint.point is None else (x, y, -z),
         direction=reflected(joint.direction),
         second_direction=reflected(joint.second_direction),
         pitch=None if joint.pitch is None else -joint.pitch,
+        limits=(),
+        locked=(),
     )
+    pairs = zip(joint.motions, image.motions, strict=True)
+    signs = [_sign_in_mirror(*pair) for pair in pairs] * (len(joint.bodies) - 1)
+    limits = [
+        pair if pair is None or sign > 0 else (-pair[1], -pair[0])
+        for sign, pair in zip(signs, joint.limits, strict=True)
+    ]
+    locked = [
+        None if value is None else sign * value
+        for sign, value in zip(signs, joint.locked, strict=True)
+    ]
+    return replace(image, limits=tuple(limits), locked=tuple(locked))
+
+
+def _sign_in_mirror(motion: Motion, image: Motion) -> float:
+    """+1.0 where the ``image`` of a motion in the plane z = 0 moves as its mirror image
+    does, -1.0 where it moves against it."""
+    expected = MIRROR * motion.direction
+    if motion.is_turn:
+        expected = -expected
+    return 1.0 if float(expected @ image.direction) > 0 else -1.0
 
 
 def _signs_in_mirror(joint: Joint) -> list[float]:

@@ -66,7 +66,7 @@ class Readout:
             self.structure.values(unknowns, number)
             for number in range(len(self.mechanism.variables))
         ]
-        return np.array(columns, dtype=float).reshape(len(columns), -1).T
+        return np.array(columns, dtype=float).reshape(len(columns), len(unknowns)).T
 
     def wrapped(self, point: np.ndarray) -> np.ndarray:
         """The values (v,) at one configuration (n,), angles between -pi and pi."""

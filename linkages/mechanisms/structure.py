@@ -115,6 +115,9 @@ class Structure:
         self.unit = self.size.characteristic_length
         if not self.unknowns:
             locked = "every one locked or rigid"
+            if self.idle_bodies:
+                idle = ", ".join(self.idle_bodies)
+                locked += f" but for {idle}, whose turning about its own line is idle,"
             raise GeometryError("joints", locked, "such that one is left to move")
 
     # --- bodies and pairs -------------------------------------------------------------

@@ -52,9 +52,9 @@ __all__ = ["map_command"]
     multiple=True,
     metavar="JOINT=VALUE",
     help=(
-        "Hold a joint of a mechanism at a value, in degrees or in the unit of its "
-        "file, or an outer joint of a network at a D-H angle; may be given several "
-        "times."
+        "Hold a joint of a mechanism at a value, an angle in degrees, whatever its "
+        "file counts in, a slide in the file's unit of length, or an outer joint of "
+        "a network at a D-H angle; may be given several times."
     ),
 )
 @click.option(

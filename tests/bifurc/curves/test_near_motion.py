@@ -166,3 +166,9 @@ def test_one_tolerance_decides_whether_a_curve_is_a_motion(error):
         assert len(atlas.near_motions) == 1
         assert atlas.closure_gap == atlas.near_motions[0].misclosure
         assert len(atlas.rigid) == 2
+
+
+def test_a_single_unknown_that_nearly_closes_everywhere_is_a_near_motion():
+    almost = FunctionProblem(lambda u: np.array([1e-9 + 0.0 * u[0]]), [(0.0, 1.0)])
+    atlas = explore(almost)
+    assert len(atlas.near_motions) == 1

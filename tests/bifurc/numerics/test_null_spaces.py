@@ -87,3 +87,9 @@ def test_a_step_where_a_singular_value_is_zero_has_a_finite_length():
     with np.errstate(all="raise"):
         length = np.linalg.norm(decomposition.newton_steps(rank=1), axis=1)[0]
     assert 1e100 < length < np.inf
+
+
+def test_newton_steps_of_a_higher_rank_than_there_are_equations_are_the_shortest():
+    line = FunctionProblem(lambda u: np.array([u[0] + u[1] - 1.0]), BOX[:2])
+    step = decompose(line, np.zeros((1, 2))).newton_steps(2)[0]
+    assert step == pytest.approx([0.5, 0.5], abs=1e-15)

@@ -148,3 +148,10 @@ def test_a_malformed_file_is_refused_by_name_and_value(number, tmp_path):
     text, message = list(MALFORMED.items())[number]
     with pytest.raises(LinkageFileError, match=message):
         read(tmp_path, text)
+
+
+def test_errors_of_limits_and_locks_are_in_the_unit_of_the_file(tmp_path):
+    with pytest.raises(LinkageFileError, match=r"120 .* within the limits \[-90, 90\]"):
+        read(tmp_path, four_bar("limits = [-90, 90]\nlocked = 120\n"))
+    with pytest.raises(LinkageFileError, match=r"limits of joint D: \[90, -90\]"):
+        read(tmp_path, four_bar("limits = [90, -90]\n"))

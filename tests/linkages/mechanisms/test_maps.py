@@ -10,6 +10,7 @@ from bifurc.atlas import Atlas
 from bifurc.branch import Outcome
 from bifurc.search.settings import SearchSettings
 from bifurc.singular.point import Kind
+from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
@@ -254,3 +255,40 @@ def test_the_seed_does_not_matter(seed):
     atlas = linkages.map_linkage(SAME["CRCR"], settings=FEW, seed=seed)
     assert counts(atlas) == (2, [Kind.BIFURCATION] * 2, [], 0)
     assert np.allclose(lengths(atlas), [12.861517, 20.497342], atol=1e-5)
+
+
+# A body that a spherical joint and one more joint hold on the frame, along z.
+@pytest.mark.parametrize("kind", ["revolute", "spherical"])
+def test_a_body_on_a_line_through_two_joints_turns_about_it(kind):
+    of_kind = {"direction": Z} if kind == "revolute" else {}
+    joints = (
+        Joint("a", "spherical", ("frame", "s"), (0, 0, 0)),
+        Joint("b", kind, ("s", "frame"), (0, 0, 1), **of_kind),
+    )
+    mechanism = Mechanism(joints)
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    assert counts(atlas) == (1, [], [], 0)
+    sample = atlas.forms[0].branch.sample(3)
+    assert set(Readout(mechanism).variables(sample[1])) >= {"a", "b"}
+
+
+@pytest.mark.parametrize("limits", [((0.0, 1.0),), ((-1.0, 0.0),)])
+def test_a_leg_between_two_fixed_points_is_rigid_with_its_slide_at_a_limit(limits):
+    joints = (
+        Joint("a", "spherical", ("frame", "x"), (0, 0, 0)),
+        Joint("b", "prismatic", ("x", "y"), direction=Z, limits=limits),
+        Joint("c", "spherical", ("y", "frame"), (0, 0, 1)),
+    )
+    atlas = linkages.map_linkage(Mechanism(joints), settings=FEW)
+    assert counts(atlas) == (0, [], [], 1)
+
+
+def test_a_form_that_ends_at_limits_makes_no_turns():
+    first = replace(slider_crank(2.0).joints[0], limits=((-3.0, 3.2),))
+    mechanism = Mechanism((first, *slider_crank(2.0).joints[1:]))
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    readout = Readout(mechanism)
+    for index, form in enumerate(atlas.forms):
+        assert not form.branch.closed
+        ranges = form_facts(atlas, index, readout).ranges
+        assert [one.turns for one in ranges] == [0] * len(ranges)

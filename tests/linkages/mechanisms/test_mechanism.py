@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from linkages.loop import GeometryError
+from linkages.mechanisms.displacements import displacement_of
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -126,3 +127,54 @@ def test_bodies_that_do_not_hang_together_are_named():
     ]
     with pytest.raises(GeometryError, match=r"bodies: coupler2, .* joined to"):
         Mechanism((*four_bar().joints, *second))
+
+
+FULL = {"point": (0.3, -0.2, 0.4), "direction": (0.3, 0.5, -0.7)}
+TWO = ("frame", "body")
+
+
+@pytest.mark.parametrize(
+    "joint",
+    [
+        Joint("J", "revolute", TWO, **FULL),
+        Joint("J", "prismatic", TWO, direction=FULL["direction"]),
+        Joint("J", "cylindrical", TWO, **FULL),
+        Joint("J", "cylindrical", ("frame", "body", "third"), **FULL),
+        Joint("J", "helical", TWO, **FULL, pitch=0.3),
+        Joint("J", "universal", TWO, **FULL, second_direction=(1, 0, 0)),
+        Joint("J", "planar", TWO, **FULL),
+        Joint("J", "planar", TWO, **FULL, second_direction=(1, 2, 0)),
+        Joint("J", "planar", TWO, direction=(0, 0, 1)),
+    ],
+    ids=lambda joint: f"{joint.kind} of {len(joint.bodies)}",
+)
+def test_a_joint_in_the_mirror_is_locked_where_the_mirror_image_is(joint):
+    values = tuple(0.1 + 0.2 * k for k in range(len(joint.parts)))
+    limits = tuple((value - 0.05, value + 0.5) for value in values)
+    locked = replace(joint, locked=values, limits=limits)
+    mirror = np.diag([1.0, 1.0, -1.0, 1.0])
+    for number in range(len(joint.bodies) - 1):
+        own = placed(locked, number)
+        image = placed(mirror_image(locked), number)
+        assert image == pytest.approx(mirror @ own @ mirror, abs=1e-14)
+    for value, pair in zip(
+        mirror_image(locked).locked, mirror_image(locked).limits, strict=True
+    ):
+        assert min(abs(value - pair[0]), abs(value - pair[1])) == pytest.approx(0.05)
+    twice = mirror_image(mirror_image(locked))
+    assert np.allclose(twice.locked, values)
+    assert np.allclose(twice.limits, limits)
+
+
+def mirror_image(joint):
+    return with_joint(joint).mirrored().joints[0]
+
+
+def with_joint(joint):
+    """A mechanism of a joint and a rigid one between the same bodies."""
+    return Mechanism((joint, Joint("K", "rigid", joint.bodies)))
+
+
+def placed(joint, number):
+    """The transform (4, 4) of a body of a locked joint from the reference."""
+    return displacement_of(with_joint(joint), number)
