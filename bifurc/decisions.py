@@ -315,12 +315,20 @@ is_zero_along = Decision(
     third_answer="a curve with a value from this to 1e-9 may be a part of a surface, and "
     "that is said",
 )
-is_shaky = Decision(
+may_be_shaky = Decision(
     "lower rank at a seed",
-    "a direction belongs to the null space of F' on a double curve",
+    "a seed may lie on a curve along which the rank is lower, which is then looked for",
     "singular value",
     1e-5,
     "seeds reach a double curve to half the digits, 1e-8, and with few more steps less",
+    Role.LOOK,
+)
+is_shaky = Decision(
+    "lower rank beside a seed",
+    "the rank is lower at what a small sphere shows of the curve through a seed, too",
+    "smallest regular singular value there",
+    1e-5,
+    "the sphere is a hundredth of the scale: on another curve the value grows with it",
 )
 may_be_scaled_down = Decision(
     "weak equation",

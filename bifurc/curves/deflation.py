@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bifurc.decisions import is_shaky
+from bifurc.decisions import is_shaky, may_be_shaky
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
@@ -138,7 +138,7 @@ def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | No
     no higher rank on either.
     """
     sigma, right = null_spaces(problem, point[None])
-    if np.count_nonzero(is_shaky(sigma[0])) != 2:
+    if np.count_nonzero(may_be_shaky(sigma[0])) != 2:
         return None
     null_space = right[0, problem.n - 2 :].T
     cut = section(problem, point, null_space, SECTION_RADIUS * problem.scale)
