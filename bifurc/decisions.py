@@ -598,6 +598,8 @@ is_back = Decision(
     "known of the place, or F' times it over thirty times the tolerance of the pieces",
     1.0,
     "it is a hundredth of this; other turns of a curve are farther away",
+    third_answer="a curve that goes on and passes the same places again is not certified, "
+    "and in doubt",
 )
 is_nearly_back = Decision(
     "closed near motion",
