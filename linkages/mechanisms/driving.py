@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.decisions import is_start_solved
 from linkages.decisions import is_dependent_constraint
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.closure import MechanismClosure
@@ -11,13 +12,18 @@ from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["joints_to_hold"]
 
+STARTS = 20  # next to the reference configuration
+NEARBY = 0.1  # rad or characteristic lengths
+AWAY = 1e-3  # of a driver that moves; where it is stopped, starts end 1e-5 beside
+
 
 def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
     """Variables, by label, with the values in the reference configuration at which they
     are held, so that the variable ``driver`` moves the rest with mobility 1.
 
     They are the first ones, in the order of the joints, that can be held. Nothing is
-    held where the mobility is 1 already. Raises `GeometryError` for a driver that is no
+    held where the mobility is 1 already. What moves is seen at a regular configuration,
+    next to the reference configuration where that is singular. Raises `GeometryError` for a driver that is no
     free variable or stands still.
     """
     problem = MechanismClosure(mechanism)
@@ -30,9 +36,12 @@ def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
         raise GeometryError("drive", quoted(driver), allowed)
     points, _ = problem.project(problem.reference[None])
     motions = _null_space(problem.jacobians(points)[0])
+    regular = _motions_near(problem, points[0])
+    is_singular = regular.shape[1] < motions.shape[1]
+    motions = regular
     row = columns[driver]
     if _stands_still(motions[row]):
-        allowed = "a joint that moves in the reference configuration"
+        allowed = "a joint that moves next to the reference configuration"
         raise GeometryError("drive", quoted(driver), allowed)
     held: dict[str, float] = {}
     for column, label in enumerate(labels):
@@ -41,11 +50,50 @@ def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
         if column == row or _stands_still(motions[column]):
             continue
         left = motions @ _null_space(motions[column][None])
-        if not _stands_still(left[row]):
-            motions = left
-            value = float(points[0, column] * problem.structure.scales[column])
-            held[label] = value
+        if _stands_still(left[row]):
+            continue
+        value = float(points[0, column] * problem.structure.scales[column])
+        if is_singular and not _moves(mechanism, held | {label: value}, driver):
+            continue
+        motions = left
+        held[label] = value
     return held
+
+
+def _motions_near(problem: MechanismClosure, point: np.ndarray) -> np.ndarray:
+    """An orthonormal basis (n, k) of the motions at a regular configuration: ``point``
+    (n,) where it is one, else a configuration next to it.
+
+    A singular one has motions to first order that lead nowhere: fewer motions next to
+    it tell it.
+    """
+    ends = _next_to(problem, point)
+    motions = _null_space(problem.jacobians(point[None])[0])
+    for jacobian in problem.jacobians(ends):
+        others = _null_space(jacobian)
+        if 0 < others.shape[1] < motions.shape[1]:
+            motions = others
+    return motions
+
+
+def _next_to(problem: MechanismClosure, point: np.ndarray) -> np.ndarray:
+    """Closed configurations (k, n) next to a point (n,)."""
+    rng = np.random.default_rng(0)
+    starts = point + NEARBY * rng.normal(size=(STARTS, problem.n))
+    ends, gaps = problem.project(starts)
+    closed: np.ndarray = ends[is_start_solved(gaps) & (problem.excess(ends) <= 0.0)]
+    return closed
+
+
+def _moves(mechanism: Mechanism, held: dict[str, float], driver: str) -> bool:
+    """Whether a driver leaves the reference configuration with these variables held: at
+    a singular one a joint may be held where it stops the others."""
+    problem = MechanismClosure(mechanism.with_locks(held))
+    column = [unknown.label for unknown in problem.structure.unknowns].index(driver)
+    points, _ = problem.project(problem.reference[None])
+    ends = _next_to(problem, points[0])
+    way = np.abs(problem.difference(ends, points[0]))[:, column]
+    return bool(np.any(way > AWAY))
 
 
 def _null_space(matrix: np.ndarray) -> np.ndarray:

@@ -185,3 +185,18 @@ def test_all_joints_locked_leave_nothing_to_map(folder):
     locks = [word for joint in "ABCDE" for word in ("--lock", f"{joint}=0")]
     result = run("map", "five_bar.toml", *locks, code=2)
     assert "one is left to move" in result.stderr
+
+
+def test_a_lock_is_in_degrees_also_where_the_file_counts_in_radians(folder):
+    text = 'angles = "rad"\n' + SLIDER_CRANK
+    text = text.replace('["frame", "crank"]', '["frame", "crank"]\nlimits = [-1, 1]')
+    Path("in_radians.toml").write_text(text, encoding="utf-8")
+    result = run("map", "in_radians.toml", "--lock", "J1=90", code=2)
+    assert "90 deg" in result.stderr
+    assert "-57.29577951 to 57.29577951 deg" in result.stderr
+
+
+@pytest.mark.parametrize("command", ["verify", "sweep"])
+def test_a_command_on_names_says_that_it_takes_no_file(folder, command):
+    result = run(command, "slider_crank.toml", code=2)
+    assert "a name of the catalogue is needed here, and no file" in result.stderr
