@@ -94,7 +94,7 @@ export class BranchChoice {
 /** The configuration of a surface nearest to a singular point. */
 function surfaceAt(tracks, unknowns, k, point) {
   const track = tracks.filter((candidate) => candidate.kind === "surface")[k];
-  const gapOf = (i, gap) => (unknowns[i].isPeriodic ? 1 - Math.cos(gap) : gap ** 2 / 2);
+  const gapOf = (i, gap) => (unknowns[i].isPeriodic ? 1 - Math.cos((2 * Math.PI * gap) / unknowns[i].period) : gap ** 2 / 2);
   const away = ({ theta }) => theta.reduce((sum, value, i) => sum + gapOf(i, value - point.angles[i]), 0);
   const nearest = track.samples.reduce((best, sample) => (away(sample) < away(best) ? sample : best));
   return { track, s: nearest.s, direction: 1 };

@@ -70,18 +70,19 @@ export class TransitionMap {
     const top = MARGIN.top;
     const group = drawing("g", { class: "bv-frame" });
     const [across, up] = this.plane.ticks;
+    const { turns } = this.plane;
     for (const tick of across) {
       const [x] = this.screen([tick, 0]);
       group.append(
         drawing("line", { x1: x, x2: x, y1: top, y2: top + side }),
-        drawing("text", { x, y: top + side + 15, "text-anchor": "middle" }, minus(tick)),
+        drawing("text", { x, y: top + side + 15, "text-anchor": "middle" }, minus(rounded(tick * turns[0]))),
       );
     }
     for (const tick of up) {
       const [, y] = this.screen([0, tick]);
       group.append(
         drawing("line", { x1: left, x2: left + side, y1: y, y2: y }),
-        drawing("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, minus(tick)),
+        drawing("text", { x: left - 6, y: y + 4, "text-anchor": "end" }, minus(rounded(tick * turns[1]))),
       );
     }
     const middle = top + side / 2;
@@ -278,6 +279,10 @@ function contains(box, x, y) {
 
 function tenths(x) {
   return Math.round(10 * x) / 10;
+}
+
+function rounded(value) {
+  return Number(value.toPrecision(5));
 }
 
 function minus(value) {

@@ -93,8 +93,8 @@ function displacement({ factors, rotation }, u) {
 }
 
 /** A turn about an axis that advances along it, or a slide. */
-function elementary({ is_turn: isTurn, direction, point, advance, column, value }, u) {
-  const amount = column === null ? value : u[column];
+function elementary({ is_turn: isTurn, direction, point, advance, column, rate, offset }, u) {
+  const amount = column === null ? offset : rate * u[column] + offset;
   if (!isTurn) return translation(direction.map((x) => amount * x));
   const motion = about(turn(direction, amount), point);
   return compose(translation(direction.map((x) => advance * amount * x)), motion);
@@ -113,7 +113,7 @@ function placeRod({ ends, centers, parts, leg }, poses, u) {
   const places = ends.map((body, k) => moved(poses[body], centers[k]));
   let now = unit(difference(places[1], places[0]));
   if (leg) {
-    const sign = Math.sign(leg.length + leg.sign * u[leg.column]); // beyond length 0 it points the other way
+    const sign = Math.sign(leg.length + leg.rate * u[leg.column]); // beyond length 0 it points the other way
     now = now.map((x) => sign * x);
   }
   const rotation = shortestTurn(unit(difference(parts[1].start, parts[0].start)), now);

@@ -1,15 +1,17 @@
 // The planes in which the map is drawn: two unknowns, a torus where these are angles, or the first principal plane of all
 // cosines and sines; and the lines of a curve in a plane.
 
+const TURN = 2 * Math.PI;
 const MOST_TICKS = 6;
 const ON_EDGE = 1e-6; // of half a turn: so near to an edge of the frame lies on it
 
-/** The plane of two unknowns, by their numbers from 0: angles in degrees, with a period from -180 to 180. */
+/** The plane of two unknowns, by their numbers from 0: angles in degrees, a period from -180 to 180. */
 export function unknownPlane(unknowns, ...pair) {
   const chosen = pair.map((i) => unknowns[i]);
   return {
     isPeriodic: chosen.map((unknown) => unknown.isPeriodic),
     ticks: chosen.map(ticksOf),
+    turns: chosen.map((unknown) => unknown.turns),
     labels: chosen.map((unknown) => unknown.label),
     project: (theta) => chosen.map((unknown, k) => unknown.shown(theta[pair[k]])),
     low: chosen.map((unknown) => unknown.low),
@@ -32,8 +34,8 @@ function ticksOf({ isPeriodic, low, high }) {
 export function principalPlane(principal, unknowns, tracks) {
   const { mean, axes } = principal;
   const project = (theta) => {
-    const cosines = unknowns.map((unknown, i) => (unknown.isPeriodic ? Math.cos(theta[i]) : theta[i]));
-    const sines = unknowns.map((unknown, i) => (unknown.isPeriodic ? Math.sin(theta[i]) : 0));
+    const cosines = unknowns.map((unknown, i) => (unknown.isPeriodic ? Math.cos((TURN * theta[i]) / unknown.period) : theta[i]));
+    const sines = unknowns.map((unknown, i) => (unknown.isPeriodic ? Math.sin((TURN * theta[i]) / unknown.period) : 0));
     const features = [...cosines, ...sines];
     return axes.map((axis) => axis.reduce((sum, weight, k) => sum + weight * (features[k] - mean[k]), 0));
   };

@@ -2,32 +2,37 @@
 
 import { angleName, DEGREES, inDegrees, wrapped } from "./angles.js";
 
+const TURN = 2 * Math.PI;
+
 const DIGITS = 4; // of numbers that are no angles
 
 /** The unknowns of a document; `tracks` say how far those without a period go.
  *
- * Each has its `name`, its `label` on an axis, `shown(u)` in the unit of the screen, whether it `isPeriodic`, the
- * ends `low` and `high` of its axis, and `text(u)`.
+ * Each has its `name`, its `label` on an axis, `shown(u)` on that axis, whether it `isPeriodic`, the ends `low` and
+ * `high` of the axis, by what its ticks are multiplied (`turns`), and `text(u)`. A periodic one has its period from -180
+ * to 180, however many turns that are: joints that are coupled come back after several.
  */
 export function unknownsOf(scene, tracks) {
   if (scene.loop) return scene.loop.lengths.map((_, i) => periodicAngle(angleName(i + 1)));
   return scene.mechanism.unknowns.map((unknown, i) => {
-    if (unknown.is_angle && unknown.period !== null) return periodicAngle(unknown.name);
+    if (unknown.is_angle && unknown.period !== null) return periodicAngle(unknown.name, unknown.period / TURN);
     const factor = unknown.is_angle ? DEGREES : unknown.factor;
     return openUnknown(unknown, factor, shownRange(tracks, i, factor));
   });
 }
 
-function periodicAngle(name) {
+function periodicAngle(name, turns = 1) {
   return {
     name,
     label: `${name} (deg)`,
-    shown: (u) => u * DEGREES,
+    shown: (u) => (u * DEGREES) / turns,
     isPeriodic: true,
+    period: turns * TURN,
+    turns,
     low: -180,
     high: 180,
-    text: (u) => inDegrees(u),
-    share: (u) => 0.5 + (wrapped(u) * DEGREES) / 360,
+    text: (u) => (turns === 1 ? inDegrees(u) : (turns * wrapped(u / turns) * DEGREES).toFixed(2)),
+    share: (u) => 0.5 + wrapped(u / turns) / TURN,
   };
 }
 
@@ -37,6 +42,7 @@ function openUnknown({ name, is_angle: isAngle }, factor, [low, high]) {
     label: isAngle ? `${name} (deg)` : name,
     shown: (u) => u * factor,
     isPeriodic: false,
+    turns: 1,
     low,
     high,
     text: (u) => plain(isAngle ? (u * factor).toFixed(2) : (u * factor).toPrecision(DIGITS)),

@@ -332,8 +332,9 @@ def _principal(atlas: Atlas) -> PrincipalDocument:
     """The first principal plane of all that is on the map."""
     theta = np.concatenate(_configurations(atlas))
     is_periodic = np.isfinite(atlas.periods)
-    cosines = np.where(is_periodic, np.cos(theta), theta)
-    sines = np.where(is_periodic, np.sin(theta), 0.0)
+    angles = theta * (2 * np.pi / atlas.periods)  # 0 where there is no period
+    cosines = np.where(is_periodic, np.cos(angles), theta)
+    sines = np.where(is_periodic, np.sin(angles), 0.0)
     features = np.concatenate([cosines, sines], axis=1)
     mean = features.mean(axis=0)
     _, _, directions = np.linalg.svd(features - mean, full_matrices=True)

@@ -37,15 +37,17 @@ class UnknownDocument(TypedDict):
 
 
 class FactorDocument(TypedDict):
-    """An elementary motion, as `linkages.mechanisms.joint.Motion`, by the unknown of
-    this ``column``, or by a ``value`` where the variable is locked."""
+    """An elementary motion, as `linkages.mechanisms.joint.Motion`, by ``rate`` times
+    the unknown of this ``column``, plus ``offset``; by the offset alone where the
+    variable is locked and has no column."""
 
     is_turn: bool
     direction: list[float]
     point: list[float]
     advance: float
     column: int | None
-    value: float
+    rate: float
+    offset: float
 
 
 class RotationDocument(TypedDict):
@@ -78,10 +80,11 @@ class RodPartDocument(TypedDict):
 
 
 class LegDocument(TypedDict):
-    """The slide of a leg: its length is ``length`` + ``sign`` times the unknown."""
+    """The slide of a leg: its length is ``length`` + ``rate`` times the unknown of
+    this ``column``."""
 
     column: int
-    sign: int
+    rate: float
     length: float
 
 
@@ -158,14 +161,16 @@ def _step(structure: Structure, step: TreeStep) -> StepDocument:
 def _factor(structure: Structure, number: int) -> FactorDocument:
     variable = structure.mechanism.variables[number]
     motion = variable.motion
-    value = variable.locked or 0.0
+    share = structure.share(number)
+    locked = (variable.locked or 0.0) / (1.0 if motion.is_turn else structure.unit)
     return {
         "is_turn": motion.is_turn,
         "direction": motion.direction.tolist(),
         "point": (motion.point / structure.unit).tolist(),
         "advance": motion.advance / structure.unit,
-        "column": structure.column_of.get(number),
-        "value": value if motion.is_turn else value / structure.unit,
+        "column": None if share is None else share.column,
+        "rate": 0.0 if share is None else share.rate,
+        "offset": locked if share is None else share.offset,
     }
 
 
@@ -183,10 +188,12 @@ def _rod(poses: Poses, rod: Rod) -> RodDocument:
         )
     leg: LegDocument | None = None
     if rod.leg is not None:
+        share = structure.share(rod.leg.variable)
+        assert share is not None  # a locked slide makes no leg
         leg = {
-            "column": structure.column_of[rod.leg.variable],
-            "sign": rod.leg.sign,
-            "length": rod.length / unit,
+            "column": share.column,
+            "rate": rod.leg.sign * share.rate,
+            "length": rod.length / unit + rod.leg.sign * share.offset,
         }
     return {
         "ends": list(rod.ends),

@@ -15,11 +15,13 @@ from linkages.app.verdict import judge
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.test_couplings import five_bar
 from tests.linkages.mechanisms.test_curvature import one_of_each, rods
 from tests.linkages.mechanisms.test_poses import platform, rsrs
 
@@ -123,6 +125,7 @@ MECHANISMS = {
     "Kempe": case("Kempe's four antiparallelograms (planar limit of thesis 5.4.5)"),
     "CRCR": case("Bennett geometry with joints CRCR"),
     "platform": lambda: platform((0.0, 0.02, -0.03, 0.05, 0.0, None)),
+    "geared": lambda: five_bar(E=Coupling("A", 0.5, 0.3)),
     "RSRS": lambda: rsrs().with_locks({"R1": 0.0}),
     "one of each": one_of_each,
     "rods": rods,

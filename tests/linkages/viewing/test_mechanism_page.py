@@ -27,7 +27,7 @@ def largest_gap(readout, found, points):
     return gap.max()
 
 
-@pytest.mark.parametrize("name", [*ALL, "rods"])
+@pytest.mark.parametrize("name", [*ALL, "rods", "geared"])
 def test_the_poses_in_the_browser_are_those_of_python_everywhere(show_shared, name):
     shown = show_shared(name)
     readout = Readout(mechanism_of(shown.atlas))
@@ -124,6 +124,15 @@ def test_a_slide_has_an_axis_in_the_unit_of_the_file(show):
     said = shown.page.locator(".bv-cell", has_text="J4").locator("b").inner_text()
     slide = readout.variables(form.branch(1.0))["J4"]
     assert float(said.replace("−", "-")) == pytest.approx(slide, rel=1e-3)
+
+
+def test_an_angle_that_is_back_after_two_turns_has_an_axis_of_two_turns(show):
+    shown = show("geared")
+    shown.page.locator("select[aria-label^=horizontal]").select_option("A")
+    shown.page.locator("select[aria-label^=vertical]").select_option("B")
+    ticks = shown.page.locator(".bv-frame text:not(.bv-axis)").all_text_contents()
+    assert {"−360", "−180", "180", "360"} <= set(ticks)
+    assert shown.messages == []
 
 
 def test_the_strip_shows_where_the_rank_drops(show):
