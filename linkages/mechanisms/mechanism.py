@@ -240,11 +240,9 @@ class Mechanism:
     def mirrored(self) -> Mechanism:
         """The mirror image in the plane z = 0; turns change their sign."""
         joints = [_mirrored(joint) for joint in self.joints]
-        signs = {
-            label: sign
-            for joint in self.joints
-            for label, sign in zip(joint.labels, _signs_in_mirror(joint), strict=True)
-        }
+        signs: dict[str, float] = {}
+        for joint, image in zip(self.joints, joints, strict=True):
+            signs |= zip(joint.labels, _signs_in_mirror(joint, image), strict=True)
         return self._with_values_times(joints, signs)
 
     def _with_values_times(
@@ -312,11 +310,7 @@ def _coupling_times(
 
 def _mirrored(joint: Joint) -> Joint:
     """A joint in the mirror: a turn about the mirrored direction has the other sense,
-    so that the direction is turned round as well.
-
-    Where a variable of the mirror image is the negative one, so are its limits and the
-    value at which it is locked.
-    """
+    so that the direction is turned round as well; its values are those of the joint."""
     x, y, z = joint.place
     turns = joint.kind not in (JointKind.PRISMATIC, JointKind.PLANAR)
     sign = -1.0 if turns else 1.0
@@ -326,26 +320,13 @@ def _mirrored(joint: Joint) -> Joint:
             return None
         return (sign * vector[0], sign * vector[1], -sign * vector[2])
 
-    image = replace(
+    return replace(
         joint,
         point=None if joint.point is None else (x, y, -z),
         direction=reflected(joint.direction),
         second_direction=reflected(joint.second_direction),
         pitch=None if joint.pitch is None else -joint.pitch,
-        limits=(),
-        locked=(),
     )
-    pairs = zip(joint.motions, image.motions, strict=True)
-    signs = [_sign_in_mirror(*pair) for pair in pairs] * (len(joint.bodies) - 1)
-    limits = [
-        pair if pair is None or sign > 0 else (-pair[1], -pair[0])
-        for sign, pair in zip(signs, joint.limits, strict=True)
-    ]
-    locked = [
-        None if value is None else sign * value
-        for sign, value in zip(signs, joint.locked, strict=True)
-    ]
-    return replace(image, limits=tuple(limits), locked=tuple(locked))
 
 
 def _sign_in_mirror(motion: Motion, image: Motion) -> float:
@@ -357,10 +338,10 @@ def _sign_in_mirror(motion: Motion, image: Motion) -> float:
     return 1.0 if float(expected @ image.direction) > 0 else -1.0
 
 
-def _signs_in_mirror(joint: Joint) -> list[float]:
-    """What the variables of a joint are multiplied with in the mirror."""
-    signs = {JointKind.CYLINDRICAL: [1.0, -1.0], JointKind.PLANAR: [1.0, -1.0, -1.0]}
-    of_body = signs.get(joint.kind, [1.0] * len(joint.motions))
+def _signs_in_mirror(joint: Joint, image: Joint) -> list[float]:
+    """What the variables of a joint are multiplied with in its mirror image."""
+    motions = zip(joint.motions, image.motions, strict=True)
+    of_body = [_sign_in_mirror(*pair) for pair in motions]
     return of_body * (len(joint.bodies) - 1)
 
 
