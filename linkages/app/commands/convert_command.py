@@ -33,10 +33,12 @@ def convert_command(source: str, out: Path) -> None:
     are 0.
     """
     require_ending("OUT", out, *ENDINGS)
-    mechanism = _mechanism(source)
-    text = _text(mechanism, out)
-    require_writable(out)
     from bifurc.files.atomic import replace_file
+    from linkages.app.mechanism_file import mechanism_text
+
+    mechanism = _mechanism(source)
+    text = mechanism_text(mechanism, out)
+    require_writable(out)
 
     with writing_to(out):
         replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
@@ -55,19 +57,3 @@ def _mechanism(source: str) -> Mechanism:
             f"{source}: it is a single loop, a table or axes; convert takes mechanisms"
         )
     return chosen
-
-
-def _text(mechanism: Mechanism, out: Path) -> str:
-    match out.suffix.lower():
-        case ".toml":
-            from linkages.mechanisms.toml_text import mechanism_toml
-
-            return mechanism_toml(mechanism)
-        case ".sdf":
-            from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
-
-            return mechanism_sdf(mechanism)
-        case _:
-            from linkages.mechanisms.formats.mjcf_writing import mechanism_mjcf
-
-            return mechanism_mjcf(mechanism)

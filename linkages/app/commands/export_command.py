@@ -25,6 +25,7 @@ __all__ = ["export_command"]
 
 MODEL, TABLE = ".glb", ".csv"
 LAID_OUT, ASSEMBLED = ".stl", ".step"
+MECHANISMS = (".xml", ".mjcf", ".sdf")
 FEWEST, MOST = 2, 100_000
 
 
@@ -38,7 +39,8 @@ FEWEST, MOST = 2, 100_000
     metavar="FILE",
     help=(
         "The file: .glb is an animated model, .csv a table of joint angles (rad), .stl "
-        "parts for a printer, laid out, .step the same parts assembled."
+        "parts for a printer, laid out, .step the same parts assembled, .mjcf (or .xml) "
+        "and .sdf the linkage for simulators, where a form begins."
     ),
 )
 @form_option
@@ -85,6 +87,7 @@ def export_command(
       bifurc export altmann --form 1 --to altmann.csv --count 100
       bifurc export out/atlas.nc --route "Form I" "Bennett 4R" --to route.glb
       bifurc export bennett --to bennett.stl --size 120 --diameter 8
+      bifurc export bennett --to bennett.mjcf
     """
     from linkages.app.atlas_source import loop_atlas_of
     from linkages.app.forms import require_forms
@@ -94,8 +97,15 @@ def export_command(
 
     if verbose:
         say_more()
-    require_ending("--to", out, MODEL, TABLE, LAID_OUT, ASSEMBLED)
+    require_ending("--to", out, MODEL, TABLE, LAID_OUT, ASSEMBLED, *MECHANISMS)
     is_printed = out.name.lower().endswith((LAID_OUT, ASSEMBLED))
+    is_mechanism = out.name.lower().endswith(MECHANISMS)
+    if is_mechanism and routes:
+        start, goal = routes[0]
+        raise CommandError(
+            f"--route {start!r} {goal!r}: it has no effect on {out.name}, which holds "
+            "one configuration, where the first form begins; name it with --form"
+        )
     if is_printed:
         check_print_options(out, routes)
     elif printing != PrintOptions():
@@ -108,6 +118,8 @@ def export_command(
     require_forms(atlas)
     if is_printed:
         export_parts(atlas, forms, printing, search.seed, out)
+    elif is_mechanism:
+        export_mechanism(atlas, forms, out)
     else:
         export_motions(atlas, forms, routes, count, out)
     exit_by(judge(atlas))
@@ -156,6 +168,23 @@ def export_parts(
         click.echo(f"wrote {out}", err=True)
     if not seating.is_apart:
         raise interference_error(seating, printing)
+
+
+def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
+    """Write the linkage where the first of the forms begins."""
+    from bifurc.files.atomic import replace_file
+    from linkages.app.forms import choose_forms
+    from linkages.app.mechanism_file import mechanism_text
+    from linkages.app.output import writing_to
+    from linkages.labels import loop_of
+    from linkages.mechanisms.of_loop import mechanism_of_loop
+
+    form = choose_forms(atlas, texts)[0]
+    mechanism = mechanism_of_loop(loop_of(atlas), form.branch(0.0))
+    text = mechanism_text(mechanism, out)
+    with writing_to(out):
+        replace_file(out, lambda part: part.write_text(text, encoding="utf-8"))
+    click.echo(f"wrote {out}: {form.name}", err=True)
 
 
 def export_motions(

@@ -93,3 +93,27 @@ def test_the_clearance_as_json_is_in_radians():
     assert np.abs(second["theta"]).max() <= np.pi
     shown = bifurc("clearance", "bennett").stdout
     assert "Bennett form: the least clearance is 0 (links 12 and 34)" in shown
+
+
+@pytest.mark.parametrize("ending", ["mjcf", "xml", "sdf"])
+def test_a_loop_is_written_for_simulators_and_read_again(tmp_path, ending):
+    out = tmp_path / f"bennett.{ending}"
+    result = bifurc("export", "bennett", "--to", out)
+    assert result.exit_code == ExitCode.DONE, result.stderr
+    result = bifurc("map", out, "--json")
+    assert result.exit_code == ExitCode.DONE, result.stderr
+    document = json.loads(result.stdout)
+    assert [form["length"] for form in document["forms"]] == pytest.approx(
+        [12.8615], 1e-4
+    )
+
+
+def test_a_simulator_gets_no_route(tmp_path):
+    out = tmp_path / "bennett.sdf"
+    route = ("--route", "Form I", "Bennett 4R")
+    result = bifurc(
+        "export", "special-double-subtractive-goldberg", *route, "--to", out
+    )
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert "one configuration" in result.stderr
+    assert not out.exists()

@@ -1,0 +1,26 @@
+"""A mechanism as the text of a file, by the ending of its name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["mechanism_text"]
+
+
+def mechanism_text(mechanism: Mechanism, out: Path) -> str:
+    """The text of TOML, SDF, or else MJCF, for the file ``out``."""
+    match out.suffix.lower():
+        case ".toml":
+            from linkages.mechanisms.toml_text import mechanism_toml
+
+            return mechanism_toml(mechanism)
+        case ".sdf":
+            from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
+
+            return mechanism_sdf(mechanism)
+        case _:
+            from linkages.mechanisms.formats.mjcf_writing import mechanism_mjcf
+
+            return mechanism_mjcf(mechanism)
