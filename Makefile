@@ -6,7 +6,7 @@ LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
   zero_offset_line_symmetric_bricard first_reconfigurable_bricard wohlhart_translator
 
-.PHONY: map test test-fragile test-processors lint studies gallery bench docs dist viewer chromium clean
+.PHONY: map test test-fragile test-processors lint studies gallery bench docs pages dist viewer chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -51,6 +51,11 @@ docs: .venv/ready-to-test  ## the site, into out/site; fails on any warning and 
 	OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg $(BIN)/python -m sphinx -q -W --keep-going -n -j auto -b html -c docs \
 	  build/docs/source out/site
 	$(BIN)/python -m docs.generator links
+
+pages: .venv/ready-to-test  ## the pages of the docs that come out of the code, where a test says that one is old
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.pages
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.page_sizes --page
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.margins --members 2 --near 60 --page
 
 dist: .venv/ready  ## sdist and wheel into dist/
 	$(BIN)/python -m pip install --quiet build

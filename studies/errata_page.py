@@ -1,13 +1,8 @@
-"""Write docs/errata.md: every misprint with source, equation, print, correction and
-measured amounts.
-
-Run as ``python -m studies.errata_page [FILE]``.
+"""What stands in docs/errata.md: every misprint with source, equation, print,
+correction and measured amounts.  ``python -m studies.pages errata`` writes it.
 """
 
 from __future__ import annotations
-
-import sys
-from pathlib import Path
 
 from linkages.errata.misprints import ERRATA
 from linkages.errata.words import WORDS
@@ -80,8 +75,3 @@ def _remainder(amount: float) -> str:
     if amount == 0:
         return "0"
     return "below 1e-11" if amount < 1e-11 else f"{amount:.0e}"
-
-
-if __name__ == "__main__":
-    target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/errata.md")
-    target.write_text(errata_page(), encoding="utf-8")

@@ -1,12 +1,9 @@
-"""Write docs/figures.md: every figure of the sources, how it is drawn, and how it
-compares with the source.
-
-Run as ``python -m studies.figures_page [FILE]``.
+"""What stands in docs/figures.md: every figure of the sources, how it is drawn, and
+how it compares with the source.  ``python -m studies.pages figures`` writes it.
 """
 
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from itertools import combinations
 from pathlib import Path
@@ -205,8 +202,3 @@ def _table(source: str, title: str, figures: list[SourceFigure]) -> str:
         )
         rows.append(f"| {' | '.join(cells)} |")
     return "\n".join(rows) + "\n\n"
-
-
-if __name__ == "__main__":
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGE
-    target.write_text(figures_page(), encoding="utf-8")

@@ -1,7 +1,7 @@
 """Negative controls: change a linkage by a thousandth, entry by entry, and see whether
 it still moves.
 
-Run as ``python -m studies.negative_controls [FILE]``; writes docs/negative_controls.md.
+``python -m studies.pages negative_controls`` writes the table of it.
 Every length, twist and offset of the table is changed alone, which breaks whatever
 condition holds it; then entries that are alike are changed together, which keeps their
 equality and breaks what else ties them: ratios, sums, or nothing, if they are free.
@@ -9,10 +9,8 @@ equality and breaks what else ties them: ratios, sums, or nothing, if they are f
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -106,7 +104,7 @@ a stated symmetry. Length and twist of the links 12 and 45 (a + c or a - c) of t
 DSG are stated as conditions, but the loop moves whatever they are as long as the two links are alike: it has then the
 links of a linkage of Mavroidis and Roth without offsets.
 
-Written by `python -m studies.negative_controls`.
+Written by `python -m studies.pages negative_controls`.
 
 | linkage | changes | stops | smallest singular value | still moves after a change of |
 |---|---|---|---|---|
@@ -134,8 +132,3 @@ def controls_page() -> str:
 def _smallest(values: list[float]) -> str:
     finite = [value for value in values if np.isfinite(value)]
     return f"{min(finite):.0e}" if finite else "-"
-
-
-if __name__ == "__main__":
-    target = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/negative_controls.md")
-    target.write_text(controls_page(), encoding="utf-8")

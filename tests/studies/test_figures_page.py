@@ -10,7 +10,7 @@ from studies.figures_page import KINDS, PAGE, figures_page, lock_kind, moving_jo
 
 def test_the_page_is_current():
     page = PAGE.read_text(encoding="utf-8")
-    assert page == figures_page(), "run python -m studies.figures_page"
+    assert page == figures_page(), "run python -m studies.pages figures"
 
 
 def test_every_figure_has_a_row_and_every_kind_its_words():

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import dask
+import distributed  # noqa: F401  its settings stand before one of them is changed
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -126,7 +127,7 @@ BAD = {
     "an unknown option of a command": (("map", "kite", "--outt", "x"), "--out"),
     "no linkage": (("map",), "Missing argument"),
     "too many linkages": (("map", "kite", "kite"), "unexpected extra argument"),
-    "no goal": (("route", "kite", "a"), "Missing argument 'TO'"),
+    "no goal": (("route", "kite", "a"), "Missing argument 'FROM' or 'TO'"),
     "an option without its value": (("map", "kite", "--seed"), "requires an argument"),
     # names
     "a name with a typo": (("map", "benett"), "the nearest names are bennett"),
