@@ -80,13 +80,11 @@ def _equal_entries(row: np.ndarray) -> list[list[int]]:
     return groups
 
 
-def controls(loop: Loop, starts: int = 20) -> list[Control]:
-    """The controls of one loop."""
-    results = []
+def controls(loop: Loop, starts: int = 20) -> Iterator[Control]:
+    """The controls of one loop, one after the other."""
     for changed, broken in break_conditions(loop):
         outcome = survey(broken, starts)
-        results.append(Control(changed, outcome.mobility, outcome.stiffness))
-    return results
+        yield Control(changed, outcome.mobility, outcome.stiffness)
 
 
 HEAD = """# Negative controls
@@ -115,7 +113,7 @@ def controls_page() -> str:
     """The page as Markdown."""
     rows = []
     for name, entry in catalogue().items():
-        results = controls(entry.build())
+        results = list(controls(entry.build()))
         rigid = [control for control in results if not control.mobility]
         mobile = [control for control in results if control.mobility]
         cells = (

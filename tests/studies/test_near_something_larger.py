@@ -18,15 +18,14 @@ WITH_MORE_MOTIONS = FAMILIES[5:9]
 GOOD = {Verdict.RIGHT, Verdict.RIGHT_IN_DOUBT}
 
 
-@pytest.mark.parametrize("decades", [5.0, 6.5, 8.0])
+@pytest.mark.parametrize("decades", [5.0, 8.0])
 def test_curves_beside_a_surface_are_told_from_it(decades):
     found = list(answers(WITH_A_SURFACE, [decades], seeds=1))
     assert {answer.verdict for answer in found} <= GOOD
 
 
-@pytest.mark.parametrize("decades", [10.0, 14.0])
-def test_what_doubles_do_not_tell_from_a_surface_is_in_doubt(decades):
-    found = list(answers(WITH_A_SURFACE[:1], [decades], seeds=1))
+def test_what_doubles_do_not_tell_from_a_surface_is_in_doubt():
+    found = list(answers(WITH_A_SURFACE[:1], [14.0], seeds=1))
     assert [answer.verdict for answer in found] == [Verdict.IN_DOUBT]
     assert [answer.level for answer in found] == ["estimated"]
 
