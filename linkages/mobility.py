@@ -51,8 +51,8 @@ def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:
     finds."""
     problem = LoopClosure(loop)
     seeds = problem.seeds(np.random.default_rng(seed), starts)
-    # whether a motion is missing is not asked
-    settings = SearchSettings(prove=False)
+    # neither whether a motion is missing is asked, nor what nearly moves
+    settings = SearchSettings(prove=False, near_motions=False)
     atlas = explore(problem, settings=settings, seeds=seeds, seed=seed)
     gaps = seeds.gaps  # those of the starts that did not close
     return Survey(

@@ -248,7 +248,7 @@ class Search:
             if shaky is not None:
                 return SeedFate(Fate.AT_SINGULAR_POINT, shaky)
         near = None
-        if may_nearly_move(solution.stiffness):
+        if self.settings.near_motions and may_nearly_move(solution.stiffness):
             near = self._near_motion_through(point)
         if near is None or solution.is_isolated:
             return SeedFate(Fate.RIGID, findings.rigid_assembly(*solution[:2]))
@@ -291,7 +291,8 @@ class Search:
         """
         findings = self.findings
         is_mobile = bool(findings.traced) or bool(findings.components.seeds)
-        if is_mobile or not len(findings.seeds.missed):
+        is_asked = self.settings.near_motions
+        if is_mobile or not is_asked or not len(findings.seeds.missed):
             return
         points = self._nearly_closed(findings.seeds.missed)
         if not len(points):

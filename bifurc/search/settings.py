@@ -25,7 +25,9 @@ class SearchSettings:
     search ends when it is used up, but for the step it is in. ``charts``: the most with
     which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
     takes the time to find out if a branch is missing. ``certify``: whether every branch
-    gets a certificate, and is traced again, finer, where that is refused. ``tracing``:
+    gets a certificate, and is traced again, finer, where that is refused.
+    ``near_motions``: whether curves along which the system is nearly solved are traced;
+    without, points of them that solve it are isolated like any other. ``tracing``:
     how a curve is followed, to a tolerance of at most 1e-7. Raises `ProblemError`
     outside the ranges.
     """
@@ -35,6 +37,7 @@ class SearchSettings:
     charts: int = 1500
     prove: bool = True
     certify: bool = True
+    near_motions: bool = True
     tracing: TraceSettings = field(default_factory=TraceSettings)
 
     def __post_init__(self) -> None:
@@ -43,6 +46,7 @@ class SearchSettings:
         check_number("budget", self.budget)
         check_type("prove", self.prove, bool)
         check_type("certify", self.certify, bool)
+        check_type("near_motions", self.near_motions, bool)
         check_type("tracing", self.tracing, TraceSettings)
         if not self.budget > 0:
             raise ProblemError("budget", self.budget, "a positive number of seconds")

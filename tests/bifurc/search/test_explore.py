@@ -378,3 +378,14 @@ def test_an_assembly_is_rigid_however_little_stiff_it_is(stiffness):
     atlas = explore(problem, settings=SearchSettings(starts=20))
     assert not atlas.forms and not atlas.points
     assert atlas.rigid == pytest.approx(np.zeros((1, 2)), abs=1e-6)
+
+
+def test_where_near_motions_are_not_asked_for_their_points_are_isolated():
+    loop = entry("bricard-line-symmetric").build()
+    lengths = (loop.lengths[0] + 1e-3, *loop.lengths[1:])
+    problem = LoopClosure(Loop(lengths, loop.twists, loop.offsets))
+    with_them = explore(problem, seed=0)
+    without = explore(problem, settings=SearchSettings(near_motions=False), seed=0)
+    assert with_them.near_motions and not without.near_motions
+    assert not with_them.forms and not without.forms
+    assert len(without.rigid) >= len(with_them.rigid)
