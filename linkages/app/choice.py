@@ -52,8 +52,8 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     single = Readout(linkage).single_loop
     if single is None:
         raise CommandError(
-            f"{text}: it is a mechanism, which `bifurc map`, `bifurc view` and "
-            "`bifurc route` take; this command takes single loops of 4 to 12 "
+            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, `convert` "
+            "and `export` to .glb and .csv take; this takes single loops of 4 to 12 "
             "revolute joints so far"
         )
     return single.loop

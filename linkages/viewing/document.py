@@ -20,13 +20,13 @@ from bifurc.figures.planes import choose_plane
 from bifurc.figures.style import color_on_dark, form_style
 from bifurc.torus import difference
 from linkages.labels import FormLabels, loop_of
+from linkages.links.mechanism_drawing import best_view_of_mechanism
 from linkages.loop import Loop
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_of
 from linkages.scene import View, best_view, make_scene
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
-from linkages.viewing.mechanism_drawing import best_view_of_mechanism
 
 __all__ = ["ViewDocument", "make_view_document"]
 

@@ -12,15 +12,15 @@ from typing import TypedDict
 
 import numpy as np
 
-from linkages.mechanisms.poses import Poses, TreeStep
-from linkages.mechanisms.rods import Rod
-from linkages.mechanisms.structure import Structure, Unknown
-from linkages.viewing.mechanism_drawing import (
+from linkages.links.mechanism_drawing import (
     BodyDrawing,
     SymbolDrawing,
     draw_bodies,
     draw_symbols,
 )
+from linkages.mechanisms.poses import Poses, TreeStep
+from linkages.mechanisms.rods import Rod
+from linkages.mechanisms.structure import Structure, Unknown
 
 __all__ = ["MechanismDocument", "UnknownDocument", "describe_motion"]
 

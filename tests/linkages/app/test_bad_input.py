@@ -346,7 +346,7 @@ BAD = {
         ("view", "kite", "--out", "x.txt"),
         "--out x.txt: it must end with .html",
     ),
-    "a page without a name": (("view", "kite", "--out", ""), "end with .html"),
+    "a page without a name": (("view", "kite", "--out", ""), "no name of a file"),
     "a page of an atlas with options of a search": (
         ("view", "kite.nc", "--budget", 3),
         "no effect on a saved atlas",

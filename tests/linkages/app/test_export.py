@@ -115,5 +115,5 @@ def test_a_simulator_gets_no_route(tmp_path):
         "export", "special-double-subtractive-goldberg", *route, "--to", out
     )
     assert result.exit_code == ExitCode.BAD_INPUT
-    assert "one configuration" in result.stderr
+    assert "--route: it has no effect on bennett.sdf" in result.stderr
     assert not out.exists()
