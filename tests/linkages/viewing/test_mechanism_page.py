@@ -4,8 +4,10 @@ are, and map, choices and routes work as those of a loop."""
 import numpy as np
 import pytest
 
+from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
+from linkages.viewing import mechanism_document
 from tests.linkages.viewing.test_viewer import drawn_share, picture_of
 
 GO = "([name, places]) => places.map((s) => bifurc.go(name, s))"
@@ -144,10 +146,54 @@ def test_the_strip_shows_where_the_rank_drops(show):
     assert sum(height > 42 for height in heights) >= stops
 
 
-def test_scripts_get_bodies_by_name_and_no_singular_values(show_shared):
+def test_scripts_get_bodies_by_name(show_shared):
     state = show_shared("slider-crank").bifurc("go(1, 0.5)")
     names = [body["name"] for body in state["bodies"]]
     assert names == ["frame", "crank", "rod", "slider"]
     assert state["bodies"][0]["pose"] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
     assert "axes" not in state
-    assert "singular_values" not in state
+
+
+@pytest.mark.parametrize("name", [*ALL, "rods", "geared"])
+def test_singular_values_in_the_browser_are_those_of_python(show_shared, name):
+    shown = show_shared(name)
+    closure = MechanismClosure(mechanism_of(shown.atlas))
+    for form in shown.atlas.forms:
+        places = np.linspace(0.0, form.branch.length, 9)
+        states = shown.page.evaluate(GO, [form.name, places.tolist()])
+        found = np.array([state["singular_values"] for state in states])
+        matrices = closure.jacobians(form.branch(places))
+        expected = np.linalg.svd(matrices, compute_uv=False)
+        assert np.abs(found[:, : expected.shape[1]] - expected).max() < 1e-12
+        assert np.all(found[:, expected.shape[1] :] == 0)
+    shown.bifurc("go(1)")
+    cells = shown.page.locator(".bv-cell:has(.bv-level)")
+    assert cells.count() == closure.n
+
+
+def test_a_mechanism_of_many_unknowns_has_the_smallest_singular_value_only(
+    show, monkeypatch
+):
+    monkeypatch.setattr(mechanism_document, "MOST_UNKNOWNS", 4)
+    shown = show("Kempe")
+    assert shown.bifurc("state().singular_values") == []
+    assert shown.page.locator(".bv-cell:has(.bv-level)").count() == 0
+    assert shown.page.locator(".bv-smallest").count() == 1
+    assert shown.page.locator(".bv-distance:not(.bv-hidden)").count() == 1
+    assert shown.messages == []
+
+
+def test_the_bar_shows_how_far_the_singular_points_are(show):
+    shown = show("Kempe")
+    form = shown.atlas.forms[0]
+    point, (_, s) = next(
+        (point, one)
+        for point in shown.atlas.points
+        for one in point.passes
+        if shown.atlas.forms[one[0]] is form
+    )
+    shown.page.evaluate("([f, s]) => bifurc.go(f, s)", [form.name, s - 0.1])
+    after = shown.page.locator(".bv-after")
+    assert after.inner_text() == f"{np.degrees(0.1):.1f}° ▸ {point.name}"
+    after.click()
+    assert shown.bifurc("state().s") == pytest.approx(s)
