@@ -29,7 +29,7 @@ export class Numbers {
       { class: "bv-numbers" },
       element("h2", {}, figure.valuesWord),
       angles,
-      ...(count ? [element("h2", {}, this.hidden ? "smallest singular values" : "singular values"), values] : []),
+      ...(count ? [element("h2", { title: this.hidden && `the ${MOST_VALUES} smallest` }, "singular values"), values] : []),
     );
   }
 

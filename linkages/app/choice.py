@@ -16,6 +16,7 @@ from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
+from linkages.values import check_angle
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -138,7 +139,10 @@ def read_parameters(
             raise CommandError(f"--param {name}: it is given twice")
         number = read_number(name, value)
         is_angle = kinds.get(name) is ParameterKind.ANGLE
-        values[name] = math.radians(number) if is_angle else number
+        if is_angle:
+            check_angle(f"--param {name}", number, in_degrees=True)
+            number = math.radians(number)
+        values[name] = number
     return values
 
 

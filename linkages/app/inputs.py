@@ -14,6 +14,7 @@ from linkages.app.exit_codes import CommandError
 from linkages.app.options import HoldOptions
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError
+from linkages.values import check_angle, told_apart
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -99,7 +100,9 @@ def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]
         joint, value = split_parameter(text, option)
         if joint in kinks:
             raise CommandError(f"{option} {joint}: it is given twice")
-        kinks[joint] = math.radians(read_number(joint, value, option))
+        number = read_number(joint, value, option)
+        check_angle(f"{option} {joint}", number, in_degrees=True)
+        kinks[joint] = math.radians(number)
     return kinks
 
 
@@ -132,7 +135,10 @@ def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
         if label in values:
             raise CommandError(f"--lock {label}: it is given twice")
         number = read_number(label, value, "--lock")
-        values[label] = math.radians(number) if is_turn.get(label) else number
+        if is_turn.get(label):
+            check_angle(f"--lock {label}", number, in_degrees=True)
+            number = math.radians(number)
+        values[label] = number
     _check_limits(mechanism, values)
     return values
 
@@ -148,7 +154,6 @@ def _check_limits(mechanism: Mechanism, values: dict[str, float]) -> None:
             continue
         unit = math.radians(1.0) if one.motion.is_turn else 1.0
         word = " deg" if one.motion.is_turn else ""
-        allowed = f"within its limits {low / unit:.10g} to {high / unit:.10g}{word}"
-        raise GeometryError(
-            f"--lock {one.label}", f"{value / unit:.10g}{word}", allowed
-        )
+        shown, least, most = told_apart(value / unit, low / unit, high / unit)
+        allowed = f"within its limits {least} to {most}{word}"
+        raise GeometryError(f"--lock {one.label}", f"{shown}{word}", allowed)

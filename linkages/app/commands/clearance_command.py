@@ -19,13 +19,15 @@ from linkages.app.options import (
 
 __all__ = ["clearance_command"]
 
+LARGEST = 1e100  # diameter, as lengths of links
+
 
 @click.command("clearance", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
 @form_option
 @click.option(
     "--diameter",
-    type=NumberRange(min=0),
+    type=NumberRange(min=0, max=LARGEST),
     default=0.0,
     show_default=True,
     help=(
