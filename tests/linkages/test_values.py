@@ -65,7 +65,7 @@ def test_numbers_in_errors_are_told_apart():
     assert told_apart(1.0, 1.0) == ["1", "1"]
     nearly = math.nextafter(1.0, 2.0)
     assert told_apart(nearly, 1.0) == ["1.0000000000000002", "1"]
-    with pytest.raises(GeometryError, match="3.14159267 rad .* and 3.14159265 rad"):
+    with pytest.raises(GeometryError, match=r"3.14159267 rad .* and 3.14159265 rad"):
         require_within("twist", math.radians(180.000001), 0, math.pi)
     with pytest.raises(GeometryError, match="not at an end"):
         require_within("twist", math.pi, 0, math.pi)
