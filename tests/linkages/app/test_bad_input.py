@@ -127,7 +127,7 @@ BAD = {
     "an unknown option of a command": (("map", "kite", "--outt", "x"), "--out"),
     "no linkage": (("map",), "Missing argument"),
     "too many linkages": (("map", "kite", "kite"), "unexpected extra argument"),
-    "no goal": (("route", "kite", "a"), "Missing argument 'FROM' or 'TO'"),
+    "no goal": (("route", "kite", "a"), "Missing argument 'TO'"),
     "an option without its value": (("map", "kite", "--seed"), "requires an argument"),
     # names
     "a name with a typo": (("map", "benett"), "the nearest names are bennett"),
