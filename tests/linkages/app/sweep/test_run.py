@@ -14,10 +14,10 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+import xarray as xr
 from click.testing import CliRunner
 
 pytest.importorskip("zarr")
-xr = pytest.importorskip("xarray")
 
 from linkages.app.cli import main
 from linkages.app.sweep.plan import Plan, read_plan
