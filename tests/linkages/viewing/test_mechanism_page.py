@@ -95,24 +95,24 @@ def test_another_body_can_be_held_still(show):
     assert shown.bifurc("state().bodies") == bodies
 
 
-def test_a_click_on_a_bifurcation_offers_the_branches(show):
-    shown = show("Kempe")
+def test_a_click_on_a_bifurcation_offers_the_branches(show_shared):
+    shown = show_shared("Kempe")
     shown.click(".bv-map [data-point=B2]")
     offered = shown.page.locator(".bv-choice button").all_inner_texts()
     assert len(offered) == 4
     assert any("Form 2" in text for text in offered)
 
 
-def test_a_route_plays_to_its_end(show):
-    shown = show("Kempe")
+def test_a_route_plays_to_its_end(show_shared):
+    shown = show_shared("Kempe")
     shown.bifurc("go('Form 1')")
     shown.bifurc("playRoute('Form 2', 0.5)")
     shown.page.wait_for_function("() => !bifurc.state().playing", timeout=20_000)
     assert shown.bifurc("state().form") == "Form 2"
 
 
-def test_a_slide_has_an_axis_in_the_unit_of_the_file(show):
-    shown = show("slider-crank")
+def test_a_slide_has_an_axis_in_the_unit_of_the_file(show_shared):
+    shown = show_shared("slider-crank")
     shown.page.locator("select[aria-label^=horizontal]").select_option("J4")
     titles = shown.page.locator(".bv-axis").all_text_contents()
     assert titles == ["J4", "J2 (deg)"]
@@ -128,8 +128,8 @@ def test_a_slide_has_an_axis_in_the_unit_of_the_file(show):
     assert float(said.replace("−", "-")) == pytest.approx(slide, rel=1e-3)
 
 
-def test_an_angle_that_is_back_after_two_turns_has_an_axis_of_two_turns(show):
-    shown = show("geared")
+def test_an_angle_that_is_back_after_two_turns_has_an_axis_of_two_turns(show_shared):
+    shown = show_shared("geared")
     shown.page.locator("select[aria-label^=horizontal]").select_option("A")
     shown.page.locator("select[aria-label^=vertical]").select_option("B")
     ticks = shown.page.locator(".bv-frame text:not(.bv-axis)").all_text_contents()
@@ -137,8 +137,8 @@ def test_an_angle_that_is_back_after_two_turns_has_an_axis_of_two_turns(show):
     assert shown.messages == []
 
 
-def test_the_strip_shows_where_the_rank_drops(show):
-    shown = show("Kempe")
+def test_the_strip_shows_where_the_rank_drops(show_shared):
+    shown = show_shared("Kempe")
     path = shown.page.locator(".bv-smallest").get_attribute("d")
     heights = [float(pair.split()[1]) for pair in path[1:].split("L")]
     stops = shown.page.locator(".bv-stop").count()
@@ -183,8 +183,8 @@ def test_a_mechanism_of_many_unknowns_has_the_smallest_singular_value_only(
     assert shown.messages == []
 
 
-def test_the_bar_shows_how_far_the_singular_points_are(show):
-    shown = show("Kempe")
+def test_the_bar_shows_how_far_the_singular_points_are(show_shared):
+    shown = show_shared("Kempe")
     form = shown.atlas.forms[0]
     point, (_, s) = next(
         (point, one)
