@@ -194,7 +194,7 @@ def test_a_lock_is_in_degrees_also_where_the_file_counts_in_radians(folder):
     Path("in_radians.toml").write_text(text, encoding="utf-8")
     result = run("map", "in_radians.toml", "--lock", "J1=90", code=2)
     assert "90 deg" in result.stderr
-    assert "-57.29577951 to 57.29577951 deg" in result.stderr
+    assert "-57.2958 to 57.2958 deg" in result.stderr
 
 
 @pytest.mark.parametrize("command", ["verify", "sweep"])
