@@ -88,6 +88,8 @@ html_js_files = ["site.js"]
 html_math_renderer = "mathml"
 html_show_sourcelink = False
 html_copy_source = False
+# pages of wide tables
+WIDE = ("figures", "performance", "stability", "negative_controls", "page_sizes")
 html_theme_options = {
     "logo": {"text": "bifurc"},
     "navbar_align": "left",
@@ -96,9 +98,10 @@ html_theme_options = {
     "show_nav_level": 1,
     "navigation_depth": 3,
     "collapse_navigation": False,
-    # the list of sections at the right, where tables and pictures need no room
+    # the list of sections at the right, where wide tables need no room
     "secondary_sidebar_items": {
         "*": ["page-toc"],
+        **{page: [] for page in WIDE},
         "reference/**": ["page-toc"],
         "tutorials/*": ["page-toc"],
     },

@@ -22,6 +22,7 @@ from linkages.loop import (
     check_number,
     quoted,
 )
+from linkages.values import check_direction
 
 __all__ = ["Vectors", "loop_from_axes"]
 
@@ -109,10 +110,9 @@ def _axes(points: Vectors, directions: Vectors) -> Axes:
     if not MIN_JOINTS <= n <= MAX_JOINTS:
         allowed = f"one for each joint, {MIN_JOINTS} to {MAX_JOINTS} joints"
         raise GeometryError("number of points", n, allowed)
+    for i, direction in enumerate(along, start=1):
+        check_direction(f"directions[{i}]", direction)
     sizes = np.linalg.norm(along, axis=1)
-    for i, size in enumerate(sizes, start=1):
-        if size == 0:
-            raise GeometryError(f"directions[{i}]", "0, 0, 0", "a non-zero vector")
     return Axes(places, along / sizes[:, None])
 
 

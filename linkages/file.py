@@ -43,6 +43,7 @@ from linkages.loop import (
     check_number,
     quoted,
 )
+from linkages.values import check_angle
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -248,6 +249,8 @@ def _read_table(content: Content, name: str) -> Loop:
             allowed = f"{len(lengths)}, the number of lengths"
             raise GeometryError(f"number of {key}", len(values), allowed)
     if _angle_unit(content) is AngleUnit.DEGREES:
+        for i, twist in enumerate(twists, start=1):
+            check_angle(f"twists[{i}]", twist, in_degrees=True)
         twists = [math.radians(twist) for twist in twists]
     else:
         _warn_of_degrees(twists)

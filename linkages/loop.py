@@ -9,18 +9,16 @@ joins joint n to joint 1.
 
 from __future__ import annotations
 
-import math
-import numbers
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from bifurc.errors import BifurcError
 from linkages import kinematics
 from linkages.geometry_table import geometry_rows, geometry_text
 from linkages.kinematics import LinkTable, Number
+from linkages.values import GeometryError, check_angle, check_number, quoted
 
 __all__ = [
     "MAX_JOINTS",
@@ -33,53 +31,6 @@ __all__ = [
 
 MIN_JOINTS = 4
 MAX_JOINTS = 12
-FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or become one
-
-
-class GeometryError(BifurcError, ValueError):
-    """A linkage that cannot be built: ``name`` is the offending quantity, ``value``
-    what was given and ``allowed`` what it may be."""
-
-    def __init__(self, name: str, value: object, allowed: str):
-        self.name = name
-        self.value = value
-        self.allowed = allowed
-        super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
-
-
-def check_number(name: str, value: object) -> None:
-    """Raises `GeometryError` unless ``value`` is a real number and, where it is a float
-    or an integer, finite.
-
-    Mpmath numbers, sympy expressions and exact numbers are real numbers, too.
-    """
-    if isinstance(value, FLOATS) and not isinstance(value, bool):
-        if not _is_finite(value):
-            raise GeometryError(name, value, "a finite number")
-    elif not _is_number_of_library(value):
-        raise GeometryError(name, quoted(value), "a number")
-
-
-def _is_finite(value: float | np.integer | np.floating) -> bool:
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # an integer beyond all floats
-        return False
-
-
-def _is_number_of_library(value: object) -> bool:
-    """Whether a value that is no float is a real number of mpmath, sympy or
-    `linkages.construction.exact`."""
-    if isinstance(value, bool | np.bool_ | np.ndarray):
-        return False
-    if isinstance(value, numbers.Complex):
-        return isinstance(value, numbers.Real)
-    return hasattr(value, "__float__")
-
-
-def quoted(value: object) -> str:
-    """``value`` as error messages show it, texts in quotes."""
-    return f'"{value}"' if isinstance(value, str) else str(value)
 
 
 @dataclass(frozen=True)
@@ -89,7 +40,8 @@ class Loop:
     ``lengths`` a_{i,i+1} and ``offsets`` R_i share one unit of length, ``twists``
     alpha_{i,i+1} are in radians. Entries may be floats, mpmath numbers, sympy
     expressions or exact numbers; `arrays` gives the floats. Raises `GeometryError` for
-    unequal or wrong numbers of entries and for entries that are not finite numbers.
+    unequal or wrong numbers of entries, for entries that are not finite numbers, and
+    for twists of over a thousand turns.
     """
 
     lengths: tuple[Number, ...]
@@ -113,8 +65,9 @@ class Loop:
                 allowed = f"{n}, the number of lengths"
                 raise GeometryError(f"number of {column}", count, allowed)
         for column in ("lengths", "twists", "offsets"):
+            check = check_angle if column == "twists" else check_number
             for i, value in enumerate(getattr(self, column), start=1):
-                check_number(f"{column}[{i}]", value)
+                check(f"{column}[{i}]", value)
 
     @property
     def n(self) -> int:

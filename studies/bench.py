@@ -28,6 +28,7 @@ from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_br
 from bifurc.problem import MarchSettings
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
+from linkages.app.options import FILE
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load_linkage
@@ -175,7 +176,7 @@ def _processor() -> str:
     "--out",
     default="bench.json",
     show_default=True,
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=FILE,
 )
 @click.option(
     "--against",

@@ -28,6 +28,7 @@ from bifurc.branch import Branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.problem import MarchSettings
+from linkages.app.options import FOLDER
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure
 from linkages.closure.loop_closure import LoopClosure
@@ -213,7 +214,7 @@ def _draw_gaps(axes: Axes, costs: list[Cost]) -> None:
     "--out",
     default="branch_cost",
     show_default=True,
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
 )
 def main(out: Path) -> None:
     """Measure and draw what branches cost."""

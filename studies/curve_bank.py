@@ -8,12 +8,11 @@ explored as it stands, with its unknowns or its equations in other units, turned
 shifted, and from other random starts. An answer is right, or wrong and said to be in
 doubt, or wrong without a word, as an exception is. Seconds are those of the processor.
 
-    python -m studies.curve_bank --changes plain unknowns --seeds 2
+    python -m studies.curve_bank --changes plain --changes unknowns --seeds 2
 """
 
 from __future__ import annotations
 
-import argparse
 import json
 import time
 from collections import Counter
@@ -24,6 +23,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import click
 import numpy as np
 
 from bifurc import Atlas, FunctionProblem, Kind, Level, SearchSettings, explore
@@ -266,31 +266,46 @@ def _print_table(runs: Sequence[Run]) -> None:
         print("| " + " | ".join(map(str, cells)) + " |")
 
 
-def main() -> None:
+@click.command(help=__doc__)
+@click.option(
+    "--changes", "kinds", multiple=True, help="Kind of change.  [default: all]"
+)
+@click.option("--names", multiple=True, help="A curve.  [default: all]")
+@click.option("--seeds", default=1, show_default=True, help="Random seeds from 0 on.")
+@click.option("--budget", default=60.0, show_default=True, help="Seconds for each.")
+@click.option("--every", default=1, show_default=True, help="Only each k-th answer.")
+def main(
+    kinds: tuple[str, ...],
+    names: tuple[str, ...],
+    seeds: int,
+    budget: float,
+    every: int,
+) -> None:
     """Run the bank and print what is not right, and the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--changes", nargs="*", help="kinds of change; all of them")
-    parser.add_argument("--names", nargs="*", help="curves; all of them")
-    parser.add_argument("--seeds", type=int, default=1, help="random seeds from 0 on")
-    parser.add_argument("--budget", type=float, default=60.0, help="seconds for each")
-    parser.add_argument("--every", type=int, default=1, help="only each k-th answer")
-    arguments = parser.parse_args()
     runs: list[Run] = []
     count = 0
+    for curve, change, seed in _questions(kinds, names, seeds):
+        count += 1
+        if count % every:
+            continue
+        run = run_curve(curve, change, seed, budget)
+        _print_run(run)
+        runs.append(run)
+    _print_table(runs)
+
+
+def _questions(
+    kinds: Sequence[str], names: Sequence[str], seeds: int
+) -> Iterator[tuple[Curve, Change, int]]:
+    """Every curve with every change and every seed, those that are named or all."""
     for curve in load_curves():
-        if arguments.names and curve.name not in arguments.names:
+        if names and curve.name not in names:
             continue
         for change in changes_of(curve):
-            if arguments.changes and change.kind not in arguments.changes:
+            if kinds and change.kind not in kinds:
                 continue
-            for seed in range(arguments.seeds):
-                count += 1
-                if count % arguments.every:
-                    continue
-                run = run_curve(curve, change, seed, arguments.budget)
-                _print_run(run)
-                runs.append(run)
-    _print_table(runs)
+            for seed in range(seeds):
+                yield curve, change, seed
 
 
 if __name__ == "__main__":

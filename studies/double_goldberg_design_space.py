@@ -23,6 +23,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from linkages.app.options import FOLDER
 from linkages.app.sweep.member import Status
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import run_sweep
@@ -152,7 +153,7 @@ def draw(datasets: dict[Plane, xr.Dataset], path: Path) -> None:
     "--out",
     default="design_space",
     show_default=True,
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
 )
 @click.option(
     "--count", default=36, show_default=True, help="Members along each side of a plane."

@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas, NearMotion
 from bifurc.decisions import closes_to_rounding, is_solution
+from linkages.app.options import FOLDER
 from linkages.app.texts import table
 from linkages.catalogue import entry
 from linkages.loop import Loop
@@ -283,7 +284,7 @@ def _draw_verdicts(axes: Axes, groups: Sequence[Sequence[Answer]]) -> None:
 @click.command(help=__doc__)
 @click.option(
     "--out",
-    type=click.Path(file_okay=False, path_type=Path),
+    type=FOLDER,
     required=True,
     help="Folder for the table and the figure.",
 )

@@ -26,6 +26,7 @@ import numpy as np
 
 from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
 from bifurc.problem import MarchSettings
+from linkages.app.options import FOLDER
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import Linkage, load_linkage
 from linkages.mapping import map_linkage
@@ -194,7 +195,7 @@ def _least_seconds(work: Callable[[], object]) -> float:
 
 @click.command(help=__doc__)
 @click.argument("name", default=LINKAGE)
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False))
+@click.option("--out", type=FOLDER)
 def main(name: str, out: Path | None) -> None:
     """Print the tables; write them to ``out``/budget.txt where that is given."""
     linkage = load_linkage(name)

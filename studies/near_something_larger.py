@@ -26,6 +26,7 @@ from matplotlib.patches import Patch
 from bifurc.atlas import Atlas
 from bifurc.search.completeness import IN_DOUBT
 from bifurc.search.settings import SearchSettings
+from linkages.app.options import NamedPath
 from linkages.app.texts import table
 from linkages.catalogue import entry
 from linkages.families.bennett import bennett
@@ -246,7 +247,7 @@ def _cells(
 
 
 @click.command(help=__doc__)
-@click.option("--out", type=click.Path(path_type=Path), required=True)
+@click.option("--out", type=NamedPath(), required=True)
 @click.option("--seeds", type=click.IntRange(1), default=5, show_default=True)
 def main(out: Path, seeds: int) -> None:
     """Run the study, and write its table and its figure."""

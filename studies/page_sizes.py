@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import click
 
+from linkages.app.options import FOLDER
 from linkages.app.texts import table
 from linkages.app.verdict import judge
 from linkages.catalogue import catalogue
@@ -80,7 +81,7 @@ HEAD = """# Sizes of the pages of `bifurc view`
 
 
 @click.command()
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False))
+@click.option("--out", type=FOLDER)
 @click.option("--page", is_flag=True, help="Write docs/page_sizes.md.")
 def main(out: Path | None, page: bool) -> None:
     """Print the sizes of all pages."""

@@ -14,6 +14,7 @@ from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
 from bifurc.files.atomic import replace_files
 from linkages.app.files import write_data, write_figures
+from linkages.app.options import FOLDER
 from linkages.app.summary import make_summary
 
 __all__ = ["Claim", "Redrawing", "angles_along", "judge", "largest"]
@@ -49,7 +50,7 @@ class Redrawing:
         )
         @click.option(
             "--out",
-            type=click.Path(path_type=Path, file_okay=False),
+            type=FOLDER,
             default=Path("out") / self.figure,
         )
         def study(out: Path) -> None:

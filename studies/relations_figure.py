@@ -19,6 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
+from linkages.app.options import FOLDER
 from linkages.relations import RelationKind, relation_graph
 
 __all__ = ["draw_relations"]
@@ -213,7 +214,7 @@ def _mean_height(graph: nx.MultiDiGraph, name: str, heights: dict[str, float]) -
 @click.command()
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     default=Path("out/relations"),
 )
 def main(out: Path) -> None:

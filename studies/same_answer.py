@@ -26,6 +26,7 @@ from typing import TextIO
 
 import click
 
+from linkages.app.options import FOLDER
 from linkages.app.texts import section
 from studies.same_answer_maps import Comparison
 
@@ -127,7 +128,7 @@ def _run(
 @click.option("--kernel", "kernels", multiple=True, default=KERNELS, show_default=True)
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     default=Path("out/same_answer"),
 )
 def main(

@@ -18,6 +18,7 @@ import click
 
 from bifurc.search.explore import explore
 from linkages.app.document import MapDocument, make_document
+from linkages.app.options import NamedPath
 from linkages.catalogue import catalogue
 from linkages.linkage import load_linkage
 from linkages.mapping import map_linkage, name_atlas
@@ -71,7 +72,7 @@ def compare_maps(
 
 
 @click.command(help=__doc__)
-@click.argument("reference", type=click.Path(path_type=Path))
+@click.argument("reference", type=NamedPath())
 @click.argument("names", nargs=-1)
 @click.option("--seeds", type=int, default=10)
 @click.option("--draws", type=int, default=0)

@@ -30,6 +30,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from linkages.app.options import FOLDER
 from linkages.app.texts import section
 from studies.hard_cases import crossings, ladders
 from studies.stability_arcs import STEPS, follow_ladder, followers
@@ -183,7 +184,7 @@ def _write_runs(path: Path, runs: Sequence[Run]) -> None:
 @click.command(help=__doc__)
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     default=Path("out/stability"),
 )
 @click.option("--quick", is_flag=True, help="Every third imperfection.")

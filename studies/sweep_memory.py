@@ -26,6 +26,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from linkages.app.options import FOLDER
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import run_sweep
 
@@ -128,7 +129,7 @@ def _scheduler(workers: int, dask: bool) -> Iterator[str | None]:
     "--out",
     default="sweep_memory",
     show_default=True,
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
 )
 def main(family: str, members: tuple[int, ...], workers: int, out: Path) -> None:
     """Measure the memory of sweeps."""

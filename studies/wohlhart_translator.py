@@ -17,6 +17,7 @@ import click
 import numpy as np
 
 from bifurc.figures.plotting import save_figure
+from linkages.app.options import FOLDER
 from linkages.closed_forms.translator import (
     Stroke,
     contact_angle,
@@ -128,7 +129,7 @@ def _normal(triangle: np.ndarray) -> np.ndarray:
 @click.command(help="Draw figures 3 to 12 of Racila and Dahan 2010 anew, with a table.")
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     default=Path("out") / "translator",
 )
 def main(out: Path) -> None:

@@ -31,6 +31,7 @@ from pathlib import Path
 import click
 import numpy as np
 
+from linkages.app.options import FOLDER
 from studies.methods.cases import Case, all_cases
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import COVER, distance_in_digits, largest_distance
@@ -176,7 +177,7 @@ def _write_csv(
     "--out",
     default="work_precision",
     show_default=True,
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
 )
 @click.option(
     "--quick",

@@ -32,10 +32,12 @@ const FRAMING_SAMPLES = 60; // places of a track, at least, that must all be in 
 const MARGIN = 1.05; // around these, in their radius: for the places between
 const NUMBER_ROOM = 22; // pixels that stay free for numbers on each side
 const BALL_ROUNDS = 100;
+const ROUNDS_APART = 60; // in which names are pushed away from each other
+const LEAST_AWAY = 1; // in the radius of all positions: a linkage that is seen as a line is not blown up
 const JOINT_LENGTH = 1.7; // of half the cylinder of a joint, in its radius
 const JOINT_REACH = Math.hypot(JOINT_LENGTH, 1); // of its farthest corner from its seat
 const THICKNESS = 0.03; // of a joint, in the size of the linkage
-const LETTER = 7.5; // pixels: the width of a letter of a name
+const LETTER = 9; // pixels: the width of a letter of a name
 const NAME_GAP = 17; // pixels between the middles of two names, one above the other
 // symbols of joints, their axis along y, of the size of a joint's radius and of length 1
 const SHAPES = {
@@ -101,7 +103,7 @@ export class LinkageView {
       this.labels.append(label);
     }
     const longest = this.figure.names.reduce((most, name) => Math.max(most, name.length), 0);
-    this.nameWidth = Math.max(LETTER * longest, NAME_GAP);
+    this.nameWidth = Math.max(LETTER * longest + 3, NAME_GAP);
   }
 
   /** The colours of the picture: {link, fixed, joint, idle, axis}. */
@@ -175,8 +177,11 @@ export class LinkageView {
     this.center = ball.center;
     this.unit = ball.radius || 1;
     this.sizeParts();
-    const farthestSeat = seats.reduce((most, seat) => Math.max(most, distance(seat, this.center)), 0) / this.unit;
-    this.reach = Math.max(1, farthestSeat + JOINT_REACH * this.jointRadius);
+    const reach = JOINT_REACH * this.jointRadius;
+    this.spots = [
+      ...seats.map((seat) => ({ place: this.scaled(seat), reach })),
+      ...points.map((point) => ({ place: this.scaled(point), reach: this.rodRadius })),
+    ];
     this.look = look;
     this.placeCamera();
   }
@@ -186,16 +191,18 @@ export class LinkageView {
     return this.camera.position.clone().sub(this.orbit.target).normalize();
   }
 
-  /** The camera so far away that the ball of all positions fits the narrower of the two angles of the canvas. */
+  /** The camera as near as it may be so that all spots are on the canvas, with room for numbers, and its target in the
+   * middle of them. */
   placeCamera() {
     const { clientWidth: width, clientHeight: height } = this.container;
-    const smaller = Math.max(Math.min(width, height), 4 * NUMBER_ROOM);
     const upward = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-    const narrower = upward * Math.min(1, this.camera.aspect);
-    const half = Math.atan(narrower * (1 - (2 * NUMBER_ROOM) / smaller));
-    const away = (MARGIN * this.reach) / Math.sin(half);
-    this.orbit.target.set(0, 0, 0);
-    this.camera.position.copy(this.look).multiplyScalar(away);
+    const [right, up] = [new Vector3(), new Vector3()];
+    new Matrix4().lookAt(this.look, new Vector3(), this.camera.up).extractBasis(right, up, new Vector3());
+    const across = spanOf(this.spots, right, this.look, upward * this.camera.aspect * usable(width));
+    const above = spanOf(this.spots, up, this.look, upward * usable(height));
+    const away = MARGIN * Math.max(across.away, above.away, LEAST_AWAY);
+    this.orbit.target.copy(right.multiplyScalar(across.middle)).add(up.multiplyScalar(above.middle));
+    this.camera.position.copy(this.look).multiplyScalar(away).add(this.orbit.target);
     this.camera.far = 10 * away;
     this.camera.updateProjectionMatrix();
     this.orbit.minDistance = 0.2;
@@ -405,6 +412,25 @@ function enclosingBall(points) {
   return { center, radius: distance(farthestFrom(center, points), center) };
 }
 
+/** How far away along `look` a camera must be, and how far along `side` its target, so that all spots are seen between
+ * the angles of this tangent to both sides of it. */
+function spanOf(spots, side, look, tangent) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const { place, reach } of spots) {
+    const x = place.dot(side);
+    const nearer = place.dot(look) * tangent + reach * Math.hypot(1, tangent);
+    low = Math.min(low, x - nearer);
+    high = Math.max(high, x + nearer);
+  }
+  return { away: (high - low) / (2 * tangent), middle: (high + low) / 2 };
+}
+
+/** The share of so many pixels that is left between the rooms for numbers. */
+function usable(pixels) {
+  const size = Math.max(pixels, 4 * NUMBER_ROOM);
+  return 1 - (2 * NUMBER_ROOM) / size;
+}
+
 function farthestFrom(center, points) {
   let [farthest, most] = [points[0], -1];
   for (const point of points) {
@@ -427,7 +453,7 @@ function identity() {
 /** Move spots away from each other until they are apart, as seen in units of `width` and `height`, or a few rounds have
  * passed. */
 function pushApart(spots, width, height) {
-  for (let round = 0; round < 12; round += 1) {
+  for (let round = 0; round < ROUNDS_APART; round += 1) {
     for (let i = 0; i < spots.length; i += 1) {
       for (let j = i + 1; j < spots.length; j += 1) {
         const dx = (spots[j].x - spots[i].x) / width;

@@ -3,6 +3,8 @@
 
 import { compose, invert, moved } from "./kinematics.js";
 import { along, distance } from "./rods.js";
+import { singularValues } from "./singular_values.js";
+import { jacobianColumns } from "./tape.js";
 
 const SMALL = 1e-12; // sine below which two directions are parallel
 const REACH = 0.14; // of the extent: how far an axis is drawn to either side of its joint
@@ -68,16 +70,20 @@ export class MechanismFigure {
       const pose = Array.from(frames.subarray(12 * k, 12 * k + 12));
       return { name, pose: pose.map((x, i) => (i % 4 === 3 ? x * this.size : x)) };
     });
-    return { bodies };
+    return { bodies, singular_values: this.singularValues(u) };
   }
 
-  /** None: the document has the smallest one only, along the forms. */
-  singularValues() {
-    return [];
+  /** The singular values of F', largest first; none of a mechanism of many unknowns. */
+  singularValues(u) {
+    const { tape } = this.mechanism;
+    return tape ? singularValues(jacobianColumns(tape, u)) : [];
   }
 
   /** The smallest regular singular value along a track, as {s, value}; at places where the rank drops it is 0. */
-  smallestAlong(track, _, drops) {
+  smallestAlong(track, places, drops) {
+    if (this.mechanism.tape) {
+      return places.map((s) => ({ s, value: this.singularValues(track.at(s))[track.form.rank - 1] }));
+    }
     const values = track.form.smallest.map(([s, value]) => ({ s, value }));
     for (const s of drops) values.push({ s, value: 0 });
     return values.sort((a, b) => a.s - b.s);

@@ -6,6 +6,7 @@ import { nextPass } from "./crossings.js";
 import { isCurve } from "./tracks.js";
 
 const DECADES = 16; // that the bars of singular values span
+const MOST_VALUES = 12; // singular values that are shown, the smallest
 const SHORT = 4; // letters of a name that a narrow cell has room for
 const ZERO = 1e-18; // rounding of rounding
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
@@ -21,13 +22,14 @@ export class Numbers {
     const values = element("div", { class: "bv-cells" });
     for (const { name } of unknowns) this.angles.push(cell(angles, name, "bv-dial"));
     const count = figure.singularValues(unknowns.map(() => 0)).length;
-    for (let i = 1; i <= count; i += 1) this.values.push(cell(values, `σ${angleName(i).slice(1)}`, "bv-level"));
+    this.hidden = Math.max(count - MOST_VALUES, 0);
+    for (let i = this.hidden + 1; i <= count; i += 1) this.values.push(cell(values, `σ${angleName(i).slice(1)}`, "bv-level"));
     this.node = element(
       "div",
       { class: "bv-numbers" },
       element("h2", {}, figure.valuesWord),
       angles,
-      ...(count ? [element("h2", {}, "singular values"), values] : []),
+      ...(count ? [element("h2", { title: this.hidden && `the ${MOST_VALUES} smallest` }, "singular values"), values] : []),
     );
   }
 
@@ -38,7 +40,7 @@ export class Numbers {
       mark.style.left = `${100 * unknown.share(angles[i])}%`;
     });
     this.values.forEach(({ text, mark }, i) => {
-      const value = singularValues[i];
+      const value = singularValues[this.hidden + i];
       text.textContent = inWords(value);
       const height = value > 0 ? Math.min(Math.max(1 + Math.log10(value / singularValues[0]) / DECADES, 0), 1) : 0;
       mark.style.width = `${100 * height}%`;

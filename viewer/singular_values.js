@@ -6,6 +6,7 @@ const ORTHOGONAL = 1e-15;
 
 /** The singular values, largest first, of the matrix with these columns; as many as there are columns, zeros last. */
 export function singularValues(columns) {
+  if (!columns.length || !columns[0].length) return columns.map(() => 0);
   const rows = columns.length > columns[0].length ? transposed(columns) : columns.map((column) => [...column]);
   for (let sweep = 0; sweep < SWEEPS; sweep += 1) {
     if (!orthogonalised(rows)) break;

@@ -193,6 +193,20 @@ class Tape:
                 values[slot] = function(values[left])
         return [values[slot] for slot in self.outputs.tolist()]
 
+    def nodes(self) -> tuple[list[Node], list[int]]:
+        """The operations that the equations are made of, their operands by their
+        numbers in this list, and the numbers (m,) of the equations in it."""
+        numbers = {slot: number for number, slot in enumerate(self._needed)}
+        nodes = []
+        for slot in self._needed:
+            operation = Operation(int(self.operations[slot]))
+            left, right, _ = self.operands[slot].tolist()
+            if operation > Operation.CONSTANT:
+                left = numbers[left]
+            right = numbers[right] if operation in _BINARY else 0
+            nodes.append(Node(operation, left, right, float(self.constants[slot])))
+        return nodes, [numbers[slot] for slot in self.outputs.tolist()]
+
     def in_units(
         self, origin: np.ndarray, sizes: np.ndarray, weights: np.ndarray
     ) -> Tape:

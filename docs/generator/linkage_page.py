@@ -87,13 +87,18 @@ def _forms(record: LinkageRecord) -> str:
             (
                 plain(form.name),
                 f"{form.length:.6g}",
-                form.turns,
+                in_one_line(form.turns),
                 form.joints_at_rest or "none",
                 _formula(form.symmetry) or "none",
             )
         )
     heads = ("form", "length (deg)", "turns", "joints at rest (deg)", "symmetry")
     return table(heads, rows) if rows else ""
+
+
+def in_one_line(numbers: str) -> str:
+    """Numbers with signs, which no line break may part."""
+    return numbers.replace("-", "\N{MINUS SIGN}").replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def _formula(equation: str) -> str:

@@ -3,18 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from linkages.app.atlas_file import open_linkage_atlas
-from linkages.app.choice import choose_linkage, require_loop
+from linkages.app.choice import require_loop
 from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
-from linkages.app.options import SearchOptions
+from linkages.app.inputs import choose_held
+from linkages.app.options import HoldOptions, SearchOptions
 from linkages.labels import loop_of
+from linkages.linkage import Linkage
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["atlas_of", "is_atlas_file", "loop_atlas_of"]
 
 ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
+NOTHING_HELD = HoldOptions()
 
 
 def is_atlas_file(source: str) -> bool:
@@ -22,8 +29,13 @@ def is_atlas_file(source: str) -> bool:
     return source.endswith(ATLAS_FILE)
 
 
-def atlas_of(source: str, parameters: Sequence[str], search: SearchOptions) -> Atlas:
-    """The saved atlas, or that of the linkage, called ``source``.
+def atlas_of(
+    source: str,
+    parameters: Sequence[str],
+    search: SearchOptions,
+    hold: HoldOptions = NOTHING_HELD,
+) -> Atlas:
+    """The saved atlas, or that of the linkage, called ``source``, with joints held.
 
     Raises `CommandError` for parameters of a saved atlas, or options of its search, and
     where Ctrl-C ended the search.
@@ -31,24 +43,38 @@ def atlas_of(source: str, parameters: Sequence[str], search: SearchOptions) -> A
     if is_atlas_file(source):
         if parameters:
             raise CommandError("--param: it has no effect on a saved atlas")
+        if hold != NOTHING_HELD:
+            raise CommandError(
+                f"{hold.names}: it has no effect on a saved atlas; map the mechanism "
+                "with it"
+            )
         if search != SearchOptions():
             raise CommandError(
                 "--starts, --seed, --tolerance, --budget: they have no effect on a "
                 "saved atlas, which is not searched again"
             )
         return open_linkage_atlas(source)
-    atlas = explore_linkage(choose_linkage(source, parameters), search)
-    require_uninterrupted(atlas)
-    return atlas
+    return _explored(choose_held(source, parameters, hold), search)
 
 
 def loop_atlas_of(
-    source: str, parameters: Sequence[str], search: SearchOptions
+    source: str,
+    parameters: Sequence[str],
+    search: SearchOptions,
+    hold: HoldOptions = NOTHING_HELD,
 ) -> Atlas:
     """The saved atlas, or that of the linkage, called ``source``, where it is a single
     loop of revolute joints; raises `CommandError` for a mechanism as well."""
-    if not is_atlas_file(source):
-        require_loop(source, choose_linkage(source, parameters))
-    atlas = atlas_of(source, parameters, search)
-    loop_of(atlas)
+    if is_atlas_file(source):
+        atlas = atlas_of(source, parameters, search, hold)
+        loop_of(atlas)
+        return atlas
+    linkage = choose_held(source, parameters, hold)
+    require_loop(source, linkage)
+    return _explored(linkage, search)
+
+
+def _explored(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:
+    atlas = explore_linkage(linkage, search)
+    require_uninterrupted(atlas)
     return atlas

@@ -16,6 +16,7 @@ from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import GeometryError, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
+from linkages.values import check_angle
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -52,8 +53,8 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     single = Readout(linkage).single_loop
     if single is None:
         raise CommandError(
-            f"{text}: it is a mechanism, which `bifurc map`, `bifurc view` and "
-            "`bifurc route` take; this command takes single loops of 4 to 12 "
+            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, `convert` "
+            "and `export` to .glb and .csv take; this takes single loops of 4 to 12 "
             "revolute joints so far"
         )
     return single.loop
@@ -138,7 +139,10 @@ def read_parameters(
             raise CommandError(f"--param {name}: it is given twice")
         number = read_number(name, value)
         is_angle = kinds.get(name) is ParameterKind.ANGLE
-        values[name] = math.radians(number) if is_angle else number
+        if is_angle:
+            check_angle(f"--param {name}", number, in_degrees=True)
+            number = math.radians(number)
+        values[name] = number
     return values
 
 

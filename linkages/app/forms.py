@@ -55,4 +55,7 @@ def require_forms(atlas: Atlas) -> None:
     verdict = judge(atlas)
     if verdict.code is not ExitCode.DONE:
         raise CommandError(verdict.sentence, verdict.code)
-    raise CommandError(f"{verdict.sentence} It has no form of mobility 1.")
+    raise CommandError(
+        f"{verdict.sentence} It has no form of mobility 1; joints of a mechanism are "
+        "held with --lock."
+    )

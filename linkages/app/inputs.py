@@ -7,15 +7,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linkages.app.choice import read_number, split_parameter
+import click
+
+from linkages.app.choice import choose_linkage, read_number, split_parameter
 from linkages.app.exit_codes import CommandError
+from linkages.app.options import HoldOptions
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError
+from linkages.values import check_angle, told_apart
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["Inputs", "read_kinks", "with_inputs", "without_centre"]
+__all__ = ["Inputs", "choose_held", "hold_joints", "read_kinks", "without_centre"]
 
 
 @dataclass(frozen=True)
@@ -27,27 +31,44 @@ class Inputs:
     notes: tuple[str, ...] = ()
 
 
-def with_inputs(
-    text: str, linkage: Linkage | Mechanism, locks: Sequence[str], driver: str | None
-) -> Inputs:
-    """The mechanism called ``text`` with the ``locks``, each "J=40", angles in
-    degrees, and slides in the file's unit of length, and what else has to be held for
-    one joint to drive it.
+def choose_held(
+    text: str, parameters: Sequence[str], hold: HoldOptions
+) -> Linkage | Mechanism:
+    """What `choose_linkage` finds, with joints held; what nobody asked for is said on
+    standard error. Raises as `choose_linkage` and `hold_joints`."""
+    inputs = hold_joints(text, choose_linkage(text, parameters), hold)
+    for note in inputs.notes:
+        click.echo(note, err=True)
+    return inputs.mechanism
+
+
+def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> Inputs:
+    """The mechanism called ``text`` with the locks, each "J=40", angles in degrees, and
+    slides in the file's unit of length, and what else has to be held for one joint to
+    drive it; of a network, where that is asked for, the loop without its centre.
 
     Raises `CommandError` for a linkage that takes none, `GeometryError` for a joint
     that it does not have.
     """
-    if not locks and driver is None:
+    if hold == HoldOptions():
         return Inputs(linkage)
-    option = "--lock" if locks else "--drive"
     if isinstance(linkage, Linkage):
+        if hold.is_without_centre:
+            without_centre(text, linkage)
         raise CommandError(
-            f"{option}: it takes a mechanism with joints by name, and {text} is a "
+            f"{hold.names}: it takes a mechanism with joints by name, and {text} is a "
             "single loop, a table or axes"
         )
-    mechanism = _with_locks(linkage, locks)
-    if driver is None:
-        return Inputs(mechanism)
+    locked = _with_locks(linkage, hold.locks)
+    inputs = Inputs(locked) if hold.driver is None else _driven(locked, hold.driver)
+    if not hold.is_without_centre:
+        return inputs
+    loop = without_centre(text, inputs.mechanism)
+    return Inputs(loop.mechanism, inputs.notes + loop.notes)
+
+
+def _driven(mechanism: Mechanism, driver: str) -> Inputs:
+    """The mechanism with what has to be held for one joint to drive it."""
     from linkages.mechanisms.driving import joints_to_hold
 
     held = joints_to_hold(mechanism, driver)
@@ -79,7 +100,9 @@ def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]
         joint, value = split_parameter(text, option)
         if joint in kinks:
             raise CommandError(f"{option} {joint}: it is given twice")
-        kinks[joint] = math.radians(read_number(joint, value, option))
+        number = read_number(joint, value, option)
+        check_angle(f"{option} {joint}", number, in_degrees=True)
+        kinks[joint] = math.radians(number)
     return kinks
 
 
@@ -112,7 +135,10 @@ def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
         if label in values:
             raise CommandError(f"--lock {label}: it is given twice")
         number = read_number(label, value, "--lock")
-        values[label] = math.radians(number) if is_turn.get(label) else number
+        if is_turn.get(label):
+            check_angle(f"--lock {label}", number, in_degrees=True)
+            number = math.radians(number)
+        values[label] = number
     _check_limits(mechanism, values)
     return values
 
@@ -128,7 +154,6 @@ def _check_limits(mechanism: Mechanism, values: dict[str, float]) -> None:
             continue
         unit = math.radians(1.0) if one.motion.is_turn else 1.0
         word = " deg" if one.motion.is_turn else ""
-        allowed = f"within its limits {low / unit:.10g} to {high / unit:.10g}{word}"
-        raise GeometryError(
-            f"--lock {one.label}", f"{value / unit:.10g}{word}", allowed
-        )
+        shown, least, most = told_apart(value / unit, low / unit, high / unit)
+        allowed = f"within its limits {least} to {most}{word}"
+        raise GeometryError(f"--lock {one.label}", f"{shown}{word}", allowed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
@@ -15,11 +16,16 @@ if TYPE_CHECKING:
     from bifurc.search.settings import SearchSettings
 
 __all__ = [
+    "FILE",
+    "FOLDER",
     "SEED",
+    "HoldOptions",
     "JointNumbers",
+    "NamedPath",
     "NumberRange",
     "SearchOptions",
     "form_option",
+    "hold_options",
     "json_option",
     "out_option",
     "param_option",
@@ -58,6 +64,30 @@ class NumberRange(click.FloatRange):
             allowed = self._describe_range()
             self.fail(f"{value} is not a finite number in {allowed}.", param, ctx)
         return number
+
+
+class NamedPath(click.Path):
+    """The path of a file or a folder that has a name: an empty text would stand for the
+    current folder."""
+
+    def __init__(self, *, file_okay: bool = True, dir_okay: bool = True):
+        super().__init__(path_type=Path, file_okay=file_okay, dir_okay=dir_okay)
+
+    def convert(
+        self,
+        value: str | os.PathLike[str],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> str | bytes | os.PathLike[str]:
+        """The path that ``value`` is; raises `click.BadParameter`."""
+        if not os.fspath(value).strip():
+            kind = "folder" if self.dir_okay else "file"
+            self.fail(f"{value!r} is no name of a {kind}.", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+FILE = NamedPath(dir_okay=False)
+FOLDER = NamedPath(file_okay=False)
 
 
 class JointNumbers(click.ParamType[tuple[int, ...]]):
@@ -174,6 +204,79 @@ def search_options(command: Command) -> Command:
     return decorated
 
 
+@dataclass(frozen=True)
+class HoldOptions:
+    """Joints of a mechanism that are held: what stands on the command line.
+
+    ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
+    ``is_without_centre``: of a network only the loop that its outer bars leave.
+    """
+
+    locks: tuple[str, ...] = ()
+    driver: str | None = None
+    is_without_centre: bool = False
+
+    @property
+    def names(self) -> str:
+        """The options that are given."""
+        given = {
+            "--lock": bool(self.locks),
+            "--drive": self.driver is not None,
+            "--without-centre": self.is_without_centre,
+        }
+        return ", ".join(name for name, is_given in given.items() if is_given)
+
+
+HOLD_OPTIONS = (
+    click.option(
+        "--lock",
+        "locks",
+        multiple=True,
+        metavar="JOINT=VALUE",
+        help=(
+            "Hold a joint of a mechanism at a value, an angle in degrees, whatever its "
+            "file counts in, a slide in the file's unit of length, or an outer joint of "
+            "a network at a D-H angle; may be given several times."
+        ),
+    ),
+    click.option(
+        "--drive",
+        "driver",
+        metavar="JOINT",
+        help=(
+            "Hold as many joints of a mechanism as it takes for this one to move all "
+            "others; says which."
+        ),
+    ),
+    click.option(
+        "--without-centre",
+        "is_without_centre",
+        is_flag=True,
+        help="Of a network with locks, take the single loop that its outer bars leave.",
+    ),
+)
+
+
+def hold_options(command: Command) -> Command:
+    """``command`` with the options for joints that are held, which it takes as one
+    `HoldOptions` called ``hold``."""
+
+    @wraps(command)
+    def with_hold(
+        locks: tuple[str, ...],
+        driver: str | None,
+        is_without_centre: bool,
+        **others: object,
+    ) -> None:
+        hold = HoldOptions(locks, driver, is_without_centre)
+        command(hold=hold, **others)
+
+    decorated: Command = with_hold
+    for option in reversed(HOLD_OPTIONS):
+        decorated = option(decorated)
+    return decorated
+
+
 form_option = click.option(
     "--form",
     "forms",
@@ -201,5 +304,4 @@ def json_option(angles: str = "") -> Callable[[Command], Command]:
 
 def out_option(content: str) -> Callable[[Command], Command]:
     """The option ``--out``, a folder for ``content``."""
-    folder = click.Path(path_type=Path, file_okay=False)
-    return click.option("--out", type=folder, help=f"Folder for {content}.")
+    return click.option("--out", type=FOLDER, help=f"Folder for {content}.")

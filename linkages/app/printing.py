@@ -20,6 +20,7 @@ from linkages.printing.assembly import Kind, Part
 from linkages.printing.dimensions import Dimensions
 from linkages.printing.interference import PartApproach, find_meetings
 from linkages.printing.seating import REACHES, Seating, choose_seats
+from linkages.values import told_apart
 
 __all__ = [
     "describe_meetings",
@@ -69,8 +70,9 @@ def seat_hinges(
     loop = _in_millimetres(loop_of(atlas), options)
     size = loop.characteristic_length
     if not dimensions.diameter < size:
-        allowed = f"less than {size:g} mm, the mean length of a link"
-        raise GeometryError("--diameter", f"{dimensions.diameter:g} mm", allowed)
+        shown, most = told_apart(dimensions.diameter, size)
+        allowed = f"less than {most} mm, the mean length of a link"
+        raise GeometryError("--diameter", f"{shown} mm", allowed)
     offsets = _read_offsets(options.offsets, loop)
     generator = np.random.default_rng(seed)
     return choose_seats(loop, dimensions, forms, generator, offsets)
@@ -87,8 +89,9 @@ def _in_millimetres(loop: Loop, options: PrintOptions) -> Loop:
         scaled = loop.scaled(size / loop.characteristic_length)
     size = scaled.characteristic_length
     if not SMALLEST_SIZE <= size <= LARGEST_SIZE:
-        allowed = f"from {SMALLEST_SIZE:g} to {LARGEST_SIZE:g} mm"
-        raise GeometryError("mean length of a link", f"{size:g} mm", allowed)
+        shown, least, most = told_apart(size, SMALLEST_SIZE, LARGEST_SIZE)
+        allowed = f"from {least} to {most} mm"
+        raise GeometryError("mean length of a link", f"{shown} mm", allowed)
     return scaled
 
 

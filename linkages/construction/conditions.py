@@ -8,7 +8,7 @@ is.
 from __future__ import annotations
 
 from linkages.construction.numbers import Number, sin
-from linkages.loop import GeometryError
+from linkages.values import GeometryError, told_apart
 
 __all__ = [
     "ROUNDING",
@@ -46,8 +46,10 @@ def require_within(
     number = decided(value)
     if number is None or low < number < high:
         return
-    allowed = f"between {low:.6g} and {high:.6g} {unit}"
-    raise GeometryError(name, f"{number:.6g} {unit}", allowed)
+    shown, least, most = told_apart(number, low, high)
+    is_end = number in (low, high)
+    allowed = f"between {least} and {most} {unit}" + (", not at an end" * is_end)
+    raise GeometryError(name, f"{shown} {unit}", allowed)
 
 
 def require_equal(name: str, value: Number, expected: Number, meaning: str) -> None:
@@ -59,8 +61,9 @@ def require_equal(name: str, value: Number, expected: Number, meaning: str) -> N
         return
     amount = abs(left - right)
     if not amount <= TOLERANCE * max(abs(left), abs(right), 1e-300):
-        allowed = f"{right:.10g}, {meaning} (off by {amount:.3g})"
-        raise GeometryError(name, f"{left:.10g}", allowed)
+        shown, wanted = told_apart(left, right)
+        allowed = f"{wanted}, {meaning} (off by {amount:.3g})"
+        raise GeometryError(name, shown, allowed)
 
 
 def require_different(

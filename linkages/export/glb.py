@@ -3,177 +3,171 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.figures.style import COLORS
 from linkages.export.gltf import BinaryGltf, Track
-from linkages.export.motion import Motion, Poses, link_poses
-from linkages.links.rods import link_corners, seat_heights
-from linkages.loop import GeometryError, Loop
+from linkages.export.meshes import Mesh, ball, box, cylinder
+from linkages.export.model import Body, LinkageModel, Shape, Symbol
+from linkages.export.motion import Motion, Poses
+from linkages.loop import GeometryError
 
 __all__ = ["make_glb"]
 
-SIDES = 24  # of the prism that stands for a cylinder
-ROD_RADIUS = 0.03  # in characteristic lengths
+ROD_RADIUS = 0.03  # in characteristic lengths, as all below
 JOINT_RADIUS = 0.07
 JOINT_HEIGHT = 0.24
+SCALES = {
+    Shape.CYLINDER: (JOINT_RADIUS, JOINT_RADIUS, JOINT_HEIGHT),
+    Shape.BOX: (0.16, 0.16, JOINT_HEIGHT),
+    Shape.PLATE: (0.4, 0.4, 0.03),
+    Shape.BALL: (0.1, 0.1, 0.1),
+}
+MESHES = {
+    Shape.CYLINDER: cylinder,
+    Shape.BOX: box,
+    Shape.PLATE: box,
+    Shape.BALL: ball,
+}
 SECONDS = 8.0  # that an animation of one turn in joint space takes
 SHORTEST = 3.0  # s
 SMALLEST, LARGEST = 1e-12, 1e12  # characteristic lengths that floats of 32 bits hold
-NOTHING = 1e-9  # in characteristic lengths: a rod that is none
 JOINT_COLOR = "#444444"
 FULL_TURN = 2 * np.pi
 Z_TO_Y = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # glTF has y upwards
 
 
 class _Solids(NamedTuple):
-    """The meshes of a rod, by the link's colour, and of a joint."""
+    """The meshes of rods, one for each colour, and of joints by their shapes."""
 
     rods: list[int]
-    joint: int
+    joints: dict[Shape, int]
 
 
-@dataclass(frozen=True)
-class _Rod:
-    """A rod from its middle: ``rotation`` (4,) turns the z axis along it."""
+def make_glb(model: LinkageModel, generator: str) -> bytes:
+    """The model in binary glTF, with an animation for every motion.
 
-    middle: np.ndarray
-    rotation: np.ndarray
-    length: float
-
-
-def make_glb(loop: Loop, motions: Sequence[Motion], generator: str) -> bytes:
-    """The model of a loop in binary glTF, with an animation for every motion.
-
-    A node for each link, called "link 12" and so on, the last one at rest; its z axis
-    is the axis of the joint behind it. Lengths are those of the loop, times in seconds.
-    Raises `GeometryError` for lengths beyond floats of 32 bits.
+    A node for each body by its name, the frame at rest; z axes of links of a loop are
+    the axes of the joints behind them. Lengths are those of the linkage, times in
+    seconds. Raises `GeometryError` for lengths beyond floats of 32 bits.
     """
-    size = loop.characteristic_length
-    if not SMALLEST < size < LARGEST:
+    if not SMALLEST < model.size < LARGEST:
         allowed = f"between {SMALLEST:g} and {LARGEST:g}, for a model of 32-bit floats"
-        raise GeometryError("characteristic length", size, allowed)
+        raise GeometryError("characteristic length", model.size, allowed)
     file = BinaryGltf(generator)
-    solids = _add_solids(file, loop.n)
-    all_poses = [link_poses(loop, motion) for motion in motions]
-    links = [_add_link(file, loop, solids, i, all_poses[0]) for i in range(loop.n)]
-    for motion, poses in zip(motions, all_poses, strict=True):
-        _add_animation(file, links, motion, poses)
-    root = file.add_node(loop.name or "linkage", children=links, rotation=Z_TO_Y)
+    solids = _add_solids(file, model)
+    first = model.motions[0][1]
+    bodies = [
+        _add_body(file, body, number, solids, model.size, first)
+        for number, body in enumerate(model.bodies)
+    ]
+    for motion, poses in model.motions:
+        _add_animation(file, bodies, model.frame, motion, poses)
+    root = file.add_node(model.name, children=bodies, rotation=Z_TO_Y)
     return file.to_bytes(root)
 
 
-def _add_solids(file: BinaryGltf, count: int) -> _Solids:
-    """Meshes of a cylinder of radius and height 1, in the colours of links and
-    joints."""
-    positions, normals, triangles = _cylinder()
-    arrays = (
-        file.add_vertices(positions),
-        file.add_vertices(normals),
-        file.add_triangles(triangles),
-    )
+def _add_solids(file: BinaryGltf, model: LinkageModel) -> _Solids:
+    """Meshes of rods in the colours of bodies, and of the joints that there are."""
+    rod = _add_arrays(file, cylinder())
     rods = []
-    for i in range(min(count, len(COLORS))):
-        material = file.add_material(f"link {i + 1}", _linear(COLORS[i]))
-        rods.append(file.add_mesh(f"rod {i + 1}", *arrays, material))
+    for i, color in enumerate(COLORS[: len(model.bodies)]):
+        material = file.add_material(f"body {i + 1}", _linear(color))
+        rods.append(file.add_mesh(f"rod {i + 1}", *rod, material))
     material = file.add_material("joint", _linear(JOINT_COLOR))
-    return _Solids(rods, file.add_mesh("joint", *arrays, material))
-
-
-def _add_link(
-    file: BinaryGltf, loop: Loop, solids: _Solids, i: int, poses: Poses
-) -> int:
-    """The node of link i, with its rods and the joint behind it, where a motion
-    begins."""
-    size = loop.characteristic_length
-    mesh = solids.rods[i % len(solids.rods)]
-    children = []
-    for rod in _rods(link_corners(loop)[i], NOTHING * size):
-        radius = ROD_RADIUS * size
-        children.append(
-            file.add_node(
-                "rod",
-                mesh=mesh,
-                translation=rod.middle.tolist(),
-                rotation=rod.rotation.tolist(),
-                scale=[radius, radius, rod.length],
+    shapes = {symbol.shape for body in model.bodies for symbol in body.symbols}
+    joints = {}
+    for shape in Shape:
+        if shape in shapes:
+            arrays = (
+                rod if shape is Shape.CYLINDER else _add_arrays(file, MESHES[shape]())
             )
-        )
-    joint = (i + 1) % loop.n
-    seat = [0.0, 0.0, float(seat_heights(loop)[joint])]
-    scale = [JOINT_RADIUS * size, JOINT_RADIUS * size, JOINT_HEIGHT * size]
-    name = f"joint {joint + 1}"
-    dash = "-" if loop.n > 9 else ""  # as in linkages.app.texts.link_name
-    children.append(
-        file.add_node(name, mesh=solids.joint, translation=seat, scale=scale)
+            joints[shape] = file.add_mesh(f"joint, {shape.value}", *arrays, material)
+    return _Solids(rods, joints)
+
+
+def _add_arrays(file: BinaryGltf, mesh: Mesh) -> tuple[int, int, int]:
+    return (
+        file.add_vertices(mesh.positions),
+        file.add_vertices(mesh.normals),
+        file.add_triangles(mesh.triangles),
     )
+
+
+def _add_body(
+    file: BinaryGltf,
+    body: Body,
+    number: int,
+    solids: _Solids,
+    size: float,
+    poses: Poses,
+) -> int:
+    """The node of a body, with its rods and its joints, where a motion begins."""
+    mesh = solids.rods[number % len(solids.rods)]
+    children = [_add_rod(file, mesh, start, end, size) for start, end in body.rods]
+    children += [_add_symbol(file, solids, one, size) for one in body.symbols]
+    # the format has no empty list of children
+    parts = {"children": children} if children else {}
     return file.add_node(
-        f"link {i + 1}{dash}{joint + 1}",
-        children=children,
-        translation=poses.translations[i, 0].tolist(),
-        rotation=poses.rotations[i, 0].tolist(),
+        body.name,
+        translation=poses.translations[number, 0].tolist(),
+        rotation=poses.rotations[number, 0].tolist(),
+        **parts,
+    )
+
+
+def _add_rod(
+    file: BinaryGltf, mesh: int, start: np.ndarray, end: np.ndarray, size: float
+) -> int:
+    way = end - start
+    length = float(np.linalg.norm(way))
+    return file.add_node(
+        "rod",
+        mesh=mesh,
+        translation=((start + end) / 2).tolist(),
+        rotation=_rotation_from_z(way / length),
+        scale=[ROD_RADIUS * size, ROD_RADIUS * size, length],
+    )
+
+
+def _add_symbol(file: BinaryGltf, solids: _Solids, symbol: Symbol, size: float) -> int:
+    return file.add_node(
+        symbol.name,
+        mesh=solids.joints[symbol.shape],
+        translation=symbol.place.tolist(),
+        rotation=_rotation_from_z(symbol.direction),
+        scale=[size * share for share in SCALES[symbol.shape]],
     )
 
 
 def _add_animation(
-    file: BinaryGltf, links: Sequence[int], motion: Motion, poses: Poses
+    file: BinaryGltf, nodes: Sequence[int], frame: int, motion: Motion, poses: Poses
 ) -> None:
-    """The animation of all links but the last one, which stands still."""
+    """The animation of all bodies but the frame, which stands still."""
     length = motion.arclength[-1]
-    seconds = max(SECONDS * length / FULL_TURN / len(links) ** 0.5, SHORTEST)
+    seconds = max(SECONDS * length / FULL_TURN / len(nodes) ** 0.5, SHORTEST)
     share = motion.arclength / length if length > 0 else np.zeros(1)
     times = file.add_floats(seconds * share)
     tracks = []
-    for node, way, turns in zip(
-        links[:-1], poses.translations, poses.rotations, strict=False
-    ):
-        tracks.append(Track(node, "translation", file.add_floats(way)))
-        tracks.append(Track(node, "rotation", file.add_floats(turns)))
+    for number, node in enumerate(nodes):
+        if number == frame:
+            continue
+        way = file.add_floats(poses.translations[number])
+        turns = file.add_floats(poses.rotations[number])
+        tracks.append(Track(node, "translation", way))
+        tracks.append(Track(node, "rotation", turns))
     file.add_animation(motion.name, times, tracks)
 
 
-# --- shapes ---------------------------------------------------------------------------
-
-
-def _rods(corners: np.ndarray, nothing: float) -> list[_Rod]:
-    """The rods between the corners (4, 3) of a link."""
+def _rotation_from_z(direction: np.ndarray) -> list[float]:
+    """The quaternion (4,) of a rotation from z to a unit vector (3,)."""
     from scipy.spatial.transform import Rotation
 
-    rods = []
-    for start, end in pairwise(corners):
-        way = end - start
-        length = float(np.linalg.norm(way))
-        if length <= nothing:
-            continue
-        turn, _ = Rotation.align_vectors([way / length], [[0.0, 0.0, 1.0]])
-        rods.append(_Rod((start + end) / 2, turn.as_quat(), length))
-    return rods
-
-
-def _cylinder() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices (k, 3), normals (k, 3) and triangles (m, 3) of a closed cylinder about
-    z, of radius and height 1."""
-    angles = FULL_TURN * np.arange(SIDES) / SIDES
-    ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(SIDES)], axis=1)
-    up = np.array([0.0, 0.0, 0.5])
-    # the wall has normals of its own, so that edges are sharp
-    positions = np.concatenate([ring - up, ring + up, ring - up, ring + up])
-    upward = np.tile([0.0, 0.0, 1.0], (SIDES, 1))
-    normals = np.concatenate([ring, ring, -upward, upward])
-    triangles = []
-    for k in range(SIDES):
-        low, next_low = k, (k + 1) % SIDES
-        high, next_high = low + SIDES, next_low + SIDES
-        triangles += [[low, next_low, next_high], [low, next_high, high]]
-    bottom, top = 2 * SIDES, 3 * SIDES
-    for k in range(1, SIDES - 1):
-        triangles.append([bottom, bottom + k + 1, bottom + k])
-        triangles.append([top, top + k, top + k + 1])
-    return positions, normals, np.array(triangles)
+    turn, _ = Rotation.align_vectors([direction], [[0.0, 0.0, 1.0]])
+    quaternion: list[float] = turn.as_quat().tolist()
+    return quaternion
 
 
 def _linear(color: str) -> list[float]:

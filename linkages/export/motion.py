@@ -1,5 +1,5 @@
 """Motions of a linkage at given moments: forms and routes by configurations, and the
-poses of its links along them."""
+poses of its bodies along them."""
 
 from __future__ import annotations
 
@@ -8,13 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
+from bifurc.problem import Problem
 from bifurc.routes.route import Route
 from bifurc.routes.spread import spread_route
-from linkages.closure.loop_closure import LoopClosure
-from linkages.labels import loop_of
 from linkages.loop import Loop
 
-__all__ = ["Motion", "Poses", "link_poses", "motion_of_form", "motion_of_route"]
+__all__ = [
+    "Motion",
+    "Poses",
+    "link_poses",
+    "motion_of_form",
+    "motion_of_route",
+    "poses_of",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,11 +35,11 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Poses of the links along a motion of k moments: ``translations`` (n, k, 3) and
+    """Poses of n bodies along a motion of k moments: ``translations`` (n, k, 3) and
     unit quaternions ``rotations`` (n, k, 4), x, y, z, w, each near the one before.
 
-    Link i stands before joint i + 1, as in `linkages.links.rods.link_corners`; the last
-    one is the frame of all.
+    Link i of a loop stands before joint i + 1, as in
+    `linkages.links.rods.link_corners`; the last one is the frame of all.
     """
 
     translations: np.ndarray
@@ -47,10 +53,11 @@ def motion_of_form(form: Form, count: int) -> Motion:
     return Motion(form.name, configurations, arclength)
 
 
-def motion_of_route(atlas: Atlas, route: Route, name: str, count: int) -> Motion:
-    """A route at ``count`` places, its begin and its end among them; raises
-    `bifurc.RouteError` for one without length."""
-    problem = LoopClosure(loop_of(atlas))
+def motion_of_route(
+    atlas: Atlas, route: Route, name: str, count: int, problem: Problem
+) -> Motion:
+    """A route of an atlas of a ``problem`` at ``count`` places, its begin and its end
+    among them; raises `bifurc.RouteError` for one without length."""
     arclength, configurations = spread_route(atlas, route, count, problem)
     return Motion(name, configurations, arclength)
 
@@ -58,14 +65,19 @@ def motion_of_route(atlas: Atlas, route: Route, name: str, count: int) -> Motion
 def link_poses(loop: Loop, motion: Motion) -> Poses:
     """The poses of all links along a motion, in the frame of the link that joins the
     last joint to the first."""
+    frames = np.moveaxis(loop.frames(motion.configurations)[:, 1:], 1, 0)
+    return poses_of(frames)
+
+
+def poses_of(transforms: np.ndarray) -> Poses:
+    """The poses of n bodies by their transforms (n, k, 4, 4) at k moments."""
     from scipy.spatial.transform import Rotation
 
-    frames = np.moveaxis(loop.frames(motion.configurations)[:, 1:], 1, 0)
-    count, moments = frames.shape[:2]
-    matrices = frames[..., :3, :3].reshape(-1, 3, 3)
+    count, moments = transforms.shape[:2]
+    matrices = transforms[..., :3, :3].reshape(-1, 3, 3)
     quaternions = Rotation.from_matrix(matrices).as_quat()
     rotations = quaternions.reshape(count, moments, 4)
     turns = (rotations[:, 1:] * rotations[:, :-1]).sum(axis=-1)
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=1)
     rotations[:, 1:] *= signs[..., None]
-    return Poses(frames[..., :3, 3], rotations)
+    return Poses(transforms[..., :3, 3], rotations)

@@ -27,6 +27,7 @@ from linkages.entry import (
     RelationKind,
 )
 from linkages.loop import GeometryError, Loop
+from linkages.values import told_apart
 
 __all__ = ["ENTRIES", "form_patterns", "four_bar", "kite", "parallelogram", "rhombus"]
 
@@ -61,9 +62,10 @@ def _refuse_too_long(sizes: list[float]) -> None:
     if 2 * longest < sum(sizes):
         return
     excess = longest - rest
-    allowed = f"less than {rest:.6g}, the sum of the others (too long by {excess:.3g})"
+    shown, most = told_apart(longest, rest)
+    allowed = f"less than {most}, the sum of the others (too long by {excess:.3g})"
     name = f"length of link {LINKS[sizes.index(longest)]}"
-    raise GeometryError(name, f"{longest:.6g}", allowed)
+    raise GeometryError(name, shown, allowed)
 
 
 def parallelogram(a: Number, b: Number) -> Loop:

@@ -20,6 +20,7 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint, Motion
 from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.values import check_angle
 
 __all__ = ["read_mechanism"]
 
@@ -204,7 +205,10 @@ def _in_rad(
     """Numbers of a file in rad, where the motion is a turn; lengths as they are."""
     numbers = []
     for value in values:
-        check_number(what, value)
+        if motion.is_turn:
+            check_angle(what, value, in_degrees=unit != 1.0)
+        else:
+            check_number(what, value)
         factor = unit if motion.is_turn else 1.0
         numbers.append(factor * float(value))  # type: ignore[arg-type]
     return numbers

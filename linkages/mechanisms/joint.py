@@ -17,6 +17,7 @@ import numpy as np
 
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling
+from linkages.values import check_angle, check_direction
 
 __all__ = ["Joint", "JointKind", "Limits", "Motion", "Vector"]
 
@@ -288,9 +289,8 @@ def _check_needs(joint: Joint) -> None:
 
 def _check_direction(joint: Joint, key: str) -> None:
     direction = getattr(joint, key)
-    if direction is not None and not np.any(np.array(direction)):
-        what = f"{key} of joint {joint.name}"
-        raise GeometryError(what, list(direction), "of a length other than zero")
+    if direction is not None:
+        check_direction(f"{key} of joint {joint.name}", direction)
 
 
 def _check_second_direction(joint: Joint) -> None:
@@ -311,11 +311,11 @@ def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
     what = f"limits of joint {joint.name}"
     if len(limits) != count:
         raise GeometryError(f"number of {what}", len(limits), f"{count}")
-    for pair in limits:
+    for pair, motion in zip(limits, _motions_of_parts(joint), strict=True):
         if pair is None:
             continue
         for value in pair:
-            check_number(what, value)
+            _check_value(what, value, motion)
         if not pair[0] < pair[1]:
             raise GeometryError(what, list(pair), "a smaller number and a larger one")
     return limits
@@ -330,13 +330,24 @@ def _checked_locks(
     if len(locked) != count:
         allowed = f"{count}, one for each variable"
         raise GeometryError(f"number of values of {what}", len(locked), allowed)
-    for value, pair in zip(locked, limits, strict=True):
+    rows = zip(locked, limits, _motions_of_parts(joint), strict=True)
+    for value, pair, motion in rows:
         if value is None:
             continue
-        check_number(what, value)
+        _check_value(what, value, motion)
         if pair is not None and not pair[0] <= value <= pair[1]:
             raise GeometryError(what, value, f"within the limits {list(pair)}")
     return locked
+
+
+def _motions_of_parts(joint: Joint) -> tuple[Motion, ...]:
+    """What each variable does."""
+    return joint.motions * (len(joint.bodies) - 1)
+
+
+def _check_value(what: str, value: object, motion: Motion) -> None:
+    check = check_angle if motion.is_turn else check_number
+    check(what, value)
 
 
 def _checked_couplings(joint: Joint) -> tuple[Coupling | None, ...]:

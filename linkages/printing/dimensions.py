@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from linkages.loop import GeometryError
+from linkages.values import told_apart
 
 __all__ = ["Dimensions"]
 
@@ -39,8 +40,9 @@ class Dimensions:
             if not (math.isfinite(value) and value > 0):
                 raise GeometryError(name, value, "positive and finite, in mm")
         if self.diameter < 2 * self.wall:
-            allowed = f"at least {2 * self.wall:g} mm, twice the wall"
-            raise GeometryError("diameter", f"{self.diameter:g} mm", allowed)
+            shown, least = told_apart(self.diameter, 2 * self.wall)
+            allowed = f"at least {least} mm, twice the wall"
+            raise GeometryError("diameter", f"{shown} mm", allowed)
 
     @property
     def rod_radius(self) -> float:

@@ -20,13 +20,13 @@ from bifurc.figures.planes import choose_plane
 from bifurc.figures.style import color_on_dark, form_style
 from bifurc.torus import difference
 from linkages.labels import FormLabels, loop_of
+from linkages.links.mechanism_drawing import best_view_of_mechanism
 from linkages.loop import Loop
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_of
 from linkages.scene import View, best_view, make_scene
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
-from linkages.viewing.mechanism_drawing import best_view_of_mechanism
 
 __all__ = ["ViewDocument", "make_view_document"]
 
@@ -54,8 +54,8 @@ class LoopDocument(TypedDict):
 class FormDocument(TypedDict):
     """A form: its branch as in `bifurc.branch.Branch`, and how it is drawn.
 
-    For a mechanism there is ``smallest`` besides, the smallest regular singular value
-    at places of the form, as [s, value].
+    Where the viewer has no equations there is ``smallest`` besides, the smallest
+    regular singular value at places of the form, as [s, value].
     """
 
     name: str
@@ -182,8 +182,9 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
     view = best_view_of_mechanism(structure, _first(atlas))
     motion = describe_motion(structure, points)
     document = _document(atlas, title, verdict, {"mechanism": motion}, view)
-    for form, shown in zip(atlas.forms, document["forms"], strict=True):
-        shown["smallest"] = _smallest(form)
+    if motion["tape"] is None:
+        for form, shown in zip(atlas.forms, document["forms"], strict=True):
+            shown["smallest"] = _smallest(form)
     return document
 
 

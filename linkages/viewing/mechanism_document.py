@@ -12,17 +12,20 @@ from typing import TypedDict
 
 import numpy as np
 
-from linkages.mechanisms.poses import Poses, TreeStep
-from linkages.mechanisms.rods import Rod
-from linkages.mechanisms.structure import Structure, Unknown
-from linkages.viewing.mechanism_drawing import (
+from linkages.links.mechanism_drawing import (
     BodyDrawing,
     SymbolDrawing,
     draw_bodies,
     draw_symbols,
 )
+from linkages.mechanisms.equations import write_equations
+from linkages.mechanisms.poses import Poses, TreeStep
+from linkages.mechanisms.rods import Rod
+from linkages.mechanisms.structure import Structure, Unknown
 
 __all__ = ["MechanismDocument", "UnknownDocument", "describe_motion"]
+
+MOST_UNKNOWNS = 30  # up to which a page has time for singular values at each frame
 
 
 class UnknownDocument(TypedDict):
@@ -97,9 +100,21 @@ class RodDocument(TypedDict):
     leg: LegDocument | None
 
 
+class TapeDocument(TypedDict):
+    """The closure equations as operations by their names, one after the other; operands
+    are the numbers of earlier ones, or of an unknown. ``outputs`` are the equations."""
+
+    operations: list[str]
+    left: list[int]
+    right: list[int]
+    constants: list[float]
+    outputs: list[int]
+
+
 class MechanismDocument(TypedDict):
     """The mechanism of a page; ``size`` is the characteristic length in the user's
-    unit, ``frame`` the body at rest."""
+    unit, ``frame`` the body at rest, and ``tape`` the equations whose singular values
+    are shown, None where unknowns are many."""
 
     size: float
     frame: int
@@ -108,6 +123,7 @@ class MechanismDocument(TypedDict):
     rods: list[RodDocument]
     bodies: list[BodyDrawing]
     symbols: list[SymbolDrawing]
+    tape: TapeDocument | None
 
 
 def describe_motion(structure: Structure, points: np.ndarray) -> MechanismDocument:
@@ -128,6 +144,18 @@ def describe_motion(structure: Structure, points: np.ndarray) -> MechanismDocume
         "rods": [_rod(poses, rod) for rod in structure.rods],
         "bodies": draw_bodies(structure, points),
         "symbols": draw_symbols(structure),
+        "tape": _tape(structure) if len(structure.unknowns) <= MOST_UNKNOWNS else None,
+    }
+
+
+def _tape(structure: Structure) -> TapeDocument:
+    nodes, outputs = write_equations(structure).tape.nodes()
+    return {
+        "operations": [node.operation.name.lower() for node in nodes],
+        "left": [node.left for node in nodes],
+        "right": [node.right for node in nodes],
+        "constants": [node.constant for node in nodes],
+        "outputs": outputs,
     }
 
 

@@ -6,9 +6,11 @@ import click
 
 from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import (
+    HoldOptions,
     NumberRange,
     SearchOptions,
     form_option,
+    hold_options,
     json_option,
     param_option,
     search_options,
@@ -17,13 +19,15 @@ from linkages.app.options import (
 
 __all__ = ["clearance_command"]
 
+LARGEST = 1e100  # diameter, as lengths of links
+
 
 @click.command("clearance", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
 @form_option
 @click.option(
     "--diameter",
-    type=NumberRange(min=0),
+    type=NumberRange(min=0, max=LARGEST),
     default=0.0,
     show_default=True,
     help=(
@@ -32,6 +36,7 @@ __all__ = ["clearance_command"]
     ),
 )
 @json_option("; angles in radians")
+@hold_options
 @param_option
 @search_options
 @verbose_option
@@ -43,6 +48,7 @@ def clearance_command(
     parameters: tuple[str, ...],
     verbose: bool,
     search: SearchOptions,
+    hold: HoldOptions,
 ) -> None:
     """Show how near links come to each other along forms, and where.
 
@@ -64,7 +70,7 @@ def clearance_command(
 
     if verbose:
         say_more()
-    atlas = loop_atlas_of(source, parameters, search)
+    atlas = loop_atlas_of(source, parameters, search, hold)
     require_forms(atlas)
     chosen = choose_forms(atlas, forms)
     clearances = [clearance_of(atlas, form, diameter) for form in chosen]

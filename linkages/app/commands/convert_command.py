@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from linkages.app.exit_codes import CommandError, exit_code_table
+from linkages.app.options import FILE, HoldOptions, hold_options
 from linkages.app.output import require_ending, require_writable, say, writing_to
 from linkages.linkage import Linkage
 
@@ -21,8 +22,9 @@ ENDINGS = (".toml", ".xml", ".mjcf", ".sdf")
 
 @click.command("convert", epilog=exit_code_table())
 @click.argument("source", metavar="IN")
-@click.argument("out", metavar="OUT", type=click.Path(path_type=Path, dir_okay=False))
-def convert_command(source: str, out: Path) -> None:
+@click.argument("out", metavar="OUT", type=FILE)
+@hold_options
+def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     """Write a mechanism to a file of another format.
 
     \b
@@ -30,13 +32,13 @@ def convert_command(source: str, out: Path) -> None:
     OUT  .toml, .xml or .mjcf (MJCF), .sdf
 
     The configuration written is the reference configuration, where all joint variables
-    are 0.
+    are 0; that of a network is one with its locks.
     """
     require_ending("OUT", out, *ENDINGS)
     from bifurc.files.atomic import replace_file
     from linkages.app.mechanism_file import mechanism_text
 
-    mechanism = _mechanism(source)
+    mechanism = _mechanism(source, hold)
     text = mechanism_text(mechanism, out)
     require_writable(out)
 
@@ -46,12 +48,12 @@ def convert_command(source: str, out: Path) -> None:
     say(f"{out}: {mechanism.name}, {bodies} bodies, {joints} joints")
 
 
-def _mechanism(source: str) -> Mechanism:
+def _mechanism(source: str, hold: HoldOptions) -> Mechanism:
     """The mechanism of a file; raises `CommandError` for a single loop that is given as
     a table or as axes."""
-    from linkages.app.choice import choose_linkage
+    from linkages.app.inputs import choose_held
 
-    chosen = choose_linkage(source)
+    chosen = choose_held(source, (), hold)
     if isinstance(chosen, Linkage):
         raise CommandError(
             f"{source}: it is a single loop, a table or axes; convert takes mechanisms"

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
+    FILE,
+    HoldOptions,
     SearchOptions,
     form_option,
+    hold_options,
     param_option,
     search_options,
     verbose_option,
@@ -19,14 +24,25 @@ from linkages.app.print_options import PrintOptions, print_options
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
+    from linkages.export.model import LinkageModel
     from linkages.export.motion import Motion
 
 __all__ = ["export_command"]
 
 MODEL, TABLE = ".glb", ".csv"
-LAID_OUT, ASSEMBLED = ".stl", ".step"
-MECHANISMS = (".xml", ".mjcf", ".sdf")
+MOTIONS = (MODEL, TABLE)
+PARTS = (".stl", ".step")
+MECHANISMS = (".mjcf", ".xml", ".sdf")
 FEWEST, MOST = 2, 100_000
+
+COMMAND_LINE = ParameterSource.COMMANDLINE
+
+# options that go with some files only: what they are called inside, and with which
+TARGETS = {
+    "routes": MOTIONS,
+    "count": MOTIONS,
+    **dict.fromkeys(("diameter", "play", "wall", "size", "unit", "offsets"), PARTS),
+}
 
 
 @click.command("export", epilog=exit_code_table())
@@ -34,7 +50,7 @@ FEWEST, MOST = 2, 100_000
 @click.option(
     "--to",
     "out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=FILE,
     required=True,
     metavar="FILE",
     help=(
@@ -60,6 +76,7 @@ FEWEST, MOST = 2, 100_000
     help="Configurations along each form or route, for .glb and .csv.",
 )
 @print_options
+@hold_options
 @param_option
 @search_options
 @verbose_option
@@ -72,6 +89,7 @@ def export_command(
     parameters: tuple[str, ...],
     verbose: bool,
     search: SearchOptions,
+    hold: HoldOptions,
     printing: PrintOptions,
 ) -> None:
     """Write forms and routes of a linkage for other programs.
@@ -89,7 +107,6 @@ def export_command(
       bifurc export bennett --to bennett.stl --size 120 --diameter 8
       bifurc export bennett --to bennett.mjcf
     """
-    from linkages.app.atlas_source import loop_atlas_of
     from linkages.app.forms import require_forms
     from linkages.app.output import require_ending, require_writable
     from linkages.app.status import say_more
@@ -97,45 +114,71 @@ def export_command(
 
     if verbose:
         say_more()
-    require_ending("--to", out, MODEL, TABLE, LAID_OUT, ASSEMBLED, *MECHANISMS)
-    is_printed = out.name.lower().endswith((LAID_OUT, ASSEMBLED))
-    is_mechanism = out.name.lower().endswith(MECHANISMS)
-    if is_mechanism and routes:
-        start, goal = routes[0]
-        raise CommandError(
-            f"--route {start!r} {goal!r}: it has no effect on {out.name}, which holds "
-            "one configuration, where the first form begins; name it with --form"
-        )
-    if is_printed:
-        check_print_options(out, routes)
-    elif printing != PrintOptions():
-        raise CommandError(
-            "--diameter, --play, --wall, --size, --unit, --offsets: they have no effect "
-            f"on {out.name}, which is neither {LAID_OUT} nor {ASSEMBLED}"
-        )
+    require_ending("--to", out, *MOTIONS, *PARTS, *MECHANISMS)
+    check_options(out)
+    check_count_of_forms(out, forms)
     require_writable(out)
-    atlas = loop_atlas_of(source, parameters, search)
+    atlas = choose_atlas(source, out, parameters, search, hold)
     require_forms(atlas)
-    if is_printed:
+    if is_one_of(out, PARTS):
         export_parts(atlas, forms, printing, search.seed, out)
-    elif is_mechanism:
+    elif is_one_of(out, MECHANISMS):
         export_mechanism(atlas, forms, out)
     else:
         export_motions(atlas, forms, routes, count, out)
     exit_by(judge(atlas))
 
 
-def check_print_options(out: Path, routes: tuple[tuple[str, str], ...]) -> None:
-    """Raise `CommandError` where parts cannot be made, or not for routes."""
-    from linkages.app.printing import require_cad
+def is_one_of(out: Path, endings: tuple[str, ...]) -> bool:
+    """Whether the name of a file has one of the endings, in capitals or not."""
+    return out.name.lower().endswith(endings)
 
-    if routes:
-        start, goal = routes[0]
+
+def check_options(out: Path) -> None:
+    """Raise `CommandError` for options on the command line that have no effect on the
+    file, and where parts cannot be made."""
+    context = click.get_current_context()
+    for option in context.command.params:
+        endings = TARGETS.get(option.name or "")
+        if endings is None or is_one_of(out, endings):
+            continue
+        if context.get_parameter_source(option.name or "") is not COMMAND_LINE:
+            continue
         raise CommandError(
-            f"--route {start!r} {goal!r}: it has no effect on {out.name}, whose parts "
-            "are kept apart along forms; name these with --form"
+            f"{option.opts[0]}: it has no effect on {out.name}; it goes with "
+            f"{' and '.join(endings)}"
         )
-    require_cad(out)
+    if is_one_of(out, PARTS):
+        from linkages.app.printing import require_cad
+
+        require_cad(out)
+
+
+def check_count_of_forms(out: Path, forms: tuple[str, ...]) -> None:
+    """Raise `CommandError` for several forms where the file holds one configuration."""
+    if is_one_of(out, MECHANISMS) and len(forms) > 1:
+        raise CommandError(
+            f"--form {forms[1]}: {out.name} holds one configuration, where a form "
+            "begins; name one form"
+        )
+
+
+def choose_atlas(
+    source: str,
+    out: Path,
+    parameters: tuple[str, ...],
+    search: SearchOptions,
+    hold: HoldOptions,
+) -> Atlas:
+    """The atlas that is exported; raises `CommandError` for a mechanism where the file
+    takes single loops only."""
+    from linkages.app.atlas_source import atlas_of, is_atlas_file, loop_atlas_of
+
+    if is_one_of(out, PARTS) and is_atlas_file(source):
+        search = replace(search, seed=0)  # it is that of the seats of hinges
+    if is_one_of(out, MOTIONS):
+        return atlas_of(source, parameters, search, hold)
+    return loop_atlas_of(source, parameters, search, hold)
 
 
 def export_parts(
@@ -237,16 +280,15 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     """
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.closure.loop_closure import LoopClosure
+    from linkages.app.equations import equations_of
     from linkages.export.motion import motion_of_route
-    from linkages.labels import loop_of
 
     option = f"--route {start!r} {goal!r}"
     try:
         first, last = atlas.full_name(start), atlas.full_name(goal)
     except RouteError as error:
         raise CommandError(f"{option}: {error}") from None
-    problem = LoopClosure(loop_of(atlas))
+    problem = equations_of(atlas)
     try:
         route = find_route(atlas, first, last, problem=problem)
     except RouteError as error:
@@ -256,25 +298,46 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
             f"{option}: it begins and ends in one configuration of {first!r}; name two "
             "different forms, or --form for all of one"
         )
-    return motion_of_route(atlas, route, f"{first} to {last}", count)
+    return motion_of_route(atlas, route, f"{first} to {last}", count, problem)
 
 
 def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
     """What the file of that ending holds."""
-    from linkages.labels import loop_of
-
-    if out.name.lower().endswith(TABLE):
-        from linkages.export.angle_table import make_angle_table
-
+    if is_one_of(out, (TABLE,)):
         if len(motions) != 1:
             raise CommandError(
                 f"--to {out}: a table holds one form or route, and there are "
                 f"{len(motions)}; name one with --form or --route"
             )
-        return make_angle_table(motions[0], atlas.names).encode("utf-8")
+        return make_table(atlas, motions[0]).encode("utf-8")
     from importlib.metadata import version
 
     from linkages.export.glb import make_glb
 
-    generator = f"bifurc {version('bifurc')}"
-    return make_glb(loop_of(atlas), motions, generator)
+    return make_glb(make_model(atlas, motions), f"bifurc {version('bifurc')}")
+
+
+def make_table(atlas: Atlas, motion: Motion) -> str:
+    """The joint variables along a motion: angles of a loop, all variables of a
+    mechanism but those of spherical joints."""
+    from linkages.app.configurations import readout_of
+    from linkages.export.angle_table import make_angle_table
+
+    readout = readout_of(atlas)
+    if readout is None:
+        return make_angle_table(motion.arclength, motion.configurations, atlas.names)
+    values = readout.values(motion.configurations)
+    return make_angle_table(motion.arclength, values, readout.labels())
+
+
+def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:
+    """The linkage of an atlas with its motions, to be animated."""
+    from linkages.app.configurations import readout_of
+    from linkages.app.equations import is_of_loop
+    from linkages.export.model import model_of_loop, model_of_mechanism
+    from linkages.labels import loop_of
+
+    readout = readout_of(atlas)
+    if readout is None or is_of_loop(atlas):
+        return model_of_loop(loop_of(atlas), motions)
+    return model_of_mechanism(readout, motions)

@@ -11,8 +11,10 @@ import click
 from bifurc.limits import HeldInterrupt
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
+    HoldOptions,
     JointNumbers,
     SearchOptions,
+    hold_options,
     json_option,
     out_option,
     param_option,
@@ -47,26 +49,6 @@ __all__ = ["map_command"]
     ),
 )
 @click.option(
-    "--lock",
-    "locks",
-    multiple=True,
-    metavar="JOINT=VALUE",
-    help=(
-        "Hold a joint of a mechanism at a value, an angle in degrees, whatever its "
-        "file counts in, a slide in the file's unit of length, or an outer joint of "
-        "a network at a D-H angle; may be given several times."
-    ),
-)
-@click.option(
-    "--drive",
-    "driver",
-    metavar="JOINT",
-    help=(
-        "Hold as many joints of a mechanism as it takes for this one to move all "
-        "others; says which."
-    ),
-)
-@click.option(
     "--axes",
     type=JointNumbers(2, 3),
     metavar="I,J[,K]",
@@ -78,21 +60,13 @@ __all__ = ["map_command"]
     metavar="I",
     help="Draw the singular values against this joint; needs --out.",
 )
-@click.option(
-    "--without-centre",
-    "is_without_centre",
-    is_flag=True,
-    help="Of a network with locks, map the single loop that its outer bars leave.",
-)
+@hold_options
 @param_option
 @search_options
 @verbose_option
 def map_command(
     linkage: str,
     parameters: tuple[str, ...],
-    locks: tuple[str, ...],
-    driver: str | None,
-    is_without_centre: bool,
     out: Path | None,
     as_json: bool,
     no_certify: bool,
@@ -101,6 +75,7 @@ def map_command(
     against: tuple[int, ...] | None,
     verbose: bool,
     search: SearchOptions,
+    hold: HoldOptions,
 ) -> None:
     """Map every motion form of a linkage, every bifurcation, and the graph between
     them.
@@ -115,9 +90,8 @@ def map_command(
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
-    from linkages.app.choice import choose_linkage
     from linkages.app.exploration import explore_linkage
-    from linkages.app.inputs import with_inputs, without_centre
+    from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.status import say_more
     from linkages.app.verdict import judge
@@ -127,24 +101,17 @@ def map_command(
             "--digits: it has no place in the JSON document; leave out --json"
         )
     require_out(out, axes=axes, against=against)
-    if is_without_centre and digits:
+    if hold.is_without_centre and digits:
         raise CommandError("--digits: it does not go with --without-centre")
     if verbose:
         say_more()
     if out is not None:
         require_folder(out)
-    chosen = choose_linkage(linkage, parameters)
-    inputs = with_inputs(linkage, chosen, locks, driver)
-    if is_without_centre:
-        inputs = without_centre(linkage, inputs.mechanism)
-    for note in inputs.notes:
-        click.echo(note, err=True)
-    over = figure_axes(inputs.mechanism, axes, against)
+    mechanism = choose_held(linkage, parameters, hold)
+    over = figure_axes(mechanism, axes, against)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_linkage(
-            inputs.mechanism, replace(search, certify=not no_certify)
-        )
+        atlas = explore_linkage(mechanism, replace(search, certify=not no_certify))
         try:
             report(atlas, as_json)
         finally:  # where nothing can be shown, there are still the files

@@ -117,7 +117,8 @@ def _write(out: Path, page: str, tables: dict[str, list[LockedState]]) -> list[P
 
 
 def _radians(degrees: tuple[float, ...]) -> tuple[float, ...]:
+    from linkages.values import check_angle
+
     for angle in degrees:
-        if not math.isfinite(angle):
-            raise CommandError(f"--kinks: {angle} is not a finite number")
+        check_angle("--kinks", angle, in_degrees=True)
     return tuple(math.radians(angle) for angle in degrees)

@@ -9,7 +9,9 @@ import click
 
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
+    HoldOptions,
     SearchOptions,
+    hold_options,
     param_option,
     search_options,
     verbose_option,
@@ -38,6 +40,7 @@ __all__ = ["route_command"]
     metavar="LOCKS[@ANGLES]",
     help="The same at the goal.",
 )
+@hold_options
 @param_option
 @search_options
 @verbose_option
@@ -50,6 +53,7 @@ def route_command(
     parameters: tuple[str, ...],
     verbose: bool,
     search: SearchOptions,
+    hold: HoldOptions,
 ) -> None:
     """Show how to take a linkage from one form to another, over surfaces where that is
     the way.
@@ -62,6 +66,7 @@ def route_command(
     Examples:
       bifurc route special-double-subtractive-goldberg "Form I" "Bennett 4R"
       bifurc route out/atlas.nc "Form III" "Form IV"
+      bifurc route five_bar.toml --lock J1=40 "Form 1" "Form 2"
       bifurc route four-bennett-network --from "2=40,6=-75@p4=90" --to "2=40,4=90"
     """
     from linkages.app.atlas_source import atlas_of
@@ -75,11 +80,16 @@ def route_command(
     if start_locks is not None or goal_locks is not None:
         if start is not None:
             raise CommandError("--from, --to: they replace the names FROM and TO")
+        if hold != HoldOptions():
+            raise CommandError(
+                f"{hold.names}: --from and --to say which joints are locked"
+            )
         _route_over_locks(source, start_locks, goal_locks, parameters, search)
         return
     if start is None or goal is None:
-        raise click.UsageError("Missing argument 'FROM' or 'TO'.")
-    atlas = atlas_of(source, parameters, search)
+        missing = "FROM" if start is None else "TO"
+        raise click.UsageError(f"Missing argument '{missing}'.")
+    atlas = atlas_of(source, parameters, search, hold)
     if not atlas.forms and not atlas.surfaces:
         verdict = judge(atlas)
         raise CommandError(verdict.sentence, verdict.code)

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.options import SEED, STARTS
+from linkages.app.options import FOLDER, SEED, STARTS, NamedPath
 
 __all__ = ["sweep_command"]
 
@@ -37,12 +37,12 @@ MOST_WORKERS = 10_000
     "--out",
     default="sweep.zarr",
     show_default=True,
-    type=click.Path(path_type=Path),
+    type=NamedPath(),
     help="Zarr dataset to write.",
 )
 @click.option(
     "--atlases",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FOLDER,
     help="Folder for every member's atlas.",
 )
 @click.option(

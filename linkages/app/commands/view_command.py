@@ -8,7 +8,10 @@ import click
 
 from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import (
+    FILE,
+    HoldOptions,
     SearchOptions,
+    hold_options,
     param_option,
     search_options,
     verbose_option,
@@ -23,11 +26,12 @@ PAGE = ".html"
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=FILE,
     metavar="FILE.html",
     help="The page.  [default: NAME.html in this folder]",
 )
 @click.option("--no-open", is_flag=True, help="Write the page, but do not open it.")
+@hold_options
 @param_option
 @search_options
 @verbose_option
@@ -38,6 +42,7 @@ def view_command(
     no_open: bool,
     verbose: bool,
     search: SearchOptions,
+    hold: HoldOptions,
 ) -> None:
     """Show a linkage in motion beside its transition map: one page, which a browser
     opens without a network.
@@ -47,6 +52,7 @@ def view_command(
       bifurc view special-double-subtractive-goldberg
       bifurc view my_linkage.toml --out my_linkage.html --no-open
       bifurc view out/atlas.nc
+      bifurc view four-bennett-network --lock 2=40 --lock 6=-75
     """
     from linkages.app.atlas_source import atlas_of
     from linkages.app.output import require_ending, require_writable, writing_to
@@ -60,7 +66,7 @@ def view_command(
     path = out or Path(Path(source).stem + PAGE)
     require_ending("--out", path, PAGE)
     require_writable(path)
-    atlas = atlas_of(source, parameters, search)
+    atlas = atlas_of(source, parameters, search, hold)
     verdict = judge(atlas)
     document = make_view_document(atlas, verdict.sentence)
     with writing_to(path):

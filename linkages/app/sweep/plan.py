@@ -17,6 +17,7 @@ from linkages.app.choice import read_number, split_parameter
 from linkages.catalogue import entry
 from linkages.entry import Entry, ParameterKind
 from linkages.loop import GeometryError
+from linkages.values import check_angle
 
 __all__ = ["Block", "Plan", "PlanDocument", "read_plan"]
 
@@ -239,5 +240,7 @@ def _read(linkage: Entry, text: str) -> tuple[str, tuple[float, ...]]:
         raise GeometryError("--param", repr(text), allowed)
     numbers = [read_number(name, part) for part in values.split(":")]
     if kinds[name] is ParameterKind.ANGLE:
+        for degrees in numbers[:2]:
+            check_angle(f"--param {name}", degrees, in_degrees=True)
         numbers[:2] = [math.radians(degrees) for degrees in numbers[:2]]
     return name, tuple(numbers)

@@ -4,6 +4,7 @@ block."""
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -133,6 +134,17 @@ class SweepStore:
             self._create_field(name, Field("f8", units[name], meaning))
         for name, kind in FIELDS.items():
             self._create_field(name, kind)
+        self._consolidate()
+
+    def _consolidate(self) -> None:
+        """Repeat the metadata of all arrays, which stay as they are, in one place:
+        xarray looks there first."""
+        import zarr
+
+        with warnings.catch_warnings():
+            # version 3 of the format names no such place; all readers know it
+            warnings.filterwarnings("ignore", "Consolidated metadata")
+            zarr.consolidate_metadata(self._group.store)
 
     def _create_axis(self, name: str, values: np.ndarray, unit: str) -> None:
         """The coordinates along one dimension."""

@@ -1,5 +1,6 @@
 """The commands `export` and `clearance`."""
 
+import io
 import json
 
 import numpy as np
@@ -7,7 +8,15 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
+from linkages.app.configurations import readout_of
 from linkages.app.exit_codes import ExitCode
+from linkages.export.glb import make_glb
+from linkages.export.model import Shape, model_of_mechanism
+from linkages.export.motion import motion_of_form
+from linkages.linkage import load
+from linkages.mapping import map_linkage
+from tests.linkages.export.test_glb import poses_of
+from tests.linkages.viewing.conftest import mapped
 
 DSG = "special-double-subtractive-goldberg"
 
@@ -115,5 +124,193 @@ def test_a_simulator_gets_no_route(tmp_path):
         "export", "special-double-subtractive-goldberg", *route, "--to", out
     )
     assert result.exit_code == ExitCode.BAD_INPUT
-    assert "one configuration" in result.stderr
+    assert "--route: it has no effect on bennett.sdf" in result.stderr
     assert not out.exists()
+
+
+PLACES = [(0, 0, 0), (0, 1, 0), (1, 2, 0), (2, 1, 0), (2, 0, 0)]
+BODIES = ["frame", "a", "b", "c", "d"]
+
+
+@pytest.fixture
+def five_bar(tmp_path):
+    """The file of a five-bar, which has mobility 2."""
+    blocks = ['name = "five-bar"']
+    for k, place in enumerate(PLACES):
+        ends = BODIES[k], BODIES[(k + 1) % 5]
+        blocks.append(
+            f'[[joints]]\nname = "J{k + 1}"\nkind = "revolute"\n'
+            f"bodies = {json.dumps(ends)}\n"
+            f"point = {list(place)}\ndirection = [0, 0, 1]"
+        )
+    path = tmp_path / "five_bar.toml"
+    path.write_text("\n".join(blocks))
+    return path
+
+
+NET = ("four-bennett-network", "--lock", "2=40", "--lock", "6=-75")
+
+
+def test_a_mechanism_with_locks_is_a_model_whose_bodies_move_as_in_python(tmp_path):
+    pygltflib = pytest.importorskip("pygltflib", reason="it opens the model again")
+    out = tmp_path / "net.glb"
+    result = bifurc("export", *NET, "--to", out, "--count", 9)
+    assert result.exit_code == ExitCode.DONE, result.stderr
+    gltf = pygltflib.GLTF2.load(out)
+    kinks = {"2": np.radians(40), "6": np.radians(-75)}
+    atlas = map_linkage(load(NET[0]).with_kinks(kinks))
+    readout = readout_of(atlas)
+    forms = {form.name: form for form in atlas.forms}
+    assert {one.name for one in gltf.animations} == set(forms)
+    for animation in gltf.animations:
+        branch = forms[animation.name].branch
+        expected = readout.poses(branch(np.linspace(0.0, branch.length, 9)))
+        found = poses_of(gltf, animation)
+        assert len(found) == len(readout.mechanism.bodies) - 1
+        for body, poses in found.items():
+            number = readout.mechanism.bodies.index(body)
+            assert np.abs(poses - expected[:, number]).max() < 1e-6
+
+
+def test_all_symbols_of_joints_are_closed_solids():
+    trimesh = pytest.importorskip("trimesh", reason="it opens the model again")
+    atlas = mapped("platform")
+    motions = [motion_of_form(form, 5) for form in atlas.forms]
+    model = model_of_mechanism(readout_of(atlas), motions)
+    shapes = {symbol.shape for body in model.bodies for symbol in body.symbols}
+    assert shapes == {Shape.BOX, Shape.BALL}
+    content = make_glb(model, "a test")
+    scene = trimesh.load(io.BytesIO(content), file_type="glb")
+    for mesh in scene.geometry.values():
+        mesh.merge_vertices(merge_norm=True, merge_tex=True)
+        assert mesh.is_watertight
+        assert mesh.volume > 0
+
+
+def test_a_table_of_a_mechanism_has_its_joints_by_name(five_bar, tmp_path):
+    out = tmp_path / "five.csv"
+    result = bifurc("export", five_bar, "--lock", "J1=40", "--to", out, "--count", 7)
+    assert result.exit_code == ExitCode.DONE, result.stderr
+    assert out.read_text().splitlines()[0] == "arclength,J1,J2,J3,J4,J5"
+    rows = np.loadtxt(out, delimiter=",", skiprows=1)
+    assert rows[:, 1] == pytest.approx(np.full(7, np.radians(40)))
+    assert np.abs(rows[:, 1:].sum(axis=1) - rows[0, 1:].sum()).max() < 1e-9
+
+
+def test_without_its_centre_a_network_is_printed_and_measured_as_a_loop(tmp_path):
+    straight = ("four-bennett-network", "--lock", "2=0", "--lock", "6=0")
+    out = tmp_path / "net.glb"
+    result = bifurc("export", *straight, "--without-centre", "--to", out)
+    assert result.exit_code == ExitCode.DONE
+    names = [node["name"] for node in nodes(out)]
+    assert "link 12" in names
+
+
+def nodes(path):
+    """The nodes of a binary glTF file."""
+    content = path.read_bytes()
+    length = int.from_bytes(content[12:16], "little")
+    return json.loads(content[20 : 20 + length])["nodes"]
+
+
+GIVEN = {
+    "--route": ("Form I", "Form II"),
+    "--count": ("9",),
+    "--diameter": ("3",),
+    "--play": ("0.2",),
+    "--wall": ("1",),
+    "--size": ("90",),
+    "--unit": ("mm",),
+    "--offsets": ("1,2,3,4",),
+}
+MOTION, PRINT = ("--route", "--count"), tuple(GIVEN)[2:]
+TAKEN = {
+    "glb": MOTION,
+    "csv": MOTION,
+    "stl": PRINT,
+    "step": PRINT,
+    "mjcf": (),
+    "xml": (),
+    "sdf": (),
+}
+
+
+@pytest.mark.parametrize("ending", TAKEN)
+def test_options_without_effect_on_a_file_are_refused_by_name(tmp_path, ending):
+    out = tmp_path / f"bennett.{ending}"
+    for option, values in GIVEN.items():
+        if option in TAKEN[ending]:
+            continue
+        result = bifurc("export", "bennett", "--to", out, option, *values)
+        assert result.exit_code == ExitCode.BAD_INPUT
+        assert f"{option}: it has no effect on bennett.{ending}" in result.stderr
+        assert not out.exists()
+
+
+def test_a_simulator_gets_one_form(tmp_path):
+    out = tmp_path / "kite.sdf"
+    forms = ("--form", 1, "--form", 2)
+    result = bifurc("export", "kite", "--to", out, *forms)
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert "--form 2: kite.sdf holds one configuration" in result.stderr
+
+
+EMPTY = [
+    ("export", "kite", "--to"),
+    ("view", "kite", "--no-open", "--out"),
+    ("map", "kite", "--out"),
+    ("figure", "thesis-2.1.1", "--out"),
+    ("convert", "four-bennett-network"),
+    ("sweep", "bennett", "--param", "alpha=20:40:2", "--out"),
+    ("sweep", "bennett", "--param", "alpha=20:40:2", "--atlases"),
+    ("tolerance", "kite", "--out"),
+    ("network", "four-bennett-network", "--locks", "--out"),
+    ("solve", "reaction.toml", "--out"),
+]
+
+
+@pytest.mark.parametrize("command", EMPTY, ids=" ".join)
+@pytest.mark.parametrize("path", ["", " "])
+def test_a_path_without_a_name_is_refused(command, path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = bifurc(*command, path)
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert "is no name of a" in result.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("view", "--no-open", "--out", "x.html"),
+        ("route", "Form 1", "Form 2"),
+        ("export", "--to", "x.glb"),
+        ("clearance",),
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_locks_have_no_effect_on_a_saved_atlas(atlas_file, tmp_path, arguments):
+    command, *others = arguments
+    result = bifurc(command, atlas_file, *others, "--lock", "J1=40", "--drive", "J2")
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert "--lock, --drive: it has no effect on a saved atlas" in result.stderr
+
+
+def test_a_mechanism_is_viewed_with_locks(five_bar, tmp_path):
+    out = tmp_path / "five.html"
+    result = bifurc("view", five_bar, "--no-open", "--out", out, "--lock", "J1=40")
+    assert result.exit_code == ExitCode.DONE
+    document = out.read_text(encoding="utf-8").split('id="bifurc-document"')[1]
+    assert '"title": "five-bar"' in document
+    driven = bifurc("view", five_bar, "--no-open", "--out", out, "--drive", "J1")
+    assert driven.exit_code == ExitCode.DONE
+    assert (
+        "also held where they are in the reference configuration: J2" in driven.stderr
+    )
+
+
+def test_a_mechanism_is_converted_with_locks(tmp_path):
+    out = tmp_path / "net.xml"
+    assert bifurc("convert", *NET[:1], out, *NET[1:]).exit_code == ExitCode.DONE
+    document = json.loads(bifurc("map", out, "--json").stdout)
+    assert document["mobility"] == 1

@@ -126,7 +126,8 @@ def test_a_route_over_locks_is_shown():
         (("route", NETWORK, "--from", "@4=3", "--to", "2=5,6=3"), "begin with locks"),
         (("route", NETWORK, "--from", "2=4", "--to", "2=5"), "they leave 2"),
         (("route", NETWORK), "Missing argument"),
-        (("export", NETWORK, "--to", "x.glb"), "it is a mechanism"),
+        (("export", NETWORK, "--to", "x.stl"), "it is a mechanism"),
+        (("export", NETWORK, "--to", "x.glb"), "held with --lock"),
     ],
 )
 def test_bad_input_is_refused(arguments, message, tmp_path, monkeypatch):

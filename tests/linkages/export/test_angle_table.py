@@ -1,5 +1,6 @@
 """The table of joint angles: every digit, and no jumps."""
 
+import csv
 import io
 
 import numpy as np
@@ -13,7 +14,8 @@ from linkages.mapping import map_linkage
 def test_the_table_holds_the_form_at_even_arclengths():
     atlas = map_linkage(load("bennett"))
     form = atlas.forms[0]
-    text = make_angle_table(motion_of_form(form, 50), atlas.names)
+    motion = motion_of_form(form, 50)
+    text = make_angle_table(motion.arclength, motion.configurations, atlas.names)
     head, *lines = text.splitlines()
     assert head == "arclength,theta1,theta2,theta3,theta4"
     rows = np.loadtxt(io.StringIO("\n".join(lines)), delimiter=",")
@@ -21,3 +23,9 @@ def test_the_table_holds_the_form_at_even_arclengths():
     assert np.array_equal(rows[:, 0], np.linspace(0, form.branch.length, 50))
     assert np.array_equal(rows[:, 1:], form.branch(rows[:, 0]))
     assert np.abs(np.diff(rows[:, 1:], axis=0)).max() < 0.3
+
+
+def test_names_with_commas_and_quotes_stay_one_cell():
+    text = make_angle_table(np.zeros(1), np.zeros((1, 2)), ['a,"b"', "c"])
+    (head, _) = csv.reader(io.StringIO(text))
+    assert head == ["arclength", 'a,"b"', "c"]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from linkages.export.glb import make_glb
+from linkages.export.model import model_of_loop
 from linkages.export.motion import Motion, link_poses, motion_of_form
 from linkages.linkage import load
 from linkages.links.rods import place_links
@@ -24,7 +25,7 @@ def atlas():
 @pytest.fixture(scope="module")
 def content(atlas):
     motions = [motion_of_form(form, FRAMES) for form in atlas.forms]
-    return make_glb(load(DSG).loop, motions, "a test")
+    return make_glb(model_of_loop(load(DSG).loop, motions), "a test")
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +141,7 @@ def test_lengths_beyond_the_floats_of_a_model_are_refused():
     loop = load("bennett").loop
     motion = motion_of_form(map_linkage(loop).forms[0], 5)
     with pytest.raises(GeometryError, match="characteristic length"):
-        make_glb(loop.scaled(1e30), [motion], "a test")
+        make_glb(model_of_loop(loop.scaled(1e30), [motion]), "a test")
 
 
 def test_poses_are_those_of_the_frames():

@@ -96,7 +96,7 @@ def changed(**changes):
         ({"bodies": ("crank", "crank")}, r"different; crank stands twice"),
         ({"bodies": "crank"}, r"bodies of joint B"),
         ({"bodies": ("crank", 3)}, r"bodies of joint B: 3"),
-        ({"direction": (0, 0, 0)}, r"direction of joint B: .* other than zero"),
+        ({"direction": (0, 0, 0)}, r"direction of joint B: .* a non-zero vector"),
         ({"direction": None}, r"direction of joint B: a missing key .* revolute"),
         ({"point": (1, 2)}, r"point of joint B: \[1, 2\] .* vector"),
         ({"point": (1, 2, float("nan"))}, r"point of joint B\[3\]: nan .* finite"),

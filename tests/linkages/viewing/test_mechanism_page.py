@@ -4,8 +4,10 @@ are, and map, choices and routes work as those of a loop."""
 import numpy as np
 import pytest
 
+from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
+from linkages.viewing import mechanism_document
 from tests.linkages.viewing.test_viewer import drawn_share, picture_of
 
 GO = "([name, places]) => places.map((s) => bifurc.go(name, s))"
@@ -93,24 +95,24 @@ def test_another_body_can_be_held_still(show):
     assert shown.bifurc("state().bodies") == bodies
 
 
-def test_a_click_on_a_bifurcation_offers_the_branches(show):
-    shown = show("Kempe")
+def test_a_click_on_a_bifurcation_offers_the_branches(show_shared):
+    shown = show_shared("Kempe")
     shown.click(".bv-map [data-point=B2]")
     offered = shown.page.locator(".bv-choice button").all_inner_texts()
     assert len(offered) == 4
     assert any("Form 2" in text for text in offered)
 
 
-def test_a_route_plays_to_its_end(show):
-    shown = show("Kempe")
+def test_a_route_plays_to_its_end(show_shared):
+    shown = show_shared("Kempe")
     shown.bifurc("go('Form 1')")
     shown.bifurc("playRoute('Form 2', 0.5)")
     shown.page.wait_for_function("() => !bifurc.state().playing", timeout=20_000)
     assert shown.bifurc("state().form") == "Form 2"
 
 
-def test_a_slide_has_an_axis_in_the_unit_of_the_file(show):
-    shown = show("slider-crank")
+def test_a_slide_has_an_axis_in_the_unit_of_the_file(show_shared):
+    shown = show_shared("slider-crank")
     shown.page.locator("select[aria-label^=horizontal]").select_option("J4")
     titles = shown.page.locator(".bv-axis").all_text_contents()
     assert titles == ["J4", "J2 (deg)"]
@@ -126,8 +128,8 @@ def test_a_slide_has_an_axis_in_the_unit_of_the_file(show):
     assert float(said.replace("−", "-")) == pytest.approx(slide, rel=1e-3)
 
 
-def test_an_angle_that_is_back_after_two_turns_has_an_axis_of_two_turns(show):
-    shown = show("geared")
+def test_an_angle_that_is_back_after_two_turns_has_an_axis_of_two_turns(show_shared):
+    shown = show_shared("geared")
     shown.page.locator("select[aria-label^=horizontal]").select_option("A")
     shown.page.locator("select[aria-label^=vertical]").select_option("B")
     ticks = shown.page.locator(".bv-frame text:not(.bv-axis)").all_text_contents()
@@ -135,8 +137,8 @@ def test_an_angle_that_is_back_after_two_turns_has_an_axis_of_two_turns(show):
     assert shown.messages == []
 
 
-def test_the_strip_shows_where_the_rank_drops(show):
-    shown = show("Kempe")
+def test_the_strip_shows_where_the_rank_drops(show_shared):
+    shown = show_shared("Kempe")
     path = shown.page.locator(".bv-smallest").get_attribute("d")
     heights = [float(pair.split()[1]) for pair in path[1:].split("L")]
     stops = shown.page.locator(".bv-stop").count()
@@ -144,10 +146,54 @@ def test_the_strip_shows_where_the_rank_drops(show):
     assert sum(height > 42 for height in heights) >= stops
 
 
-def test_scripts_get_bodies_by_name_and_no_singular_values(show_shared):
+def test_scripts_get_bodies_by_name(show_shared):
     state = show_shared("slider-crank").bifurc("go(1, 0.5)")
     names = [body["name"] for body in state["bodies"]]
     assert names == ["frame", "crank", "rod", "slider"]
     assert state["bodies"][0]["pose"] == [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
     assert "axes" not in state
-    assert "singular_values" not in state
+
+
+@pytest.mark.parametrize("name", [*ALL, "rods", "geared"])
+def test_singular_values_in_the_browser_are_those_of_python(show_shared, name):
+    shown = show_shared(name)
+    closure = MechanismClosure(mechanism_of(shown.atlas))
+    for form in shown.atlas.forms:
+        places = np.linspace(0.0, form.branch.length, 9)
+        states = shown.page.evaluate(GO, [form.name, places.tolist()])
+        found = np.array([state["singular_values"] for state in states])
+        matrices = closure.jacobians(form.branch(places))
+        expected = np.linalg.svd(matrices, compute_uv=False)
+        assert np.abs(found[:, : expected.shape[1]] - expected).max() < 1e-12
+        assert np.all(found[:, expected.shape[1] :] == 0)
+    shown.bifurc("go(1)")
+    cells = shown.page.locator(".bv-cell:has(.bv-level)")
+    assert cells.count() == closure.n
+
+
+def test_a_mechanism_of_many_unknowns_has_the_smallest_singular_value_only(
+    show, monkeypatch
+):
+    monkeypatch.setattr(mechanism_document, "MOST_UNKNOWNS", 4)
+    shown = show("Kempe")
+    assert shown.bifurc("state().singular_values") == []
+    assert shown.page.locator(".bv-cell:has(.bv-level)").count() == 0
+    assert shown.page.locator(".bv-smallest").count() == 1
+    assert shown.page.locator(".bv-distance:not(.bv-hidden)").count() == 1
+    assert shown.messages == []
+
+
+def test_the_bar_shows_how_far_the_singular_points_are(show_shared):
+    shown = show_shared("Kempe")
+    form = shown.atlas.forms[0]
+    point, (_, s) = next(
+        (point, one)
+        for point in shown.atlas.points
+        for one in point.passes
+        if shown.atlas.forms[one[0]] is form
+    )
+    shown.page.evaluate("([f, s]) => bifurc.go(f, s)", [form.name, s - 0.1])
+    after = shown.page.locator(".bv-after")
+    assert after.inner_text() == f"{np.degrees(0.1):.1f}° ▸ {point.name}"
+    after.click()
+    assert shown.bifurc("state().s") == pytest.approx(s)

@@ -158,8 +158,8 @@ def test_all_is_in_the_picture_again_when_that_is_asked_for(show):
     assert_all_is_in_the_picture(shown)
 
 
-def test_the_slider_moves_the_rods(show):
-    shown = show(DSG)
+def test_the_slider_moves_the_rods(show_shared):
+    shown = show_shared(DSG)
     before = shown.bifurc("state()")
     picture = picture_of(shown)
     shown.page.locator(".bv-slider").fill("1000")

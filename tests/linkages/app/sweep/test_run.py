@@ -8,11 +8,13 @@ import subprocess
 import sys
 import time
 import tracemalloc
+import warnings
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 
 import numpy as np
 import pytest
+import xarray as xr
 from click.testing import CliRunner
 
 pytest.importorskip("zarr")
@@ -20,7 +22,7 @@ pytest.importorskip("zarr")
 from linkages.app.cli import main
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import journal_path, run_sweep
-from linkages.app.sweep.store import open_sweep
+from linkages.app.sweep.store import SweepStore, open_sweep
 from linkages.app.sweep.workers import Pool
 
 PLAN = Plan(
@@ -204,3 +206,15 @@ def test_the_command_says_what_became_of_the_members(tmp_path):
     result = CliRunner().invoke(main, ["sweep", *arguments, "--starts", "20"])
     assert result.exit_code == 0, result.output
     assert "1 mapped, 1 refused" in result.output
+
+
+def test_other_programs_open_the_dataset_without_a_warning(tmp_path):
+    out = tmp_path / "sweep.zarr"
+    plan = read_plan("bennett", ["alpha=20:60:2"])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        SweepStore(out, plan)
+        dataset = xr.open_zarr(out)
+        again = open_sweep(out)
+    assert set(dataset.variables) == set(again.variables)
+    assert np.degrees(dataset["alpha"].values) == pytest.approx([20, 60])

@@ -5,11 +5,12 @@ import json
 import numpy as np
 import pytest
 
+from linkages.links.mechanism_drawing import draw_bodies, draw_symbols
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
 from linkages.viewing.document import make_view_document
-from linkages.viewing.mechanism_drawing import draw_bodies, draw_symbols
+from tests.linkages.viewing.conftest import mapped
 
 UP = (0, 0, 1)
 
@@ -18,9 +19,9 @@ def body_called(document, name):
     return next(b for b in document["mechanism"]["bodies"] if b["name"] == name)
 
 
-def test_a_loop_has_no_mechanism_and_a_mechanism_no_loop(atlas_of):
-    loop = make_view_document(atlas_of("bennett"))
-    mechanism = make_view_document(atlas_of("slider-crank"))
+def test_a_loop_has_no_mechanism_and_a_mechanism_no_loop():
+    loop = make_view_document(mapped("bennett"))
+    mechanism = make_view_document(mapped("slider-crank"))
     assert "mechanism" not in loop
     assert "smallest" not in loop["forms"][0]
     assert list(loop)[:5] == ["title", "verdict", "completeness", "note", "loop"]
@@ -28,8 +29,8 @@ def test_a_loop_has_no_mechanism_and_a_mechanism_no_loop(atlas_of):
     json.dumps(mechanism, allow_nan=False)
 
 
-def test_bodies_of_three_joints_are_triangles(atlas_of):
-    document = make_view_document(atlas_of("Watt"))
+def test_bodies_of_three_joints_are_triangles():
+    document = make_view_document(mapped("Watt"))
     counts = {b["name"]: len(b["lines"]) for b in document["mechanism"]["bodies"]}
     assert counts == {
         "frame": 1,
@@ -41,8 +42,8 @@ def test_bodies_of_three_joints_are_triangles(atlas_of):
     }
 
 
-def test_the_rail_of_a_slide_is_as_long_as_the_slide_is_used(atlas_of):
-    atlas = atlas_of("slider-crank")
+def test_the_rail_of_a_slide_is_as_long_as_the_slide_is_used():
+    atlas = mapped("slider-crank")
     document = make_view_document(atlas)
     size = document["mechanism"]["size"]
     *_, rail = body_called(document, "frame")["lines"]
@@ -53,8 +54,8 @@ def test_the_rail_of_a_slide_is_as_long_as_the_slide_is_used(atlas_of):
     assert body_called(document, "slider")["lines"] == []
 
 
-def test_every_joint_has_a_symbol_on_the_body_that_moves_along_it(atlas_of):
-    document = make_view_document(atlas_of("slider-crank"))["mechanism"]
+def test_every_joint_has_a_symbol_on_the_body_that_moves_along_it():
+    document = make_view_document(mapped("slider-crank"))["mechanism"]
     names = [body["name"] for body in document["bodies"]]
     symbols = {symbol["label"]: symbol for symbol in document["symbols"]}
     assert list(symbols) == ["J1", "J2", "J3", "J4"]
@@ -90,8 +91,8 @@ def test_a_joint_of_several_bodies_has_one_name():
 
 
 @pytest.mark.parametrize("name", ["RSRS", "platform"])
-def test_what_a_cut_spherical_joint_does_is_not_said_to_stand_still(atlas_of, name):
-    symbols = make_view_document(atlas_of(name))["mechanism"]["symbols"]
+def test_what_a_cut_spherical_joint_does_is_not_said_to_stand_still(name):
+    symbols = make_view_document(mapped(name))["mechanism"]["symbols"]
     spherical = [one["columns"] for one in symbols if one["kind"] == "spherical"]
     assert None in spherical
     assert [] not in spherical

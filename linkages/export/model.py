@@ -1,0 +1,163 @@
+"""What an animated model shows of a linkage: bodies of rods, with the symbols of their
+joints, and where the bodies are along a motion.
+
+Places are in the frame of the body that has them, in the unit of the linkage.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from linkages.export.motion import Motion, Poses, link_poses, poses_of
+from linkages.links.mechanism_drawing import (
+    SymbolDrawing,
+    draw_bodies,
+    draw_symbols,
+)
+from linkages.links.rods import link_corners, seat_heights
+from linkages.loop import Loop
+from linkages.mechanisms.joint import JointKind
+from linkages.mechanisms.readout import Readout
+
+__all__ = [
+    "Body",
+    "LinkageModel",
+    "Shape",
+    "Symbol",
+    "model_of_loop",
+    "model_of_mechanism",
+]
+
+NOTHING = 1e-9  # in characteristic lengths: a rod that is none
+UPWARD = np.array([0.0, 0.0, 1.0])
+
+
+class Shape(Enum):
+    """What stands for a joint."""
+
+    CYLINDER = "cylinder"
+    BOX = "box"
+    PLATE = "plate"
+    BALL = "ball"
+
+
+SHAPES = {
+    JointKind.PRISMATIC.value: Shape.BOX,
+    JointKind.PLANAR.value: Shape.PLATE,
+    JointKind.SPHERICAL.value: Shape.BALL,
+}
+
+
+class Symbol(NamedTuple):
+    """A joint on a body: its ``place`` (3,), and its ``direction`` (3,), a unit
+    vector."""
+
+    name: str
+    shape: Shape
+    place: np.ndarray
+    direction: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A body with ``rods`` from one place (3,) to another."""
+
+    name: str
+    rods: tuple[tuple[np.ndarray, np.ndarray], ...]
+    symbols: tuple[Symbol, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class LinkageModel:
+    """A linkage of a characteristic length, its ``size``. ``motions`` have the poses of
+    all bodies in their order; the body number ``frame`` stands still."""
+
+    name: str
+    size: float
+    bodies: tuple[Body, ...]
+    frame: int
+    motions: tuple[tuple[Motion, Poses], ...]
+
+
+def model_of_loop(loop: Loop, motions: list[Motion]) -> LinkageModel:
+    """A loop: links "link 12" and so on, each with the joint behind it, whose axis is
+    the z axis of the link; the link that joins the last joint to the first stands
+    still."""
+    heights = seat_heights(loop)
+    corners = link_corners(loop)
+    size = loop.characteristic_length
+    dash = "-" if loop.n > 9 else ""  # as in linkages.app.texts.link_name
+    bodies = []
+    for i in range(loop.n):
+        joint = (i + 1) % loop.n
+        seat = np.array([0.0, 0.0, float(heights[joint])])
+        symbol = Symbol(f"joint {joint + 1}", Shape.CYLINDER, seat, UPWARD)
+        rods = _long_enough(list(pairwise(corners[i])), size)
+        bodies.append(Body(f"link {i + 1}{dash}{joint + 1}", rods, (symbol,)))
+    moved = tuple((motion, link_poses(loop, motion)) for motion in motions)
+    return LinkageModel(loop.name or "linkage", size, tuple(bodies), loop.n - 1, moved)
+
+
+def model_of_mechanism(readout: Readout, motions: list[Motion]) -> LinkageModel:
+    """A mechanism: its bodies by their names, drawn as on the page of the viewer; a body
+    has the frame of the reference configuration."""
+    structure = readout.structure
+    mechanism = readout.mechanism
+    points = np.concatenate([motion.configurations for motion in motions])
+    symbols = draw_symbols(structure)
+    bodies = []
+    for number, drawing in enumerate(draw_bodies(structure, points)):
+        ends = [
+            (structure.unit * np.array(start), structure.unit * np.array(end))
+            for start, end in drawing["lines"]
+        ]
+        own = _symbols_on(symbols, number, structure.unit)
+        rods = _long_enough(ends, structure.unit)
+        bodies.append(Body(drawing["name"], rods, own))
+    moved = []
+    for motion in motions:
+        transforms = readout.poses(motion.configurations)
+        moved.append((motion, poses_of(np.moveaxis(transforms, 1, 0))))
+    return LinkageModel(
+        mechanism.name or "mechanism",
+        structure.unit,
+        tuple(bodies),
+        mechanism.bodies.index(mechanism.frame),
+        tuple(moved),
+    )
+
+
+def _symbols_on(
+    drawings: list[SymbolDrawing], body: int, unit: float
+) -> tuple[Symbol, ...]:
+    """The symbols that a body carries; the second axis of a universal joint is on its
+    other body, and a rigid joint has no symbol."""
+    symbols = []
+    for drawing in drawings:
+        if drawing["kind"] == JointKind.RIGID.value:
+            continue
+        shape = SHAPES.get(drawing["kind"], Shape.CYLINDER)
+        name = f"joint {drawing['label']}".strip()
+        directions = drawing["directions"] or [UPWARD.tolist()]
+        holders = (drawing["holder"], drawing["other"])
+        for holder, direction in zip(holders, directions, strict=False):
+            if holder == body:
+                place = unit * np.array(drawing["place"])
+                symbols.append(Symbol(name, shape, place, np.array(direction)))
+    return tuple(symbols)
+
+
+def _long_enough(
+    ends: list[tuple[np.ndarray, np.ndarray]], size: float
+) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    """The rods that are longer than nothing."""
+    return tuple(
+        (start, end)
+        for start, end in ends
+        if np.linalg.norm(end - start) > NOTHING * size
+    )

@@ -1,0 +1,113 @@
+"""Numbers that geometry is given in: what they may be, and how errors show them."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Sequence
+
+import numpy as np
+
+from bifurc.errors import BifurcError
+
+__all__ = [
+    "GeometryError",
+    "check_angle",
+    "check_direction",
+    "check_number",
+    "quoted",
+    "told_apart",
+]
+
+FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or become one
+# beyond it doubles tell an angle to less than 1e-12 rad, to which loops close
+MOST_TURNS = 1000
+SHORTEST, LONGEST = 1e-100, 1e100  # vectors whose squares are in the range of doubles
+FEWEST_DIGITS, ALL_DIGITS = 6, 17  # of numbers in errors
+
+
+class GeometryError(BifurcError, ValueError):
+    """A linkage that cannot be built: ``name`` is the offending quantity, ``value``
+    what was given and ``allowed`` what it may be."""
+
+    def __init__(self, name: str, value: object, allowed: str):
+        self.name = name
+        self.value = value
+        self.allowed = allowed
+        super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
+
+
+def check_number(name: str, value: object) -> None:
+    """Raises `GeometryError` unless ``value`` is a real number and, where it is a float
+    or an integer, finite.
+
+    Mpmath numbers, sympy expressions and exact numbers are real numbers, too.
+    """
+    if isinstance(value, FLOATS) and not isinstance(value, bool):
+        if not _is_finite(value):
+            raise GeometryError(name, value, "a finite number")
+    elif not _is_number_of_library(value):
+        raise GeometryError(name, quoted(value), "a number")
+
+
+def _is_finite(value: float | np.integer | np.floating) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond all floats
+        return False
+
+
+def _is_number_of_library(value: object) -> bool:
+    """Whether a value that is no float is a real number of mpmath, sympy or
+    `linkages.construction.exact`."""
+    if isinstance(value, bool | np.bool_ | np.ndarray):
+        return False
+    if isinstance(value, numbers.Complex):
+        return isinstance(value, numbers.Real)
+    return hasattr(value, "__float__")
+
+
+def quoted(value: object) -> str:
+    """``value`` as error messages show it, texts in quotes."""
+    return f'"{value}"' if isinstance(value, str) else str(value)
+
+
+def check_angle(name: str, value: object, *, in_degrees: bool = False) -> None:
+    """Raises `GeometryError` as `check_number`, and for a float of over a thousand
+    turns, in rad or ``in_degrees``."""
+    check_number(name, value)
+    turn, unit = (360.0, "deg") if in_degrees else (2 * math.pi, "rad")
+    largest = MOST_TURNS * turn
+    if not isinstance(value, FLOATS):
+        return
+    angle = float(value)
+    if not abs(angle) <= largest:
+        shown, bound = told_apart(angle, largest)
+        allowed = f"between -{bound} and {bound} {unit}, {MOST_TURNS} turns"
+        raise GeometryError(name, f"{shown} {unit}", allowed)
+
+
+def check_direction(name: str, vector: Sequence[float]) -> None:
+    """Raises `GeometryError` for a vector without direction, or one so short or so long
+    that its square is none that doubles have."""
+    size = max(abs(coordinate) for coordinate in vector)
+    if not size > 0:
+        raise GeometryError(name, _listed(vector), "a non-zero vector")
+    if not SHORTEST <= size <= LONGEST:
+        allowed = f"a vector of a length between {SHORTEST:g} and {LONGEST:g}"
+        raise GeometryError(name, _listed(vector), allowed)
+
+
+def _listed(vector: Sequence[float]) -> str:
+    return ", ".join(f"{float(coordinate)!r}" for coordinate in vector)
+
+
+def told_apart(value: float, *others: float) -> list[str]:
+    """All numbers with as few digits, six at least, as tell ``value`` from the
+    others."""
+    for digits in range(FEWEST_DIGITS, ALL_DIGITS + 1):
+        first, *rest = (f"{number:.{digits}g}" for number in (value, *others))
+        pairs = zip(rest, others, strict=True)
+        if all(text != first or other == value for text, other in pairs):
+            break
+    return [first, *rest]
