@@ -236,7 +236,7 @@ class Problem(ABC):
     @property
     def has_rim(self) -> bool:
         """Whether curves may leave the region in which they are followed."""
-        return bool(np.any(np.isfinite(self.bounds)))
+        return bool(np.isfinite(self.bounds).any())
 
     def excess(self, points: np.ndarray) -> np.ndarray:
         """How far points (k, n) lie outside the bounds (k,), in the unknown that is
@@ -311,6 +311,6 @@ class Problem(ABC):
         checked = floats_of(name, point)
         if checked.shape != (self.n,):
             raise ProblemError(f"shape of {name}", checked.shape, f"({self.n},)")
-        if not np.all(np.isfinite(checked)):
+        if not np.isfinite(checked).all():
             raise ProblemError(name, checked, "finite")
         return checked

@@ -7,6 +7,7 @@
 #include "bifurc/core/inverse.hpp"
 #include "bifurc/core/march.hpp"
 #include "bifurc/core/numpy.hpp"
+#include "bifurc/core/returns.hpp"
 #include "bifurc/core/singular_values.hpp"
 #include "bifurc/core/tape_bindings.hpp"
 
@@ -163,16 +164,36 @@ nb::object turning_points(const Curve& curve, Index unknown) {
     return out.release();
 }
 
-// (x, offset (n), slope (n)) of the foot of a point (n) on a piece (order + 1, n) in x from -1 to 1.
-nb::tuple foot_of_point(const MatrixIn<double>& piece, const VectorIn<double>& point,
-                        const VectorIn<double>& periods) {
-    const auto n = static_cast<Index>(piece.shape(1));
-    check_width("point", point.size(), n);
-    check_width("periods", periods.size(), n);
-    Array<double> offset({n}), slope({n});
-    const FootOnPiece foot = foot_on_piece(numpy::view(piece), 1.0, numpy::view(point), numpy::view(periods),
-                                           offset.vector(), slope.vector());
-    return nb::make_tuple(foot.s, offset.release(), slope.release());
+// A list of (s, distance, forward, speed, offset (n)): `Return`.
+nb::list returns_on(const CubeIn<double>& pieces, const VectorIn<double>& centers, const VectorIn<double>& radii,
+                 const VectorIn<double>& periods, Index number, double s, Index first) {
+    const auto count = static_cast<Index>(pieces.shape(0));
+    check_width("periods", periods.size(), static_cast<Index>(pieces.shape(2)));
+    const bool fits = static_cast<Index>(centers.size()) == count && static_cast<Index>(radii.size()) == count;
+    if (!fits) throw nb::value_error("the arrays of a curve do not fit each other");
+    if (number < 0 || number >= count || first < 0) throw nb::index_error("no such piece");
+    const Trail trail{numpy::rows(pieces), numpy::view(centers), numpy::view(radii), numpy::view(periods)};
+    nb::list found;
+    for (const Return& passing : returns_to(trail, number, s, first)) {
+        Array<double> offset({static_cast<Index>(passing.offset.size())});
+        offset.fill(passing.offset);
+        found.append(
+            nb::make_tuple(passing.s, passing.distance, passing.forward, passing.speed, offset.release()));
+    }
+    return found;
+}
+
+// (n) of a matrix (m, n), for ``along`` (n) or (0).
+nb::object null_vector(const MatrixIn<double>& matrix, const VectorIn<double>& along, double negligible,
+                       double agreeing) {
+    const View<const double> view = numpy::view(matrix);
+    if (along.size() > 0) check_width("along", along.size(), view.columns);
+    SingularValues decomposition(view.rows, view.columns);
+    Matrix<double> values(1, std::min(view.rows, view.columns));
+    decomposition.of(view, values);
+    Array<double> out({view.columns});
+    out.fill(decomposition.null_vector(0, view, numpy::view(along), negligible, agreeing));
+    return out.release();
 }
 
 // (n) of a complex matrix (n, n).
@@ -225,7 +246,8 @@ NB_MODULE(_core, module) {
             "values"_a)
         .def("roots", &numbers_of<&Brackets::roots>);
     module.def("determinants_and_inverses", &determinants_and_inverses, "matrices"_a);
-    module.def("foot_on_piece", &foot_of_point, "piece"_a, "point"_a, "periods"_a);
+    module.def("null_vector", &null_vector, "matrix"_a, "along"_a, "negligible"_a, "agreeing"_a);
+    module.def("returns", &returns_on, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "number"_a, "s"_a, "first"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
     module.def("singular_value_rates", &singular_value_rates, "matrices"_a, "changes"_a, "number"_a);
     module.def("eigenvalues", &eigenvalues, "matrix"_a);
