@@ -34,9 +34,12 @@ class Brackets:
     def narrow(self, values: np.ndarray) -> bool: ...
     def roots(self) -> np.ndarray: ...
 
-def determinants_and_inverses(
-    matrices: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]: ...
+def adjugates(
+    slopes: np.ndarray,
+    jacobians: np.ndarray,
+    left: np.ndarray,
+    to_coefficients: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
 def returns(
     pieces: np.ndarray,
     centers: np.ndarray,

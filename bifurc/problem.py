@@ -217,11 +217,16 @@ class Problem(ABC):
 
     def relative_residuals(self, points: np.ndarray) -> np.ndarray:
         """F over the magnitude (k, m) at points (k, n)."""
-        return self.residuals(points) / self.magnitude
+        return self._over_magnitude(self.residuals(points))
 
     def relative_jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' over the magnitude (k, m, n) at points (k, n)."""
-        return self.jacobians(points) / self.magnitude
+        return self._over_magnitude(self.jacobians(points))
+
+    def _over_magnitude(self, values: np.ndarray) -> np.ndarray:
+        """``values`` over the magnitude; the same array where that is 1, as of every
+        loop."""
+        return values if self.magnitude == 1.0 else values / self.magnitude
 
     def gaps(self, points: np.ndarray) -> np.ndarray:
         """|F| over the magnitude (k,) at points (k, n)."""
