@@ -47,9 +47,9 @@ def null_vector(
 ) -> np.ndarray:
     """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
 
-    It has no sign of its own: it is turned to agree with ``along`` where that is given.
-    Where the null space is larger, ``along`` is projected on it. A large problem is
-    bordered instead of decomposed.
+    It has no sign of its own: it is turned to agree with ``along`` where that is given,
+    else with a fixed direction. Where the null space is larger, that is projected on it.
+    A large problem is bordered instead of decomposed.
     """
     jacobian = problem.jacobian(point)
     if problem.n > LARGE or not isinstance(jacobian, np.ndarray):
