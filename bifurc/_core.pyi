@@ -34,12 +34,24 @@ class Brackets:
     def narrow(self, values: np.ndarray) -> bool: ...
     def roots(self) -> np.ndarray: ...
 
-def determinants_and_inverses(
-    matrices: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]: ...
-def foot_on_piece(
-    piece: np.ndarray, point: np.ndarray, periods: np.ndarray
-) -> tuple[float, np.ndarray, np.ndarray]: ...
+def adjugates(
+    slopes: np.ndarray,
+    jacobians: np.ndarray,
+    left: np.ndarray,
+    to_coefficients: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+def returns(
+    pieces: np.ndarray,
+    centers: np.ndarray,
+    radii: np.ndarray,
+    periods: np.ndarray,
+    number: int,
+    s: float,
+    first: int,
+) -> list[tuple[float, float, float, float, np.ndarray]]: ...
+def null_vector(
+    matrix: np.ndarray, along: np.ndarray, negligible: float, agreeing: float
+) -> np.ndarray: ...
 def singular_values(matrices: np.ndarray) -> np.ndarray: ...
 def singular_value_rates(
     matrices: np.ndarray, changes: np.ndarray, number: int

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["point_and_slope", "points_on_piece"]
+__all__ = ["point_and_slope", "points_on_piece", "points_on_pieces"]
 
 
 def points_on_piece(piece: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Points (k, n) of one piece (order + 1, n) at coordinates x (k,) in [-1, 1]."""
     points: np.ndarray = np.vander(x, len(piece), increasing=True) @ piece
+    return points
+
+
+def points_on_pieces(pieces: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Points (p, k, n) of pieces (p, order + 1, n) at coordinates x (p, k), k of
+    each."""
+    powers = np.vander(x.ravel(), pieces.shape[1], increasing=True)
+    points: np.ndarray = powers.reshape(*x.shape, -1) @ pieces
     return points
 
 

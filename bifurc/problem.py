@@ -217,11 +217,16 @@ class Problem(ABC):
 
     def relative_residuals(self, points: np.ndarray) -> np.ndarray:
         """F over the magnitude (k, m) at points (k, n)."""
-        return self.residuals(points) / self.magnitude
+        return self._over_magnitude(self.residuals(points))
 
     def relative_jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' over the magnitude (k, m, n) at points (k, n)."""
-        return self.jacobians(points) / self.magnitude
+        return self._over_magnitude(self.jacobians(points))
+
+    def _over_magnitude(self, values: np.ndarray) -> np.ndarray:
+        """``values`` over the magnitude; the same array where that is 1, as of every
+        loop."""
+        return values if self.magnitude == 1.0 else values / self.magnitude
 
     def gaps(self, points: np.ndarray) -> np.ndarray:
         """|F| over the magnitude (k,) at points (k, n)."""
@@ -236,7 +241,7 @@ class Problem(ABC):
     @property
     def has_rim(self) -> bool:
         """Whether curves may leave the region in which they are followed."""
-        return bool(np.any(np.isfinite(self.bounds)))
+        return bool(np.isfinite(self.bounds).any())
 
     def excess(self, points: np.ndarray) -> np.ndarray:
         """How far points (k, n) lie outside the bounds (k,), in the unknown that is
@@ -311,6 +316,6 @@ class Problem(ABC):
         checked = floats_of(name, point)
         if checked.shape != (self.n,):
             raise ProblemError(f"shape of {name}", checked.shape, f"({self.n},)")
-        if not np.all(np.isfinite(checked)):
+        if not np.isfinite(checked).all():
             raise ProblemError(name, checked, "finite")
         return checked

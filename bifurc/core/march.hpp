@@ -56,7 +56,8 @@ constexpr int places = 8;           // on either side of a centre, from which a 
 constexpr int foot_steps = 6;       // of Newton's method from there
 constexpr double standing = 1e-15;  // a step, over the radius, after which none follows
 constexpr std::array samples = {-1.0, -0.5, 0.0, 0.5, 1.0};  // where a piece is held against the bounds
-constexpr std::array probes = {-1.0, -0.8, -0.45, 0.45, 0.8, 1.0};  // where a piece is checked
+// where a piece is checked, that where it is worst as a rule before the others
+constexpr std::array probes = {1.0, -1.0, 0.8, -0.8, 0.45, -0.45};
 }  // namespace march
 
 // Value and slope of a series (order + 1, n) at ``s``.
@@ -190,6 +191,8 @@ private:
     struct Error {
         double residual;
         double distance;
+
+        bool is_below(const Error& most) const { return residual <= most.residual && distance <= most.distance; }
     };
 
     // Corrects ``point`` onto the curve across ``tangent`` and turns ``tangent`` into the
@@ -247,10 +250,10 @@ private:
         const double within = 3.0 * settings_.tolerance;
         double radius = trusted_radius(piece.coefficients, std::max(settings_.tolerance, known));
         for (int i = 0; i < march::shrinks; ++i) {
-            const Error error = largest_error(piece.coefficients, radius);
-            piece.residual = error.residual;
-            if (error.residual <= within + 4.0 * misclosure_ &&
-                error.distance <= within + march::handover * known) {
+            const Error most{within + 4.0 * misclosure_, within + march::handover * known};
+            const Error error = largest_error(piece.coefficients, radius, most);
+            if (error.is_below(most)) {
+                piece.residual = error.residual;
                 piece.radius = radius;
                 break;
             }
@@ -271,8 +274,8 @@ private:
 
     // The largest residual over some points of a piece, and the largest distance from the curve,
     // estimated with the factored [F'; t]: a residual of the size of rounding may be a large
-    // distance, where a singular value is small.
-    Error largest_error(View<const double> coefficients, double radius) {
+    // distance, where a singular value is small. The first error beyond ``most`` is enough.
+    Error largest_error(View<const double> coefficients, double radius, const Error& most) {
         Error worst{0.0, 0.0};
         for (double fraction : march::probes) {
             evaluate(coefficients, fraction * radius, place_, heading_);
@@ -281,6 +284,7 @@ private:
             worst.residual = std::max(worst.residual, length(right_));
             factorization_.solve(right_, step_);
             worst.distance = std::max(worst.distance, length(step_));
+            if (!worst.is_below(most)) break;
         }
         return worst;
     }

@@ -1,12 +1,13 @@
 // The Python module bifurc._core.
 #include <string>
 
+#include "bifurc/core/adjugates.hpp"
 #include "bifurc/core/brackets.hpp"
 #include "bifurc/core/curve.hpp"
 #include "bifurc/core/eigenvalues.hpp"
-#include "bifurc/core/inverse.hpp"
 #include "bifurc/core/march.hpp"
 #include "bifurc/core/numpy.hpp"
+#include "bifurc/core/returns.hpp"
 #include "bifurc/core/singular_values.hpp"
 #include "bifurc/core/tape_bindings.hpp"
 
@@ -140,19 +141,38 @@ void check_count(const VectorIn<double>& numbers, Index count) {
     if (static_cast<Index>(numbers.size()) != count) throw nb::value_error("there must be a number for each bracket");
 }
 
-nb::tuple determinants_and_inverses(const CubeIn<double>& matrices) {
-    const auto count = static_cast<Index>(matrices.shape(0)), n = static_cast<Index>(matrices.shape(1));
-    if (static_cast<Index>(matrices.shape(2)) != n) throw nb::value_error("matrices: they must be square");
-    Array<double> determinants({count}), inverses({count, n, n});
+// (determinants (a, N), adjugates (a, N, n, n), norms of the frames (a, N), norms of the columns at the nodes
+// (a, 3, N) and of the coefficients (a, 3, N): all columns, the strong ones, the weak one) of arcs
+// with ``slopes`` (a, N, n), ``jacobians`` (a, N, m, n) and ``left`` (a, m, n - 1): `ArcAdjugates`.
+nb::tuple adjugates(const CubeIn<double>& slopes, const nb::ndarray<const double, nb::ndim<4>, nb::c_contig>& jacobians,
+                    const CubeIn<double>& left, const MatrixIn<double>& to_coefficients) {
+    const auto count = static_cast<Index>(slopes.shape(0)), nodes = static_cast<Index>(slopes.shape(1)),
+               n = static_cast<Index>(slopes.shape(2)), m = static_cast<Index>(left.shape(1));
+    const auto is = [](std::size_t extent, Index expected) { return static_cast<Index>(extent) == expected; };
+    const bool fits = n > 0 && is(jacobians.shape(0), count) && is(jacobians.shape(1), nodes) &&
+                      is(jacobians.shape(2), m) && is(jacobians.shape(3), n) && is(left.shape(0), count) &&
+                      is(left.shape(2), n - 1) && is(to_coefficients.shape(0), nodes) &&
+                      is(to_coefficients.shape(1), nodes);
+    if (!fits) throw nb::value_error("the arrays of arcs do not fit each other");
+    Array<double> determinants({count, nodes}), out({count, nodes, n, n}), frame_norms({count, nodes}),
+        at_nodes({count, 3, nodes}), in_coefficients({count, 3, nodes});
+    const auto norms_of = [](Array<double>& norms, Index arc) {
+        const View<double> rows = norms.entry(arc);
+        return ColumnNorms{rows.row(0), rows.row(1), rows.row(2)};
+    };
     {
         nb::gil_scoped_release release;
-        Matrix<double> matrix(n, n);
-        for (Index i = 0; i < count; ++i) {
-            std::copy_n(matrices.data() + i * n * n, n * n, matrix.view().data);
-            determinants.data()[i] = invert(matrix, inverses.entry(i));
+        Adjugates arcs(n, numpy::view(to_coefficients));
+        for (Index arc = 0; arc < count; ++arc) {
+            const ArcNodes given{{slopes.data() + arc * nodes * n, nodes, n},
+                                 {jacobians.data() + arc * nodes * m * n, nodes * m, n},
+                                 {left.data() + arc * m * (n - 1), m, n - 1}};
+            arcs.of(given, {determinants.matrix().row(arc), out.entry(arc), frame_norms.matrix().row(arc),
+                            norms_of(at_nodes, arc), norms_of(in_coefficients, arc)});
         }
     }
-    return nb::make_tuple(determinants.release(), inverses.release());
+    return nb::make_tuple(determinants.release(), out.release(), frame_norms.release(), at_nodes.release(),
+                          in_coefficients.release());
 }
 
 nb::object turning_points(const Curve& curve, Index unknown) {
@@ -163,16 +183,36 @@ nb::object turning_points(const Curve& curve, Index unknown) {
     return out.release();
 }
 
-// (x, offset (n), slope (n)) of the foot of a point (n) on a piece (order + 1, n) in x from -1 to 1.
-nb::tuple foot_of_point(const MatrixIn<double>& piece, const VectorIn<double>& point,
-                        const VectorIn<double>& periods) {
-    const auto n = static_cast<Index>(piece.shape(1));
-    check_width("point", point.size(), n);
-    check_width("periods", periods.size(), n);
-    Array<double> offset({n}), slope({n});
-    const FootOnPiece foot = foot_on_piece(numpy::view(piece), 1.0, numpy::view(point), numpy::view(periods),
-                                           offset.vector(), slope.vector());
-    return nb::make_tuple(foot.s, offset.release(), slope.release());
+// A list of (s, distance, forward, speed, offset (n)): `Return`.
+nb::list returns_on(const CubeIn<double>& pieces, const VectorIn<double>& centers, const VectorIn<double>& radii,
+                 const VectorIn<double>& periods, Index number, double s, Index first) {
+    const auto count = static_cast<Index>(pieces.shape(0));
+    check_width("periods", periods.size(), static_cast<Index>(pieces.shape(2)));
+    const bool fits = static_cast<Index>(centers.size()) == count && static_cast<Index>(radii.size()) == count;
+    if (!fits) throw nb::value_error("the arrays of a curve do not fit each other");
+    if (number < 0 || number >= count || first < 0) throw nb::index_error("no such piece");
+    const Trail trail{numpy::rows(pieces), numpy::view(centers), numpy::view(radii), numpy::view(periods)};
+    nb::list found;
+    for (const Return& passing : returns_to(trail, number, s, first)) {
+        Array<double> offset({static_cast<Index>(passing.offset.size())});
+        offset.fill(passing.offset);
+        found.append(
+            nb::make_tuple(passing.s, passing.distance, passing.forward, passing.speed, offset.release()));
+    }
+    return found;
+}
+
+// (n) of a matrix (m, n), for ``along`` (n) or (0).
+nb::object null_vector(const MatrixIn<double>& matrix, const VectorIn<double>& along, double negligible,
+                       double agreeing) {
+    const View<const double> view = numpy::view(matrix);
+    if (along.size() > 0) check_width("along", along.size(), view.columns);
+    SingularValues decomposition(view.rows, view.columns);
+    Matrix<double> values(1, std::min(view.rows, view.columns));
+    decomposition.of(view, values);
+    Array<double> out({view.columns});
+    out.fill(decomposition.null_vector(0, view, numpy::view(along), negligible, agreeing));
+    return out.release();
 }
 
 // (n) of a complex matrix (n, n).
@@ -190,6 +230,7 @@ nb::object eigenvalues(const MatrixIn<std::complex<double>>& matrix) {
 
 NB_MODULE(_core, module) {
     module.doc() = "Compiled parts of bifurc.";
+    bifurc::python::leave_what_threads_hold();
     nb::class_<Curve>(module, "Curve")
         .def(
             "__init__",
@@ -224,8 +265,9 @@ NB_MODULE(_core, module) {
             },
             "values"_a)
         .def("roots", &numbers_of<&Brackets::roots>);
-    module.def("determinants_and_inverses", &determinants_and_inverses, "matrices"_a);
-    module.def("foot_on_piece", &foot_of_point, "piece"_a, "point"_a, "periods"_a);
+    module.def("adjugates", &adjugates, "slopes"_a, "jacobians"_a, "left"_a, "to_coefficients"_a);
+    module.def("null_vector", &null_vector, "matrix"_a, "along"_a, "negligible"_a, "agreeing"_a);
+    module.def("returns", &returns_on, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "number"_a, "s"_a, "first"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
     module.def("singular_value_rates", &singular_value_rates, "matrices"_a, "changes"_a, "number"_a);
     module.def("eigenvalues", &eigenvalues, "matrix"_a);

@@ -56,11 +56,8 @@ public:
     // of 0, which has none; its square does not change at first order.
     double rate(Index lane, Index number, View<const double> matrix, View<const double> change) const {
         const Index row = row_of(number, lane);
-        const double size = std::sqrt(squares_[row][lane]);
-        if (!(size > 0.0)) return 0.0;
-        // the row of R is the singular vector that is as long as it, its entries pivoted
-        std::vector<double> vector(columns_.columns());
-        for (Index k = 0; k < columns_.columns(); ++k) vector[columns_(lane, k)] = rows_of_r_(row, k)[lane] / size;
+        if (!(squares_[row][lane] > 0.0)) return 0.0;
+        const std::vector<double> vector = vector_of(row, lane);
         // the other one is the image of this one
         double image_of_change = 0.0, square = 0.0;
         const Index others = is_tall_ ? matrix.rows : matrix.columns;
@@ -77,9 +74,90 @@ public:
         return image_of_change / std::sqrt(square);
     }
 
+    // The unit vector (columns) of the null space of matrix ``lane`` of those that were taken apart last
+    // that is nearest to ``along``: the null space is that of the smallest singular value, and of those
+    // below ``negligible`` of the largest. Where ``along`` is empty or has less than ``agreeing`` of its
+    // length in it, another vector of the null space.
+    std::vector<double> null_vector(Index lane, View<const double> matrix, Vector<const double> along,
+                                    double negligible, double agreeing) const {
+        const Matrix<double> regular = regular_vectors(lane, matrix, negligible);
+        std::vector<double> vector(along.begin(), along.end());
+        if (!along.empty() && leave_null_space(regular, vector) > agreeing * length(along)) return vector;
+        // a vector that no symmetry puts across the null space; then the axes, one of which is not
+        vector.resize(matrix.columns);
+        for (Index j = 0; j < matrix.columns; ++j) vector[j] = std::cos(1.0 + static_cast<double>(j));
+        double part = leave_null_space(regular, vector);
+        for (Index j = 0; j < matrix.columns && !(part > agreeing); ++j) {
+            std::fill(vector.begin(), vector.end(), 0.0);
+            vector[j] = 1.0;
+            part = leave_null_space(regular, vector);
+        }
+        return vector;
+    }
+
 private:
     using Four = std::array<double, lanes>;
     static constexpr int most_sweeps = 40;
+
+    // The singular vector that row ``row`` of R is, over its length, its entries pivoted: on the right of
+    // a tall matrix, on the left of another.
+    std::vector<double> vector_of(Index row, Index lane) const {
+        const double size = std::sqrt(squares_[row][lane]);
+        std::vector<double> vector(columns_.columns());
+        for (Index k = 0; k < columns_.columns(); ++k) vector[columns_(lane, k)] = rows_of_r_(row, k)[lane] / size;
+        return vector;
+    }
+
+    // The right singular vectors (r, columns) across the null space.
+    Matrix<double> regular_vectors(Index lane, View<const double> matrix, double negligible) const {
+        const Index rows = rows_of_r_.rows();
+        double largest = 0.0, least = std::numeric_limits<double>::infinity();
+        for (Index i = 0; i < rows; ++i) {
+            largest = std::max(largest, squares_[i][lane]);
+            least = std::min(least, squares_[i][lane]);
+        }
+        // a wide matrix has as many singular values of 0 as there are further columns
+        const double smallest = matrix.columns > rows ? 0.0 : least;
+        const double zero = std::max(smallest, negligible * negligible * largest);
+        std::vector<Index> kept;
+        for (Index i = 0; i < rows; ++i) {
+            if (squares_[i][lane] > zero) kept.push_back(i);
+        }
+        Matrix<double> vectors(static_cast<Index>(kept.size()), matrix.columns);
+        for (Index i = 0; i < vectors.rows(); ++i) {
+            const std::vector<double> vector = vector_of(kept[i], lane);
+            const Vector<double> right = vectors.row(i);
+            if (is_tall_) {
+                std::copy(vector.begin(), vector.end(), right.begin());
+                continue;
+            }
+            for (Index row = 0; row < matrix.rows; ++row) {
+                for (Index j = 0; j < matrix.columns; ++j) right[j] += vector[row] * matrix(row, j);
+            }
+            double largest_entry = 0.0;  // its square may be no number
+            for (double entry : right) largest_entry = std::max(largest_entry, std::abs(entry));
+            for (double& entry : right) entry /= largest_entry;
+            const double size = length(right);
+            for (double& entry : right) entry /= size;
+        }
+        return vectors;
+    }
+
+    // Takes from ``vector`` what it has along orthonormal rows, and divides it by the length that is
+    // left, which is given back. Twice is enough (Giraud and Langou 2002).
+    static double leave_null_space(const Matrix<double>& regular, Vector<double> vector) {
+        for (int time = 0; time < 2; ++time) {
+            for (Index i = 0; i < regular.rows(); ++i) {
+                const Vector<const double> row = regular.row(i);
+                double part = 0.0;
+                for (std::size_t j = 0; j < vector.size(); ++j) part += row[j] * vector[j];
+                for (std::size_t j = 0; j < vector.size(); ++j) vector[j] -= part * row[j];
+            }
+        }
+        const double size = length(vector);
+        for (double& entry : vector) entry /= size;
+        return size;
+    }
 
     // The row of R that is singular value ``number`` of a lane.
     Index row_of(Index number, Index lane) const {

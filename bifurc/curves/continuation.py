@@ -99,7 +99,6 @@ def _follow(
     """The curve from ``start`` to the side of its tangent until it closes, leaves the
     region, stalls or grows too long."""
     track = Track(start, settings.order, problem.has_crossings)
-    longest = settings.max_length * problem.scale
     while True:
         march = _march(problem, track, settings, closing)
         if march.status is MarchStatus.OPEN and not len(track):
@@ -108,15 +107,26 @@ def _follow(
         first = max(len(track) - 1, 0)  # the former last piece may reach over the end
         track.append(march)
         end = end_of_curve(problem, track, first, settings.tolerance)
-        # beside a cusp the end of a piece may be corrected to where nothing is solved
-        if end is None and march.status is not MarchStatus.RAN:
-            end = _overcome_stall(problem, track, settings)
-        elif _is_clear(problem, march, settings):
-            track.allow_long_steps_only()
-        if end is None and track.reached > longest:
-            end = End(Outcome.STEP_LIMIT, track.reached)
+        if end is None:
+            end = _end_of_patience(problem, track, march, settings)
         if end is not None:
             return track.branch(end, problem.periods)
+
+
+def _end_of_patience(
+    problem: Problem, track: Track, march: March, settings: TraceSettings
+) -> End | None:
+    """The end of the curve where it stalled after a ``march`` or grew too long; None
+    where it goes on."""
+    end: End | None = None
+    # beside a cusp the end of a piece may be corrected to where nothing is solved
+    if march.status is not MarchStatus.RAN:
+        end = _overcome_stall(problem, track, settings)
+    elif _is_clear(problem, march, settings):
+        track.allow_long_steps_only()
+    if end is None and track.reached > settings.max_length * problem.scale:
+        end = End(Outcome.STEP_LIMIT, track.reached)
+    return end
 
 
 def _march(

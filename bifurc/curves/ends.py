@@ -6,18 +6,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc._core import foot_on_piece
+from bifurc import _core
 from bifurc.branch import Outcome
-from bifurc.curves.track import End, Place, Track
+from bifurc.curves.track import End, Track
 from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
-from bifurc.pieces import points_on_piece
+from bifurc.numerics.roots import bracketed_roots
+from bifurc.pieces import points_on_piece, points_on_pieces
 from bifurc.problem import Problem
 
 __all__ = ["end_of_curve", "same_place"]
 
-# where the bounds are left is looked for in so many parts, and in those of one of them
-PARTS, REFINEMENTS = 16, 15
+# Shares of a piece at which it is held against the bounds, and the slack that they have
+# there, over the scale.
+GRID = np.linspace(0.0, 1.0, 33)
+SLACK = 1e-12
 LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
 NEAR = 1e-9  # distance, over the scale, within which a curve is back in any case
 PLAIN = 1e-3  # share of that: nothing else is asked
@@ -62,13 +65,16 @@ class _Anchor(NamedTuple):
     s: float
 
 
-class _Foot(NamedTuple):
-    """Where a piece is nearest to a point: the coordinate ``x`` on the piece, and close
-    to it the ``offset`` (n,) from the point and the derivative ``slope`` (n,) in x."""
+class _Return(NamedTuple):
+    """Where a curve is near a place again: at arclength ``s``, at a ``distance``, with
+    the ``offset`` (n,) from the place; its derivative there in the coordinate of the
+    piece is of size ``speed``, and ``forward`` along the tangent at the place."""
 
-    x: float
+    s: float
+    distance: float
+    forward: float
+    speed: float
     offset: np.ndarray
-    slope: np.ndarray
 
 
 def _closing(
@@ -76,45 +82,37 @@ def _closing(
 ) -> float | None:
     """Arclength at which the curve, from piece ``first`` on, passes the anchor again in
     the same direction."""
-    place = track.at(anchor.number, anchor.s)
-    beyond = anchor.s + 0.5 * track.radii[anchor.number]
-    for number in _pieces_near(problem, track, first, place.point):
-        foot = _Foot(*foot_on_piece(track.pieces[number], place.point, problem.periods))
-        s = track.centers[number] + foot.x * track.radii[number]
-        if abs(foot.x) > 1.02 or not s > beyond:
-            continue
-        if _is_same_pass(problem, place, foot, tolerance):
-            return float(s)
+    returns = _core.returns(
+        pieces=track.pieces,
+        centers=track.centers,
+        radii=track.radii,
+        periods=problem.periods,
+        number=anchor.number,
+        s=anchor.s,
+        first=first,
+    )
+    for values in returns:
+        place = _Return(*values)
+        if _is_same_pass(problem, track, anchor, place, tolerance):
+            return place.s
     return None
 
 
-def _pieces_near(
-    problem: Problem, track: Track, first: int, point: np.ndarray
-) -> np.ndarray:
-    """Numbers of the pieces, from ``first`` on, that may pass ``point`` (n,)."""
-    middles = track.pieces[first:, 0]
-    radii = track.radii[first:]
-    gaps = problem.difference(middles, point)
-    is_near = np.linalg.norm(gaps, axis=1) < 1.1 * radii
-    numbers: np.ndarray = first + np.flatnonzero(is_near)
-    return numbers
-
-
 def _is_same_pass(
-    problem: Problem, place: Place, foot: _Foot, tolerance: float
+    problem: Problem, track: Track, anchor: _Anchor, place: _Return, tolerance: float
 ) -> bool:
-    """Whether the curve at the foot of a place is at that place again, and runs in the
+    """Whether the curve is at the anchor again where it is near it, and runs in the
     same direction."""
-    speed = float(np.linalg.norm(foot.slope))
-    if is_other_way(float(foot.slope @ place.tangent), speed):
+    if is_other_way(place.forward, place.speed):
         return False
-    distance = float(np.linalg.norm(foot.offset)) / problem.scale
+    distance = place.distance / problem.scale
     loose = LOOSE * tolerance
     nearness = distance / same_place(tolerance)
     if nearness > PLAIN:
         # where a singular value is small a point is known no better than rounding over it
-        known = max(float(same_reach(problem, place.point[None])[0]), NEAR)
-        residual = problem.jacobian(place.point) @ foot.offset
+        point = track.at(anchor.number, anchor.s).point
+        known = max(float(same_reach(problem, point[None])[0]), NEAR)
+        residual = problem.jacobian(point) @ place.offset
         apart = float(np.linalg.norm(residual)) / (problem.magnitude * problem.scale)
         nearness = min(nearness, max(distance / known, apart / loose))
     is_exact = tolerance < is_solution.threshold
@@ -126,35 +124,29 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
     bounds."""
     if not problem.has_rim:
         return None
-    breaks = track.breaks(track.reached)
-    for number in range(first, len(track)):
-        center, radius = track.centers[number], track.radii[number]
-        begin, end = breaks[number : number + 2]
-        grid = (np.linspace(begin, end, 33) - center) / radius
-        x = _exit(problem, track.pieces[number], grid)
-        if x is not None:
-            return float(center + x * radius)
-    return None
-
-
-def _exit(problem: Problem, piece: np.ndarray, grid: np.ndarray) -> float | None:
-    """Coordinate at which a piece (order + 1, n) leaves the bounds, as seen at those of
-    ``grid``; None where it does not."""
-    excess = _excess(problem, piece, grid)
-    outside = np.flatnonzero(excess > 1e-12 * problem.scale)
+    breaks = track.breaks(track.reached)[first:]
+    centers, radii = track.centers[first:, None], track.radii[first:, None]
+    lengths = np.diff(breaks)[:, None]
+    grids = (breaks[:-1, None] + lengths * GRID - centers) / radii
+    points = points_on_pieces(track.pieces[first:], grids)
+    excess = problem.excess(points.reshape(-1, problem.n)).reshape(grids.shape)
+    outside = np.argwhere(excess > SLACK * problem.scale)
     if not len(outside):
         return None
-    first = outside[0]
-    low = grid[max(first - 1, 0)]
-    high = grid[first]
-    for _ in range(REFINEMENTS):
-        places = np.linspace(low, high, PARTS + 1)
-        outside = np.flatnonzero(_excess(problem, piece, places) > 0)
-        first = max(outside[0], 1) if len(outside) else PARTS
-        low, high = places[first - 1], places[first]
-    return float(low)
+    number, place = outside[0].tolist()
+    low, high = grids[number, max(place - 1, 0)], grids[number, place]
+    x = _exit(problem, track.pieces[first + number], low, high)
+    return float(centers[number, 0] + x * radii[number, 0])
 
 
-def _excess(problem: Problem, piece: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """How far a piece lies outside the region (k,) at x (k,); negative inside."""
-    return problem.excess(points_on_piece(piece, x))
+def _exit(problem: Problem, piece: np.ndarray, low: float, high: float) -> float:
+    """Coordinate at which a piece (order + 1, n) leaves the bounds, between one of a
+    point on or inside them, ``low``, and one of a point outside, ``high``."""
+
+    def excess(x: np.ndarray) -> np.ndarray:
+        return problem.excess(points_on_piece(piece, x))
+
+    begin = np.array([low])
+    if excess(begin)[0] >= 0.0:
+        return low
+    return float(bracketed_roots(excess, begin, np.array([high]))[0])

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc._core import determinants_and_inverses
+from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.decisions import is_closed_to_rounding, is_unique
 from bifurc.numerics.chebyshev import (
@@ -30,9 +30,11 @@ from bifurc.numerics.chebyshev import (
     ERRORS,
     NODE_COUNT,
     NODES,
+    TO_COEFFICIENTS,
     cell_slack,
     coefficients,
     largest_between,
+    largest_by_norms,
     on_cell_edges,
     on_ellipses,
 )
@@ -230,13 +232,6 @@ class _Nodes:
         return steps
 
     @cached_property
-    def frames(self) -> np.ndarray:
-        """H (a, N, n, n)."""
-        across = np.swapaxes(self.left, 1, 2)[:, None] @ self.jacobians
-        along = self.slopes[:, :, None, :]
-        return np.concatenate([across, along], axis=2)
-
-    @cached_property
     def largest_residuals(self) -> np.ndarray:
         """|F| at the nodes at most (a,)."""
         largest: np.ndarray = np.linalg.norm(self.residuals, axis=2).max(axis=1)
@@ -296,19 +291,43 @@ class _Nodes:
 
 
 @dataclass(frozen=True)
+class _Columns:
+    """Some columns of Q: their norms ``at_nodes`` (a, N), and ``in_coefficients`` (a,
+    N) of their interpolants."""
+
+    at_nodes: np.ndarray
+    in_coefficients: np.ndarray
+
+    @cached_property
+    def largest(self) -> np.ndarray:
+        """Bounds (a,) all along the arcs."""
+        return largest_by_norms(self.at_nodes, self.in_coefficients)
+
+    @cached_property
+    def on_ellipses(self) -> np.ndarray:
+        """Bounds (a, e) on the ellipses."""
+        return on_ellipses(self.in_coefficients)
+
+
+@dataclass(frozen=True)
 class _Inverse:
     """H^-1 on arcs, as Q / p.
 
     ``determinants`` (a, N) and ``adjugates`` (a, N, n, n) at the nodes,
-    ``determinants_at_edges`` (a, c + 1) of p. ``interpolation`` (a,) and ``rounding``
-    (a,) bound H Q - p I, ``interpolation_of_strong`` (a,) its columns that belong to
-    strong components, and ``lowest`` (a, c + 1) is what |p| is at least in the cells
-    beside an edge, less that. ``frame_sizes`` (a,) are those of H.
+    ``determinants_at_edges`` (a, c + 1) of p; ``columns`` are all those of Q,
+    ``strong`` and ``weak`` those that belong to strong components and to the weakest
+    one. ``interpolation`` (a,) and ``rounding`` (a,) bound H Q - p I,
+    ``interpolation_of_strong`` (a,) its strong columns, and ``lowest`` (a, c + 1) is
+    what |p| is at least in the cells beside an edge, less that. ``frame_sizes`` (a,)
+    are those of H.
     """
 
     determinants: np.ndarray
     adjugates: np.ndarray
     determinants_at_edges: np.ndarray
+    columns: _Columns
+    strong: _Columns
+    weak: _Columns
     interpolation: np.ndarray
     interpolation_of_strong: np.ndarray
     rounding: np.ndarray
@@ -317,35 +336,41 @@ class _Inverse:
 
     @staticmethod
     def of(nodes: _Nodes) -> _Inverse:
-        frames = nodes.frames
-        flat = frames.reshape(-1, nodes.n, nodes.n)
-        determinants, inverses = determinants_and_inverses(flat)
-        # a node on a singular point, to the last bit, says nothing of Q
-        inverses[determinants == 0.0] = 0.0
-        adjugates = determinants[:, None, None] * inverses
-        adjugates = adjugates.reshape(frames.shape)
-        determinants = determinants.reshape(frames.shape[:2])
+        determinants, adjugates, frame_norms, at_nodes, in_coefficients = (
+            _core.adjugates(
+                slopes=nodes.slopes,
+                jacobians=nodes.jacobians,
+                left=np.ascontiguousarray(nodes.left),
+                to_coefficients=TO_COEFFICIENTS,
+            )
+        )
+        columns, strong, weak = (
+            _Columns(at_nodes[:, group], in_coefficients[:, group])
+            for group in range(3)
+        )
         p = coefficients(determinants[..., None])[..., 0]
-        interpolation = _interpolation(nodes, adjugates, p)
-        frame_sizes = _norms(frames)
-        rounding = ADJUGATE_ROUNDING * (frame_sizes * _norms(adjugates)).max(axis=1)
+        interpolation = _interpolation(nodes, columns, p)
+        rounding = ADJUGATE_ROUNDING * (frame_norms * columns.at_nodes).max(axis=1)
         at_edges = on_cell_edges(p)
         slack = cell_slack(p) + interpolation + rounding
         return _Inverse(
             determinants=determinants,
             adjugates=adjugates,
             determinants_at_edges=at_edges,
+            columns=columns,
+            strong=strong,
+            weak=weak,
             interpolation=interpolation,
+            interpolation_of_strong=_interpolation(nodes, strong, p),
             rounding=rounding,
-            interpolation_of_strong=_interpolation(nodes, adjugates[..., :-2], p),
             lowest=np.abs(at_edges) - slack[:, None],
-            frame_sizes=frame_sizes.max(axis=1),
+            frame_sizes=frame_norms.max(axis=1),
         )
 
     @cached_property
     def sizes(self) -> np.ndarray:
         """Bounds on |H^-1| in the cells beside an edge (a, c + 1)."""
-        return self._over_lowest(largest_between(self._flat(self.adjugates)))
+        return self._over_lowest(self.columns.largest)
 
     @cached_property
     def strong_sizes(self) -> np.ndarray:
@@ -361,20 +386,20 @@ class _Inverse:
     @cached_property
     def largest_strong(self) -> np.ndarray:
         """Bounds (a,) on the columns of Q that belong to strong components."""
-        largest: np.ndarray = np.maximum(largest_between(self._strong), self._floor)
+        largest: np.ndarray = np.maximum(self.strong.largest, self._floor)
         return largest
 
     @cached_property
     def largest_weak(self) -> np.ndarray:
         """Bounds (a,) on the column of Q that belongs to the weakest component."""
-        largest: np.ndarray = np.maximum(largest_between(self._weak), self._floor)
+        largest: np.ndarray = np.maximum(self.weak.largest, self._floor)
         return largest
 
     @cached_property
     def growth_on_ellipses(self) -> np.ndarray:
         """How much larger these columns are on the ellipses (a, e)."""
-        strong = _sizes_on_ellipses(self._strong) / self.largest_strong[:, None]
-        weak = _sizes_on_ellipses(self._weak) / self.largest_weak[:, None]
+        strong = self.strong.on_ellipses / self.largest_strong[:, None]
+        weak = self.weak.on_ellipses / self.largest_weak[:, None]
         growth: np.ndarray = np.maximum(strong, weak)
         return growth
 
@@ -390,14 +415,6 @@ class _Inverse:
         return errors
 
     @property
-    def _strong(self) -> np.ndarray:
-        return self._flat(self.adjugates[..., :-2])
-
-    @property
-    def _weak(self) -> np.ndarray:
-        return self.adjugates[..., -2]
-
-    @property
     def _floor(self) -> np.ndarray:
         """Where there are no strong components (a,)."""
         floor: np.ndarray = np.abs(self.determinants).max(axis=1) / self.frame_sizes
@@ -407,30 +424,20 @@ class _Inverse:
         sizes: np.ndarray = largest[:, None] / np.maximum(self.lowest, TINY)
         return sizes
 
-    def _flat(self, matrices: np.ndarray) -> np.ndarray:
-        """Matrices (a, N, n, q) as vectors."""
-        return matrices.reshape(*self.determinants.shape, -1)
-
     @cached_property
     def sizes_at_nodes(self) -> np.ndarray:
         """|H^-1| at the nodes (a, N)."""
-        sizes: np.ndarray = _norms(self.adjugates) / np.abs(self.determinants)
+        sizes: np.ndarray = self.columns.at_nodes / np.abs(self.determinants)
         return sizes
 
 
-def _interpolation(nodes: _Nodes, columns: np.ndarray, p: np.ndarray) -> np.ndarray:
-    """A bound (a,) on H Q - p I between the nodes, for some ``columns`` (a, N, n, q) of
-    Q and the coefficients (a, N) of p."""
-    q_sizes = _sizes_on_ellipses(columns.reshape(*p.shape, -1))
+def _interpolation(nodes: _Nodes, columns: _Columns, p: np.ndarray) -> np.ndarray:
+    """A bound (a,) on H Q - p I between the nodes, for some ``columns`` of Q and the
+    coefficients (a, N) of p."""
     p_sizes = on_ellipses(np.abs(p))
-    products = nodes.frame_sizes * q_sizes + np.sqrt(nodes.n) * p_sizes
+    products = nodes.frame_sizes * columns.on_ellipses + np.sqrt(nodes.n) * p_sizes
     bounds: np.ndarray = np.min(ERRORS * products, axis=1)
     return bounds
-
-
-def _sizes_on_ellipses(values: np.ndarray) -> np.ndarray:
-    """Bounds (a, e) on the ellipses of the interpolants of values (a, N, q)."""
-    return on_ellipses(np.linalg.norm(coefficients(values), axis=2))
 
 
 def _norms(matrices: np.ndarray) -> np.ndarray:
@@ -575,8 +582,8 @@ def _sizes_at_nodes(nodes: _Nodes, inverse: _Inverse) -> _Sizes:
     """Values (a, N) at the nodes."""
     bound = nodes.curvature_bound
     determinants = np.abs(inverse.determinants)
-    strong = np.linalg.norm(inverse.adjugates[..., :-2], axis=(2, 3)) / determinants
-    weak = np.linalg.norm(inverse.adjugates[..., -2], axis=2) / determinants
+    strong = inverse.strong.at_nodes / determinants
+    weak = inverse.weak.at_nodes / determinants
     of_inverse = 2.0 * bound * inverse.rounding[:, None] / determinants
     of_hessian = bound * nodes.problem.hessian_error
     return _Sizes(strong, weak, of_inverse + of_hessian)

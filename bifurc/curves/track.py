@@ -140,7 +140,7 @@ class Track:
         fractions of their radii."""
         radii_before, radii_after = self.radii[:-1], self.radii[1:]
         shares = radii_before / (radii_before + radii_after)
-        inner = self.centers[:-1] + shares * np.diff(self.centers)
+        inner = self.centers[:-1] + shares * (self.centers[1:] - self.centers[:-1])
         return np.concatenate([[0.0], inner, [stop]])
 
     def append(self, march: March) -> None:
@@ -189,8 +189,8 @@ class Track:
         if not len(self):
             return self.empty_branch(end.outcome, periods)
         breaks = self.breaks(end.stop)
-        first = np.searchsorted(breaks[1:], end.begin, side="right")
-        beyond = np.searchsorted(breaks[:-1], end.stop)
+        first = breaks[1:].searchsorted(end.begin, side="right")
+        beyond = breaks[:-1].searchsorted(end.stop)
         kept = slice(first, beyond)
         inner = breaks[kept][1:] - end.begin
         length = end.stop - end.begin

@@ -151,9 +151,17 @@ class ScaledTape:
         Rounding is measured there; where none are known, about the ``start`` (n,). At
         some solutions it happens to be nothing: a little way off it is not.
         """
-        centers = (
-            self._solutions if len(self._solutions) else np.tile(start, (SAMPLES, 1))
-        )
+        if len(self._solutions):
+            return self._share_at_solutions
+        return self._share_about(np.tile(start, (SAMPLES, 1)))
+
+    @cached_property
+    def _share_at_solutions(self) -> float:
+        """That share, as it is at the known solutions."""
+        return self._share_about(self._solutions)
+
+    def _share_about(self, centers: np.ndarray) -> float:
+        """That share, as it is about points (k, n)."""
         rng = np.random.default_rng(0)
         points = centers + BESIDE * self._scale * rng.normal(size=centers.shape)
         lowest, highest = self.tape.compiled.value_bounds(points, points)

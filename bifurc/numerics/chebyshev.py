@@ -21,9 +21,11 @@ __all__ = [
     "ERRORS",
     "NODES",
     "NODE_COUNT",
+    "TO_COEFFICIENTS",
     "cell_slack",
     "coefficients",
     "largest_between",
+    "largest_by_norms",
     "on_cell_edges",
     "on_ellipses",
 ]
@@ -39,8 +41,9 @@ _EDGE_ANGLES = np.pi * np.arange(CELLS, -1, -1) / CELLS
 NODES = np.cos(_NODE_ANGLES)  # (N,), from -1 to 1
 CELL_EDGES = np.cos(_EDGE_ANGLES)  # (CELLS + 1,), from -1 to 1
 _TO_EDGES = np.cos(np.outer(_DEGREES, _EDGE_ANGLES))
-_TO_COEFFICIENTS = np.cos(np.outer(_DEGREES, _NODE_ANGLES)) * 2.0 / NODE_COUNT
-_TO_COEFFICIENTS[0] /= 2.0
+# (N, N) from values at the nodes to coefficients
+TO_COEFFICIENTS = np.cos(np.outer(_DEGREES, _NODE_ANGLES)) * 2.0 / NODE_COUNT
+TO_COEFFICIENTS[0] /= 2.0
 # how much larger an interpolant may be than at the nodes (Rivlin 1974)
 _LEBESGUE = 2.0 / np.pi * np.log(NODE_COUNT) + 1.0
 _POWERS = RHOS ** _DEGREES[:, None]
@@ -54,7 +57,7 @@ ERRORS = (
 def coefficients(values: np.ndarray) -> np.ndarray:
     """Chebyshev coefficients (k, N, q) of the interpolants of values (k, N, q) at the
     nodes."""
-    interpolants: np.ndarray = _TO_COEFFICIENTS @ values
+    interpolants: np.ndarray = TO_COEFFICIENTS @ values
     return interpolants
 
 
@@ -80,9 +83,16 @@ def cell_slack(interpolants: np.ndarray) -> np.ndarray:
 
 
 def largest_between(values: np.ndarray) -> np.ndarray:
-    """Bounds (k,) on the norm over [-1, 1] of the interpolants of values (k, N, q): by
-    the largest at the nodes, or by the sum of the coefficients."""
-    by_nodes = _LEBESGUE * np.linalg.norm(values, axis=2).max(axis=1)
-    by_sum = np.linalg.norm(coefficients(values), axis=2).sum(axis=1)
+    """Bounds (k,) on the norm over [-1, 1] of the interpolants of values (k, N, q)."""
+    at_nodes = np.linalg.norm(values, axis=2)
+    in_coefficients = np.linalg.norm(coefficients(values), axis=2)
+    return largest_by_norms(at_nodes, in_coefficients)
+
+
+def largest_by_norms(at_nodes: np.ndarray, in_coefficients: np.ndarray) -> np.ndarray:
+    """The same bounds (k,) from the norms (k, N) of the values at the nodes and of the
+    coefficients: by the largest of those, or by the sum of these."""
+    by_nodes = _LEBESGUE * at_nodes.max(axis=1)
+    by_sum = in_coefficients.sum(axis=1)
     bounds: np.ndarray = np.minimum(by_nodes, by_sum)
     return bounds

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bifurc._core import null_vector as null_vector_of
 from bifurc.decisions import is_null
 from bifurc.numerics.bordered import Bordered
 from bifurc.problem import Problem
@@ -33,6 +34,9 @@ LARGE = 64
 # stands in a denominator where a singular value is zero: the square of what comes out
 # is still a double
 TINY = 1e-140
+# A singular value, over the largest, that counts as zero beside a smaller one; and the
+# part of a direction, over its length, that must lie in a null space to say where to go.
+NEGLIGIBLE, AGREEING = 1e-9, 1e-3
 
 
 # --- tangents -------------------------------------------------------------------------
@@ -43,24 +47,15 @@ def null_vector(
 ) -> np.ndarray:
     """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
 
-    It has no sign of its own: it is turned to agree with ``along`` where that is given.
-    Where the null space is larger, ``along`` is projected on it. A large problem is
-    bordered instead of decomposed.
+    It has no sign of its own: it is turned to agree with ``along`` where that is given,
+    else with a fixed direction. Where the null space is larger, that is projected on it.
+    A large problem is bordered instead of decomposed.
     """
     jacobian = problem.jacobian(point)
     if problem.n > LARGE or not isinstance(jacobian, np.ndarray):
         return _null_vector_by_borders(jacobian, along)
-    _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
-    values = _padded(sigma, problem.n)
-    zero = max(values[-1], 1e-9 * values[0])
-    null_space: np.ndarray = right[values <= zero]
-    weakest: np.ndarray = null_space[-1]
-    if along is None:
-        return weakest
-    projected: np.ndarray = null_space.T @ (null_space @ along)
-    length = np.linalg.norm(projected)
-    agrees = length > 1e-3 * np.linalg.norm(along)
-    return projected / length if agrees else weakest
+    near = np.empty(0) if along is None else along
+    return null_vector_of(jacobian, near, negligible=NEGLIGIBLE, agreeing=AGREEING)
 
 
 def _null_vector_by_borders(

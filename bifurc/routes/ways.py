@@ -3,6 +3,7 @@ places."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable
 from itertools import combinations, pairwise
 from typing import NamedTuple
@@ -19,6 +20,10 @@ __all__ = ["GOAL", "START", "Stage", "WayGraph"]
 
 # Nodes of their own: those of the arcs are strings.
 START, GOAL = ("start",), ("goal",)
+
+# Over the longest arc: chains whose lengths differ by less are as good as each other,
+# and the one of the earlier arcs is taken, so that rounding does not choose.
+TIE = 1e-9
 
 Way = ArcAttributes | Crossing
 
@@ -57,7 +62,11 @@ class WayGraph:
         self._places: dict[Hashable, Place] = {}
         self._graph = nx.MultiGraph()
         self._graph.add_nodes_from(search.arcs)
-        for *_, arc in search.arcs.edges(data=True):
+        self._count = 0  # of the ways that were added
+        arcs = [arc for *_, arc in search.arcs.edges(data=True)]
+        self._unit = max((_length(arc) for arc in arcs), default=1.0)
+        arcs.sort(key=lambda arc: (arc["form"], arc["start"]))
+        for arc in arcs:
             self._add(arc)
         self.obstacles: list[str] = []
 
@@ -115,7 +124,10 @@ class WayGraph:
             first, last = way.first, way.last
         else:
             first, last = way["first"], way["last"]
-        self._graph.add_edge(first, last, way=way, length=_length(way))
+        # chains of one length, as symmetry makes them, differ by the roots of numbers
+        self._count += 1
+        length = _length(way) + TIE * self._unit * math.sqrt(self._count)
+        self._graph.add_edge(first, last, way=way, length=length)
 
     def _edges(self) -> list[_Edge]:
         """All edges of the graph."""

@@ -90,6 +90,10 @@ class LoopClosure(NumericalProblem):
         ``curvature_residual`` to spare. K is the largest eigenvalue of the matrix of
         these bounds.
         """
+        return self._curvature_bound
+
+    @cached_property
+    def _curvature_bound(self) -> float:
         reach_before, reach_after = self._reaches
         distance = np.minimum(reach_before + self.curvature_residual, reach_after)
         return _bound_from_distances(distance)
@@ -104,10 +108,15 @@ class LoopClosure(NumericalProblem):
         imaginary parts y then sums up to exp(|y_1| + ... + |y_n|) times the bound for
         real points.
         """
-        _, reach_after = self._reaches
         exponents = np.minimum(np.sqrt(self.n) * reach, LARGEST_EXPONENT)
         growth: np.ndarray = np.exp(exponents)
-        return _bound_from_distances(reach_after) * growth
+        return self._bound_on_products * growth
+
+    @cached_property
+    def _bound_on_products(self) -> float:
+        """A bound on all products of joint screws that are derivatives."""
+        _, reach_after = self._reaches
+        return _bound_from_distances(reach_after)
 
     @cached_property
     def _reaches(self) -> tuple[np.ndarray, np.ndarray]:

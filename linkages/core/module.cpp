@@ -56,6 +56,7 @@ nb::tuple project_to_sphere(const Table& starts, const Doubles& center, double r
 
 NB_MODULE(_core, module) {
     module.doc() = "Compiled parts of linkages.";
+    python::leave_what_threads_hold();
     module.def("residuals", &residuals, nb::arg("thetas"), nb::arg("geometry"));
     module.def("jacobians", &jacobians, nb::arg("thetas"), nb::arg("geometry"));
     module.def("hessian", &hessian, nb::arg("theta"), nb::arg("geometry"));

@@ -1,7 +1,11 @@
 """The compiled core against slower ways to the same numbers."""
 
 import ast
+import gc
 import inspect
+import sys
+import weakref
+from dataclasses import replace
 from pathlib import Path
 
 import mpmath
@@ -88,24 +92,111 @@ def test_what_is_no_number_has_no_singular_values():
     assert np.all(np.isnan(_core.singular_values(np.full((1, 3, 3), np.nan))))
 
 
-def test_determinants_and_inverses_are_those_of_lapack():
-    matrices = np.random.default_rng(2).standard_normal((100, 6, 6))
-    matrices[:50, 0, 0] = 0.0  # a pivot has to be looked for
-    determinants, inverses = _core.determinants_and_inverses(matrices)
-    assert determinants == pytest.approx(np.linalg.det(matrices), rel=1e-11)
-    residual = matrices @ inverses - np.eye(6)
-    condition = np.linalg.cond(matrices)
-    assert np.all(np.abs(residual).max(axis=(1, 2)) < 1e-15 * condition * 10)
+@pytest.mark.parametrize("shape", [(6, 6), (6, 4), (4, 6), (7, 6), (1, 3)])
+@pytest.mark.parametrize("scale", [1.0, 1e-200])
+def test_the_null_vector_is_that_of_lapack(shape, scale):
+    matrix = np.random.default_rng(6).standard_normal(shape)
+    matrix[:, 0] = matrix[:, 1:3].sum(axis=1)  # one null vector at least
+    _, sigma, right = np.linalg.svd(matrix)
+    rank = np.count_nonzero(sigma > 1e-9 * sigma[0])
+    along = np.random.default_rng(7).standard_normal(shape[1])
+    expected = right[rank:].T @ (right[rank:] @ along)
+    expected /= np.linalg.norm(expected)
+    found = _core.null_vector(scale * matrix, along, negligible=1e-9, agreeing=1e-3)
+    assert found == pytest.approx(expected, abs=1e-13)
+    other = _core.null_vector(matrix, np.empty(0), negligible=1e-9, agreeing=1e-3)
+    assert np.linalg.norm(other) == pytest.approx(1.0)
+    assert np.abs(matrix @ other).max() < 1e-14 * sigma[0]
 
 
-def test_a_singular_matrix_has_determinant_zero():
-    determinants, _ = _core.determinants_and_inverses(np.ones((1, 3, 3)))
-    assert determinants[0] == 0.0
+def test_a_direction_across_the_null_space_says_nothing():
+    matrix = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    across = np.array([1.0, 0.0, 1e-4])
+    found = _core.null_vector(matrix, across, negligible=1e-9, agreeing=1e-3)
+    assert np.abs(found) == pytest.approx([0.0, 0.0, 1.0], abs=1e-15)
+    rotated = np.array([[1.0, 0.0, 0.0], [0.0, np.sin(1.0), -np.cos(1.0)]])
+    rotated[1] = np.cross(rotated[0], [0.0, -np.cos(3.0), np.cos(2.0)])
+    found = _core.null_vector(rotated, np.empty(0), negligible=1e-9, agreeing=1e-3)
+    expected = [0.0, -np.cos(3.0), np.cos(2.0)] / np.hypot(np.cos(2.0), np.cos(3.0))
+    assert np.abs(found) == pytest.approx(np.abs(expected), abs=1e-15)
 
 
-def test_matrices_that_are_not_square_have_no_inverse():
-    with pytest.raises(ValueError, match="square"):
-        _core.determinants_and_inverses(np.ones((1, 2, 3)))
+NODE_COUNT = 7
+TO_COEFFICIENTS = np.linalg.inv(np.vander(np.linspace(-1, 1, NODE_COUNT)))
+
+
+@pytest.fixture
+def arcs():
+    """Slopes, Jacobians and combinations of equations at the nodes of three arcs."""
+    rng = np.random.default_rng(2)
+    slopes = rng.standard_normal((3, NODE_COUNT, 5))
+    jacobians = rng.standard_normal((3, NODE_COUNT, 6, 5))
+    left, _, _ = np.linalg.svd(jacobians[:, 0], full_matrices=False)
+    return slopes, jacobians, np.ascontiguousarray(left[:, :, :4])
+
+
+def test_adjugates_and_their_norms_are_those_of_lapack(arcs):
+    slopes, jacobians, left = arcs
+    jacobians[0, 0, :, 0] = 0.0  # a pivot has to be looked for
+    found = _core.adjugates(*arcs, TO_COEFFICIENTS)
+    across = np.einsum("ame,akmn->aken", left, jacobians)
+    frames = np.concatenate([across, slopes[:, :, None]], axis=2)
+    determinants = np.linalg.det(frames)
+    expected = determinants[..., None, None] * np.linalg.inv(frames)
+    assert found[0] == pytest.approx(determinants, rel=1e-11)
+    assert found[1] == pytest.approx(expected, rel=1e-10, abs=1e-11)
+    assert found[2] == pytest.approx(np.linalg.norm(frames, axis=(2, 3)))
+    flat = expected.reshape(3, NODE_COUNT, -1)
+    polynomials = (TO_COEFFICIENTS @ flat).reshape(expected.shape)
+    groups = (slice(None), slice(None, -2), slice(-2, -1))
+    for group, columns in enumerate(groups):
+        at_nodes = np.linalg.norm(expected[..., columns], axis=(2, 3))
+        in_coefficients = np.linalg.norm(polynomials[..., columns], axis=(2, 3))
+        assert found[3][:, group] == pytest.approx(at_nodes, rel=1e-10)
+        assert found[4][:, group] == pytest.approx(in_coefficients, rel=1e-8)
+
+
+def test_a_singular_frame_has_determinant_and_adjugate_zero(arcs):
+    arcs[1][1, 2] = 0.0
+    determinants, adjugates, *_ = _core.adjugates(*arcs, TO_COEFFICIENTS)
+    assert determinants[1, 2] == 0.0
+    assert np.all(adjugates[1, 2] == 0.0)
+
+
+def test_arrays_of_arcs_that_do_not_fit_are_refused(arcs):
+    slopes, jacobians, left = arcs
+    with pytest.raises(ValueError, match="do not fit"):
+        _core.adjugates(slopes, jacobians, left[:2], TO_COEFFICIENTS)
+    with pytest.raises(ValueError, match="do not fit"):
+        _core.adjugates(slopes, jacobians, left, TO_COEFFICIENTS[:3])
+
+
+# --- references -----------------------------------------------------------------------
+
+
+def test_what_the_core_hands_over_is_given_back(branch):
+    made = FunctionProblem(lambda u: [u[0] * u[0] + u[1] - 1.0], [(-2, 2)] * 2)
+    kinds = (_core.Curve, _core.Tape, _core.Brackets)
+
+    def counts():
+        gc.collect()
+        return [sys.getrefcount(kind) for kind in kinds]
+
+    def use():
+        low, high = np.zeros(3), np.ones(3)
+        brackets = _core.Brackets(low, high, -high, high, 1e-15)
+        brackets.narrow(np.zeros(3))
+        made.recording.tape.__dict__.pop("compiled", None)
+        made.recording.tape.compiled.residuals(np.zeros((2, 2)))
+        other = replace(branch)
+        return weakref.ref(other(np.linspace(0.0, 1.0, 5)))
+
+    use()
+    before = counts()
+    for _ in range(50):
+        values = use()
+    assert values() is None
+    assert counts() == before
 
 
 # --- curves ---------------------------------------------------------------------------
@@ -145,6 +236,37 @@ def test_what_is_not_within_reach_is_infinitely_far(branch):
     found, _ = branch.nearest(points, middle)
     assert np.array_equal(np.isinf(found), exact >= middle)
     assert found[exact < middle] == pytest.approx(exact[exact < middle])
+
+
+def test_a_curve_returns_to_a_place_where_it_closes(branch):
+    period = np.full(branch.n, 2 * np.pi)
+    twice = [branch.pieces, branch.pieces]
+    radii = np.tile(branch.radii, 2)
+    centers = np.concatenate([branch.centers, branch.centers + branch.length])
+    s = 0.3 * branch.length
+    number = int(np.searchsorted(branch.breaks, s)) - 1
+    returns = _core.returns(np.concatenate(twice), centers, radii, period, number, s, 0)
+    place = branch(s)
+    tangent = branch(s, 1)
+    assert len(returns) >= 1
+    for at, distance, forward, speed, offset in returns:
+        foot = branch(at)
+        gap = foot - place
+        gap -= 2 * np.pi * np.round(gap / (2 * np.pi))
+        assert offset == pytest.approx(gap, abs=1e-12)
+        assert distance == pytest.approx(np.linalg.norm(offset))
+        cosine = branch(at, 1) @ tangent / np.linalg.norm(tangent)
+        assert forward / speed == pytest.approx(cosine, abs=1e-9)
+    nearest = min(returns, key=lambda passing: passing[1])
+    assert nearest[0] == pytest.approx(s + branch.length, abs=1e-11)
+    assert nearest[1] < 1e-12
+
+
+@pytest.mark.parametrize(("number", "first"), [(-1, 0), (10**6, 0), (0, -1)])
+def test_returns_to_no_piece_are_refused(branch, number, first):
+    arrays = (branch.pieces, branch.centers, branch.radii, branch.periods)
+    with pytest.raises(IndexError, match="no such piece"):
+        _core.returns(*arrays, number, 0.0, first)
 
 
 def test_turning_points_are_where_the_derivative_changes_sign(branch):

@@ -185,3 +185,18 @@ def test_curves_beside_a_surface_are_followed_through_their_crossings(e):
     assert branch.closed
     assert branch.length == pytest.approx(2 * np.pi, abs=1e-13 / e)
     assert np.abs(branch.sample(200)[:, 0]).max() < 1e-12 / e
+
+
+def test_a_curve_that_starts_on_the_bounds_runs_from_bound_to_bound():
+    parabola = FunctionProblem(
+        lambda u: np.array([u[0] ** 3 - u[1] * u[0]]), [(-1.5, 1.5), (-1.0, 2.0)]
+    )
+    start = np.array([-np.sqrt(2.0), 2.0])
+    branch = trace_branch(parabola, start, np.array([1.0, 2 * start[0]]))
+    assert branch.outcome is Outcome.LEFT_REGION
+    ends = branch(np.array([0.0, branch.length]))
+    assert ends == pytest.approx(np.array([start, [-start[0], 2.0]]), abs=1e-12)
+    half = np.sqrt(2.0)  # of the arc x -> (x, x^2)
+    speed = np.sqrt(1.0 + 4.0 * half**2)
+    length = half * speed + 0.5 * np.arcsinh(2.0 * half)
+    assert branch.length == pytest.approx(length, abs=1e-12)
