@@ -11,6 +11,7 @@ from bifurc.branch import Outcome
 from bifurc.curves.track import End, Place, Track
 from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
+from bifurc.numerics.null_spaces import LARGE
 from bifurc.pieces import points_on_piece
 from bifurc.problem import Problem
 
@@ -113,12 +114,20 @@ def _is_same_pass(
     nearness = distance / same_place(tolerance)
     if nearness > PLAIN:
         # where a singular value is small a point is known no better than rounding over it
-        known = max(float(same_reach(problem, place.point[None])[0]), NEAR)
+        known = _known_to(problem, place.point)
         residual = problem.jacobian(place.point) @ foot.offset
         apart = float(np.linalg.norm(residual)) / (problem.magnitude * problem.scale)
         nearness = min(nearness, max(distance / known, apart / loose))
     is_exact = tolerance < is_solution.threshold
     return is_back(nearness) if is_exact else is_nearly_back(nearness)
+
+
+def _known_to(problem: Problem, point: np.ndarray) -> float:
+    """How far, over the scale, from a point (n,) of a curve it may be found again; of a
+    large problem singular values are not taken."""
+    if problem.n > LARGE:
+        return NEAR
+    return max(float(same_reach(problem, point[None])[0]), NEAR)
 
 
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:

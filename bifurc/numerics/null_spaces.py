@@ -7,17 +7,12 @@ Singular values and residuals are over the problem's magnitude throughout.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bifurc.decisions import is_null
-from bifurc.numerics.bordered import Bordered
+from bifurc.numerics.bordered import bordered_at
 from bifurc.problem import Problem
-
-if TYPE_CHECKING:
-    # SciPy takes longer to import than a small problem to solve
-    from scipy.sparse import sparray
 
 __all__ = [
     "LARGE",
@@ -47,9 +42,11 @@ def null_vector(
     Where the null space is larger, ``along`` is projected on it. A large problem is
     bordered instead of decomposed.
     """
+    if problem.n > LARGE:
+        return _null_vector_by_borders(problem, point, along)
     jacobian = problem.jacobian(point)
-    if problem.n > LARGE or not isinstance(jacobian, np.ndarray):
-        return _null_vector_by_borders(jacobian, along)
+    if not isinstance(jacobian, np.ndarray):
+        return _null_vector_by_borders(problem, point, along)
     _, sigma, right = np.linalg.svd(jacobian, full_matrices=True)
     values = _padded(sigma, problem.n)
     zero = max(values[-1], 1e-9 * values[0])
@@ -64,16 +61,16 @@ def null_vector(
 
 
 def _null_vector_by_borders(
-    jacobian: np.ndarray | sparray, along: np.ndarray | None
+    problem: Problem, point: np.ndarray, along: np.ndarray | None
 ) -> np.ndarray:
     """The null vector (n,), first with any border that is not across it, then with
     itself."""
     if along is None:
         rng = np.random.default_rng(0)
-        along = np.array(rng.normal(size=jacobian.shape[1]))
+        along = np.array(rng.normal(size=problem.n))
     unit: np.ndarray = along / np.linalg.norm(along)
-    first = Bordered(jacobian, unit).null_vector()
-    return Bordered(jacobian, first).null_vector()
+    first = bordered_at(problem, point, unit).null_vector()
+    return bordered_at(problem, point, first).null_vector()
 
 
 def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

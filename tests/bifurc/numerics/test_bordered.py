@@ -25,10 +25,10 @@ def test_sparse_and_dense_factorisations_agree_whatever_the_size_of_the_equation
         rng.normal(size=61),
         magnitude * rng.normal(size=60),
     )
-    dense = Bordered(matrix.toarray(), tangent)
+    dense = Bordered.factored(matrix.toarray(), tangent)
     for factored in (
-        Bordered(matrix, tangent),
-        Bordered(np.vstack([matrix.toarray()] * 2), tangent),
+        Bordered.factored(matrix, tangent),
+        Bordered.factored(np.vstack([matrix.toarray()] * 2), tangent),
     ):
         right = residual if factored._rows == 60 else np.tile(residual, 2)
         assert np.allclose(
