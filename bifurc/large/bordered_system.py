@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 import numpy as np
 
 from bifurc.errors import ProblemError
+from bifurc.numerics.sparse_factors import sparse_factors
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
@@ -28,7 +29,6 @@ __all__ = ["EXACT", "ROUGH", "BorderedSystem", "Inverse", "bordered_system"]
 
 # largest entry of the borders of a factored matrix, over the median one of the matrix
 BORDER = 1e-3
-PIVOT = 0.1  # a diagonal entry will do as a pivot from this share of the largest on
 # What is left of a system by GMRES, in the unit of solutions and as a share of this one:
 # where points are located, and for a step of Newton's method on the way.
 EXACT, ROUGH = 1e-10, 1e-5
@@ -88,7 +88,7 @@ class _Factored:
     """The bordered matrix by sparse LU.
 
     A border must not become a pivot early, as it would fill the factors: it is scaled to
-    a size far below that of J, and columns are ordered by minimum degree of M^T + M.
+    a size far below that of J.
     """
 
     def __init__(self, jacobian: csr_array, rows: np.ndarray, columns: np.ndarray):
@@ -125,14 +125,12 @@ def _factors_of(matrix: csc_array, typical: float) -> SuperLU:
     """The factors of a matrix; of one that is exactly singular, as at a crossing whose
     numbers are round, those of what rounding may have made of it."""
     from scipy.sparse import eye_array
-    from scipy.sparse.linalg import splu
 
-    options = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": PIVOT}
     try:
-        return splu(matrix, **options)
+        return sparse_factors(matrix)
     except RuntimeError:
         shift = ROUNDING * typical * eye_array(matrix.shape[0])
-        return splu((matrix + shift).tocsc(), **options)
+        return sparse_factors((matrix + shift).tocsc())
 
 
 def _border_weights(border: np.ndarray, typical: float, axis: int) -> np.ndarray:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bifurc.numerics.sparse_factors import sparse_factors
 from bifurc.problem import Problem, Solver
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ __all__ = ["Bordered", "as_dense", "bordered_at", "bordered_matrix", "sparse_bor
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
 # largest entry of the border of a sparse matrix, over the median one of the matrix
 BORDER = 1e-3
-PIVOT = 0.1  # a diagonal entry will do as a pivot from this share of the largest on
 
 
 def as_dense(matrix: np.ndarray | sparray) -> np.ndarray:
@@ -99,18 +99,16 @@ def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solv
     1, n), by sparse LU.
 
     The border must not become a pivot early, as it would fill the factors: t is scaled
-    to a size far below that of F', columns are ordered by minimum degree of A^T + A,
-    and a diagonal entry will do as a pivot from a tenth of the largest. Raises
-    `RuntimeError` for a matrix that is exactly singular.
+    to a size far below that of F'. Raises `RuntimeError` for a matrix that is exactly
+    singular.
     """
     from scipy.sparse import csc_array
-    from scipy.sparse.linalg import splu
 
     matrix = csc_array(jacobian)
     typical = float(np.median(np.abs(matrix.data))) or 1.0
     weight = BORDER * typical / np.abs(tangent).max()
     stacked = _with_last_row(matrix, weight * tangent)
-    factors = splu(stacked, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT)
+    factors = sparse_factors(stacked)
 
     def solve(right: np.ndarray) -> np.ndarray:
         right = right.copy()
