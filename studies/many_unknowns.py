@@ -217,7 +217,7 @@ def main(out: Path, largest: int) -> None:
     for name, own in (("1-D", line), ("2-D", halved)):
         limits = ", ".join(f"{limit:.9f}" for limit in richardson(own))
         click.echo(f"Richardson {name}: {limits}")
-    for points in (200, 2000):
+    for points in (200, 800):
         errors, seconds = crossing_errors(points)
         click.echo(
             f"Swift-Hohenberg, {points} unknowns: {len(errors)} crossings within "

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array, eye_array
 
 from bifurc import LargeProblem, ProblemError
 from bifurc.large.colouring import column_groups
-from tests.bifurc.large.bratu import bratu
+from studies.methods.fields import bratu_field
 
 
 def sliced_bratu(x):
@@ -20,7 +20,7 @@ def sliced_bratu(x):
 
 
 def test_derivatives_are_the_same_however_they_are_made() -> None:
-    case = bratu(30)
+    case = bratu_field(30, 1)
     point = np.linspace(0.1, 1.3, 31)
     expected = case.jacobian(point).toarray()
     square = case.laplacian
@@ -38,7 +38,7 @@ def test_derivatives_are_the_same_however_they_are_made() -> None:
 
 
 def test_the_column_of_the_parameter_may_be_left_out() -> None:
-    case = bratu(30)
+    case = bratu_field(30, 1)
     problem = LargeProblem(
         case.residual, 31, (0.0, 8.0), jacobian=lambda x: case.jacobian(x)[:, :-1]
     )
@@ -48,7 +48,7 @@ def test_the_column_of_the_parameter_may_be_left_out() -> None:
 
 
 def test_a_function_that_drops_imaginary_parts_is_differenced() -> None:
-    case = bratu(30)
+    case = bratu_field(30, 1)
     problem = LargeProblem(
         lambda x: case.residual(np.real(x)), 31, (0.0, 8.0), pattern=case.laplacian
     )
@@ -60,7 +60,7 @@ def test_a_function_that_drops_imaginary_parts_is_differenced() -> None:
 
 @pytest.mark.parametrize("dimensions", [1, 2])
 def test_columns_of_a_group_share_no_row(dimensions: int) -> None:
-    pattern = bratu(12, dimensions).jacobian(np.zeros(12**dimensions + 1))
+    pattern = bratu_field(12, dimensions).jacobian(np.zeros(12**dimensions + 1))
     groups = column_groups(pattern)
     incidence = np.zeros((len(groups), groups.max() + 1))
     incidence[np.arange(len(groups)), groups] = 1.0
@@ -69,7 +69,7 @@ def test_columns_of_a_group_share_no_row(dimensions: int) -> None:
 
 
 def test_matrices_of_another_size_or_kind_are_named() -> None:
-    case = bratu(10)
+    case = bratu_field(10, 1)
 
     def start_of(**options):
         return LargeProblem(case.residual, 11, (0.0, 8.0), **options).check_start(
@@ -89,7 +89,7 @@ def test_matrices_of_another_size_or_kind_are_named() -> None:
 
 
 def test_arguments_of_another_kind_are_named() -> None:
-    case = bratu(10)
+    case = bratu_field(10, 1)
     with pytest.raises(ProblemError, match="bounds"):
         LargeProblem(case.residual, 11, (3.0, 1.0), jacobian=case.jacobian)
     with pytest.raises(ProblemError, match="bounds"):
@@ -106,6 +106,6 @@ def test_arguments_of_another_kind_are_named() -> None:
 
 
 def test_what_is_neither_given_nor_recorded_says_why() -> None:
-    case = bratu(10)
+    case = bratu_field(10, 1)
     with pytest.raises(ProblemError, match="the equations are not recorded, as"):
         LargeProblem(case.residual, 11, (0.0, 8.0))

@@ -6,14 +6,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
-from scipy.sparse import csr_array, diags_array, eye_array
+from scipy.sparse import eye_array
 from scipy.sparse.linalg import LinearOperator, splu
 
 import bifurc
 from bifurc import LargeKind, LargeProblem, LargeSettings, trace_large_branch
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import TraceSettings
-from tests.bifurc.large.bratu import FOLD_IN_1D, bratu, fast_poisson
+from studies.methods.fields import (
+    FOLD_IN_1D,
+    SwiftHohenberg,
+    bratu_field,
+    fast_poisson,
+)
 
 AROUND_THE_FOLD = LargeSettings(
     tracing=TraceSettings(
@@ -46,7 +51,7 @@ def fold_by_fsolve(case, fold):
 
 
 def test_the_fold_is_that_of_the_extended_system() -> None:
-    case = bratu(25)
+    case = bratu_field(25, 1)
     branch, fold = fold_of(case)
     assert fold.parameter == pytest.approx(fold_by_fsolve(case, fold), abs=1e-10)
     assert fold.gap < 1e-11
@@ -56,7 +61,9 @@ def test_the_fold_is_that_of_the_extended_system() -> None:
 
 
 def test_folds_go_to_that_of_the_equation_with_the_square_of_the_step() -> None:
-    errors = [fold_of(bratu(k))[1].parameter - FOLD_IN_1D for k in (19, 39, 79)]
+    errors = [
+        fold_of(bratu_field(k, 1))[1].parameter - FOLD_IN_1D for k in (19, 39, 79)
+    ]
     assert errors[0] / errors[1] == pytest.approx(4.0, abs=0.02)
     assert errors[1] / errors[2] == pytest.approx(4.0, abs=0.01)
     richardson = errors[2] + (errors[2] - errors[1]) / 3.0
@@ -64,7 +71,7 @@ def test_folds_go_to_that_of_the_equation_with_the_square_of_the_step() -> None:
 
 
 def test_a_solver_of_the_user_leads_to_the_same_fold() -> None:
-    case = bratu(31, dimensions=2)
+    case = bratu_field(31, 2)
     _, direct = fold_of(case)
     poisson = fast_poisson(31)
     _, by_solver = fold_of(case, solver=lambda u: poisson)
@@ -73,7 +80,7 @@ def test_a_solver_of_the_user_leads_to_the_same_fold() -> None:
 
 
 def test_an_exact_solver_may_be_singular_at_the_fold() -> None:
-    case = bratu(40)
+    case = bratu_field(40, 1)
 
     def solver(u):
         factors = splu(case.jacobian(u)[:, :-1].tocsc())
@@ -93,43 +100,26 @@ def test_an_exact_solver_may_be_singular_at_the_fold() -> None:
 # --- Swift and Hohenberg's equation ---------------------------------------------------
 
 
-class SwiftHohenberg:
-    """-(1 + D)^2 u + p u + c - u^3 = 0 with u = u'' = 0 at both ends, c small."""
+def swift_hohenberg(points=60, constant=0.0):
+    return SwiftHohenberg(points, 3 * np.pi, constant)
 
-    def __init__(self, m: int = 60, length: float = 3 * np.pi, constant: float = 0.0):
-        step = length / (m + 1)
-        second = diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(m, m))
-        root = csr_array(second / step**2 + eye_array(m))
-        self.linear = csr_array(root @ root)
-        self.n = m + 1
-        self.constant = constant
 
-    def residual(self, x):
-        u = x[:-1]
-        return x[-1] * u + self.constant - u**3 - self.linear @ u
+def problem_of(case):
+    return LargeProblem(case.residual, case.n, (-0.5, 1.0), pattern=case.pattern)
 
-    @property
-    def pattern(self):
-        return csr_array(abs(self.linear) + eye_array(self.n - 1))
 
-    @property
-    def trivial(self):
-        start = np.zeros(self.n)
-        start[-1] = -0.4
-        return start
-
-    def problem(self, **options):
-        return LargeProblem(
-            self.residual, self.n, (-0.5, 1.0), pattern=self.pattern, **options
-        )
+def trivial(case):
+    start = np.zeros(case.n)
+    start[-1] = -0.4
+    return start
 
 
 LOOKING = LargeSettings(values=3)
 
 
 def test_the_trivial_branch_is_crossed_at_the_eigenvalues_of_the_linear_part() -> None:
-    case = SwiftHohenberg()
-    branch = trace_large_branch(case.problem(), case.trivial, settings=LOOKING)
+    case = swift_hohenberg()
+    branch = trace_large_branch(problem_of(case), trivial(case), settings=LOOKING)
     eigenvalues = np.linalg.eigvalsh(case.linear.toarray())
     expected = eigenvalues[eigenvalues < 1.0]
     assert len(expected) == 4
@@ -149,12 +139,12 @@ def test_a_matrix_that_is_exactly_singular_stops_nothing() -> None:
 
 
 def test_a_direction_at_a_crossing_leads_onto_the_other_branch() -> None:
-    case = SwiftHohenberg()
-    branch = trace_large_branch(case.problem(), case.trivial, settings=LOOKING)
+    case = swift_hohenberg()
+    branch = trace_large_branch(problem_of(case), trivial(case), settings=LOOKING)
     first = branch.crossings[0]
     own, other = first.directions
     assert abs(own[-1]) > 0.1 and np.linalg.norm(own[:-1]) < 1e-6
-    waves = trace_large_branch(case.problem(), first.u + 0.1 * other, other)
+    waves = trace_large_branch(problem_of(case), first.u + 0.1 * other, other)
     end = waves(waves.length)
     assert waves.outcome is Outcome.LEFT_REGION
     assert end[-1] == pytest.approx(1.0)
@@ -163,20 +153,20 @@ def test_a_direction_at_a_crossing_leads_onto_the_other_branch() -> None:
 
 
 def test_an_imperfect_crossing_is_a_near_miss_with_its_gap() -> None:
-    case = SwiftHohenberg(constant=1e-3)
-    branch = trace_large_branch(case.problem(), case.trivial, settings=LOOKING)
+    case = swift_hohenberg(constant=1e-3)
+    branch = trace_large_branch(problem_of(case), trivial(case), settings=LOOKING)
     assert not branch.crossings
     assert branch.near_misses
     nearest = branch.near_misses[0]
-    jacobian = case.problem().jacobian(nearest.u).toarray()
+    jacobian = problem_of(case).jacobian(nearest.u).toarray()
     assert nearest.gap > 1e-3
     assert np.linalg.svd(jacobian)[1][-1] > 0.0
 
 
 def test_singular_values_are_those_of_the_dense_matrix() -> None:
-    case = SwiftHohenberg(m=40)
-    problem = case.problem()
-    branch = trace_large_branch(problem, case.trivial, settings=LOOKING)
+    case = swift_hohenberg(40)
+    problem = problem_of(case)
+    branch = trace_large_branch(problem, trivial(case), settings=LOOKING)
     sizes = branch.units.sizes / np.sqrt(case.n - 1)
     ratios = []
     for s, values in zip(branch.places[::5], branch.values[::5], strict=True):
@@ -190,7 +180,7 @@ def test_singular_values_are_those_of_the_dense_matrix() -> None:
 
 
 def test_what_a_solver_gives_is_checked() -> None:
-    case = bratu(20)
+    case = bratu_field(20, 1)
 
     def problem(solution):
         return LargeProblem(
@@ -209,7 +199,7 @@ def test_what_a_solver_gives_is_checked() -> None:
 
 
 def test_a_solver_that_solves_something_else_is_named() -> None:
-    case = bratu(200)
+    case = bratu_field(200, 1)
     problem = LargeProblem(
         case.residual,
         case.n,
@@ -222,7 +212,7 @@ def test_a_solver_that_solves_something_else_is_named() -> None:
 
 
 def test_a_linear_operator_of_another_size_is_refused() -> None:
-    case = bratu(20)
+    case = bratu_field(20, 1)
     problem = LargeProblem(
         case.residual,
         case.n,
@@ -235,7 +225,7 @@ def test_a_linear_operator_of_another_size_is_refused() -> None:
 
 
 def test_a_start_and_a_direction_are_checked() -> None:
-    case = bratu(10)
+    case = bratu_field(10, 1)
     problem = LargeProblem(case.residual, case.n, (0.0, 8.0), jacobian=case.jacobian)
     with pytest.raises(bifurc.ProblemError, match="shape of the start"):
         trace_large_branch(problem, np.zeros(10))
@@ -248,7 +238,7 @@ def test_a_start_and_a_direction_are_checked() -> None:
 
 
 def test_a_start_far_from_all_solutions_gives_no_branch() -> None:
-    case = bratu(10)
+    case = bratu_field(10, 1)
     problem = LargeProblem(
         lambda x: case.residual(x) + 1e3 * (1.0 + x[:-1] ** 2),
         case.n,
