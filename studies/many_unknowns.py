@@ -25,7 +25,9 @@ from pathlib import Path
 
 import click
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from bifurc import (
     LargeBranch,
@@ -47,7 +49,7 @@ __all__ = ["FoldCost", "cost_of_fold", "crossing_errors", "richardson"]
 # Inner points a side of the square: halves of the step, and 10,000 unknowns, whose sine
 # transforms are of a length that is no product of small primes, and slow.
 HALVED, TEN_THOUSAND = (15, 31, 63, 127, 255, 511, 1023), 100
-LARGEST_FACTORED = 255  # side up to which sparse LU is tried as well
+LARGEST_FACTORED = 127  # side up to which sparse LU is tried as well
 IN_1D = (99, 199, 399, 799)
 FOLD_IS_PASSED = 3.7  # arclength of the branch
 FITTED_FROM = 3000  # unknowns from which on exponents are fitted
@@ -149,29 +151,48 @@ def crossing_errors(points: int) -> tuple[np.ndarray, float]:
 
 
 def draw(costs: Sequence[FoldCost]) -> Figure:
-    """Time, memory and error of the fold against the number of unknowns."""
+    """Time, memory and error of the fold against the number of unknowns; 10,000 of them
+    apart, with its slow transforms."""
     figure = Figure(figsize=(11, 3.8), layout="constrained")
     times, memory, errors = figure.subplots(1, 3)
     square = [cost for cost in costs if cost.dimensions == 2]
     for solver, marker in (("fast Poisson", "o-"), ("sparse LU", "s--")):
         own = [cost for cost in square if cost.solver == solver]
-        unknowns = [cost.unknowns for cost in own]
         label = f"{solver}: n^{exponent(own, 'seconds'):.2f}"
-        times.loglog(unknowns, [cost.seconds for cost in own], marker, label=label)
-        if solver == "fast Poisson":
-            memory.loglog(unknowns, [cost.memory for cost in own], marker)
+        _line_and_apart(times, own, "seconds", marker, label)
     times.set(xlabel="unknowns", ylabel="processor time (s)")
     times.legend()
+    by_poisson = [cost for cost in square if cost.solver == "fast Poisson"]
+    _line_and_apart(memory, by_poisson, "memory", "o-", "fast Poisson")
     memory.set(xlabel="unknowns", ylabel="resident memory (MB)")
-    for dimensions, limit in ((1, FOLD_IN_1D), (2, FOLD_IN_2D)):
-        own = [c for c in costs if c.dimensions == dimensions]
-        own = [c for c in own if dimensions == 1 or c.solver == "fast Poisson"]
-        steps = [1.0 / (cost.side + 1) for cost in own]
+    on_line = [cost for cost in costs if cost.dimensions == 1]
+    for name, own, limit in (
+        ("1-D", on_line, FOLD_IN_1D),
+        ("2-D", by_poisson, FOLD_IN_2D),
+    ):
+        parts = [cost.side + 1 for cost in own]
         gaps = [abs(cost.parameter - limit) for cost in own]
-        errors.loglog(steps, gaps, "o-", label=f"{dimensions}-D")
-    errors.set(xlabel="step h", ylabel="distance of the fold to its limit")
+        errors.loglog(parts, gaps, "o-", label=name)
+    errors.set(xlabel="1 / h", ylabel="distance of the fold to its limit")
     errors.legend()
+    for axes in (times, memory, errors):
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.yaxis.set_minor_formatter(NullFormatter())
     return figure
+
+
+def _line_and_apart(
+    axes: Axes, costs: Sequence[FoldCost], quantity: str, marker: str, label: str
+) -> None:
+    """A quantity against the unknowns, that of 10,000 as a point of its own."""
+    halved = [cost for cost in costs if cost.side in HALVED]
+    apart = [cost for cost in costs if cost.side not in HALVED]
+    unknowns = [cost.unknowns for cost in halved]
+    values = [getattr(cost, quantity) for cost in halved]
+    (line,) = axes.loglog(unknowns, values, marker, label=label)
+    for cost in apart:
+        value = getattr(cost, quantity)
+        axes.plot(cost.unknowns, value, "x", color=line.get_color())
 
 
 def _line(cost: FoldCost) -> str:

@@ -80,12 +80,13 @@ class LargeBranch:
         return tuple(point for point in self.points if point.kind is kind)
 
     def __repr__(self) -> str:
-        counts = [f"{len(self.points_of(kind))} {kind.value}s" for kind in LargeKind]
+        kinds = [point.kind.value for point in self.points]
+        counts = [f"{kind.value}: {kinds.count(kind.value)}" for kind in LargeKind]
         return (
             f"<LargeBranch in {self.branch.n} unknowns, {self.outcome.value}\n"
             f" length {self.length:.6g}, {len(self.branch.pieces)} pieces; "
             f"{', '.join(counts)}>"
-        ).replace("misss", "misses")
+        )
 
 
 def last_unknown(branch: Branch) -> Branch:

@@ -24,7 +24,7 @@ __all__ = ["LargeSettings", "trace_large_branch"]
 
 def _default_tracing() -> TraceSettings:
     return TraceSettings(
-        order=6, tolerance=1e-6, shortest=1e-7, longest=1.0, max_length=20.0
+        order=6, tolerance=1e-6, shortest=1e-7, longest=1.0, max_length=6.0
     )
 
 

@@ -19,10 +19,9 @@ def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
     padded with zeros."""
     flat = points.reshape(-1, points.shape[-1])
     jacobians = problem.jacobians(flat) / problem.magnitude
-    if problem.n <= FEW:
-        values = _core.singular_values(jacobians)
-    else:
-        values = np.linalg.svd(jacobians, compute_uv=False)
+    is_few = problem.n <= FEW
+    values_of = _core.singular_values if is_few else np.linalg.svdvals
+    values = values_of(jacobians)
     out = np.zeros((len(flat), problem.n))
     out[:, : values.shape[1]] = values[:, : problem.n]
     return out.reshape(points.shape)

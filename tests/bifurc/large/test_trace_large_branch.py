@@ -3,6 +3,8 @@ them by other means."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
@@ -249,3 +251,41 @@ def test_a_start_far_from_all_solutions_gives_no_branch() -> None:
     assert branch.outcome in (Outcome.OPEN, Outcome.STALLED)
     assert not branch.points
     assert LargeKind.FOLD.value in repr(branch)
+
+
+# --- units ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size, weight", [(1e-6, 1.0), (1e6, 1e9), (1.0, 1e-9)])
+def test_neither_the_size_of_the_field_nor_of_the_equations_counts(
+    size: float, weight: float
+) -> None:
+    case = bratu_field(20, 1)
+
+    def restated(x):
+        return weight * case.residual(np.append(x[:-1] / size, x[-1]))
+
+    problem = LargeProblem(
+        restated, case.n, (0.0, 8.0), pattern=case.laplacian, size=size
+    )
+    branch = trace_large_branch(problem, np.zeros(case.n), settings=AROUND_THE_FOLD)
+    expected, fold = fold_of(case)
+    assert len(branch.branch.pieces) == len(expected.branch.pieces)
+    assert branch.folds[0].parameter == pytest.approx(fold.parameter, abs=1e-11)
+    assert branch.folds[0].bend == pytest.approx(fold.bend, rel=1e-5)
+
+
+def test_singular_values_by_a_solver_are_those_of_the_factors() -> None:
+    case = bratu_field(15, 2)
+    tracing = replace(AROUND_THE_FOLD.tracing, longest=0.4, max_length=0.5)
+    settings = LargeSettings(tracing=tracing, values=2, places=1)
+    poisson = fast_poisson(15)
+    values = []
+    for solver in (None, lambda u: poisson):
+        problem = LargeProblem(
+            case.residual, case.n, (0.0, 8.0), jacobian=case.jacobian, solver=solver
+        )
+        start = np.zeros(case.n)
+        values.append(trace_large_branch(problem, start, settings=settings).values)
+    assert values[0].shape[1] == 2
+    assert np.allclose(values[0], values[1], rtol=1e-5)
