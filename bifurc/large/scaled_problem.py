@@ -136,12 +136,10 @@ class ScaledProblem(NumericalProblem):
             allowed = f"({self.n - 1}, {self.n - 1})"
             raise ProblemError("shape of the solver", shape, allowed)
         solve = getattr(made, "matvec", made)
-        transposed = solve
-        if hasattr(made, "rmatvec"):
-            transposed = made.rmatvec
         if not callable(solve):
             allowed = "a LinearOperator or a function"
             raise ProblemError("what the solver gives", repr(made), allowed)
+        transposed = _transposed(getattr(made, "rmatvec", solve), solve)
         factor = self.magnitude / (units.weights[0] * units.sizes[0])
 
         def checked(solver: Solver) -> Solver:
@@ -164,6 +162,19 @@ class ScaledProblem(NumericalProblem):
             size = float(np.linalg.norm(solution))
             vector = solution[:-1]
         return 1.0 / size if size > 0.0 else 1.0
+
+
+def _transposed(rmatvec: Solver, solve: Solver) -> Solver:
+    """What solves with the transpose: ``solve`` itself for an operator that has no
+    `rmatvec`, as it serves a symmetric F', and GMRES mends the rest."""
+
+    def apply(right: np.ndarray) -> np.ndarray:
+        try:
+            return rmatvec(right)
+        except NotImplementedError:
+            return solve(right)
+
+    return apply
 
 
 def _checked_solution(solution: object, count: int) -> np.ndarray:

@@ -281,7 +281,8 @@ def test_singular_values_by_a_solver_are_those_of_the_factors() -> None:
     settings = LargeSettings(tracing=tracing, values=2, places=1)
     poisson = fast_poisson(15)
     values = []
-    for solver in (None, lambda u: poisson):
+    operator = LinearOperator((225, 225), matvec=poisson, dtype=float)
+    for solver in (None, lambda u: poisson, lambda u: operator):
         problem = LargeProblem(
             case.residual, case.n, (0.0, 8.0), jacobian=case.jacobian, solver=solver
         )
@@ -289,3 +290,4 @@ def test_singular_values_by_a_solver_are_those_of_the_factors() -> None:
         values.append(trace_large_branch(problem, start, settings=settings).values)
     assert values[0].shape[1] == 2
     assert np.allclose(values[0], values[1], rtol=1e-5)
+    assert np.allclose(values[0], values[2], rtol=1e-5)
