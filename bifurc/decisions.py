@@ -448,6 +448,15 @@ is_singular_point = Decision(
     third_answer="a point that misses by more than rounding may be a near miss, and "
     "that is said",
 )
+is_crossing_of_many = Decision(
+    "crossing of a large problem",
+    "curves cross at a singular point of a large problem, and do not pass it nearly",
+    "what F misses there, over the smallest singular value at the start",
+    1e-7,
+    "rounding of F over that value is 1e-10 with a million unknowns, and 1e-13 with a "
+    "thousand",
+    third_answer="what misses by more is listed as a near miss, with its singular value",
+)
 is_located = Decision(
     "located",
     "the iteration for a singular point has settled, and what it came to is looked at",

@@ -29,9 +29,13 @@ __all__ = [
     "MarchStatus",
     "Piece",
     "Problem",
+    "Solver",
     "SphereProjection",
 ]
 
+
+# Maps a right-hand side (n,) to the solution (n,) of one linear system.
+Solver: TypeAlias = Callable[[np.ndarray], np.ndarray]
 
 PreciseResidual: TypeAlias = "Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]"
 
@@ -210,6 +214,16 @@ class Problem(ABC):
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) at one point (n,), sparse where that is how it is made."""
         return self.jacobians(point[None])[0]
+
+    def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
+        """What solves systems with F' at a point (n,), over the magnitude, and under it
+        the row ``tangent`` (n,); None where that matrix is to be factored."""
+        return None
+
+    def largest_entry(self, vectors: np.ndarray) -> float:
+        """What counts as the size of the largest of the ``vectors`` (k, n) when a piece
+        is judged: its largest entry."""
+        return float(np.abs(vectors).max())
 
     @abstractmethod
     def hessian(self, point: np.ndarray) -> np.ndarray:

@@ -16,7 +16,13 @@ from bifurc.errors import ProblemError
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Anchor, March, MarchSettings, MarchStatus, Problem
 
-__all__ = ["DEFAULT_SETTINGS", "TraceSettings", "trace_branch"]
+__all__ = [
+    "DEFAULT_SETTINGS",
+    "TraceSettings",
+    "follow_curve",
+    "joined_branch",
+    "trace_branch",
+]
 
 # Pieces made before the end of the curve is looked for: beside a bend, and at least.
 AT_A_BEND, AT_ONCE = 14, 40
@@ -81,20 +87,23 @@ def trace_branch(
         if not np.any(direction):
             raise ProblemError("direction", direction, "a vector other than zero")
     tangent = null_vector(problem, start, direction)
-    forward = _follow(problem, Place(start, tangent), settings, closing)
+    forward = follow_curve(problem, Place(start, tangent), settings, closing)
     if forward.outcome in (Outcome.CLOSED, Outcome.OPEN, Outcome.STEP_LIMIT):
         return forward
-    backward = _follow(problem, Place(start, -tangent), settings, closing)
+    backward = follow_curve(problem, Place(start, -tangent), settings, closing)
     if not len(backward.pieces):
         return forward
     if backward.outcome is Outcome.CLOSED:
         # it came through where the other way stalled
         return backward.reversed()
-    return _joined(backward.reversed(), forward)
+    return joined_branch(backward.reversed(), forward)
 
 
-def _follow(
-    problem: Problem, start: Place, settings: TraceSettings, closing: float
+def follow_curve(
+    problem: Problem,
+    start: Place,
+    settings: TraceSettings,
+    closing: float = is_solution.threshold,
 ) -> Branch:
     """The curve from ``start`` to the side of its tangent until it closes, leaves the
     region, stalls or grows too long."""
@@ -177,7 +186,7 @@ def _overcome_stall(
     return None
 
 
-def _joined(before: Branch, after: Branch) -> Branch:
+def joined_branch(before: Branch, after: Branch) -> Branch:
     """One open branch from two that share the end of the first and the start of the
     second."""
     shift = before.length

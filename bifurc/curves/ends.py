@@ -11,6 +11,7 @@ from bifurc.branch import Outcome
 from bifurc.curves.track import End, Track
 from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
+from bifurc.numerics.null_spaces import LARGE
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.pieces import points_on_piece, points_on_pieces
 from bifurc.problem import Problem
@@ -111,12 +112,20 @@ def _is_same_pass(
     if nearness > PLAIN:
         # where a singular value is small a point is known no better than rounding over it
         point = track.at(anchor.number, anchor.s).point
-        known = max(float(same_reach(problem, point[None])[0]), NEAR)
+        known = _known_to(problem, point)
         residual = problem.jacobian(point) @ place.offset
         apart = float(np.linalg.norm(residual)) / (problem.magnitude * problem.scale)
         nearness = min(nearness, max(distance / known, apart / loose))
     is_exact = tolerance < is_solution.threshold
     return is_back(nearness) if is_exact else is_nearly_back(nearness)
+
+
+def _known_to(problem: Problem, point: np.ndarray) -> float:
+    """How far, over the scale, from a point (n,) of a curve it may be found again; of a
+    large problem singular values are not taken."""
+    if problem.n > LARGE:
+        return NEAR
+    return max(float(same_reach(problem, point[None])[0]), NEAR)
 
 
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:

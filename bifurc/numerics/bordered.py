@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from bifurc.numerics.sparse_factors import sparse_factors
+from bifurc.problem import Problem, Solver
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import csc_array, sparray
 
-__all__ = ["Bordered", "as_dense", "bordered_matrix", "sparse_bordered"]
-
-Solver = Callable[[np.ndarray], np.ndarray]
-"""Maps a right-hand side to the solution of one linear system."""
+__all__ = ["Bordered", "as_dense", "bordered_at", "bordered_matrix", "sparse_bordered"]
 
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
 # largest entry of the border of a sparse matrix, over the median one of the matrix
 BORDER = 1e-3
-PIVOT = 0.1  # a diagonal entry will do as a pivot from this share of the largest on
 
 
 def as_dense(matrix: np.ndarray | sparray) -> np.ndarray:
@@ -38,20 +37,25 @@ def bordered_matrix(jacobian: np.ndarray | sparray, border: np.ndarray) -> np.nd
 
 
 class Bordered:
-    """Factorisation of
+    """Solutions of systems with the matrix
 
         [ F' ]   (m, n), dense or sparse
         [ t  ]   (n,)
 
-    Sparse with m = n - 1 by sparse LU, dense with m = n - 1 by LU, otherwise by QR with
-    column pivoting, which solves in the least-squares sense whatever the number of
-    redundant equations and leaves out what has no rank.
+    by a ``solver`` that is at hand, or by the cheapest factorisation that holds.
     """
 
-    def __init__(self, jacobian: np.ndarray | sparray, tangent: np.ndarray):
+    def __init__(self, rows: int, solver: Solver):
+        self._rows = rows
+        self._solve = solver
+
+    @staticmethod
+    def factored(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Bordered:
+        """Sparse with m = n - 1 by sparse LU, dense with m = n - 1 by LU, otherwise by
+        QR with column pivoting, which solves in the least-squares sense whatever the
+        number of redundant equations and leaves out what has no rank."""
         m, n = jacobian.shape
-        self._rows = m
-        self._solve = _solver(jacobian, tangent, is_square=m == n - 1)
+        return Bordered(m, _solver(jacobian, tangent, is_square=m == n - 1))
 
     def solve(self, residual: np.ndarray, along: float = 0.0) -> np.ndarray:
         """d (n,) with F' d = ``residual`` (m,) and t . d = ``along``, in the
@@ -68,13 +72,23 @@ class Bordered:
         return unit
 
 
+def bordered_at(problem: Problem, point: np.ndarray, tangent: np.ndarray) -> Bordered:
+    """Solutions of systems with F' of a problem at ``point`` (n,), over the magnitude,
+    and the row ``tangent`` (n,) under it."""
+    solver = problem.bordered_solver(point, tangent)
+    if solver is not None:
+        return Bordered(problem.n - 1, solver)
+    return Bordered.factored(problem.jacobian(point) / problem.magnitude, tangent)
+
+
 def _solver(
     jacobian: np.ndarray | sparray, tangent: np.ndarray, is_square: bool
 ) -> Solver:
     """How systems with the bordered matrix are solved: by the cheapest factorisation
     that holds."""
     if is_square and not isinstance(jacobian, np.ndarray):
-        return sparse_bordered(jacobian, tangent)
+        with suppress(RuntimeError):  # "exactly singular": left to QR
+            return sparse_bordered(jacobian, tangent)
     matrix = bordered_matrix(jacobian, tangent)
     by_lu = _lu_solver(matrix) if is_square else None
     return by_lu or _qr_solver(matrix)
@@ -85,17 +99,16 @@ def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solv
     1, n), by sparse LU.
 
     The border must not become a pivot early, as it would fill the factors: t is scaled
-    to a size far below that of F', columns are ordered by minimum degree of A^T + A,
-    and a diagonal entry will do as a pivot from a tenth of the largest.
+    to a size far below that of F'. Raises `RuntimeError` for a matrix that is exactly
+    singular.
     """
     from scipy.sparse import csc_array
-    from scipy.sparse.linalg import splu
 
     matrix = csc_array(jacobian)
     typical = float(np.median(np.abs(matrix.data))) or 1.0
     weight = BORDER * typical / np.abs(tangent).max()
     stacked = _with_last_row(matrix, weight * tangent)
-    factors = splu(stacked, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT)
+    factors = sparse_factors(stacked)
 
     def solve(right: np.ndarray) -> np.ndarray:
         right = right.copy()

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from bifurc.numerics.blur import ROUNDING, known_to
-from bifurc.numerics.bordered import Bordered
+from bifurc.numerics.bordered import Bordered, bordered_at
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import LARGE
 from bifurc.pieces import points_on_piece
@@ -78,8 +78,7 @@ def march_by_collocation(
     if corrected.gap > closing:
         return March.without_solution(corrected.gap, order, problem.n)
     point = corrected.point
-    jacobian = problem.jacobian(point) / problem.magnitude
-    heading = Bordered(jacobian, tangent).null_vector()
+    heading = bordered_at(problem, point, tangent).null_vector()
     width = settings.longest / 4
     pieces: list[Piece] = []
     # before a cusp a residual is left that is no misclosure
@@ -88,7 +87,8 @@ def march_by_collocation(
     low, high = problem.bounds.T
     while len(pieces) < settings.count:
         is_inside = np.all((low <= point) & (point <= high))
-        if pieces and not is_inside:
+        covered = sum(piece.length for piece in pieces)
+        if pieces and (not is_inside or covered > settings.length):
             break
         known_to = _known_to(problem, point, misclosure)
         aim = _Aim(point, heading, order, tolerance, known_to, misclosure)
@@ -160,8 +160,7 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
     if nodes is None:
         return _Rejected(FAILED)
     coefficients = basis.from_values @ nodes
-    last_two = np.abs(coefficients[-2:])
-    tail = float(last_two.max())
+    tail = problem.largest_entry(coefficients[-2:])
     # below the distance to which points are known, coefficients are rounding
     enough = max(aim.tolerance, TAIL * aim.known_to) * problem.scale
     root = 1.0 / aim.order  # the tail goes with this power of the width, upside down
@@ -211,8 +210,7 @@ def _points_at_nodes(
     offsets = 0.5 * width * (basis.nodes + 1.0)
     points = np.empty((len(offsets), len(start)))
     points[0] = start
-    jacobian = problem.jacobian(start) / problem.magnitude
-    factored: Bordered | None = Bordered(jacobian, heading)
+    factored: Bordered | None = bordered_at(problem, start, heading)
     # Nearer than rounding lets a point be known no correction leads. Where curves cross
     # the corrections are to go on: what is left of them is what the certificate sees.
     enough = aim.tolerance

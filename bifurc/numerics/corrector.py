@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.numerics.bordered import Bordered, bordered_matrix
+from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
 from bifurc.problem import Problem, SphereProjection
 
 __all__ = [
@@ -91,8 +91,7 @@ def correct_across(
         is_fresh = factored is None or iterate.gap > SLOW * gap_before
         if factored is None or is_fresh:
             origin = iterate if has_risen else best
-            jacobian = problem.jacobian(origin.point) / problem.magnitude
-            factored = Bordered(jacobian, tangent)
+            factored = bordered_at(problem, origin.point, tangent)
             iterate = origin
         step = factored.solve(-iterate.residual)
         point = iterate.point + step

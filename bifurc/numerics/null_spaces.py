@@ -7,18 +7,13 @@ Singular values and residuals are over the problem's magnitude throughout.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bifurc._core import null_vector as null_vector_of
 from bifurc.decisions import is_null
-from bifurc.numerics.bordered import Bordered
+from bifurc.numerics.bordered import bordered_at
 from bifurc.problem import Problem
-
-if TYPE_CHECKING:
-    # SciPy takes longer to import than a small problem to solve
-    from scipy.sparse import sparray
 
 __all__ = [
     "LARGE",
@@ -51,24 +46,26 @@ def null_vector(
     else with a fixed direction. Where the null space is larger, that is projected on it.
     A large problem is bordered instead of decomposed.
     """
+    if problem.n > LARGE:
+        return _null_vector_by_borders(problem, point, along)
     jacobian = problem.jacobian(point)
-    if problem.n > LARGE or not isinstance(jacobian, np.ndarray):
-        return _null_vector_by_borders(jacobian, along)
+    if not isinstance(jacobian, np.ndarray):
+        return _null_vector_by_borders(problem, point, along)
     near = np.empty(0) if along is None else along
     return null_vector_of(jacobian, near, negligible=NEGLIGIBLE, agreeing=AGREEING)
 
 
 def _null_vector_by_borders(
-    jacobian: np.ndarray | sparray, along: np.ndarray | None
+    problem: Problem, point: np.ndarray, along: np.ndarray | None
 ) -> np.ndarray:
     """The null vector (n,), first with any border that is not across it, then with
     itself."""
     if along is None:
         rng = np.random.default_rng(0)
-        along = np.array(rng.normal(size=jacobian.shape[1]))
+        along = np.array(rng.normal(size=problem.n))
     unit: np.ndarray = along / np.linalg.norm(along)
-    first = Bordered(jacobian, unit).null_vector()
-    return Bordered(jacobian, first).null_vector()
+    first = bordered_at(problem, point, unit).null_vector()
+    return bordered_at(problem, point, first).null_vector()
 
 
 def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

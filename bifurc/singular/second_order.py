@@ -14,7 +14,7 @@ from bifurc.decisions import has_no_form, is_zero_form
 from bifurc.numerics.directions import unit_vectors
 from bifurc.problem import Problem
 
-__all__ = ["second_order_tangents"]
+__all__ = ["lines_of_form", "second_order_tangents"]
 
 # Singular value of the coefficients, over the largest, of a form that depends on
 # others.
@@ -49,6 +49,20 @@ def second_order_tangents(
         return None
     tangents: np.ndarray = roots[common] @ null_space.T
     return tangents
+
+
+def lines_of_form(form: np.ndarray) -> np.ndarray:
+    """Unit vectors (t, 2) on which a symmetric form (2, 2) vanishes: two, or none where
+    none is real or the form does not decide."""
+    coefficients = np.array([form[0, 0], 2.0 * form[0, 1], form[1, 1]])
+    size = float(np.linalg.norm(coefficients))
+    if size == 0.0:
+        return np.empty((0, 2))
+    a, b, c = coefficients / size
+    discriminant = float(b * b - 4.0 * a * c)
+    if discriminant < 0.0 or is_zero_form(discriminant):
+        return np.empty((0, 2))
+    return _real_roots(a, b, c)
 
 
 def _reduced_forms(

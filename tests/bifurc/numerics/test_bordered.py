@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import csc_array, diags_array, hstack
+from scipy.sparse import csc_array, diags_array, hstack, vstack
 from scipy.sparse.linalg import splu
 
 from bifurc.numerics.bordered import Bordered, sparse_bordered
@@ -25,10 +25,10 @@ def test_sparse_and_dense_factorisations_agree_whatever_the_size_of_the_equation
         rng.normal(size=61),
         magnitude * rng.normal(size=60),
     )
-    dense = Bordered(matrix.toarray(), tangent)
+    dense = Bordered.factored(matrix.toarray(), tangent)
     for factored in (
-        Bordered(matrix, tangent),
-        Bordered(np.vstack([matrix.toarray()] * 2), tangent),
+        Bordered.factored(matrix, tangent),
+        Bordered.factored(np.vstack([matrix.toarray()] * 2), tangent),
     ):
         right = residual if factored._rows == 60 else np.tile(residual, 2)
         assert np.allclose(
@@ -50,3 +50,15 @@ def test_the_border_does_not_fill_a_sparse_factorisation(monkeypatch):
     solved = sparse_bordered(matrix, np.linspace(0.1, 1.0, 501))(right)
     assert np.allclose(matrix @ solved, 1.0, atol=1e-9)
     assert made[0].L.nnz + made[0].U.nnz < 4 * matrix.nnz
+
+
+def test_small_pivots_along_a_chain_cost_no_digits() -> None:
+    # of v_k = v_{k-1} / 2 + ... the entry 1/2 would do as a pivot: 2^120 is lost then
+    n = 120
+    chain = diags_array([1.0, -0.5, 0.3], offsets=[2, 1, 0], shape=(n - 2, n))
+    circle = csc_array(([1.6, 1.2], ([0, 0], [0, 1])), shape=(1, n))
+    matrix = csc_array(vstack([circle, chain]))
+    tangent = np.linalg.svd(matrix.toarray())[2][-1]
+    right = np.random.default_rng(0).normal(size=n)
+    expected = np.linalg.solve(np.vstack([matrix.toarray(), tangent]), right)
+    assert np.allclose(sparse_bordered(matrix, tangent)(right), expected, atol=1e-11)

@@ -303,3 +303,27 @@ def test_many_unknowns_are_counted_in_one_unit_with_a_sparse_jacobian(is_recorde
     expected = unit * problem.jacobian(unit * point).toarray()
     assert own.jacobian(point).toarray() == pytest.approx(expected, rel=1e-12)
     assert own.magnitude == unit * problem.magnitude
+
+
+def test_more_unknowns_than_are_compiled_are_found_in_any_size():
+    # its Jacobian has no large diagonal: sparse LU with small pivots loses all digits
+    size, n = 1e6, 110
+
+    def chain(u):
+        v = u / size
+        rest = [v[k] - 0.5 * v[k - 1] - 0.3 * v[0] * v[1] for k in range(2, n)]
+        return [v[0] ** 2 + v[1] ** 2 - 1, *rest]
+
+    problem = bifurc.FunctionProblem(chain, [(-2 * size, 2 * size)] * n)
+    atlas = bifurc.explore(
+        problem, settings=bifurc.SearchSettings(starts=4, certify=False)
+    )
+    (form,) = atlas.forms
+    assert form.branch.closed
+    turns = np.linspace(0.0, 2 * np.pi, 20001)
+    circle = np.stack([np.cos(turns), np.sin(turns)])
+    course = [*circle]
+    for _ in range(2, n):
+        course.append(0.5 * course[-1] + 0.3 * circle[0] * circle[1])
+    length = np.linalg.norm(np.diff(course, axis=1), axis=0).sum()
+    assert form.branch.length / size == pytest.approx(length, rel=1e-6)

@@ -1,0 +1,1 @@
+"""Curves of systems with a thousand to a million unknowns: sparse, bordered, traced."""

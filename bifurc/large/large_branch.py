@@ -1,0 +1,94 @@
+"""A traced curve of a large problem, with the special points on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bifurc.branch import Branch, Outcome
+from bifurc.large.large_point import LargeKind, LargePoint
+from bifurc.units import Units
+
+__all__ = ["LargeBranch"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LargeBranch:
+    """A smooth curve u(s) of a `LargeProblem`, s from 0 to ``length``.
+
+    ``s`` is the arclength in the problem's units: root mean squares of the field over
+    its size, and the parameter over a quarter of its bounds. ``points`` are the special
+    ones, in the order of s. ``branch`` is the curve in ``units``. ``values`` (k, q) are
+    the smallest singular values of F', over the magnitude, at ``places`` (k,).
+    """
+
+    branch: Branch
+    units: Units
+    points: tuple[LargePoint, ...]
+    places: np.ndarray
+    values: np.ndarray
+
+    @property
+    def length(self) -> float:
+        """Arclength of the whole curve."""
+        return self.branch.length
+
+    @property
+    def outcome(self) -> Outcome:
+        """Why tracing ended, with what to do next."""
+        return self.branch.outcome
+
+    def __call__(self, s: float) -> np.ndarray:
+        """u (n,) at an arclength."""
+        point: np.ndarray = self.units.outwards(self.branch(s))
+        return point
+
+    def tangent(self, s: float) -> np.ndarray:
+        """du/ds (n,) at an arclength."""
+        tangent: np.ndarray = self.units.sizes * self.branch(s, 1)
+        return tangent
+
+    def parameters(self, s: np.ndarray) -> np.ndarray:
+        """The parameter (k,) at arclengths (k,)."""
+        in_units = self.parameter_curve(s)[:, 0]
+        values: np.ndarray = self.units.sizes[-1] * in_units
+        return values
+
+    @property
+    def parameter_curve(self) -> Branch:
+        """The parameter alone, in units, as a branch of one unknown."""
+        return last_unknown(self.branch)
+
+    @property
+    def folds(self) -> tuple[LargePoint, ...]:
+        """The points where the parameter turns back."""
+        return self.points_of(LargeKind.FOLD)
+
+    @property
+    def crossings(self) -> tuple[LargePoint, ...]:
+        """The points where another curve passes."""
+        return self.points_of(LargeKind.CROSSING)
+
+    @property
+    def near_misses(self) -> tuple[LargePoint, ...]:
+        """The minima of the smallest singular value above zero."""
+        return self.points_of(LargeKind.NEAR_MISS)
+
+    def points_of(self, kind: LargeKind) -> tuple[LargePoint, ...]:
+        """The special points of one kind."""
+        return tuple(point for point in self.points if point.kind is kind)
+
+    def __repr__(self) -> str:
+        kinds = [point.kind.value for point in self.points]
+        counts = [f"{kind.value}: {kinds.count(kind.value)}" for kind in LargeKind]
+        return (
+            f"<LargeBranch in {self.branch.n} unknowns, {self.outcome.value}\n"
+            f" length {self.length:.6g}, {len(self.branch.pieces)} pieces; "
+            f"{', '.join(counts)}>"
+        )
+
+
+def last_unknown(branch: Branch) -> Branch:
+    """The last unknown of a branch as a branch of one unknown, with its arclengths."""
+    return replace(branch, pieces=branch.pieces[:, :, -1:], periods=np.array([np.inf]))

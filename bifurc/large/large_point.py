@@ -1,0 +1,52 @@
+"""Special points of a large problem: where the parameter turns back, where curves cross,
+and where they nearly do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+
+__all__ = ["LargeKind", "LargePoint"]
+
+
+class LargeKind(Enum):
+    """What a special point is."""
+
+    # The parameter turns back: a limit point.
+    FOLD = "fold"
+    # The rank of F' drops, and another curve passes in a direction of its own.
+    CROSSING = "crossing"
+    # The rank of F' drops, and second order shows no other curve.
+    RANK_DROP = "rank drop"
+    # The smallest singular value has a minimum above zero.
+    NEAR_MISS = "near miss"
+
+
+@dataclass(frozen=True, eq=False)
+class LargePoint:
+    """A special point at arclength ``s`` of a branch, at ``u`` (n,), the parameter last.
+
+    ``gap`` is what F misses there, over the magnitude, to be singular: the smallest
+    singular value at a near miss, rounding at the others. ``bend``: the second
+    derivative of the parameter in the arclength at a fold. ``directions`` (k, n): du/ds
+    of the curves that pass at a crossing, the first that of the branch; u + 0.1
+    directions[1] is a start on the other one.
+    """
+
+    kind: LargeKind
+    s: float
+    u: np.ndarray
+    gap: float
+    bend: float = 0.0
+    directions: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+
+    @property
+    def parameter(self) -> float:
+        """The parameter there."""
+        return float(self.u[-1])
+
+    def __repr__(self) -> str:
+        place = f"{self.parameter:.12g} at s = {self.s:.6g}"
+        return f"<LargePoint: {self.kind.value}, parameter {place}, gap {self.gap:.2g}>"

@@ -1,0 +1,278 @@
+"""A system of many unknowns as its user describes it: F, a sparse F', a solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from bifurc.checks import (
+    check_callable,
+    check_finite,
+    check_number,
+    check_whole,
+    floats_of,
+)
+from bifurc.equations.recording import record
+from bifurc.errors import ProblemError
+from bifurc.large.colouring import column_groups
+
+if TYPE_CHECKING:
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import csr_array, sparray
+    from scipy.sparse.linalg import LinearOperator
+
+    from bifurc.equations.tape import Tape
+
+__all__ = ["InverseMaker", "LargeProblem"]
+
+Function: TypeAlias = Callable[[np.ndarray], "Sequence[float] | np.ndarray"]
+# From a point (n,) to what maps a right-hand side (n - 1,) to the solution (n - 1,), or
+# to an approximation of it.
+InverseMaker: TypeAlias = (
+    "Callable[[np.ndarray], LinearOperator | Callable[[np.ndarray], np.ndarray]]"
+)
+
+COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
+DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences
+SAME = 1e-5  # relative difference up to which two kinds of derivative agree
+WRONG = 1e-2  # relative difference from which on a given derivative is wrong
+SAMPLES = 3  # points at which a recording is compared with the function
+
+
+class LargeProblem:
+    """n - 1 equations F(u) = 0 in n unknowns, the last of which is the parameter: of a
+    discretised field, as a rule.
+
+    ``function``: (n,) -> (n - 1,). ``bounds`` (low, high) are those of the parameter;
+    ``size`` is the typical size of the other unknowns: lengths along a curve are root
+    mean squares of them over the size, and the parameter over a quarter of its bounds.
+
+    F' comes from ``jacobian``: (n,) -> (n - 1, n) or (n - 1, n - 1), sparse; from the
+    ``pattern`` (n - 1, n) or (n - 1, n - 1) of its entries, by a complex step, or by
+    central differences where the function drops imaginary parts, a group of columns at
+    once; or, with neither of them, from the recorded function. The column of the
+    parameter may be left out of both. `derivatives` says how F' is made.
+
+    ``solver`` makes from a point (n,) the inverse of F' without the parameter's
+    column, or an approximation of it (a preconditioner): a scipy `LinearOperator` (n -
+    1, n - 1), with `rmatvec` where F' is not symmetric, or a function (n - 1,) -> (n -
+    1,). Without one, matrices are factored by sparse LU.
+
+    Raises `ProblemError` for arguments of another kind or shape, and for a function
+    that cannot be recorded where nothing else gives F'.
+    """
+
+    def __init__(
+        self,
+        function: Function,
+        n: int,
+        bounds: Sequence[float],
+        *,
+        jacobian: Callable[[np.ndarray], sparray] | None = None,
+        pattern: sparray | None = None,
+        solver: InverseMaker | None = None,
+        size: float = 1.0,
+        parameter: str = "p",
+    ):
+        check_callable("function", function)
+        check_whole("n", n, 2)
+        for name, given in (("jacobian", jacobian), ("solver", solver)):
+            if given is not None:
+                check_callable(name, given)
+        check_number("size", size)
+        if not 0.0 < size < np.inf:
+            raise ProblemError("size", size, "positive and finite")
+        self.function = function
+        self.n = int(n)
+        self.bounds = _checked_bounds(bounds)
+        self.size = float(size)
+        self.parameter = parameter
+        self.solver = solver
+        self._given = jacobian
+        self._groups: np.ndarray | None = None
+        self._tape: Tape | None = None
+        if jacobian is not None:
+            self.derivatives = "given"
+        elif pattern is not None:
+            self._set_pattern(pattern)
+        else:
+            self._record()
+
+    def _set_pattern(self, pattern: sparray) -> None:
+        """Colour the columns of a pattern."""
+        checked = self._checked_matrix("pattern", pattern)
+        self._pattern = checked
+        self._groups = column_groups(checked)
+        count = int(self._groups.max()) + 1
+        self._count = count
+        self._is_complex = self._lets_complex_through()
+        kind = "complex step" if self._is_complex else "central differences"
+        self.derivatives = f"{kind} in {count} groups of columns"
+
+    def _record(self) -> None:
+        """Record the function; raises `ProblemError` where it cannot be."""
+        rng = np.random.default_rng(0)
+        points = self.size * rng.uniform(-1.0, 1.0, (SAMPLES, self.n))
+        points[:, -1] = rng.uniform(self.bounds[0], self.bounds[1], SAMPLES)
+        recording = record(self.function, points)
+        if recording.tape is None:
+            allowed = (
+                "a function, or there must be a pattern of its entries: the equations "
+                f"are not recorded, as {recording.reason}"
+            )
+            raise ProblemError("jacobian", None, allowed)
+        if recording.tape.m != self.n - 1:
+            self._refuse_length(recording.tape.m)
+        self._tape = recording.tape
+        self.derivatives = "recorded"
+
+    # --- values -----------------------------------------------------------------------
+
+    def value(self, point: np.ndarray) -> np.ndarray:
+        """F (n - 1,) at a point (n,); raises `ProblemError` for another shape."""
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            value = np.asarray(self.function(point))
+        if value.dtype.kind not in "fiu":
+            value = floats_of("value of the function", value)
+        if value.shape != (self.n - 1,):
+            self._refuse_length(value.shape if value.ndim != 1 else len(value))
+        floats: np.ndarray = value.astype(float, copy=False)
+        return floats
+
+    def _refuse_length(self, length: object) -> None:
+        allowed = f"{self.n - 1}, one less than the {self.n} unknowns"
+        raise ProblemError("number of equations", length, allowed)
+
+    def jacobian(self, point: np.ndarray) -> csr_array:
+        """F' (n - 1, n) at a point (n,), by rows; raises `ProblemError` where the given
+        one has another shape, is not sparse or not finite."""
+        if self._given is not None:
+            matrix = self._checked_matrix("jacobian", self._given(point), point)
+            check_finite("jacobian", matrix.data)
+            return matrix
+        if self._tape is not None:
+            return self._by_tape(point)
+        return self._by_groups(point)
+
+    def _checked_matrix(
+        self, name: str, matrix: Any, point: np.ndarray | None = None
+    ) -> csr_array:
+        """A sparse matrix (n - 1, n); the column of the parameter is added where it is
+        missing: its derivative at a point (n,), or ones for a pattern."""
+        from scipy.sparse import csr_array, hstack, issparse
+
+        rows = self.n - 1
+        if not issparse(matrix):
+            raise ProblemError(f"type of the {name}", type(matrix), "a sparse matrix")
+        if matrix.shape not in ((rows, rows), (rows, self.n)):
+            allowed = f"({rows}, {self.n}), or ({rows}, {rows}) without the parameter"
+            raise ProblemError(f"shape of the {name}", matrix.shape, allowed)
+        if matrix.shape[1] == rows:
+            last = np.ones(rows) if point is None else self._by_parameter(point)
+            matrix = hstack([matrix, csr_array(last[:, None])])
+        checked: csr_array = csr_array(matrix)
+        return checked
+
+    def _by_parameter(self, point: np.ndarray) -> np.ndarray:
+        """The derivative (n - 1,) of F by the parameter, by central differences."""
+        along = np.zeros(self.n)
+        along[-1] = 1.0
+        return self._difference(point, along)
+
+    def _by_tape(self, point: np.ndarray) -> csr_array:
+        from scipy.sparse import csr_array
+
+        assert self._tape is not None
+        starts, columns = self._tape.compiled.pattern()
+        entries = self._tape.compiled.entries(np.ascontiguousarray(point, dtype=float))
+        return csr_array((entries, columns, starts), shape=(self.n - 1, self.n))
+
+    # --- derivatives by groups of columns ---------------------------------------------
+
+    def _by_groups(self, point: np.ndarray) -> csr_array:
+        """F' from one derivative along each group of columns."""
+        from scipy.sparse import csr_array
+
+        assert self._groups is not None
+        together = np.empty((self.n - 1, self._count))
+        for group in range(self._count):
+            along = (self._groups == group).astype(float)
+            if self._is_complex:
+                together[:, group] = self._complex_step(point, along)
+            else:
+                together[:, group] = self._difference(point, along)
+        starts, columns = self._pattern.indptr, self._pattern.indices
+        rows = np.repeat(np.arange(self.n - 1), np.diff(starts))
+        entries = together[rows, self._groups[columns]]
+        return csr_array((entries, columns, starts), shape=self._pattern.shape)
+
+    def _complex_step(self, point: np.ndarray, along: np.ndarray) -> np.ndarray:
+        value = np.asarray(self.function(point + 1j * COMPLEX_STEP * along))
+        derivative: np.ndarray = np.imag(value) / COMPLEX_STEP
+        return derivative
+
+    def _difference(self, point: np.ndarray, along: np.ndarray) -> np.ndarray:
+        """Derivative (n - 1,) of F along a direction (n,) of entries of about 1."""
+        sizes = np.full(self.n, self.size)
+        sizes[-1] = 0.25 * np.diff(self.bounds)[0]
+        steps = DIFFERENCE_STEP * np.maximum(sizes, np.abs(point)) * along
+        width = float(np.abs(steps).max())
+        if np.count_nonzero(along) > 1:
+            # all unknowns of a group by one step, or columns would differ in theirs
+            steps = width * along
+        upper, lower = self.value(point + steps), self.value(point - steps)
+        derivative: np.ndarray = (upper - lower) / (2.0 * width)
+        return derivative
+
+    def _lets_complex_through(self) -> bool:
+        """Whether a complex step gives what differences give, at a point and along a
+        direction of no special kind."""
+        rng = np.random.default_rng(0)
+        point = self.size * rng.uniform(-1.0, 1.0, self.n)
+        point[-1] = rng.uniform(*self.bounds)
+        along = rng.choice([-1.0, 1.0], self.n)
+        expected = self._difference(point, along)
+        try:
+            by_complex = self._complex_step(point, along)
+        except (TypeError, ValueError, np.exceptions.ComplexWarning):
+            return False
+        if by_complex.shape != expected.shape:
+            return False
+        return bool(_relative_difference(by_complex, expected) < SAME)
+
+    # --- checks -----------------------------------------------------------------------
+
+    def check_start(self, start: object) -> np.ndarray:
+        """A start as an array (n,); raises `ProblemError` for another shape, for values
+        that are not finite there, and for a jacobian that is not the derivative."""
+        point = floats_of("start", start)  # type: ignore[arg-type]
+        if point.shape != (self.n,):
+            raise ProblemError("shape of the start", point.shape, f"({self.n},)")
+        check_finite("start", point)
+        check_finite("value of the function at the start", self.value(point))
+        along = np.random.default_rng(0).choice([-1.0, 1.0], self.n)
+        expected = self._difference(point, along)
+        product = self.jacobian(point) @ along
+        if not _relative_difference(product, expected) < WRONG:
+            row = int(np.argmax(np.abs(product - expected)))
+            allowed = f"the derivative of the function, {expected[row]:.6g}"
+            name = f"product of row {row} of the jacobian with a vector of signs"
+            raise ProblemError(name, f"{product[row]:.6g}", allowed)
+        return point
+
+
+def _relative_difference(a: np.ndarray, b: np.ndarray) -> float:
+    """|a - b| over the size of both."""
+    size = np.linalg.norm(a) + np.linalg.norm(b)
+    return float(np.linalg.norm(a - b) / size) if size > 0.0 else 0.0
+
+
+def _checked_bounds(bounds: Sequence[float]) -> np.ndarray:
+    """The bounds of the parameter as an array (2,)."""
+    checked = floats_of("bounds", bounds)
+    if checked.shape != (2,) or not -np.inf < checked[0] < checked[1] < np.inf:
+        allowed = "(low, high) of the parameter, finite, with low < high"
+        raise ProblemError("bounds", bounds, allowed)
+    return checked

@@ -1,0 +1,69 @@
+"""The few smallest singular values of F', by Lanczos' method on an inverse.
+
+M is F' with the tangent t of the curve under it. Its singular values are those of F'
+and the 1 of t, as t is across the rows of F'. The largest eigenvalues of M^-1 M^-T are
+the inverse squares of the smallest of them; none of these products is formed.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.large.bordered_system import BorderedSystem
+from bifurc.large.scaled_problem import ScaledProblem
+
+__all__ = ["SingularTriple", "smallest_singular_triples"]
+
+# of singular values, over the largest of their inverse squares: minima are located from
+# them, and singular points by Newton's method
+TOLERANCE = 1e-6
+OF_TANGENT = 0.5  # share of the tangent in a vector that is the tangent itself
+TINY = 1e-300  # keeps the inverse of a singular value of zero from being divided by
+
+
+class SingularTriple(NamedTuple):
+    """A singular ``value`` of F', over the magnitude, with its vectors ``left`` (n - 1,)
+    and ``right`` (n,)."""
+
+    value: float
+    left: np.ndarray
+    right: np.ndarray
+
+
+def smallest_singular_triples(
+    problem: ScaledProblem, point: np.ndarray, tangent: np.ndarray, count: int
+) -> list[SingularTriple]:
+    """The ``count`` smallest singular values of F' at a point (n,) of a curve with a
+    ``tangent`` (n,), in increasing order; fewer where they are no smaller than 1 is."""
+    system = problem.bordered(point, tangent[None])
+    pairs = _largest_of_inverse(system, problem.n, min(count + 1, problem.n - 1))
+    triples = []
+    for inverse_square, right in pairs:
+        if abs(right @ tangent) > OF_TANGENT:
+            continue
+        value = 1.0 / np.sqrt(max(inverse_square, TINY))
+        left = value * system.solve_transposed(right)[:-1]
+        left /= np.linalg.norm(left)
+        triples.append(SingularTriple(float(value), left, right))
+    triples.sort(key=lambda triple: triple.value)
+    return triples[:count]
+
+
+def _largest_of_inverse(
+    system: BorderedSystem, n: int, count: int
+) -> list[tuple[float, np.ndarray]]:
+    """The largest eigenvalues of M^-1 M^-T, with unit eigenvectors (n,)."""
+    from scipy.sparse.linalg import LinearOperator, eigsh
+
+    operator = LinearOperator(
+        (n, n), lambda x: system.solve(system.solve_transposed(x)), dtype=float
+    )
+    if count + 1 >= n:  # ARPACK wants room for one vector more
+        values, vectors = np.linalg.eigh(operator @ np.eye(n))
+        values, vectors = values[-count:], vectors[:, -count:]
+    else:
+        begin = np.random.default_rng(0).normal(size=n)
+        values, vectors = eigsh(operator, count, tol=TOLERANCE, v0=begin)
+    return list(zip(values.tolist(), vectors.T, strict=True))

@@ -1,0 +1,122 @@
+"""From a large problem and a start to one branch with its special points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bifurc.branch import Branch, Outcome
+from bifurc.checks import check_type, check_whole, floats_of
+from bifurc.curves.continuation import TraceSettings, follow_curve, joined_branch
+from bifurc.curves.track import Place
+from bifurc.errors import ProblemError
+from bifurc.large.large_branch import LargeBranch
+from bifurc.large.large_problem import LargeProblem
+from bifurc.large.scaled_problem import ScaledProblem
+from bifurc.large.singular_profile import singular_profile
+from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
+from bifurc.numerics.null_spaces import null_vector
+
+__all__ = ["LargeSettings", "trace_large_branch"]
+
+
+def _default_tracing() -> TraceSettings:
+    return TraceSettings(
+        order=6, tolerance=1e-6, shortest=1e-7, longest=1.0, max_length=6.0
+    )
+
+
+@dataclass(frozen=True)
+class LargeSettings:
+    """How a large problem is traced, and what is looked for on the curve.
+
+    Lengths in ``tracing`` are arclengths in the problem's units. With ``values`` of the
+    smallest singular values, taken at ``places`` of each piece, crossings and near
+    misses are looked for; with none only folds. ``both_ways``: whether the curve is
+    followed to both sides of the start, and not only along its direction. Raises
+    `ProblemError` for negative numbers and other kinds of things.
+    """
+
+    tracing: TraceSettings = field(default_factory=_default_tracing)
+    values: int = 0
+    places: int = 6
+    both_ways: bool = False
+
+    def __post_init__(self) -> None:
+        check_type("tracing", self.tracing, TraceSettings)
+        check_whole("values", self.values, 0)
+        check_whole("places", self.places, 1)
+        check_type("both_ways", self.both_ways, bool)
+
+
+DEFAULT_SETTINGS = LargeSettings()
+
+
+def trace_large_branch(
+    problem: LargeProblem,
+    start: Sequence[float] | np.ndarray,
+    direction: Sequence[float] | np.ndarray | None = None,
+    settings: LargeSettings = DEFAULT_SETTINGS,
+) -> LargeBranch:
+    """The curve through a solution next to ``start`` (n,), with folds, crossings and near
+    misses located.
+
+    It is followed to the side of ``direction`` (n,), which is that of a growing
+    parameter unless given, until it closes, leaves the bounds of the parameter, or is
+    as long as the settings allow. Trouble on the way is the `Outcome` of the branch. A
+    start that cannot be corrected gives a branch of no pieces. Raises `ProblemError` for
+    a start, a direction, a value, a jacobian or a solution by the solver that has
+    another shape or is not finite, for a jacobian that is not the derivative, and where
+    the solver is so poor that the first systems are not solved.
+    """
+    check_type("problem", problem, LargeProblem)
+    check_type("settings", settings, LargeSettings)
+    checked = problem.check_start(start)
+    along = _checked_direction(problem, direction)
+    with np.errstate(over="ignore", invalid="ignore"):
+        scaled = ScaledProblem(problem, checked)
+        branch = _traced(scaled, checked, along, settings)
+        points = folds_on(scaled, branch)
+        profile = singular_profile(scaled, branch, settings.places, settings.values)
+        crossings = crossings_on(scaled, branch, profile)
+        points += crossings
+        points += near_misses_on(scaled, branch, profile, crossings)
+    points.sort(key=lambda point: point.s)
+    return LargeBranch(
+        branch, scaled.own_units, tuple(points), profile.places, profile.values
+    )
+
+
+def _checked_direction(problem: LargeProblem, direction: object) -> np.ndarray:
+    """A direction as an array (n,), along the parameter where there is none."""
+    if direction is None:
+        along = np.zeros(problem.n)
+        along[-1] = 1.0
+        return along
+    along = floats_of("direction", direction)  # type: ignore[arg-type]
+    if along.shape != (problem.n,):
+        raise ProblemError("shape of the direction", along.shape, f"({problem.n},)")
+    if not np.all(np.isfinite(along)) or not np.any(along):
+        raise ProblemError("direction", along, "a finite vector other than zero")
+    return along
+
+
+def _traced(
+    scaled: ScaledProblem,
+    start: np.ndarray,
+    direction: np.ndarray,
+    settings: LargeSettings,
+) -> Branch:
+    """The curve in the units of the problem."""
+    point = scaled.own_units.inwards(start)
+    tangent = null_vector(scaled, point, direction / scaled.own_units.sizes)
+    forward = follow_curve(scaled, Place(point, tangent), settings.tracing)
+    ends_here = forward.outcome in (Outcome.CLOSED, Outcome.OPEN)
+    if not settings.both_ways or ends_here:
+        return forward
+    backward = follow_curve(scaled, Place(point, -tangent), settings.tracing)
+    if not len(backward.pieces):
+        return forward
+    return joined_branch(backward.reversed(), forward)
