@@ -60,7 +60,8 @@ class VariableDocument(TypedDict):
 
 class MechanismDocument(TypedDict):
     """The mechanism of a map: ``idle_bodies`` turn about the line between their two
-    spherical joints, which the map leaves out."""
+    spherical joints, ``idle_turns`` are variables that turn but a body by itself; the
+    map leaves both out."""
 
     bodies: list[str]
     frame: str
@@ -68,6 +69,7 @@ class MechanismDocument(TypedDict):
     variables: list[VariableDocument]
     loops: list[LoopDocument]
     idle_bodies: list[str]
+    idle_turns: list[str]
     characteristic_length: float
 
 
@@ -93,6 +95,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
             for loop in loops
         ],
         "idle_bodies": list(readout.structure.idle_bodies),
+        "idle_turns": list(readout.structure.idle_turns),
         "characteristic_length": readout.structure.unit,
     }
 

@@ -40,6 +40,9 @@ def describe_joints(readout: Readout) -> str:
             f"\n\nLeft out: {', '.join(idle)} may turn about the line between its two "
             "spherical joints, which moves nothing else."
         )
+    turns = readout.structure.idle_turns
+    if turns:
+        text += f"\n\nLeft out: {', '.join(turns)}, which turns but a body by itself."
     return text
 
 

@@ -201,6 +201,9 @@ class _ChainWriter:
     def _moved(self, point: Point) -> Point:
         """Where the chain takes a ``point`` (3,) of its last body."""
         for step in reversed(self.closure.chain):
+            if step.pair in self.structure.shifts:
+                point = self._carried(point, step)
+                continue
             if step.pair in self.structure.embedded:
                 point = self._turned_freely(point, step)
                 continue
@@ -215,6 +218,15 @@ class _ChainWriter:
         center = self.placement.point_on_axis(motion)
         turned = rotated_about(point, direction, center, _cosine(value), _sine(value))
         return _shifted(turned, direction, self._advance(motion, value))
+
+    def _carried(self, point: Point, step: Step) -> Point:
+        """A point moved by the pair of a free point."""
+        columns = self.structure.shifts[step.pair]
+        directions = self.structure.point_pairs[step.pair].directions
+        for column, direction in zip(columns, directions, strict=True):
+            distance = step.sign * _unknown(self.writer, column)
+            point = _shifted(point, self.placement.axes @ direction, distance)
+        return point
 
     def _turned_freely(self, point: Point, step: Step) -> Point:
         """A point turned by an embedded spherical joint, and moved by a free pair: the

@@ -171,10 +171,12 @@ def _groups(
 
 
 def _still(readout: Readout, groups: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
-    """The joints all of whose bodies move as one."""
+    """The joints all of whose bodies move as one, but for idle turns."""
     still = []
     for joint in readout.mechanism.joints:
         bodies = set(joint.bodies)
+        if set(joint.labels) & set(readout.structure.idle_turns):
+            continue
         if joint.freedoms and any(bodies <= set(group) for group in groups):
             still.append(joint.name)
     return tuple(still)

@@ -38,7 +38,8 @@ class Poses:
         """Homogeneous transforms (k, b, 4, 4) of the b bodies at configurations (k, n),
         in the unknowns of the structure."""
         bodies = self.mechanism.bodies
-        poses = np.tile(np.eye(4), (len(points), len(bodies), 1, 1))
+        count = self.structure.body_count
+        poses = np.tile(np.eye(4), (len(points), count, 1, 1))
         for origin, goal, number, sign in self.tree:
             motion = self._displacement(points, number)
             if sign < 0:
@@ -47,7 +48,8 @@ class Poses:
         for rod in self.structure.rods:
             self._place_rod(poses, points, rod)
         frame = bodies.index(self.mechanism.frame)
-        from_frame: np.ndarray = _inverse(poses[:, frame])[:, None] @ poses
+        of_bodies = poses[:, : len(bodies)]
+        from_frame: np.ndarray = _inverse(poses[:, frame])[:, None] @ of_bodies
         return from_frame
 
     def rotations(self, points: np.ndarray, number: int) -> np.ndarray:
@@ -83,6 +85,12 @@ class Poses:
         """The transform (k, 4, 4) of the moved body of a pair with respect to its
         base."""
         result = np.tile(np.eye(4), (len(points), 1, 1))
+        shifts = self.structure.shifts.get(number)
+        if shifts is not None:
+            directions = self.structure.point_pairs[number].directions
+            result[:, :3, 3] = points[:, list(shifts)] @ directions
+            result[:, :3, 3] *= self.structure.unit
+            return result
         columns = list(self.structure.embedded.get(number, ()))
         if columns:
             a, b = points[:, columns[:3]], points[:, columns[3:6]]
@@ -102,7 +110,7 @@ class Poses:
     def _place_rod(self, poses: np.ndarray, points: np.ndarray, rod: Rod) -> None:
         """Fill in the ``poses`` (k, b, 4, 4) of the bodies of a rod at configurations
         (k, n), turned as little as can be."""
-        centers = [self.structure.center(pair) for pair in rod.pairs]
+        centers = rod.centers
         places = [
             poses[:, body, :3, :3] @ center + poses[:, body, :3, 3]
             for body, center in zip(rod.ends, centers, strict=True)
@@ -127,10 +135,8 @@ class Poses:
 
     def holder(self, rod: Rod, end: int) -> int:
         """The body of a rod that its first or second spherical joint holds."""
-        pair = self.mechanism.pairs[rod.pairs[end]]
-        names = (pair.base, pair.moved)
-        numbers = [self.mechanism.bodies.index(name) for name in names]
-        return next(number for number in numbers if number in rod.parts[end])
+        point = self.structure.points[rod.points[end]]
+        return min(set(point.bodies) & set(rod.parts[end]))
 
     def inside_rod(self, rod: Rod) -> dict[int, np.ndarray]:
         """The displacements (4, 4) of the bodies of a rod with respect to the one that

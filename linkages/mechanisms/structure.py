@@ -3,9 +3,10 @@
 Every cycle that passes a spherical joint is cut there, if that can be: a point comes
 back to itself, three equations and no unknowns. A body between two spherical joints is
 a rod: it keeps two points at a distance, and its own turning about the line between
-them, which moves nothing else, is left out. A spherical joint that no cut removes is
-embedded: two orthonormal vectors, six numbers under three equations, which have no
-singular place and no double cover.
+them, which moves nothing else, is left out. Where only rods meet there is a point,
+three numbers. A spherical joint that no cut removes is embedded: two orthonormal
+vectors, six numbers under three equations, which have no singular place and no double
+cover.
 """
 
 from __future__ import annotations
@@ -28,10 +29,13 @@ from linkages.mechanisms.cycles import (
     chain_between,
     cycle_basis,
 )
+from linkages.mechanisms.free_points import FreePoint, free_points
+from linkages.mechanisms.groups import Group, JointPoint, find_groups, find_points
+from linkages.mechanisms.idle_turns import find_idle_turn
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.placement import Placement
-from linkages.mechanisms.rods import Rod, find_rods
+from linkages.mechanisms.rods import Rod, RodNet, find_rods
 from linkages.mechanisms.size import Size
 
 __all__ = ["Closure", "ClosureKind", "FreePair", "Share", "Structure", "Unknown"]
@@ -39,7 +43,7 @@ __all__ = ["Closure", "ClosureKind", "FreePair", "Share", "Structure", "Unknown"
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
 # limits, rad, of a turn that its coupling to others brings never back to where it was
 TURNS_REACH = 10 * 2 * np.pi
-FREE = 6  # freedoms of a free pair
+SPHERICAL, FREE = 3, 6  # freedoms of a spherical pair and of a free one
 # numbers of an embedded rotation, two orthonormal vectors, and of a translation
 ROTATION = ("ax", "ay", "az", "bx", "by", "bz")
 TRANSLATION = ("x", "y", "z")
@@ -68,6 +72,14 @@ class Closure:
     first: np.ndarray = field(default_factory=lambda: np.zeros(3))
     second: np.ndarray = field(default_factory=lambda: np.zeros(3))
     rod: Rod | None = None
+
+
+class JoinedPair(NamedTuple):
+    """Two bodies, by number, that spherical joints hold at a ``point``."""
+
+    base: int
+    moved: int
+    point: JointPoint
 
 
 class FreePair(NamedTuple):
@@ -113,6 +125,8 @@ class Structure:
         self.mechanism = mechanism
         self.size = Size(mechanism)
         self.unit = self.size.characteristic_length
+        self.idle_turns: tuple[str, ...] = ()
+        self._hold_idle_turns()
         if not self.unknowns:
             locked = "every one locked or rigid"
             if self.idle_bodies:
@@ -122,89 +136,152 @@ class Structure:
 
     # --- bodies and pairs -------------------------------------------------------------
 
+    def _hold_idle_turns(self) -> None:
+        """Lock the turns that move nothing else at 0, one after the other."""
+        while True:
+            ends = _ends_of(self.mechanism)
+            groups = find_groups(self.mechanism, ends, self.points)
+            args = self.mechanism, ends, groups, self.points, self.unit
+            label = find_idle_turn(*args)
+            if label is None:
+                break
+            self.idle_turns += (label,)
+            self.mechanism = self.mechanism.with_locks({label: 0.0})
+
     @cached_property
-    def _numbers(self) -> dict[str, int]:
-        return {body: number for number, body in enumerate(self.mechanism.bodies)}
+    def points(self) -> tuple[JointPoint, ...]:
+        """The points at which spherical joints hold bodies."""
+        return find_points(self.mechanism, _ends_of(self.mechanism), self.unit)
+
+    @cached_property
+    def _groups(self) -> tuple[Group, ...]:
+        return find_groups(self.mechanism, _ends_of(self.mechanism), self.points)
+
+    @cached_property
+    def _net(self) -> RodNet:
+        ends = _ends_of(self.mechanism)
+        return find_rods(self.mechanism, ends, self._groups, self.points)
+
+    @property
+    def rods(self) -> tuple[Rod, ...]:
+        """The bodies that spherical joints hold at two points, and nothing else."""
+        return self._net.rods
+
+    @property
+    def body_count(self) -> int:
+        """How many bodies there are, points at which only rods meet among them: they
+        are numbered after the others."""
+        return len(self.mechanism.bodies) + len(self._net.free)
+
+    @cached_property
+    def free_points(self) -> tuple[FreePoint, ...]:
+        """The points at which only rods meet."""
+        return free_points(self.points, self._net)
 
     @cached_property
     def _ends(self) -> dict[int, Ends]:
-        """The bodies and the number of unknowns of every pair."""
-        variables = self.mechanism.variables
-        ends = {}
-        for number, pair in enumerate(self.mechanism.pairs):
-            count = sum(variables[k].locked is None for k in pair.variables)
-            if pair.center is not None:
-                count = 3
-            base, moved = self._numbers[pair.base], self._numbers[pair.moved]
-            ends[number] = Ends(base, moved, count)
-        return ends
+        """The bodies and the number of unknowns of every pair that is left without the
+        rods, and of spherical ones between bodies that only rods would join else."""
+        in_rods = {body for rod in self.rods for body in rod.bodies}
+        inner = {pair for rod in self.rods for pair in rod.inner}
+        ends = {
+            number: one
+            for number, one in _ends_of(self.mechanism).items()
+            if number not in inner and not in_rods & set(one[:2])
+        }
+        joined = {
+            number: Ends(pair.base, pair.moved, SPHERICAL)
+            for number, pair in self._joined_at_points.items()
+        }
+        return ends | joined
 
     @cached_property
+    def _joined_at_points(self) -> dict[int, JoinedPair]:
+        """Spherical pairs, numbered after those of the mechanism, between bodies that
+        meet at a point where joints name rods between them."""
+        in_rods = {body for rod in self.rods for body in rod.bodies}
+        ends = _ends_of(self.mechanism)
+        joined: dict[int, JoinedPair] = {}
+        for point in self.points:
+            bodies = [body for body in point.bodies if body not in in_rods]
+            parts = UnionFind(bodies)
+            for number in point.pairs:
+                if not in_rods & set(ends[number][:2]):
+                    parts.union(*ends[number][:2])
+            for body in bodies[1:]:
+                if parts[body] != parts[bodies[0]]:
+                    parts.union(body, bodies[0])
+                    number = len(self.mechanism.pairs) + len(joined)
+                    joined[number] = JoinedPair(bodies[0], body, point)
+        return joined
+
+    @property
     def _spherical(self) -> list[int]:
-        pairs = enumerate(self.mechanism.pairs)
-        return [number for number, pair in pairs if pair.center is not None]
-
-    @cached_property
-    def rods(self) -> tuple[Rod, ...]:
-        """The bodies that only two spherical joints hold."""
-        return find_rods(self.mechanism, self._ends)
+        return [
+            number
+            for number in self._ends
+            if number in self._joined_at_points
+            or self.mechanism.pairs[number].center is not None
+        ]
 
     # --- chains -----------------------------------------------------------------------
 
     @cached_property
     def _plain(self) -> dict[int, Ends]:
         """The pairs without spherical ones and those inside rods."""
-        inner = {pair for rod in self.rods for pair in rod.inner}
-        left_out = inner | set(self._spherical)
-        return {k: ends for k, ends in self._ends.items() if k not in left_out}
+        spherical = set(self._spherical)
+        return {k: ends for k, ends in self._ends.items() if k not in spherical}
 
     @cached_property
     def _kept_spherical(self) -> list[int]:
         """The spherical pairs that are not cut: they hold the bodies together."""
-        parts = UnionFind(range(len(self.mechanism.bodies)))
+        parts = UnionFind(range(self.body_count))
         for ends in self._plain.values():
             parts.union(ends.base, ends.moved)
-        in_rods = {pair for rod in self.rods for pair in rod.pairs}
         kept = []
         for number in self._spherical:
             base, moved, _ = self._ends[number]
-            if number not in in_rods and parts[base] != parts[moved]:
+            if parts[base] != parts[moved]:
                 parts.union(base, moved)
                 kept.append(number)
         return kept
 
     @cached_property
+    def point_pairs(self) -> dict[int, FreePoint]:
+        """Pairs, numbered after those between bodies, that move the free points."""
+        first = len(self.mechanism.pairs) + len(self._joined_at_points)
+        return dict(enumerate(self.free_points, start=first))
+
+    @cached_property
     def free_pairs(self) -> dict[int, FreePair]:
-        """Pairs, numbered after those of the mechanism, between bodies that only rods
-        join."""
-        parts = UnionFind(range(len(self.mechanism.bodies)))
+        """Pairs, numbered after those of points, between bodies that only rods join."""
+        parts = UnionFind(range(self.body_count))
         for ends in self._plain.values():
             parts.union(ends.base, ends.moved)
         for number in self._kept_spherical:
             parts.union(*self._ends[number][:2])
+        for point in self.free_points:
+            parts.union(point.base, point.body)
+        first = len(self.mechanism.pairs) + len(self._joined_at_points)
+        first += len(self.free_points)
         free: dict[int, FreePair] = {}
         for rod in self.rods:
             base, moved = rod.ends
             if parts[base] != parts[moved]:
                 parts.union(base, moved)
-                center = self.mechanism.pairs[rod.pairs[1]].center
-                assert center is not None
-                number = len(self.mechanism.pairs) + len(free)
-                free[number] = FreePair(base, moved, center)
+                free[first + len(free)] = FreePair(base, moved, rod.centers[1])
         return free
 
     @cached_property
     def closures(self) -> tuple[Closure, ...]:
         """The chains that have to close, as short as can be: cycles, then points, then
         rods."""
-        bodies = len(self.mechanism.bodies)
-        cycles = cycle_basis(bodies, self._plain)
+        cycles = cycle_basis(self.body_count, self._plain)
         closures = [
             Closure(ClosureKind.CYCLE, chain, self._joints(chain)) for chain in cycles
         ]
-        in_rods = {pair for rod in self.rods for pair in rod.pairs}
         for number in self._spherical:
-            if number not in self._kept_spherical and number not in in_rods:
+            if number not in self._kept_spherical:
                 closures.append(self._point_closure(number))
         closures += [self._rod_closure(rod) for rod in self.rods]
         return tuple(closures)
@@ -212,49 +289,57 @@ class Structure:
     @cached_property
     def tree_pairs(self) -> dict[int, Ends]:
         """The pairs that lead from body to body: all but the spherical ones that are
-        cut, and the free ones."""
+        cut, those of points, and the free ones."""
         kept = {number: self._ends[number] for number in self._kept_spherical}
+        points = {
+            number: Ends(point.base, point.body, len(point.directions))
+            for number, point in self.point_pairs.items()
+        }
         free = {
             number: Ends(pair.base, pair.moved, FREE)
             for number, pair in self.free_pairs.items()
         }
-        return self._plain | kept | free
+        return self._plain | kept | points | free
 
     @property
     def idle_bodies(self) -> tuple[str, ...]:
-        """The bodies of rods, whose own turning about the line between the spherical
-        joints is left out."""
-        bodies = self.mechanism.bodies
-        return tuple(bodies[number] for rod in self.rods for number in rod.bodies)
+        """The bodies whose own turning about the line between the two points at which
+        spherical joints hold them is left out."""
+        numbers = [number for rod in self.rods for number in rod.bodies]
+        if any(len(point.directions) < 3 for point in self.free_points):
+            numbers += self._net.remains
+        return tuple(self.mechanism.bodies[number] for number in numbers)
 
     def _point_closure(self, number: int) -> Closure:
         base, moved, _ = self._ends[number]
-        chain = chain_between(len(self.mechanism.bodies), self.tree_pairs, base, moved)
+        chain = chain_between(self.body_count, self.tree_pairs, base, moved)
         assert chain is not None
-        pair = self.mechanism.pairs[number]
-        assert pair.center is not None
-        joints = (pair.joint, *self._joints(chain))
-        return Closure(ClosureKind.POINT, chain, joints, pair.center, pair.center)
+        center = self.center(number)
+        joints = (*self._joint_of(number), *self._joints(chain))
+        return Closure(ClosureKind.POINT, chain, joints, center, center)
 
     def _rod_closure(self, rod: Rod) -> Closure:
-        chain = chain_between(len(self.mechanism.bodies), self.tree_pairs, *rod.ends)
+        chain = chain_between(self.body_count, self.tree_pairs, *rod.ends)
         assert chain is not None
-        first, second = (self.mechanism.pairs[number] for number in rod.pairs)
-        assert first.center is not None and second.center is not None
+        first, second = rod.centers
         inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
-        joints = (first.joint, *self._joints(chain), second.joint, *inner)
-        return Closure(ClosureKind.ROD, chain, joints, first.center, second.center, rod)
+        joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
+        return Closure(ClosureKind.ROD, chain, joints, first, second, rod)
 
     def _joints(self, chain: Chain) -> tuple[str, ...]:
-        return tuple(
-            self.mechanism.pairs[step.pair].joint
-            for step in chain
-            if step.pair not in self.free_pairs
-        )
+        return tuple(name for step in chain for name in self._joint_of(step.pair))
+
+    def _joint_of(self, pair: int) -> tuple[str, ...]:
+        """The names of the joints that a pair is of; none for one that no joint makes."""
+        if pair in self._joined_at_points:
+            return self._joined_at_points[pair].point.joints
+        if pair in self.free_pairs or pair in self.point_pairs:
+            return ()
+        return (self.mechanism.pairs[pair].joint,)
 
     def variables_of(self, pair: int) -> tuple[int, ...]:
-        """The variables of a pair, by number; none for a free one."""
-        if pair in self.free_pairs:
+        """The variables of a pair, by number; none for one that no joint makes."""
+        if pair >= len(self.mechanism.pairs):
             return ()
         return self.mechanism.pairs[pair].variables
 
@@ -268,7 +353,8 @@ class Structure:
     def placement(self, closure: Closure) -> Placement:
         """The frame in which a closure is written; that of the file where the numbers
         of a rotation are unknowns."""
-        if any(step.pair in self.embedded for step in closure.chain):
+        special = self.embedded | self.shifts
+        if any(step.pair in special for step in closure.chain):
             return Placement(closure.first, np.eye(3), self.unit)
         motions = [m for step in closure.chain for m in self.motions(step)]
         return Placement.of_chain(motions, self.unit)
@@ -278,15 +364,41 @@ class Structure:
     @cached_property
     def unknowns(self) -> tuple[Unknown, ...]:
         """The variables that are neither locked nor coupled to others, then the numbers
-        of embedded joints."""
+        of embedded joints, then those of points."""
         unknowns = [self._unknown(number) for number in self._leading]
         for pair in self._kept_spherical:
-            joint = self.mechanism.pairs[pair].joint
+            joint = self._joint_of(pair)[0]
             unknowns += [_number_of(joint, part) for part in ROTATION]
         for free in self.free_pairs.values():
             body = self.mechanism.bodies[free.moved]
             unknowns += [_number_of(body, part) for part in (*ROTATION, *TRANSLATION)]
+        for point in self.free_points:
+            unknowns += self._numbers_of_point(point)
         return tuple(unknowns)
+
+    def _numbers_of_point(self, point: FreePoint) -> list[Unknown]:
+        return [
+            Unknown(
+                f"{point.name}.{part}",
+                -1,
+                np.inf,
+                low / self.unit,
+                high / self.unit,
+                False,
+            )
+            for part, (low, high) in zip(TRANSLATION, point.limits, strict=False)
+        ]
+
+    @cached_property
+    def shifts(self) -> dict[int, tuple[int, ...]]:
+        """The numbers of the unknowns of every pair of a point, one a direction."""
+        first = len(self._leading) + sum(map(len, self.embedded.values()))
+        shifts = {}
+        for pair, point in self.point_pairs.items():
+            count = len(point.directions)
+            shifts[pair] = tuple(range(first, first + count))
+            first += count
+        return shifts
 
     @property
     def scales(self) -> np.ndarray:
@@ -370,6 +482,8 @@ class Structure:
         """The point (3,) about which an embedded spherical pair or a free one turns."""
         if pair in self.free_pairs:
             return self.free_pairs[pair].center
+        if pair in self._joined_at_points:
+            return self._joined_at_points[pair].point.center
         center = self.mechanism.pairs[pair].center
         assert center is not None
         return center
@@ -432,6 +546,17 @@ class Structure:
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
+
+
+def _ends_of(mechanism: Mechanism) -> dict[int, Ends]:
+    """The bodies and the number of unknowns of every pair of a mechanism."""
+    numbers = {body: number for number, body in enumerate(mechanism.bodies)}
+    ends = {}
+    for number, pair in enumerate(mechanism.pairs):
+        free = [k for k in pair.variables if mechanism.variables[k].locked is None]
+        count = len(free) if pair.center is None else SPHERICAL
+        ends[number] = Ends(numbers[pair.base], numbers[pair.moved], count)
+    return ends
 
 
 def _range_of_leader(

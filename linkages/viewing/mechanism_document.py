@@ -177,6 +177,7 @@ def _step(structure: Structure, step: TreeStep) -> StepDocument:
         rotation = {"columns": list(columns), "center": center.tolist()}
     numbers = structure.variables_of(step.pair)
     factors = [_factor(structure, number) for number in numbers]
+    factors += _shifts(structure, step.pair)
     return {
         "origin": step.origin,
         "goal": step.goal,
@@ -202,10 +203,29 @@ def _factor(structure: Structure, number: int) -> FactorDocument:
     }
 
 
+def _shifts(structure: Structure, pair: int) -> list[FactorDocument]:
+    """The slides of a pair that moves a free point; none for another one."""
+    if pair not in structure.shifts:
+        return []
+    directions = structure.point_pairs[pair].directions
+    return [
+        {
+            "is_turn": False,
+            "direction": direction.tolist(),
+            "point": [0.0, 0.0, 0.0],
+            "advance": 1.0,
+            "column": column,
+            "rate": 1.0,
+            "offset": 0.0,
+        }
+        for direction, column in zip(directions, structure.shifts[pair], strict=True)
+    ]
+
+
 def _rod(poses: Poses, rod: Rod) -> RodDocument:
     structure = poses.structure
     unit = structure.unit
-    centers = [structure.center(pair) for pair in rod.pairs]
+    centers = rod.centers
     inside = poses.inside_rod(rod)
     far = (inside[poses.holder(rod, 1)] @ np.append(centers[1], 1.0))[:3]
     parts: list[RodPartDocument] = []

@@ -20,6 +20,7 @@ from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
+from tests.linkages.mechanisms.frameworks import flexible_octahedron
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.test_couplings import five_bar
 from tests.linkages.mechanisms.test_curvature import one_of_each, rods
@@ -129,6 +130,7 @@ MECHANISMS = {
     "RSRS": lambda: rsrs().with_locks({"R1": 0.0}),
     "one of each": one_of_each,
     "rods": rods,
+    "octahedron": flexible_octahedron,
 }
 
 

@@ -29,7 +29,7 @@ def largest_gap(readout, found, points):
     return gap.max()
 
 
-@pytest.mark.parametrize("name", [*ALL, "rods", "geared"])
+@pytest.mark.parametrize("name", [*ALL, "rods", "geared", "octahedron"])
 def test_the_poses_in_the_browser_are_those_of_python_everywhere(show_shared, name):
     shown = show_shared(name)
     readout = Readout(mechanism_of(shown.atlas))
