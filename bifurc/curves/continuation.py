@@ -93,6 +93,8 @@ def trace_branch(
     backward = follow_curve(problem, Place(start, -tangent), settings, closing)
     if not len(backward.pieces):
         return forward
+    if not len(forward.pieces):
+        return backward.reversed()
     if backward.outcome is Outcome.CLOSED:
         # it came through where the other way stalled
         return backward.reversed()

@@ -186,7 +186,7 @@ class Track:
 
     def branch(self, end: End, periods: np.ndarray) -> Branch:
         """The branch of the pieces between the ends of the curve."""
-        if not len(self):
+        if not end.stop > end.begin:  # it leaves the region where it starts
             return self.empty_branch(end.outcome, periods)
         breaks = self.breaks(end.stop)
         first = breaks[1:].searchsorted(end.begin, side="right")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,15 +16,35 @@ from bifurc.files.atomic import replace_files
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["FigureAxes", "prepare_folder", "write_data", "write_figures"]
+__all__ = [
+    "FigureAxes",
+    "prepare_folder",
+    "remove_empty",
+    "write_data",
+    "write_figures",
+]
 
 
-def prepare_folder(folder: Path) -> None:
-    """Make sure that files can be written to ``folder``, which is made if need be;
-    raises `OSError` if not."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryFile(dir=folder):
-        pass
+def prepare_folder(folder: Path) -> list[Path]:
+    """Make sure that files can be written to ``folder``: the folders that were made for
+    that, the innermost first; raises `OSError` if it cannot be."""
+    chain = [folder, *folder.parents]
+    missing = [path for path in chain if not path.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError:
+        remove_empty(missing)
+        raise
+    return missing
+
+
+def remove_empty(folders: Iterable[Path]) -> None:
+    """Remove folders, the innermost first, as far as nothing is in them."""
+    for folder in folders:
+        with contextlib.suppress(OSError):
+            folder.rmdir()
 
 
 def write_data(atlas: Atlas, folder: Path, summary: str) -> list[Path]:

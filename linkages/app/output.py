@@ -54,11 +54,13 @@ def _discard_standard_output() -> None:
 
 def require_folder(out: Path) -> None:
     """Make sure, before anything is computed, that files can be written to ``out``;
-    raises `CommandError`."""
-    from linkages.app.files import prepare_folder
+    raises `CommandError`. What is made for that and stays empty, as the command ends in
+    an error, is removed again."""
+    from linkages.app.files import prepare_folder, remove_empty
 
     with writing_to(out):
-        prepare_folder(out)
+        made = prepare_folder(out)
+    click.get_current_context().call_on_close(lambda: remove_empty(made))
 
 
 def require_ending(option: str, out: Path, *endings: str) -> None:

@@ -200,3 +200,21 @@ def test_a_curve_that_starts_on_the_bounds_runs_from_bound_to_bound():
     speed = np.sqrt(1.0 + 4.0 * half**2)
     length = half * speed + 0.5 * np.arcsinh(2.0 * half)
     assert branch.length == pytest.approx(length, abs=1e-12)
+
+
+@pytest.mark.parametrize("direction", [1.0, -1.0])
+@pytest.mark.parametrize("low", [0.0, -0.5, 0.1])
+def test_a_curve_that_begins_at_a_bound_has_a_break_on_either_side_of_a_piece(
+    low, direction
+):
+    bounds = [(low, 2.0), (-2.0, 2.0)]
+    arc = FunctionProblem(lambda u: [u[0] ** 2 + u[1] ** 2 - 1], bounds=bounds)
+    start = np.array([0.0, 1.0])
+    branch = trace_branch(arc, start, np.array([direction, 0.0]))
+    assert branch.outcome is Outcome.LEFT_REGION
+    assert len(branch.breaks) == len(branch.pieces) + 1
+    is_outside = low > 0.0
+    assert (branch.length == 0.0) == is_outside
+    if not is_outside:
+        expected = 2 * np.arccos(low)
+        assert branch.length == pytest.approx(expected, rel=1e-12)

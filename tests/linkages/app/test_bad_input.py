@@ -654,3 +654,32 @@ def test_a_sweep_with_a_failed_member_has_its_own_exit_code(tmp_path, monkeypatc
 def idle_sweep(*arguments, **options):
     """A sweep that maps nothing."""
     yield SimpleNamespace(run=lambda progress: None)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "map typo.toml",
+        "map bennett --lock 2=40",
+        "map bennett --axes 1,9",
+        "map four-bennett-network --lock x=1",
+        "tolerance rigid.toml",
+        "solve empty.toml",
+    ],
+)
+def test_bad_input_leaves_no_folder(line, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("typo.toml", "rigid.toml", "empty.toml"):
+        Path(name).write_text(TEXTS[name], encoding="utf-8")
+    before = sorted(tmp_path.iterdir())
+    result = CliRunner().invoke(main, [*line.split(), "--out", "new/deep"])
+    assert result.exit_code
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_a_folder_that_was_there_remains(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("out").mkdir()
+    result = CliRunner().invoke(main, ["map", "nobody", "--out", "out"])
+    assert result.exit_code
+    assert Path("out").is_dir()
