@@ -169,6 +169,31 @@ is_one_joint = Decision(
     "rounding of poses gives 1e-15; read as joints one after the other, they move alike",
 )
 
+is_closed_as_it_stands = Decision(
+    "numbers of a file",
+    "the joints of a mechanism in a file fit as they stand, and their numbers are kept",
+    "largest distance of a joint's points over the characteristic length, or sine",
+    1e-13,
+    "joints of exact numbers fit to 1e-14; others are moved by as much as they miss",
+)
+is_one_direction = Decision(
+    "one direction twice",
+    "the second direction of a joint is along the first one, and the joint is refused",
+    "sine of the angle between them",
+    1e-9,
+    "directions of a file have 8 digits and more; what is meant to be different is 1e-2 "
+    "and more apart",
+)
+is_stopped = Decision(
+    "driver that is stopped",
+    "with joints held for it, a driver stays in a singular reference configuration",
+    "largest way of the driver from there to what random starts reach, rad or "
+    "characteristic lengths",
+    1e-3,
+    "starts 0.1 beside end 1e-5 beside a driver that is stopped, a double root, and 1e-2 "
+    "and more away where it moves",
+)
+
 is_network_closed = Decision(
     "closed network",
     "cells of a network close around an axis, or have a joint at its lock",

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from linkages.closed_forms.bennett_network import ring_angles
+from linkages.networks.network import Network, build_network
+from linkages.networks.plans import FOUR_BENNETT
 from linkages.source_figures.table import Agreement, Kind, SourceFigure, source_figures
 
 __all__ = ["PAGE", "figures_page", "lock_kind", "moving_joints"]
@@ -97,15 +98,14 @@ NETWORK = """
 ## Table 5.4.1 of the thesis
 
 All 28 ways to lock two joints of the network of four Bennett linkages, from its closed
-form (`linkages/closed_forms/bennett_network.py`), with twists of 35, 62, 81 and 48
+form (`linkages/networks/network.py`), with twists of 35, 62, 81 and 48
 degrees. The thesis prints 4/5 for 3/5 among the odd pairs, and leaves out 1/6, 2/7 and
 3/8 of the pairs n/n+3.
 
 """
 
 TWISTS = (35.0, 62.0, 81.0, 48.0)  # of a, b, c, d, degrees
-STEP = 1e-5  # rad, of the differences
-MOVES = 1e-6  # rate of a joint that turns, against rounding of the differences
+MOVES = 1e-6  # rate of a joint that turns, against rounding
 
 
 def figures_page() -> str:
@@ -126,23 +126,22 @@ def figures_page() -> str:
 
 def moving_joints(locks: tuple[int, int]) -> tuple[int, ...]:
     """The joints of the ring of the network, 1 to 8, that turn when two are locked."""
-    twists = dict(zip("abcd", np.radians(TWISTS), strict=True))
-    rates = _rates(twists)  # (8, 3)
+    alpha, *others = np.radians(TWISTS)
+    rates = _rates(build_network(FOUR_BENNETT, np.sin(alpha), alpha, *others))  # (8, 3)
     held = rates[[joint - 1 for joint in locks]]
     motion = rates @ np.linalg.svd(held)[2][-1]
     return tuple(int(joint) + 1 for joint in np.flatnonzero(np.abs(motion) > MOVES))
 
 
-def _rates(twists: dict[str, float]) -> np.ndarray:
+def _rates(network: Network) -> np.ndarray:
     """Derivatives (8, 3) of the angles of the ring by those of the joints 1, 3 and 5,
-    by central differences in a configuration of no symmetry."""
-    odd = np.array([1.0, -2.0, 0.7])
-    columns = []
-    for step in STEP * np.eye(3):
-        forward = ring_angles(twists, *(odd + step))
-        back = ring_angles(twists, *(odd - step))
-        columns.append((forward - back) / (2 * STEP))
-    return np.stack(columns, axis=1)
+    in a configuration of no symmetry."""
+    states = np.array([1.0, -2.0, 0.7, 0.3])
+    # the angle at joint 7 is less the sum of the others
+    of_odd = np.vstack([np.eye(3), -np.ones(3)])
+    of_states = [network.rates(total, states) for total in network.turns.values()]
+    rates: np.ndarray = np.array(of_states) @ of_odd
+    return rates
 
 
 def lock_kind(locks: tuple[int, int]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.decisions import is_start_solved
-from linkages.decisions import is_dependent_constraint
+from linkages.decisions import is_dependent_constraint, is_stopped
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.mechanism import Mechanism
@@ -14,7 +14,6 @@ __all__ = ["joints_to_hold"]
 
 STARTS = 20  # next to the reference configuration
 NEARBY = 0.1  # rad or characteristic lengths
-AWAY = 1e-3  # of a driver that moves; where it is stopped, starts end 1e-5 beside
 
 
 def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
@@ -93,7 +92,7 @@ def _moves(mechanism: Mechanism, held: dict[str, float], driver: str) -> bool:
     points, _ = problem.project(problem.reference[None])
     ends = _next_to(problem, points[0])
     way = np.abs(problem.difference(ends, points[0]))[:, column]
-    return bool(np.any(way > AWAY))
+    return not is_stopped(float(way.max(initial=0.0)))
 
 
 def _null_space(matrix: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
+from linkages.decisions import is_one_direction
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling
 from linkages.values import check_angle, check_direction
@@ -296,10 +297,8 @@ def _check_direction(joint: Joint, key: str) -> None:
 def _check_second_direction(joint: Joint) -> None:
     if joint.direction is None or joint.second_direction is None:
         return
-    sine = np.linalg.norm(
-        np.cross(_unit(joint.direction), _unit(joint.second_direction))
-    )
-    if sine < 1e-9:
+    across = np.cross(_unit(joint.direction), _unit(joint.second_direction))
+    if is_one_direction(float(np.linalg.norm(across))):
         what = f"second_direction of joint {joint.name}"
         value = list(joint.second_direction)
         raise GeometryError(what, value, "not parallel to its direction")

@@ -7,13 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from linkages.closed_forms.bennett_network import (
-    RING_LINKS,
-    angle_for,
-    inner_angle,
-    ring_angles,
-    ring_loop,
-)
+from linkages.networks.network import Network, build_network, other_angle
+from linkages.networks.plans import FOUR_BENNETT
 from linkages.source_figures.assembly import (
     Assembly,
     bar_between,
@@ -24,7 +19,6 @@ from linkages.source_figures.table import Content
 
 __all__ = ["network_assembly"]
 
-RING = ("1", "2", "3", "4", "5", "6", "7", "8")
 SPOKES = (("2", "c"), ("4", "b"), ("6", "d"), ("8", "a"))
 
 
@@ -36,8 +30,11 @@ def network_assembly(panel: Content) -> Assembly:
     the odd joints beyond them follow; joints of ``without`` are left out.
     """
     twists = {key: float(np.radians(value)) for key, value in panel["twists"].items()}
-    theta = _angles(twists, panel)
-    assembly = loop_assembly(ring_loop(twists), theta, RING, RING_LINKS)
+    network = _network(twists)
+    theta = network.ring_angles(_states(network, panel))
+    plan = network.plan
+    letters = [plan.bars[plan.ring_bar(place)] for place in range(len(plan.ring))]
+    assembly = loop_assembly(network.ring_loop, theta, plan.ring, letters)
     assembly.axes["0"] = fourth_joint(
         assembly.axes["8"], assembly.axes["1"], assembly.axes["2"]
     )
@@ -48,12 +45,20 @@ def network_assembly(panel: Content) -> Assembly:
     return assembly
 
 
-def _angles(twists: Mapping[str, float], panel: Content) -> np.ndarray:
-    """Joint angles (8,), rad, with the even joints straight that are to be."""
+def _network(twists: Mapping[str, float]) -> Network:
+    """The network with these twists (rad) of its links, each as long as their sine."""
+    length = float(np.sin(twists["a"]))
+    return build_network(FOUR_BENNETT, length, *(twists[name] for name in "abcd"))
+
+
+def _states(network: Network, panel: Content) -> np.ndarray:
+    """The angles (4,), rad, at the joints 1, 3, 5 and 7, with the even joints straight
+    that are to be."""
     odd = [float(np.radians(angle)) for angle in panel["odd"]]
     for part, joint in enumerate(("2", "4")):
         if joint in panel.get("straight", ()):
             # the even angle is pi - inner + following = 0
-            following = inner_angle(twists, part, odd[part]) - np.pi
-            odd[part + 1] = angle_for(twists, part + 1, following)
-    return ring_angles(twists, *odd)
+            inner = other_angle(network.factors[part], np.array(odd[part]))
+            following = other_angle(network.factors[part + 1], inner - np.pi)
+            odd[part + 1] = float(following)
+    return np.array([*odd, -sum(odd)])

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from linkages.decisions import is_one_direction
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.formats.assembly import (
     Assembly,
@@ -254,9 +255,9 @@ def _referred(
         reference = np.array(read_end(cursor, side.points[0])) - start
         along = (end - start) / np.linalg.norm(end - start)
         across = reference - (reference @ along) * along
-        if np.linalg.norm(across) < 1e-9 * np.linalg.norm(reference) or not np.any(
-            reference
-        ):
+        length = float(np.linalg.norm(reference))
+        is_along = is_one_direction(float(np.linalg.norm(across)), length)
+        if is_along or length == 0.0:
             allowed = "a point that is not on the axis"
             raise GeometryError(f"reference of joint {name}", "on its axis", allowed)
         frames.append(frame_along(start, along, across))

@@ -10,7 +10,11 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 
-from linkages.decisions import is_file_closed, is_file_nearly_closed
+from linkages.decisions import (
+    is_closed_as_it_stands,
+    is_file_closed,
+    is_file_nearly_closed,
+)
 from linkages.loop import GeometryError
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint
 from linkages.mechanisms.formats.closing import ClosedPoses, Closing
@@ -24,7 +28,6 @@ log = logging.getLogger(__name__)
 
 MOST_STARTS = 50  # random starts until one closes within the limits
 SEED = 0
-EXACT = 1e-13  # gap of a file that closes as it stands: its numbers are kept
 FULL_TURN = 2 * math.pi
 WITH_POINT = (
     JointKind.REVOLUTE,
@@ -152,7 +155,7 @@ def _closed(assembly: Assembly) -> ClosedPoses:
     if assembly.poses:
         given = np.array([assembly.poses[body] for body in assembly.bodies])
         closed = closing.measure(given)
-        if closed.gap > EXACT:
+        if not is_closed_as_it_stands(closed.gap):
             closed = closing.close(given)
     else:
         closed = _from_random_starts(assembly, closing)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from linkages.decisions import is_one_direction
 from linkages.loop import quoted
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, frame_along
 from linkages.mechanisms.formats.xml_tree import Element
@@ -194,7 +195,7 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
     cosine = 0.0
     if kind is JointKind.UNIVERSAL:
         second_axis = _axis(element, "axis2", place, model)
-        if np.linalg.norm(np.cross(axis, second_axis)) < 1e-9:
+        if is_one_direction(float(np.linalg.norm(np.cross(axis, second_axis)))):
             element.refuse("<axis2>", "along <axis>", "another direction")
         other = frame_along(place[:3, 3], second_axis)
         cosine = float(one[:3, 2] @ other[:3, 2])

@@ -98,3 +98,15 @@ def test_kinks_that_no_configuration_has_are_refused():
     kinks = dict(zip("2468", np.radians([30, 40, 30, 40]), strict=True))
     with pytest.raises(GeometryError, match="can be assembled"):
         lock_network(network(), kinks)
+
+
+def test_a_lock_at_an_odd_joint_holds_one_state_and_at_an_even_one_a_difference():
+    four = network("four-bennett-network")
+    one, other = (
+        four.ring_angles(np.array([1.0, -2.0, third, 1.0 - third]))
+        for third in (0.3, 2.3)
+    )
+    # joints 1, 2, 3 stand still, all others turn
+    gap = np.abs(np.sin((one - other) / 2))
+    assert gap[:3].max() < 1e-14
+    assert gap[3:].min() > 1e-2
