@@ -9,9 +9,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linkages.loop import GeometryError, quoted
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import JointKind, Limits
 
 __all__ = ["Assembly", "BodyJoint", "frame_along", "translation"]
+
+# what the variables of a joint of several are called
+PARTS = {
+    JointKind.CYLINDRICAL: ("turn", "slide"),
+    JointKind.UNIVERSAL: ("first", "second"),
+    JointKind.PLANAR: ("x", "y", "turn"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +31,8 @@ class BodyJoint:
     ``cosine`` is that of the angle between both. All variables are 0 where the frames
     coincide. A helical joint goes on by ``pitch`` in a full turn. ``limits``
     and ``locked`` have an entry for each variable, or none: rad and the file's unit of
-    length.
+    length. ``coupled`` has an entry for each variable that follows another one, by its
+    label in the mechanism.
     """
 
     name: str
@@ -34,6 +43,16 @@ class BodyJoint:
     pitch: float | None = None
     limits: tuple[Limits | None, ...] = ()
     locked: tuple[float | None, ...] = ()
+    coupled: dict[str, Coupling] = field(default_factory=dict)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What every variable is called in the mechanism."""
+        parts = PARTS.get(self.kind)
+        if parts is not None:
+            return tuple(f"{self.name}.{part}" for part in parts)
+        is_single = self.kind not in (JointKind.SPHERICAL, JointKind.RIGID)
+        return (self.name,) if is_single else ()
 
     @property
     def points(self) -> tuple[np.ndarray, np.ndarray]:

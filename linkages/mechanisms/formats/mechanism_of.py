@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import networkx as nx
@@ -14,8 +14,10 @@ from linkages.decisions import (
     is_closed_as_it_stands,
     is_file_closed,
     is_file_nearly_closed,
+    is_rounding_of_zero,
 )
 from linkages.loop import GeometryError
+from linkages.mechanisms.couplings import Coupling, leaders
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint
 from linkages.mechanisms.formats.closing import ClosedPoses, Closing
 from linkages.mechanisms.formats.starts import Starts
@@ -60,6 +62,7 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
     names = _merged_bodies(assembly, notes)
     numbers = {body: k for k, body in enumerate(assembly.bodies)}
     joints = []
+    values: dict[str, float] = {}
     for joint in assembly.joints:
         bodies = tuple(names[body] for body in joint.bodies)
         if bodies[0] == bodies[1]:
@@ -69,6 +72,8 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
             for body, frame in zip(joint.bodies, joint.frames, strict=True)
         ]
         joints.append(_placed(joint, bodies, frames[0], frames[1]))
+        values |= zip(joint.labels, _values(joint, frames[0], frames[1]), strict=False)
+    joints = _coupled(joints, assembly, values, notes)
     for note in notes:
         log.warning("%s: %s", assembly.name, note)
     return Mechanism(tuple(joints), assembly.name)
@@ -197,6 +202,56 @@ def _is_within_limits(assembly: Assembly, poses: np.ndarray) -> bool:
             if pair is not None and not pair[0] <= value <= pair[1]:
                 return False
     return True
+
+
+# --- couplings ------------------------------------------------------------------------
+
+
+def _coupled(
+    joints: list[Joint],
+    assembly: Assembly,
+    values: Mapping[str, float],
+    notes: list[str],
+) -> list[Joint]:
+    """The ``joints`` with the couplings of an assembly. ``values``, by label, are those
+    of the file where the variables of the joints are 0.
+
+    Variables that follow one that is left out follow the first of them.
+    """
+    couplings = {
+        label: coupling
+        for joint in assembly.joints
+        for label, coupling in joint.coupled.items()
+    }
+    if not couplings:
+        return joints
+    kept = {label for joint in joints for label in joint.labels}
+    labels = sorted({*couplings, *(one.to for one in couplings.values())} - kept)
+    labels += sorted(kept)
+    found = dict(zip(labels, leaders(labels, couplings), strict=True))
+    first_of: dict[int, str] = {
+        labels.index(label): label for label in kept - {*couplings}
+    }
+    result: dict[str, Coupling] = {}
+    for label in couplings:
+        if label not in kept:
+            notes.append(f"left out: the coupling of {label}, which lies in no loop")
+            continue
+        own = found[label]
+        to = first_of.setdefault(own.number, label)
+        if to == label:
+            notes.append(f"left out: the coupling of {label} to what lies in no loop")
+            continue
+        ratio = own.ratio / found[to].ratio
+        offset = own.offset - ratio * found[to].offset
+        offset += ratio * values[to] - values[label]
+        if is_rounding_of_zero(abs(offset)):
+            offset = 0.0
+        result[label] = Coupling(to, ratio, offset)
+    return [
+        replace(joint, coupled=tuple(result.get(label) for label in joint.labels))
+        for joint in joints
+    ]
 
 
 # --- joints ---------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from linkages.mechanisms.formats.assembly import frame_along, translation
 from linkages.mechanisms.formats.xml_tree import Element
 from linkages.mechanisms.joint import JointKind, Limits
 
-__all__ = ["Axis", "WorldJoint", "joints_of_axes"]
+__all__ = ["Axis", "AxisCoupling", "WorldJoint", "joints_of_axes"]
 
 TINY = 1e-300  # of coordinates that are all 0
 
@@ -29,8 +29,19 @@ class Axis(NamedTuple):
     limits: Limits | None
 
 
+class AxisCoupling(NamedTuple):
+    """An axis that is ``ratio`` times the axis called ``to``, plus ``offset``, and the
+    ``element`` that says so."""
+
+    to: str
+    ratio: float
+    offset: float
+    element: Element
+
+
 class WorldJoint(NamedTuple):
-    """A joint with the frames (4, 4) of both of its bodies, in the world at qpos0."""
+    """A joint with the frames (4, 4) of both of its bodies, in the world at qpos0;
+    ``axes`` are the names of the axes that its variables are."""
 
     name: str
     kind: JointKind
@@ -38,13 +49,14 @@ class WorldJoint(NamedTuple):
     second: np.ndarray
     limits: tuple[Limits | None, ...]
     locked: tuple[float | None, ...]
+    axes: tuple[str, ...]
     pitch: float | None = None
     is_reversed: bool = False  # the first frame is in the body, not in its parent
 
 
 def joints_of_axes(
     axes: list[Axis],
-    couplings: MutableMapping[str, tuple[str, float, Element]],
+    couplings: MutableMapping[str, AxisCoupling],
     locks: Mapping[str, float],
 ) -> list[WorldJoint]:
     """The joints that the ``axes`` of a body make, one after the other.
@@ -110,6 +122,10 @@ def _name(axes: list[Axis]) -> str:
     return "+".join(names)
 
 
+def _names(axes: list[Axis]) -> tuple[str, ...]:
+    return tuple(axis.name for axis in axes)
+
+
 def _locked(axes: list[Axis], locks: Mapping[str, float]) -> tuple[float | None, ...]:
     return tuple(locks.get(axis.name) for axis in axes)
 
@@ -117,33 +133,36 @@ def _locked(axes: list[Axis], locks: Mapping[str, float]) -> tuple[float | None,
 def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
     if axis.kind == "ball":
         frame = translation(axis.point)
-        return WorldJoint(axis.name, JointKind.SPHERICAL, frame, frame, (), ())
+        return WorldJoint(axis.name, JointKind.SPHERICAL, frame, frame, (), (), ())
     kind = JointKind.REVOLUTE if axis.kind == "hinge" else JointKind.PRISMATIC
     frame = frame_along(axis.point, axis.direction)
     locked = _locked([axis], locks)
-    return WorldJoint(axis.name, kind, frame, frame, (axis.limits,), locked)
+    limits, names = (axis.limits,), (axis.name,)
+    return WorldJoint(axis.name, kind, frame, frame, limits, locked, names)
 
 
 def _turn_and_slide(
     turn: Axis,
     slide: Axis,
-    couplings: MutableMapping[str, tuple[str, float, Element]],
+    couplings: MutableMapping[str, AxisCoupling],
     locks: Mapping[str, float],
 ) -> WorldJoint:
     frame = frame_along(turn.point, turn.direction)
-    other, advance, _ = couplings.get(slide.name, ("", 0.0, None))
-    if other == turn.name:
+    coupling = couplings.get(slide.name)
+    if coupling is not None and coupling.to == turn.name and not coupling.offset:
         del couplings[slide.name]
         locked = _locked([turn], locks)
-        pitch = 2 * math.pi * advance
+        pitch = 2 * math.pi * coupling.ratio
         kind = JointKind.HELICAL
         limits: tuple[Limits | None, ...] = (turn.limits,)
-        return WorldJoint(turn.name, kind, frame, frame, limits, locked, pitch)
+        names: tuple[str, ...] = (turn.name,)
+        return WorldJoint(turn.name, kind, frame, frame, limits, locked, names, pitch)
     axes = [turn, slide]
     limits = (turn.limits, slide.limits)
     name = _name(axes)
     kind = JointKind.CYLINDRICAL
-    return WorldJoint(name, kind, frame, frame, limits, _locked(axes, locks))
+    names = (turn.name, slide.name)
+    return WorldJoint(name, kind, frame, frame, limits, _locked(axes, locks), names)
 
 
 def _universal(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
@@ -151,7 +170,7 @@ def _universal(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
     limits = (axes[0].limits, axes[1].limits)
     locked = _locked(axes, locks)
     kind = JointKind.UNIVERSAL
-    return WorldJoint(_name(axes), kind, first, second, limits, locked)
+    return WorldJoint(_name(axes), kind, first, second, limits, locked, _names(axes))
 
 
 def _plane(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
@@ -160,4 +179,4 @@ def _plane(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
     limits = tuple(axis.limits for axis in axes)
     kind = JointKind.PLANAR
     locked = _locked(axes, locks)
-    return WorldJoint(_name(axes), kind, frame, frame, limits, locked)
+    return WorldJoint(_name(axes), kind, frame, frame, limits, locked, _names(axes))

@@ -4,25 +4,31 @@ Bodies stand in a tree, in the configuration qpos0. Loops are closed by <equalit
 <connect> between two bodies is a spherical joint, two are a revolute joint, more of
 them or a <weld> join the bodies rigidly. Several joints of a body follow each other;
 those that make a cylindrical, a universal, a planar or a helical joint are read as
-such. Masses, shapes, actuators and tendons are left out.
+such. Equality of two joints couples them. Masses, shapes, actuators and tendons are
+left out.
 """
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linkages.decisions import is_one_anchor
 from linkages.loop import GeometryError, quoted
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.formats.assembly import (
     Assembly,
     BodyJoint,
     frame_along,
     translation,
 )
-from linkages.mechanisms.formats.mjcf_composites import Axis, joints_of_axes
+from linkages.mechanisms.formats.mjcf_composites import (
+    Axis,
+    AxisCoupling,
+    joints_of_axes,
+)
 from linkages.mechanisms.formats.mjcf_poses import (
     Settings,
     pose_of,
@@ -52,7 +58,8 @@ class _Body:
 @dataclass
 class _Model:
     """What was read so far. ``names`` leads from every <body> to the `_Body` that it is
-    rigid with, ``sites`` to body and pose (4, 4) in the world."""
+    rigid with, ``sites`` to body and pose (4, 4) in the world, ``labels`` from every
+    axis to the label of the variable that it is."""
 
     settings: Settings
     bodies: list[_Body] = field(default_factory=list)
@@ -64,7 +71,8 @@ class _Model:
     joints: list[BodyJoint] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     locks: dict[str, float] = field(default_factory=dict)
-    couplings: dict[str, tuple[str, float, Element]] = field(default_factory=dict)
+    couplings: dict[str, AxisCoupling] = field(default_factory=dict)
+    labels: dict[str, str] = field(default_factory=dict)
 
 
 def read_mjcf(root: Element, name: str) -> Assembly:
@@ -204,22 +212,36 @@ def _add_chains(model: _Model) -> None:
                 np.linalg.inv(base.pose) @ joint.first,
                 np.linalg.inv(moved.pose) @ joint.second,
             )
-            model.joints.append(
-                BodyJoint(
-                    joint.name,
-                    joint.kind,
-                    (base.name, moved.name),
-                    frames,
-                    cosine=float(joint.first[:3, 2] @ joint.second[:3, 2]),
-                    pitch=joint.pitch,
-                    limits=joint.limits,
-                    locked=joint.locked,
-                )
+            body_joint = BodyJoint(
+                joint.name,
+                joint.kind,
+                (base.name, moved.name),
+                frames,
+                cosine=float(joint.first[:3, 2] @ joint.second[:3, 2]),
+                pitch=joint.pitch,
+                limits=joint.limits,
+                locked=joint.locked,
             )
+            model.joints.append(body_joint)
+            model.labels |= zip(joint.axes, body_joint.labels, strict=True)
             first = second
-    for one, (other, _, element) in model.couplings.items():
-        value = f"a coupling of joints {one} and {other}"
-        element.refuse("joint1, joint2", value, "those of a helical joint")
+    _add_couplings(model)
+
+
+def _add_couplings(model: _Model) -> None:
+    """Couple the variables of joints of the tree."""
+    coupled: dict[str, Coupling] = {}
+    for axis, (to, ratio, offset, element) in model.couplings.items():
+        for key, name in (("joint1", axis), ("joint2", to)):
+            if name not in model.labels:
+                value = f"{quoted(name)}, a ball joint or the slide of a helical one,"
+                element.refuse(key, value, "a hinge or a slide with a variable")
+        coupled[model.labels[axis]] = Coupling(model.labels[to], ratio, offset)
+    joints = []
+    for joint in model.joints:
+        own = {label: coupled[label] for label in joint.labels if label in coupled}
+        joints.append(replace(joint, coupled=own))
+    model.joints = joints
 
 
 # --- equality -------------------------------------------------------------------------
@@ -231,7 +253,7 @@ def _is_active(element: Element) -> bool:
 
 def _read_couplings(equality: Element, model: _Model) -> None:
     """Read what is said of joints: one alone is locked, two are coupled. Raises
-    `GeometryError` for a coupling that no joint makes."""
+    `GeometryError` for a coupling that is not linear."""
     for element in equality.children:
         element = model.settings.attributes(element, None)
         if element.tag in COUPLINGS and _is_active(element):
@@ -247,16 +269,19 @@ def _read_couplings(equality: Element, model: _Model) -> None:
             allowed = f"one of the joints {', '.join(model.axes)}"
             element.refuse(key, quoted(name), allowed)
         first, second = names
-        given = element.numbers("polycoef", (1, 2, 3, 4, 5)) or [0.0, 1.0]
-        coefficients = [*given, 0.0, 0.0][:2]
+        given = element.numbers("polycoef", (1, 2, 3, 4, 5)) or []
+        # those that are not given stay at MuJoCo's default
+        offset, ratio, *higher = [*given, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(given) :]]
         assert first is not None
-        if second is None:
-            model.locks[first] = coefficients[0]
-        elif any(given[2:]) or coefficients[0]:
-            value = f"a coupling of joints {first} and {second}"
-            element.refuse("polycoef", value, "that of a helical joint")
+        if second is None or (ratio == 0.0 and not any(higher)):
+            model.locks[first] = offset
+        elif any(higher):
+            value = f"a coupling of joints {first} and {second} that is not linear"
+            element.refuse("polycoef", value, "two numbers, and zeros after them")
+        elif first in model.couplings:
+            element.refuse("joint1", quoted(first), "coupled to one joint")
         else:
-            model.couplings[first] = (second, coefficients[1], element)
+            model.couplings[first] = AxisCoupling(second, ratio, offset, element)
 
 
 def _read_closures(equality: Element, model: _Model) -> None:

@@ -29,9 +29,7 @@ WORLD = "world"
 
 def mechanism_mjcf(mechanism: Mechanism) -> str:
     """The text of an MJCF model in which qpos0 is the reference configuration and joint
-    coordinates, called after the variables, have their values. Masses are made up.
-    Raises `GeometryError` where joints are coupled."""
-    mechanism.check_uncoupled("an MJCF file")
+    coordinates, called after the variables, have their values. Masses are made up."""
     return _Writer(mechanism).text()
 
 
@@ -89,9 +87,15 @@ class _Writer:
         kind = self._joint(pair).kind
         if kind is JointKind.RIGID:
             return True
-        variables = [self.mechanism.variables[k] for k in pair.variables]
-        is_free = all(v.limits is None and v.locked is None for v in variables)
-        return kind in CONNECTED and is_free
+        leaders = [one.leader.number for one in self.mechanism.variables]
+        for k in pair.variables:
+            variable = self.mechanism.variables[k]
+            is_alone = leaders[k] == k and leaders.count(k) == 1
+            if variable.limits is not None or variable.locked is not None:
+                return False
+            if not is_alone:
+                return False
+        return kind in CONNECTED
 
     def _joint(self, pair: Pair) -> Joint:
         return self.mechanism.joint(pair.joint)
@@ -181,6 +185,9 @@ class _Writer:
         motion, label = variable.motion, variable.label
         if variable.locked is not None:
             self._couple(label, None, variable.locked, 0.0)
+        elif self.mechanism.variables[variable.leader.number].label != label:
+            leader = self.mechanism.variables[variable.leader.number].label
+            self._couple(label, leader, variable.leader.offset, variable.leader.ratio)
         kind = "hinge" if motion.is_turn else "slide"
         sign = 1.0 if is_forward else -1.0
         lines = [_axis_line(label, kind, motion, sign, variable.limits)]

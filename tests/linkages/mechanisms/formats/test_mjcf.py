@@ -1,4 +1,5 @@
 import logging
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -6,11 +7,38 @@ import pytest
 
 from linkages import load, map_linkage
 from linkages.file import LinkageFileError
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.formats.mjcf_writing import mechanism_mjcf
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
 from tests.linkages.mechanisms.formats.examples import EXAMPLES, assert_same_geometry
+from tests.linkages.mechanisms.test_couplings import five_bar
 
 CONFIGURATIONS = 50
+
+
+def replace_limits(mechanism, name, limits):
+    joints = [
+        replace(joint, limits=(limits,)) if joint.name == name else joint
+        for joint in mechanism.joints
+    ]
+    return Mechanism(tuple(joints), mechanism.name)
+
+
+def slider_with_rack():
+    """A five-bar with a slide in place of the last turn, which follows the first
+    one."""
+    *joints, last = five_bar().joints
+    rack = Joint(
+        "P",
+        "prismatic",
+        last.bodies,
+        last.point,
+        (1.0, 0.3, 0.0),
+        coupled=(Coupling("A", 0.4),),
+    )
+    return Mechanism((*joints, rack))
 
 
 def read(tmp_path, text, name="m.xml"):
@@ -91,6 +119,71 @@ def test_locks_and_limits_survive(tmp_path):
     slide = again.joint("J4")
     assert slide.locked == (-0.25,)
     assert slide.limits == ((-5.0, 1.0),)
+
+
+GEARED = {
+    "gears": five_bar(E=Coupling("A", 0.5, 0.3)),
+    "a chain of gears": five_bar(E=Coupling("D", -1.0), D=Coupling("A", 0.5)),
+    "a limit": replace_limits(five_bar(E=Coupling("A", -1.0)), "A", (-1.0, 2.0)),
+    "a slide": slider_with_rack(),
+}
+
+
+@pytest.mark.parametrize("name", GEARED)
+def test_couplings_are_written_and_read_again(name, tmp_path, caplog):
+    mechanism = GEARED[name]
+    with caplog.at_level(logging.WARNING):
+        again = read(tmp_path, mechanism_mjcf(mechanism))
+    assert not caplog.records
+    assert again.is_coupled
+    leaders = {
+        one.label: (mechanism.variables[one.leader.number].label, *one.leader[1:])
+        for one in mechanism.variables
+    }
+    for one in again.variables:
+        to = again.variables[one.leader.number].label
+        assert leaders[one.label] == (to, *one.leader[1:])
+
+
+def test_coupled_joints_have_their_values_in_mujoco():
+    mechanism = GEARED["gears"]
+    atlas = map_linkage(mechanism)
+    readout = Readout(mechanism)
+    model, data = simulated(mechanism)
+    assert atlas.forms
+    for form in atlas.forms:
+        for point in form.branch.sample(CONFIGURATIONS):
+            set_configuration(model, data, mechanism, readout, point)
+            mujoco.mj_forward(model, data)
+            assert np.abs(equality(data)[0]).max() < 1e-9
+
+
+def four_bar_and_gears(*couplings):
+    """The four-bar below, a wheel outside of the loop, and couplings."""
+    wheel = '<body name="wheel" pos="5 0 0"><joint name="W"/></body>'
+    text = four_bar(equality="".join(couplings))
+    return text.replace('<body name="ball"', wheel + '<body name="ball"')
+
+
+def test_joints_that_follow_one_outside_of_the_loops_follow_each_other(
+    tmp_path, caplog
+):
+    text = four_bar_and_gears(
+        '<joint joint1="A" joint2="W" polycoef="0.1 2 0 0 0"/>',
+        '<joint joint1="D" joint2="W" polycoef="0.5 1 0 0 0"/>',
+    )
+    mechanism = read(tmp_path, text)
+    (coupling,) = mechanism.joint("D").coupled
+    assert coupling.to == "A"
+    assert coupling.ratio == pytest.approx(0.5)
+    assert coupling.offset == pytest.approx(0.5 - 0.5 * 0.1)
+    assert "left out: the coupling of A to what lies in no loop" in caplog.text
+
+
+def test_a_joint_outside_of_the_loops_follows_nothing(tmp_path, caplog):
+    text = four_bar_and_gears('<joint joint1="W" joint2="A"/>')
+    assert not read(tmp_path, text).is_coupled
+    assert "left out, as they lie in no loop: joints W" in caplog.text
 
 
 FOUR_BAR = """
@@ -181,13 +274,21 @@ def test_sites_that_miss_each_other_are_closed_and_the_gap_is_said(tmp_path, cap
     assert "closure gap" in caplog.text
 
 
-COUPLED = '<joint joint1="A" joint2="D" polycoef="0 -1 0 0 0"/>'
+COUPLED = '<joint joint1="A" joint2="D" polycoef="0 -1 0.5 0 0"/>'
 BAD = {
     "no XML": ("<mujoco><worldbody>", "line 1"),
     "an entity": ('<!DOCTYPE m [<!ENTITY a "b">]><mujoco/>', "<!DOCTYPE m>"),
     "another document": ("<html/>", "<mujoco> or <sdf>"),
     "no loop": ("<mujoco/>", "without a closed loop"),
     "a coupling": (four_bar(equality=COUPLED), "a coupling of joints A and D"),
+    "a coupling to itself": (
+        four_bar(equality='<joint joint1="A" joint2="A"/>'),
+        "coupled of A",
+    ),
+    "two couplings of a joint": (
+        four_bar(equality=2 * '<joint joint1="A" joint2="B"/>'),
+        "coupled to one joint",
+    ),
     "a tendon": (four_bar(equality='<tendon tendon1="t"/>'), "<tendon>"),
     "an unknown body": (four_bar(equality='<weld body1="hook"/>'), '"hook"'),
     "an unknown site": (four_bar(equality='<connect site1="tip" site2="x"/>'), '"x"'),
