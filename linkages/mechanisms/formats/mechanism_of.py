@@ -73,6 +73,9 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
         ]
         joints.append(_placed(joint, bodies, frames[0], frames[1]))
         values |= zip(joint.labels, _values(joint, frames[0], frames[1]), strict=False)
+    if not joints:
+        allowed = "one with a joint that can move"
+        raise GeometryError("mechanism", "rigid: no joint is left in a loop", allowed)
     joints = _coupled(joints, assembly, values, notes)
     for note in notes:
         log.warning("%s: %s", assembly.name, note)

@@ -293,9 +293,13 @@ def _read_closures(equality: Element, model: _Model) -> None:
             continue
         name = element.attributes.get("name", f"{element.tag}{number}")
         if element.tag == "weld":
-            model.joints.append(_read_weld(element, name, model))
+            weld = _read_weld(element, name, model)
+            if weld.bodies[0] != weld.bodies[1]:
+                model.joints.append(weld)
             continue
         anchor = _read_connect(element, name, model)
+        if anchor.bodies[0] is anchor.bodies[1]:
+            continue  # it holds whatever the joints do
         key = anchor.bodies[0].name, anchor.bodies[1].name
         if key[::-1] in groups:
             anchor = anchor.reversed()
