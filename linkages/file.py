@@ -14,9 +14,9 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
     points = [[0, 0, 0], [1, 0, 0], ...]
     directions = [[0, 0, 1], [0, 1, 1], ...]
 
-What has ``[[joints]]``, ``[[loops]]``, or ``bars`` between ``[points]``, is a mechanism
-(`linkages.mechanisms.file`), and so are crease patterns and the files of other
-programs, told by the endings of their names (`linkages.mechanisms.fold`,
+What has ``[[joints]]``, ``[[loops]]``, or ``bars`` or ``arcs`` between ``[points]`` is a
+mechanism (`linkages.mechanisms.file`), and so are crease patterns and the files of
+other programs, told by the endings of their names (`linkages.mechanisms.fold`,
 `linkages.mechanisms.formats`).
 """
 
@@ -64,7 +64,7 @@ Content: TypeAlias = Mapping[str, object]
 TABLE = ("lengths", "twists", "offsets")
 AXES = ("points", "directions")
 FOLD = ".fold"
-OF_MECHANISMS = ("joints", "bars", "loops")
+OF_MECHANISMS = ("joints", "bars", "arcs", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
 FOREIGN_ENDINGS = (".world", ".xml", ".mjcf", ".sdf")  # of other programs
 FULL_TURN = 2 * math.pi

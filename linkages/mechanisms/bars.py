@@ -8,13 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from linkages.decisions import is_bar_assembled
 from linkages.loop import GeometryError, check_number, quoted
+from linkages.mechanisms.figure_bodies import (
+    Piece,
+    bodies_of_figure,
+    check_point,
+    read_fixed,
+)
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -22,7 +27,6 @@ __all__ = ["read_bars"]
 
 Content: TypeAlias = Mapping[str, Any]
 
-FRAME = "frame"
 POLISHING_STEPS = 12
 EPSILON = float(np.finfo(float).eps)
 ROUNDING = 16 * EPSILON  # of a length, over the extent
@@ -75,7 +79,7 @@ def read_bars(content: Content, name: str) -> Mechanism:
     points = _read_points(content)
     on_bars = _read_points_on_bars(content, points)
     known = [*points, *on_bars]
-    fixed = _read_fixed(content, known)
+    fixed = read_fixed(content, known)
     bars = _read_bars(content, known)
     system = _Bars(points, fixed, bars, on_bars)
     places = _assembled(system)
@@ -122,23 +126,6 @@ def _read_points_on_bars(
     return on_bars
 
 
-def _read_fixed(content: Content, known: Sequence[str]) -> tuple[str, ...]:
-    fixed = content.get("fixed", [])
-    if not isinstance(fixed, list):
-        raise GeometryError("fixed", quoted(fixed), "a list of names of points")
-    for name in fixed:
-        _check_point("fixed", name, known)
-        if fixed.count(name) > 1:
-            raise GeometryError("fixed", quoted(name), "named once")
-    return tuple(fixed)
-
-
-def _check_point(what: str, name: object, known: Sequence[str]) -> None:
-    if name not in known:
-        allowed = f"one of the points {', '.join(known)}"
-        raise GeometryError(what, quoted(name), allowed)
-
-
 def _read_bars(content: Content, known: Sequence[str]) -> tuple[Bar, ...]:
     rows = content.get("bars")
     if not isinstance(rows, list) or not rows:
@@ -149,7 +136,7 @@ def _read_bars(content: Content, known: Sequence[str]) -> tuple[Bar, ...]:
         if not isinstance(row, list) or len(row) not in (2, 3):
             raise GeometryError(what, quoted(row), '["A", "B"] or ["A", "B", length]')
         for name in row[:2]:
-            _check_point(what, name, known)
+            check_point(what, name, known)
         if row[0] == row[1]:
             raise GeometryError(what, row[:2], "a bar between two points")
         if any({bar.start, bar.end} == set(row[:2]) for bar in bars):
@@ -369,55 +356,20 @@ def _joints(system: _Bars, places: Mapping[str, complex]) -> list[Joint]:
 
 
 def _bodies(system: _Bars, places: Mapping[str, complex]) -> dict[str, list[str]]:
-    """The points on every body, the frame first.
+    """The points on every body, the frame first."""
+    bars = {bar.name: Piece(bar.start, bar.end) for bar in system.bars}
+    for name, bar in bars.items():
+        if places[bar.end] == places[bar.start]:
+            raise GeometryError(f"bar {name}", "of length 0", "longer")
+    on_bars = {name: Piece(one.start, one.end) for name, one in system.on_bars.items()}
 
-    A bar between two points of one body is rigid with it, and no body of its own,
-    wherever it stands in the list.
-    """
-    bodies: dict[str, list[str]] = {}
-    if system.fixed:
-        bodies[FRAME] = list(system.fixed)
-    _add_points_on(bodies, system)
-    for bar in system.bars:
-        length = abs(places[bar.end] - places[bar.start])
-        if length == 0.0:
-            raise GeometryError(f"bar {bar.name}", "of length 0", "longer")
-        bodies[bar.name] = [bar.start, bar.end]
-    _add_points_on(bodies, system)
-    bodies = _without_parts(bodies, system, places)
+    def are_apart(points: Sequence[str]) -> bool:
+        return len({places[point] for point in points}) > 1
+
+    bodies = bodies_of_figure(system.fixed, bars, on_bars, are_apart)
     for name, one in system.on_bars.items():
         if not any(name in points for points in bodies.values()):
             ends = f"{one.start} and {one.end}"
             allowed = f"on a bar; there is none between {ends}"
             raise GeometryError(f"points_on_bars {name}", f"{ends}", allowed)
     return bodies
-
-
-def _without_parts(
-    bodies: dict[str, list[str]], system: _Bars, places: Mapping[str, complex]
-) -> dict[str, list[str]]:
-    """The bodies, those that share two points or more at different places as one.
-
-    That is called as the frame is, or as the one with the most points, so that it does
-    not depend on the order of the bars.
-    """
-    ranked = sorted(bodies, key=lambda name: (name != FRAME, -len(bodies[name])))
-    for first, second in combinations(ranked, 2):
-        common = [point for point in bodies[first] if point in bodies[second]]
-        if len({places[point] for point in common}) < 2:
-            continue
-        joined = dict(bodies)
-        others = joined.pop(second)
-        new = [point for point in others if point not in joined[first]]
-        joined[first] = joined[first] + new
-        _add_points_on(joined, system)
-        return _without_parts(joined, system, places)
-    return bodies
-
-
-def _add_points_on(bodies: dict[str, list[str]], system: _Bars) -> None:
-    """Add the points on bars to the body that holds both ends of their bar."""
-    for name, one in system.on_bars.items():
-        for points in bodies.values():
-            if {one.start, one.end} <= set(points) and name not in points:
-                points.append(name)

@@ -1,9 +1,10 @@
 """Reading a mechanism from the content of a TOML file.
 
-Three formats, told apart by their keys: ``[[joints]]``, axes in one closed
+Four formats, told apart by their keys: ``[[joints]]``, axes in one closed
 configuration, ``[[loops]]``, tables of Denavit and Hartenberg that share joints
-(`linkages.mechanisms.loops`), and ``bars`` between ``[points]`` of a plane
-(`linkages.mechanisms.bars`).
+(`linkages.mechanisms.loops`), ``bars`` between ``[points]`` of a plane
+(`linkages.mechanisms.bars`), and ``arcs`` between ``[points]`` of a sphere
+(`linkages.mechanisms.arcs`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from dataclasses import replace
 from typing import Any, TypeAlias
 
 from linkages.loop import GeometryError, check_number, quoted
+from linkages.mechanisms.arcs import read_arcs
 from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint, Motion
@@ -28,6 +30,7 @@ Content: TypeAlias = Mapping[str, Any]
 
 OF_FILE = ("name", "angles", "joints")
 OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars")
+OF_ARCS = ("name", "angles", "fixed", "arcs", "points", "points_on_arcs")
 OF_LOOPS = ("name", "angles", "loops")
 OF_JOINT = (
     "name",
@@ -55,6 +58,9 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     if "loops" in content and "joints" not in content:
         _check_keys("key", content, OF_LOOPS)
         return read_loops(content["loops"], given, _angle_unit(content))
+    if "arcs" in content and "joints" not in content:
+        _check_keys("key", content, OF_ARCS)
+        return read_arcs(content, given, _angle_unit(content))
     if "joints" not in content:
         _check_keys("key", content, OF_BARS)
         return read_bars(content, given)
