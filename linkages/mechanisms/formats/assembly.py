@@ -14,6 +14,7 @@ from linkages.mechanisms.joint import JointKind, Limits
 
 __all__ = ["Assembly", "BodyJoint", "frame_along", "translation"]
 
+LARGEST = 1e100  # coordinate
 # what the variables of a joint of several are called
 PARTS = {
     JointKind.CYLINDRICAL: ("turn", "slide"),
@@ -67,8 +68,8 @@ class Assembly:
 
     ``poses`` (4, 4), by body, are a configuration in which the joints fit, or nearly
     so; empty where the file gives none. ``notes`` say what of a file was left out.
-    Raises `GeometryError` where a joint names a body that is not there, or a name is
-    given twice.
+    Raises `GeometryError` where a joint names a body that is not there, a name is given
+    twice, or a coordinate is beyond all measure.
     """
 
     name: str
@@ -87,9 +88,17 @@ class Assembly:
                     what = f"body of joint {joint.name}"
                     allowed = f"one of {', '.join(self.bodies)}"
                     raise GeometryError(what, quoted(body), allowed)
+            _check_size(f"point of joint {joint.name}", joint.points)
             if joint.bodies[0] == joint.bodies[1]:
                 what = f"bodies of joint {joint.name}"
                 raise GeometryError(what, list(joint.bodies), "two different bodies")
+
+
+def _check_size(what: str, points: Sequence[np.ndarray]) -> None:
+    """Raise `GeometryError` for coordinates whose squares are beyond all numbers."""
+    largest = float(np.abs(points).max())
+    if largest > LARGEST:
+        raise GeometryError(what, f"at {largest:.3g}", f"within {LARGEST:.0e}")
 
 
 def _check_names(what: str, names: Sequence[str]) -> None:

@@ -111,6 +111,10 @@ BAD = {
         '[LINKS]\na: body "x.off"\nb\n[JOINTS]\nspherical: a 0 b (0,0,0)',
         "x.off",
     ),
+    "a point beyond all measure": (
+        "[LINKS]\na\nb\n[JOINTS]\nspherical: a (1e308,0,0) b (0,0,0)",
+        "point of joint J1: at 1e+308",
+    ),
     "no loop": (
         "[LINKS]\na\nb\n[JOINTS]\nspherical: a (0,0,0) b (0,0,0)",
         "without a closed loop",
