@@ -58,6 +58,7 @@ NEEDS = {
     JointKind.PLANAR: _Needs(("direction",), ("point", "second_direction")),
     JointKind.RIGID: _Needs((), ("point",)),
 }
+LARGEST = 1e100  # coordinate
 GEOMETRY = ("point", "direction", "second_direction", "pitch")
 
 
@@ -106,6 +107,7 @@ class Joint:
             if value is not None:
                 vector = _checked_vector(f"{key} of joint {self.name}", value)
                 object.__setattr__(self, key, vector)
+        _check_size(self)
         _check_needs(self)
         for key in ("direction", "second_direction"):
             _check_direction(self, key)
@@ -271,6 +273,13 @@ def _checked_vector(what: str, row: object) -> Vector:
         check_number(f"{what}[{k}]", coordinate)
     x, y, z = (float(coordinate) for coordinate in coordinates)
     return (x, y, z)
+
+
+def _check_size(joint: Joint) -> None:
+    """Refuse coordinates whose squares are beyond all numbers."""
+    if joint.point is not None and np.abs(joint.point).max() > LARGEST:
+        allowed = f"of coordinates up to {LARGEST:.0e}"
+        raise GeometryError(f"point of joint {joint.name}", list(joint.point), allowed)
 
 
 def _check_needs(joint: Joint) -> None:

@@ -10,11 +10,10 @@ import numpy as np
 
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import JointKind, Limits
+from linkages.mechanisms.joint import LARGEST, JointKind, Limits
 
 __all__ = ["Assembly", "BodyJoint", "frame_along", "translation"]
 
-LARGEST = 1e100  # coordinate
 # what the variables of a joint of several are called
 PARTS = {
     JointKind.CYLINDRICAL: ("turn", "slide"),

@@ -155,3 +155,10 @@ def test_errors_of_limits_and_locks_are_in_the_unit_of_the_file(tmp_path):
         read(tmp_path, four_bar("limits = [-90, 90]\nlocked = 120\n"))
     with pytest.raises(LinkageFileError, match=r"limits of joint D: \[90, -90\]"):
         read(tmp_path, four_bar("limits = [90, -90]\n"))
+
+
+def test_a_point_beyond_all_measure_is_refused(tmp_path):
+    path = tmp_path / "m.toml"
+    path.write_text(four_bar().replace("[0, 1, 0]", "[0, 1e308, 0]"))
+    with pytest.raises(LinkageFileError, match="point of joint B"):
+        linkages.load(path)
