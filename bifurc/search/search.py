@@ -32,6 +32,7 @@ from bifurc.decisions import (
     is_weakly_isolated,
     may_be_crossed,
     may_be_mobile,
+    may_be_shaky,
     may_be_singular,
     may_nearly_move,
     nearly_closes,
@@ -74,6 +75,7 @@ TINY = 1e-300  # keeps a singular value of zero from being divided by
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
 BESIDE = 16  # nodes before and after a deep place that are higher
+LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
 CUSP_REACH = 0.2  # how far from there the cusp may lie
 
@@ -398,6 +400,9 @@ class Search:
         number = findings.branch_along(branch)
         if number is not None:
             return _Trace(SeedFate(Fate.ON_FORM, number), [])
+        fate = self._retrace_lower_rank(branch)
+        if fate is not None:
+            return _Trace(fate, [])
         misclosure = largest_misclosure(self.problem, branch)
         has_failed = branch.outcome is Outcome.STALLED
         if not is_solution(misclosure) or (
@@ -433,6 +438,22 @@ class Search:
             if best.doubt == NO_DOUBT:
                 break
         return _ExaminedBranch(best, starts)
+
+    def _retrace_lower_rank(self, branch: Branch) -> SeedFate | None:
+        """Trace a branch again where F' has a lower rank all along it, as it was
+        corrected to half the digits only; None where it has not."""
+        if self.problem.n < 2:
+            return None
+        points = branch.sample(LOOKS_ALONG)
+        values = singular_values(self.problem, points)
+        if not np.all(may_be_shaky(values[:, self.problem.n - 2])):
+            return None
+        clearest = np.argmax(values[:, self.problem.n - 3])
+        direction = lower_rank_direction(self.problem, points[clearest])
+        if direction is None:
+            return None
+        fate = self._trace_lower_rank(points[clearest], direction)
+        return fate if fate.fate is Fate.ON_FORM else None
 
     def _trace_lower_rank(self, point: np.ndarray, direction: np.ndarray) -> SeedFate:
         """Trace the curve of lower rank through a point (n,); what may cross it is left

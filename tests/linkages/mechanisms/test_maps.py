@@ -180,6 +180,9 @@ def test_the_smallest_reconfigurable_linkage_with_slides():
     closed = [form for form in atlas.forms if form.branch.closed]
     assert len(closed) == 2
     assert [len(point.passes) for point in atlas.bifurcations] == [3, 3]
+    # nothing besides at the limits: the lines are known as double ones all along
+    assert len(atlas.points) == 2
+    assert sorted(form.rank for form in atlas.forms) == [5, 5, 6, 6]
     readout = Readout(mechanism)
     slides = [
         np.abs(readout.values(form.branch.sample(200))[:, [2, 4, 6]]).max()
