@@ -1,6 +1,7 @@
 """A search in units of its own: the same atlas whatever the user's units are."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +9,11 @@ from scipy.sparse import diags_array, vstack
 from scipy.special import ellipe
 
 import bifurc
+from bifurc.branch import Outcome
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.search.unit_problem import in_own_units
 from bifurc.seeds import Audit
+from bifurc.systems.equation_file import read_equations
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 
@@ -303,3 +306,13 @@ def test_many_unknowns_are_counted_in_one_unit_with_a_sparse_jacobian(is_recorde
     expected = unit * problem.jacobian(unit * point).toarray()
     assert own.jacobian(point).toarray() == pytest.approx(expected, rel=1e-12)
     assert own.magnitude == unit * problem.magnitude
+
+
+def test_a_curve_on_whose_flat_end_all_starts_stop_is_followed_whole():
+    # an amplifier that is saturated at nearly every start
+    file = Path(__file__).parents[3] / "data" / "problems" / "trigger_circuit.toml"
+    atlas = read_equations(file).explore()
+    (form,) = atlas.forms
+    assert form.branch.outcome is Outcome.LEFT_REGION
+    outputs = sorted(fold.u[5] for fold in atlas.diagram.folds)
+    assert outputs == pytest.approx([1.16602, 9.60900], abs=1e-5)
