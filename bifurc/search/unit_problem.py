@@ -69,6 +69,7 @@ OF_ONE_UNIT = ("hessian", "seeds", "curvature_bound", "complex_curvature")
 CURVES = 3  # that are followed out of a region that has shrunk
 SAMPLES = 200  # of each of them
 WAY_OUT = 1e5  # scales that it is followed for
+BEYOND = 0.5  # widths of the region by which it then leaves it
 OUTER = 0.1  # share of the ends of starts that may lie elsewhere than the rest
 
 
@@ -417,7 +418,7 @@ def _widened(own: UnitProblem, region: np.ndarray, is_point: np.ndarray) -> np.n
         samples = own.own_units.outwards(branch.sample(SAMPLES))
         low, high = samples.min(axis=0), samples.max(axis=0)
         widths = np.diff(region, axis=1)[:, 0]
-        leaves = np.maximum(region[:, 0] - low, high - region[:, 1]) > 0.5 * widths
+        leaves = np.maximum(region[:, 0] - low, high - region[:, 1]) > BEYOND * widths
         is_wider = leaves & finite & ~is_point
         hull = np.column_stack(
             [np.minimum(region[:, 0], low), np.maximum(region[:, 1], high)]
