@@ -161,9 +161,15 @@ class FunctionProblem(NumericalProblem):
         if periods is not None:
             self.periods = floats_of("periods", periods)
         self._check_lengths(n)
+        self._is_assumed = np.zeros((n, 2), dtype=bool)
         self.bounds = _without_limits_of_circles(self.bounds, self.periods)
         low, high = self._finite_bounds
         self.scale = float(np.median(high - low)) / 4.0
+
+    @property
+    def has_assumed_bounds(self) -> np.ndarray:
+        """Which ends of the bounds (n, 2) were chosen, as none were given."""
+        return self._is_assumed
 
     @property
     def _finite_bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -196,6 +202,7 @@ class FunctionProblem(NumericalProblem):
         low, high = np.where(np.isfinite(self.bounds), self.bounds, about_zero).T
         self.scale = float(np.median(high - low)) / 4.0
         self.bounds = np.where(is_open, FARTHEST * about_zero, self.bounds)
+        self._is_assumed = is_open
         rng = np.random.default_rng(0)
         points = rng.uniform(low, high, (PROBES, self.n))
         self._measure(self._probes_with_value(points))

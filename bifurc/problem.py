@@ -189,9 +189,19 @@ class Problem(ABC):
     is_exact: bool = False
 
     @property
+    def has_assumed_bounds(self) -> np.ndarray:
+        """Which ends of the bounds (n, 2) were chosen, as none were given."""
+        return np.zeros((self.n, 2), dtype=bool)
+
+    @property
     def n(self) -> int:
         """Number of unknowns."""
         return len(self.names)
+
+    @property
+    def reach(self) -> float:
+        """The unit of the length that a curve may have before it is cut off."""
+        return self.scale
 
     def take_unknowns_of(self, other: Problem) -> None:
         """Take the unknowns of another problem, with its region and its sizes."""

@@ -31,7 +31,8 @@ CLEAR = 10.0  # times the radius of least caution: from there on a bend is passe
 
 @dataclass(frozen=True)
 class TraceSettings:
-    """How a curve is followed. Lengths are in units of the problem's ``scale``.
+    """How a curve is followed. Lengths are in units of the problem's ``scale``, the
+    ``max_length`` in those of its ``reach``.
 
     ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the
     ``shortest`` and ``longest`` trusted radius, and the ``max_length`` after which
@@ -135,7 +136,7 @@ def _end_of_patience(
         end = _overcome_stall(problem, track, settings)
     elif _is_clear(problem, march, settings):
         track.allow_long_steps_only()
-    if end is None and track.reached > settings.max_length * problem.scale:
+    if end is None and track.reached > settings.max_length * problem.reach:
         end = End(Outcome.STEP_LIMIT, track.reached)
     return end
 
@@ -151,7 +152,7 @@ def _march(
         longest=settings.longest * problem.scale,
         count=AT_A_BEND if track.is_at_a_bend else max(AT_ONCE, len(track)),
         closing=closing,
-        length=settings.max_length * problem.scale - track.reached,
+        length=settings.max_length * problem.reach - track.reached,
         anchor=Anchor(*track.begin, same_place(settings.tolerance) * problem.scale),
     )
     if closing > is_solution.threshold and len(

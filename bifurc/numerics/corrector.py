@@ -120,14 +120,29 @@ def correct_normal(
         residuals = problem.relative_residuals(points)[:, :, None]
         jacobians = problem.relative_jacobians(points)
         transposed = np.swapaxes(jacobians, 1, 2)
-        matrices = transposed @ jacobians + border + damping
-        solutions = np.linalg.solve(matrices, transposed @ residuals)
-        steps = -solutions[:, :, 0]
+        with np.errstate(over="ignore", invalid="ignore"):  # such points stay
+            matrices = transposed @ jacobians + border + damping
+            right = (transposed @ residuals)[:, :, 0]
+        steps = -_solutions(matrices, right)
         points += limited(steps, 0.5 * problem.scale)
         lengths = np.linalg.norm(steps, axis=1)
         if lengths.max(initial=0.0) < 1e-9 * problem.scale:
             break
     return points, problem.gaps(points)
+
+
+def _solutions(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Solutions (k, n) of symmetric systems (k, n, n), shortest ones where a matrix is
+    singular; zeros where F' is too large for its square to be a number."""
+    is_finite = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
+    sound = np.where(is_finite[:, None, None], matrices, np.eye(matrices.shape[1]))
+    known = np.where(is_finite[:, None], right, 0.0)
+    try:
+        solutions: np.ndarray = np.linalg.solve(sound, known[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:  # some matrix is singular to the last bit
+        inverses = np.linalg.pinv(sound, hermitian=True)
+        solutions = (inverses @ known[:, :, None])[:, :, 0]
+    return solutions
 
 
 def limited(steps: np.ndarray, longest: float) -> np.ndarray:

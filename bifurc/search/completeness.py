@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from bifurc.atlas import Provenance
-from bifurc.branch import Outcome
 from bifurc.decisions import closes_to_rounding
 from bifurc.search.findings import Findings
 from bifurc.search.seed_fates import Fate, SeedFate
@@ -58,12 +57,6 @@ def _without_doubts(findings: Findings, provenance: Provenance) -> Completeness:
         return Completeness(Level.INTERRUPTED, statement, missed)
     if audit is None:
         return Completeness(Level.ESTIMATED, estimate, missed)
-    cut_off = sum(branch.outcome is Outcome.STEP_LIMIT for branch in findings.branches)
-    if cut_off:
-        statement = (
-            f"{cut_off} of the forms are longer than they were traced; {estimate}"
-        )
-        return Completeness(Level.ESTIMATED, statement, missed)
     loose = sum(not closes_to_rounding(t.misclosure) for t in findings.traced)
     if loose:
         statement = (

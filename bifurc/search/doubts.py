@@ -110,6 +110,14 @@ def _doubts_of_form(
             f"on form {index + 1} rounding hides whether these unknowns stand still: "
             f"{numbers}"
         )
+    names = _ended_at_assumed_bounds(problem, branch)
+    if names:
+        doubts.append(
+            f"form {index + 1} is known as far as it was followed: there are no bounds "
+            f"on {', '.join(names)}"
+        )
+    if branch.outcome is Outcome.STEP_LIMIT:
+        doubts.append(f"form {index + 1} is longer than it was traced")
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}
         loose = sum(
@@ -138,6 +146,18 @@ def _is_at_bounds(problem: Problem, point: np.ndarray) -> bool:
     """Whether a point (n,) lies at an end of the bounds."""
     gaps = np.abs(point[:, None] - problem.bounds)
     return bool(np.any(is_same_point(gaps, problem.scale)))
+
+
+def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
+    """The unknowns without bounds of which a form reaches the ends of the region that
+    was chosen instead."""
+    is_assumed = problem.has_assumed_bounds
+    if branch.outcome is not Outcome.LEFT_REGION or not np.any(is_assumed):
+        return []
+    ends = np.array([branch(0.0), branch(branch.length)])
+    gaps = np.abs(ends[:, :, None] - problem.bounds)  # (2, n, 2)
+    is_there = is_same_point(gaps, problem.scale).any(axis=0) & is_assumed
+    return [problem.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
 
 
 def _refusal(certificate: Certificate) -> str:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.decisions import is_far_smaller, is_flat_equation, is_on_the_way
 from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.recording import Recording
@@ -65,6 +66,10 @@ OF_EQUATIONS = (
     "excess",
 )
 OF_ONE_UNIT = ("hessian", "seeds", "curvature_bound", "complex_curvature")
+CURVES = 3  # that are followed out of a region that has shrunk
+SAMPLES = 200  # of each of them
+WAY_OUT = 1e5  # scales that it is followed for
+BEYOND = 0.5  # widths of the region by which it then leaves it
 OUTER = 0.1  # share of the ends of starts that may lie elsewhere than the rest
 
 
@@ -124,6 +129,19 @@ class UnitProblem(FunctionProblem):
         self._scaled = self._scaled_tape(tape, magnitude)
         self.hessian_error = EXACT_HESSIAN
         self.is_exact = True
+
+    @property
+    def has_assumed_bounds(self) -> np.ndarray:
+        """Which ends of the bounds (n, 2) were chosen, as none were given."""
+        return self.problem.has_assumed_bounds
+
+    @property
+    def reach(self) -> float:
+        """A quarter of the widest bounds, or the scale: curves may go on far beyond
+        the region to which random starts lead."""
+        widths = np.diff(self.bounds, axis=1)[:, 0]
+        finite = widths[np.isfinite(widths)]
+        return max(self.scale, float(finite.max(initial=0.0)) / 4.0)
 
     def _typical_magnitude(self) -> float:
         """The size of F' in the region."""
@@ -323,6 +341,9 @@ def _in_units_of_solutions(problem: FunctionProblem) -> UnitProblem:
         own = _problem_on(problem, region)
     else:
         own = _problem_on(problem, whole)
+    if not np.array_equal(region, whole):
+        region = _widened(own, region, is_point)
+        own = _problem_on(problem, region)
     own = _deflated(own)
     if not np.array_equal(region, whole) and not _has_curves(own):
         own = _deflated(_problem_on(problem, whole))
@@ -382,6 +403,28 @@ def _region_of(
     closer = np.column_stack([low - margins, high + margins])
     closer = np.clip(closer, problem.bounds[:, :1], problem.bounds[:, 1:])
     return np.where(is_small[:, None], closer, region)
+
+
+def _widened(own: UnitProblem, region: np.ndarray, is_point: np.ndarray) -> np.ndarray:
+    """A ``region`` (n, 2) that has shrunk, or more of the bounds in the unknowns in
+    which curves through it leave it: random starts may end on a small part of a long
+    curve only. The unknowns that are a point (n,) are left as they are."""
+    finite = np.isfinite(own.problem.bounds).all(axis=1)
+    settings = TraceSettings(max_length=WAY_OUT)
+    for start in own.ends(STARTS)[:CURVES]:
+        branch = trace_branch(own, own.own_units.inwards(start), settings=settings)
+        if not len(branch.pieces):
+            continue
+        samples = own.own_units.outwards(branch.sample(SAMPLES))
+        low, high = samples.min(axis=0), samples.max(axis=0)
+        widths = np.diff(region, axis=1)[:, 0]
+        leaves = np.maximum(region[:, 0] - low, high - region[:, 1]) > BEYOND * widths
+        is_wider = leaves & finite & ~is_point
+        hull = np.column_stack(
+            [np.minimum(region[:, 0], low), np.maximum(region[:, 1], high)]
+        )
+        region = np.where(is_wider[:, None], hull, region)
+    return region
 
 
 # --- multiplicity ---------------------------------------------------------------------

@@ -1,4 +1,5 @@
-! Equations for AUTO-07p: a loop of revolute joints, the circle, the pitchfork and Bratu's problem.
+! Equations for AUTO-07p: a loop of revolute joints, the circle, the pitchfork, Bratu's problem, and those of another
+! file (kind 5), which has the subroutine `other_equations`.
 !
 ! `auto07p.py` compiles this file once and writes problem.dat for each run: the kind, the numbers of equations and of
 ! unknowns, which unknown is AUTO's parameter, how many mixtures of the equations are solved, the arclength to follow,
@@ -7,7 +8,7 @@
 
 module problem
   implicit none
-  integer, parameter :: loop = 1, circle = 2, pitchfork = 3, bratu = 4
+  integer, parameter :: loop = 1, circle = 2, pitchfork = 3, bratu = 4, other = 5
   integer :: kind, equations, unknowns, parameter_at, mixtures, points_unit
   double precision :: length, travelled, began
   double precision, allocatable :: start(:), last(:), mix(:, :), geometry(:, :)
@@ -62,6 +63,7 @@ contains
   subroutine evaluate(x, f, jacobian)
     double precision, intent(in) :: x(unknowns)
     double precision, intent(out) :: f(equations), jacobian(equations, unknowns)
+    external :: other_equations
     double precision :: h2
     integer :: i
     select case (kind)
@@ -85,6 +87,8 @@ contains
         if (i > 1) jacobian(i, i - 1) = 1
         if (i < equations) jacobian(i, i + 1) = 1
       end do
+    case (other)
+      call other_equations(x, f, jacobian)
     end select
   end subroutine
 

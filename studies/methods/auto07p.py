@@ -25,7 +25,8 @@ from studies.methods.point_by_point import LONGEST, turn_per_step
 __all__ = ["auto_07p", "has_auto"]
 
 DEBIAN = "/usr/lib/auto-07p"
-KINDS = {"loop": 1, "circle": 2, "pitchfork": 3, "bratu": 4}
+KINDS = {"loop": 1, "circle": 2, "pitchfork": 3, "bratu": 4, "other": 5}
+NO_EQUATIONS = "subroutine other_equations\nend subroutine\n"
 CONSTANTS = """\
 NDIM={ndim}, IPS=0, IRS=0, ICP=[1], NPAR=1
 ILP=0, ISP=0, ISW=1, IPLT=0
@@ -47,14 +48,17 @@ def _objects() -> list[Path]:
 
 
 @cache
-def _program() -> tuple[Path, TemporaryDirectory[str]]:
-    """AUTO with the equations, and the folder it is in, which is removed with the
-    process."""
+def _program(equations: str) -> tuple[Path, TemporaryDirectory[str]]:
+    """AUTO with the equations, further ``equations`` among them, and the folder it is
+    in, which is removed with the process."""
     folder = TemporaryDirectory(prefix="auto07p-")
     program = Path(folder.name) / "follow"
     source = Path(__file__).with_suffix(".f90")
-    files = [str(path) for path in (source, *_objects())]
-    options = ["-O2", "-fopenmp", "-J", folder.name, "-o", str(program)]
+    further = Path(folder.name) / "equations.f90"
+    further.write_text(equations, encoding="ascii")
+    files = [str(path) for path in (source, further, *_objects())]
+    options = ["-O2", "-fopenmp", "-ffree-line-length-none"]
+    options += ["-J", folder.name, "-o", str(program)]
     command = ["gfortran", *options, *files]
     subprocess.run(command, check=True, capture_output=True)
     return program, folder
@@ -74,7 +78,7 @@ def auto_07p(case: Case, tolerance: float) -> Curve:
     problem to the last point: without compiling, starting the program and reading the
     points, which are written in full precision and not as decimals.
     """
-    program, _ = _program()
+    program, _ = _program(case.fortran or NO_EQUATIONS)
     problem, n = case.problem, case.problem.n
     parameter = int(np.argmax(np.abs(case.tangent)))
     h = LONGEST * turn_per_step(tolerance) * problem.scale
@@ -113,7 +117,8 @@ def _problem_data(case: Case, parameter: int) -> str:
     n = problem.n
     rows = len(problem.residuals(case.start[None])[0])
     is_loop = isinstance(problem, LoopClosure)
-    kind = KINDS["loop" if is_loop else case.name.partition("-")[0]]
+    named = "other" if case.fortran else case.name.partition("-")[0]
+    kind = KINDS["loop" if is_loop else named]
     mixed = mixtures(rows, n - 1) if rows != n - 1 else np.empty((0, rows))
     lines = [np.array([case.length]), case.start, *mixed]
     if isinstance(problem, LoopClosure):

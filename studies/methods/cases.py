@@ -38,7 +38,8 @@ class Case:
 
     ``exact_residual`` maps a list of unknowns to the list of residuals, in the order of
     the problem's. ``settings`` are those of the reference curve; methods are not asked
-    for less than ``tightest``, and given ``patience`` times the usual time.
+    for less than ``tightest``, and given ``patience`` times the usual time. ``fortran``
+    has the equations for AUTO-07p, where its own file does not.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Case:
     settings: TraceSettings = EXACT
     tightest: float = 0.0
     patience: float = 1.0
+    fortran: str = ""
 
     @cached_property
     def sparse(self) -> bool:

@@ -26,11 +26,16 @@ SAMPLE = [
     ("circle", "shifted"),
     ("lemniscate of Gerono", "turned 1"),
     ("two circles on a torus", "shifted"),
+    ("knot curve", "unknowns 1e+06"),
+    ("Trott curve", "turned 1"),
+    ("three circles through a point of a torus", "plain"),
+    ("three equal cylinders", "first equation 1e-06"),
+    ("pendulum that just turns over", "shifted"),
 ]
 
 
 def test_every_curve_has_a_source_and_a_name_of_its_own():
-    assert len(CURVES) == len(load_curves()) >= 110
+    assert len(CURVES) == len(load_curves()) >= 150
     for curve in CURVES.values():
         assert curve.source
         assert len(curve.bounds) == len(curve.unknowns) == len(curve.periods)

@@ -6,6 +6,7 @@ import pytest
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.corrector import (
     correct_across,
+    correct_normal,
     limited,
     project_by_least_squares,
     project_to_sphere_by_newton,
@@ -123,3 +124,16 @@ def test_long_steps_are_shortened_and_the_others_kept():
     steps = np.array([[3.0, 4.0], [0.3, 0.4], [0.0, 0.0]])
     expected = np.array([[0.6, 0.8], [0.3, 0.4], [0.0, 0.0]])
     assert limited(steps, 1.0) == pytest.approx(expected, abs=1e-15)
+
+
+def test_equations_too_large_to_square_do_not_stop_the_others():
+    problem = FunctionProblem(
+        lambda u: [np.exp(300.0 * u[0]) - 1.0 + 0.0 * u[1] * u[2]], BOX
+    )
+    problem.magnitude = 1.0
+    starts = np.array([[1e-4, 0.1, 0.2], [1.3, 0.0, 0.0], [0.06, 0.0, 0.0]])
+    plane = np.tile(np.eye(3)[:, 1:], (3, 1, 1))
+    points, gaps = correct_normal(problem, starts, plane)
+    assert np.all(np.isfinite(points))
+    assert points[0] == pytest.approx([0.0, 0.1, 0.2], abs=1e-9)
+    assert gaps[0] < 1e-12 < gaps[1]

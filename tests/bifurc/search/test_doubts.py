@@ -108,3 +108,12 @@ def test_an_unknown_that_rounding_may_move_is_in_doubt():
     assert "rounding hides whether these unknowns stand still" in statement
     plain = map_linkage(kite(1.0, 1e-2))
     assert IN_DOUBT not in plain.completeness.statement
+
+
+def test_forms_that_end_where_no_bounds_are_given_are_in_doubt():
+    parabola = FunctionProblem(lambda u: [u[1] - u[0] ** 2], [(-2, 2), (-1, np.inf)])
+    assert IN_DOUBT not in explore(parabola).completeness.statement
+    free = FunctionProblem(lambda u: [u[1] - u[0] ** 2], [(-np.inf, np.inf)] * 2)
+    statement = explore(free).completeness.statement
+    assert statement.startswith(IN_DOUBT)
+    assert "no bounds on u2" in statement

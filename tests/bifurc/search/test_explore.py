@@ -368,7 +368,7 @@ def test_nothing_is_proved_of_an_atlas_with_a_form_that_was_cut_off():
     atlas = explore(LoopClosure(loop), settings=SearchSettings(tracing=tracing))
     assert atlas.forms[0].branch.outcome is Outcome.STEP_LIMIT
     assert atlas.completeness.level == "estimated"
-    assert "longer than they were traced" in atlas.completeness.statement
+    assert "is longer than it was traced" in atlas.completeness.statement
 
 
 @pytest.mark.parametrize("stiffness", [1e-7, 1e-5, 1e-3])

@@ -1,6 +1,7 @@
 """A search in units of its own: the same atlas whatever the user's units are."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,9 +9,11 @@ from scipy.sparse import diags_array, vstack
 from scipy.special import ellipe
 
 import bifurc
+from bifurc.branch import Outcome
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.search.unit_problem import in_own_units
 from bifurc.seeds import Audit
+from bifurc.systems.equation_file import read_equations
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 
@@ -327,3 +330,13 @@ def test_more_unknowns_than_are_compiled_are_found_in_any_size():
         course.append(0.5 * course[-1] + 0.3 * circle[0] * circle[1])
     length = np.linalg.norm(np.diff(course, axis=1), axis=0).sum()
     assert form.branch.length / size == pytest.approx(length, rel=1e-6)
+
+
+def test_a_curve_on_whose_flat_end_all_starts_stop_is_followed_whole():
+    # an amplifier that is saturated at nearly every start
+    file = Path(__file__).parents[3] / "data" / "problems" / "trigger_circuit.toml"
+    atlas = read_equations(file).explore()
+    (form,) = atlas.forms
+    assert form.branch.outcome is Outcome.LEFT_REGION
+    outputs = sorted(fold.u[5] for fold in atlas.diagram.folds)
+    assert outputs == pytest.approx([1.16602, 9.60900], abs=1e-5)

@@ -1,0 +1,1 @@
+"""Problems of textbooks and continuation codes, with the points that their sources print."""

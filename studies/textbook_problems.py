@@ -1,0 +1,113 @@
+"""Problems of continuation codes, against the points that their sources print.
+
+The 20 problems of Rheinboldt's collection TEST_CON (after J. Burkardt's programs), the
+algebraic demos of AUTO-07p and the algebraic tutorials of BifurcationKit. A problem is
+right where all printed points are found to all digits that are printed, misprints put
+right; in doubt where the atlas says so; wrong else. Seconds are those of the processor.
+
+    python -m studies.textbook_problems --names "cell kinetics" --points
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from studies.textbook.comparison import Comparison, Verdict, compare
+from studies.textbook.problems import TextbookProblem, load_problems
+
+__all__ = ["run_problem"]
+
+
+def run_problem(problem: TextbookProblem, seed: int, budget: float) -> Comparison:
+    """How the atlas of a problem, from one random seed, compares with its source."""
+    began = time.process_time()
+    atlas = problem.explore(seed, budget)
+    seconds = time.process_time() - began
+    return compare(problem, atlas, seconds)
+
+
+def _print_points(comparison: Comparison) -> None:
+    """One line for each printed point."""
+    for match in comparison.matches:
+        printed = match.printed
+        print(f"  {printed.kind}: {match.units:.2g} units of the last digit")
+        for name, value in printed.at.items():
+            found = "" if match.found is None else f"{match.found[name]:.10g}"
+            right = printed.misprints.get(name)
+            note = "" if right is None else f", misprint for {right}"
+            print(f"    {name}: {found} (printed {value}{note})")
+        if printed.remark:
+            print(f"    {printed.remark}")
+
+
+def _row(comparison: Comparison) -> str:
+    """A line of the table."""
+    problem = comparison.problem
+    met = sum(match.is_met for match in comparison.matches)
+    misprints = sum(bool(match.printed.misprints) for match in comparison.matches)
+    points = f"{met} of {len(comparison.matches)}"
+    cells = [
+        problem.collection,
+        problem.name,
+        problem.problem.n,
+        comparison.forms,
+        comparison.limits,
+        comparison.bifurcations,
+        comparison.hopf_points,
+        points,
+        misprints or "",
+        f"{comparison.seconds:.2g}",
+        comparison.verdict.value,
+    ]
+    return "| " + " | ".join(map(str, cells)) + " |"
+
+
+HEAD = """\
+| from | problem | unknowns | forms | limit points | bifurcations | Hopf points \
+| printed points met | misprints | s | |
+|---|---|---|---|---|---|---|---|---|---|---|"""
+
+
+def _print_summary(comparisons: Sequence[Comparison]) -> None:
+    counts = Counter(comparison.verdict for comparison in comparisons)
+    words = ", ".join(f"{counts[verdict]} {verdict.value}" for verdict in Verdict)
+    seconds = [comparison.seconds for comparison in comparisons]
+    print(f"{words}; median {np.median(seconds):.2g} s, most {max(seconds):.2g} s")
+
+
+def main() -> None:
+    """Run the problems and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--names", nargs="*", help="problems; all of them")
+    parser.add_argument("--collections", nargs="*", help="of these; all of them")
+    parser.add_argument("--seeds", type=int, default=1, help="random seeds from 0 on")
+    parser.add_argument("--budget", type=float, default=60.0, help="seconds for each")
+    parser.add_argument("--largest", type=int, default=1000, help="unknowns at most")
+    parser.add_argument("--points", action="store_true", help="print every point")
+    arguments = parser.parse_args()
+    comparisons = []
+    print(HEAD)
+    for problem in load_problems():
+        is_named = not arguments.names or problem.name in arguments.names
+        collections = arguments.collections
+        is_of_one = not collections or problem.collection in collections
+        if not is_named or not is_of_one or problem.problem.n > arguments.largest:
+            continue
+        for seed in range(arguments.seeds):
+            comparison = run_problem(problem, seed, arguments.budget)
+            print(_row(comparison), flush=True)
+            if comparison.verdict is Verdict.IN_DOUBT:
+                print(f"  {comparison.statement}")
+            if arguments.points or comparison.verdict is Verdict.WRONG:
+                _print_points(comparison)
+            comparisons.append(comparison)
+    _print_summary(comparisons)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""Time against error on the problems of textbooks: this project and AUTO-07p.
+
+The longest form of each problem that stands in a file is followed from its begin, by
+this project at order 16 and by AUTO-07p with the equations in Fortran, at tolerances
+from 1e-4 to 1e-12. The time is the least with which the whole curve is right to an
+error, relative to the scale of the unknowns. How errors are measured, and how AUTO-07p
+is run: `studies.work_precision`.
+
+    python -m studies.textbook_times
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+
+import numpy as np
+
+from bifurc import SymbolicProblem
+from bifurc.curves.continuation import TraceSettings, trace_branch
+from studies.methods import auto07p
+from studies.methods.cases import Case
+from studies.methods.roster import Method, orders_of_this_project
+from studies.textbook.fortran import fortran_of
+from studies.textbook.problems import TextbookProblem, load_problems
+from studies.work_precision import measure
+from studies.work_precision_runs import Run
+
+__all__ = ["case_of", "seconds_at"]
+
+ORDER = 16
+TOLERANCES = [10.0**-k for k in range(2, 13)]
+ERRORS = (1e-6, 1e-8)
+FLOOR = 1e-15
+BUDGET = 0.05  # s, for the repeats of a run
+
+
+def case_of(problem: TextbookProblem) -> Case | None:
+    """The longest form of a problem, from its begin to its end; None for a problem that
+    is not in a file."""
+    equations = problem.problem
+    if not isinstance(equations, SymbolicProblem):
+        return None
+    atlas = problem.explore(0, 60.0)
+    branch = max(atlas.forms, key=lambda form: form.branch.length).branch
+    start, tangent = branch(0.0), branch(0.0, 1)
+    settings = TraceSettings(order=20, tolerance=1e-14, max_length=1e5)
+    reference = trace_branch(equations, start, tangent, settings)
+    precise = equations.precise_residual()
+    return Case(
+        name=problem.name,
+        title=problem.name,
+        problem=equations,
+        start=reference(0.0),
+        tangent=reference(0.0, 1),
+        exact_residual=lambda unknowns: list(precise(unknowns)),
+        settings=settings,
+        fortran=fortran_of(equations),
+    )
+
+
+def seconds_at(runs: Sequence[Run], error: float) -> float:
+    """The least time of the runs with no larger error; infinite where there is none."""
+    enough = [run.seconds for run in runs if run.error <= error]
+    return min(enough, default=np.inf)
+
+
+def _runs(case: Case, method: Method) -> list[Run]:
+    return [measure(case, method, tol, FLOOR, BUDGET) for tol in TOLERANCES]
+
+
+def main() -> None:
+    """Measure both, and print times in milliseconds."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--names", nargs="*", help="problems; all of them")
+    arguments = parser.parse_args()
+    methods = [one for one in orders_of_this_project() if one.order == ORDER]
+    if auto07p.has_auto():
+        methods.append(Method("AUTO-07p", auto07p.auto_07p))
+    heads = [f"{method.name}, {error:g}" for error in ERRORS for method in methods]
+    print("| problem | " + " | ".join(heads) + " |")
+    print("|---" * (len(heads) + 1) + "|")
+    for problem in load_problems():
+        if arguments.names and problem.name not in arguments.names:
+            continue
+        case = case_of(problem)
+        if case is None:
+            continue
+        runs = [_runs(case, method) for method in methods]
+        scale = case.problem.scale
+        times = [seconds_at(own, error * scale) for error in ERRORS for own in runs]
+        cells = [f"{1e3 * seconds:.2g}" for seconds in times]
+        print(f"| {problem.name} | " + " | ".join(cells) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
