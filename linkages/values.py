@@ -99,7 +99,7 @@ def check_direction(name: str, vector: Sequence[float]) -> None:
 
 
 def _listed(vector: Sequence[float]) -> str:
-    return ", ".join(f"{float(coordinate)!r}" for coordinate in vector)
+    return ", ".join(f"{float(coordinate):.16g}" for coordinate in vector)
 
 
 def told_apart(value: float, *others: float) -> list[str]:

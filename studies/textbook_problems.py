@@ -10,11 +10,11 @@ right; in doubt where the atlas says so; wrong else. Seconds are those of the pr
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections import Counter
 from collections.abc import Sequence
 
+import click
 import numpy as np
 
 from studies.textbook.comparison import Comparison, Verdict, compare
@@ -80,30 +80,35 @@ def _print_summary(comparisons: Sequence[Comparison]) -> None:
     print(f"{words}; median {np.median(seconds):.2g} s, most {max(seconds):.2g} s")
 
 
-def main() -> None:
+@click.command(help=__doc__)
+@click.option("--names", multiple=True, help="Only these problems.")
+@click.option("--collections", multiple=True, help="Only problems of these.")
+@click.option("--seeds", type=click.IntRange(1), default=1, show_default=True)
+@click.option("--budget", default=60.0, show_default=True, help="Seconds for each.")
+@click.option("--largest", default=1000, show_default=True, help="Unknowns at most.")
+@click.option("--points", is_flag=True, help="Print every point.")
+def main(
+    names: tuple[str, ...],
+    collections: tuple[str, ...],
+    seeds: int,
+    budget: float,
+    largest: int,
+    points: bool,
+) -> None:
     """Run the problems and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--names", nargs="*", help="problems; all of them")
-    parser.add_argument("--collections", nargs="*", help="of these; all of them")
-    parser.add_argument("--seeds", type=int, default=1, help="random seeds from 0 on")
-    parser.add_argument("--budget", type=float, default=60.0, help="seconds for each")
-    parser.add_argument("--largest", type=int, default=1000, help="unknowns at most")
-    parser.add_argument("--points", action="store_true", help="print every point")
-    arguments = parser.parse_args()
     comparisons = []
     print(HEAD)
     for problem in load_problems():
-        is_named = not arguments.names or problem.name in arguments.names
-        collections = arguments.collections
+        is_named = not names or problem.name in names
         is_of_one = not collections or problem.collection in collections
-        if not is_named or not is_of_one or problem.problem.n > arguments.largest:
+        if not is_named or not is_of_one or problem.problem.n > largest:
             continue
-        for seed in range(arguments.seeds):
-            comparison = run_problem(problem, seed, arguments.budget)
+        for seed in range(seeds):
+            comparison = run_problem(problem, seed, budget)
             print(_row(comparison), flush=True)
             if comparison.verdict is Verdict.IN_DOUBT:
                 print(f"  {comparison.statement}")
-            if arguments.points or comparison.verdict is Verdict.WRONG:
+            if points or comparison.verdict is Verdict.WRONG:
                 _print_points(comparison)
             comparisons.append(comparison)
     _print_summary(comparisons)

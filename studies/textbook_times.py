@@ -11,9 +11,9 @@ is run: `studies.work_precision`.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 
+import click
 import numpy as np
 
 from bifurc import SymbolicProblem
@@ -69,11 +69,10 @@ def _runs(case: Case, method: Method) -> list[Run]:
     return [measure(case, method, tol, FLOOR, BUDGET) for tol in TOLERANCES]
 
 
-def main() -> None:
+@click.command(help=__doc__)
+@click.option("--names", multiple=True, help="Only these problems.")
+def main(names: tuple[str, ...]) -> None:
     """Measure both, and print times in milliseconds."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--names", nargs="*", help="problems; all of them")
-    arguments = parser.parse_args()
     methods = [one for one in orders_of_this_project() if one.order == ORDER]
     if auto07p.has_auto():
         methods.append(Method("AUTO-07p", auto07p.auto_07p))
@@ -81,7 +80,7 @@ def main() -> None:
     print("| problem | " + " | ".join(heads) + " |")
     print("|---" * (len(heads) + 1) + "|")
     for problem in load_problems():
-        if arguments.names and problem.name not in arguments.names:
+        if names and problem.name not in names:
             continue
         case = case_of(problem)
         if case is None:

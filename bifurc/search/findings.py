@@ -202,13 +202,31 @@ class Findings:
 
     def branch_along(self, branch: Branch) -> int | None:
         """The number of the first known branch that runs along another one."""
-        points = branch(branch.length * PLACES)
-        within = self._same_place(points)
         for number, known in enumerate(self.branches):
-            distance, _ = known.nearest(points)
-            if np.all(is_same_point(distance, within / is_same_point.threshold)):
+            if self._runs_along(known, branch):
                 return number
         return None
+
+    def forget_parts(self) -> None:
+        """Forget branches that stalled on the way along another one, which was followed
+        farther from another start."""
+        for number in range(len(self.traced) - 1, -1, -1):
+            branch = self.traced[number].branch
+            if branch.outcome is not Outcome.STALLED:
+                continue
+            for other, longer in enumerate(self.branches):
+                is_longer = other != number and longer.length > branch.length
+                if is_longer and self._runs_along(longer, branch):
+                    self.replace_branches(other, number, self.traced[other])
+                    break
+
+    def _runs_along(self, one: Branch, other: Branch) -> bool:
+        """Whether a branch passes all along another one."""
+        points = other(other.length * PLACES)
+        within = self._same_place(points)
+        distance, _ = one.nearest(points)
+        is_there = is_same_point(distance, within / is_same_point.threshold)
+        return bool(np.all(is_there))
 
     def _same_place(
         self, points: np.ndarray, values: np.ndarray | None = None

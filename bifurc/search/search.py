@@ -663,8 +663,9 @@ class Search:
         self._branch_off(starts)
 
     def join_branches(self) -> None:
-        """Take two branches that stall at a point which a single branch passes for
-        one."""
+        """Take two branches that stall at a point which a single branch passes for one,
+        and forget what stalled on the way along another one."""
+        self.findings.forget_parts()
         for point in self.findings.points:
             if self.is_over or point.kind is not Kind.RANK_DROP:
                 continue

@@ -1,8 +1,11 @@
 """What a search knows: nothing twice, and every seed has one fate."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
@@ -82,3 +85,23 @@ def test_an_audit_is_due_until_it_has_seen_every_branch(findings):
     assert not findings.awaits_audit
     findings.add_branch(traced(ON_CIRCLE[0]))
     assert findings.awaits_audit
+
+
+def test_what_stalled_on_the_way_along_another_branch_is_forgotten(findings):
+    whole = traced(ON_CIRCLE[0])
+    part = replace(whole.branch, outcome=Outcome.STALLED)
+    kept = part.pieces[: len(part.pieces) // 2]
+    half = replace(
+        part,
+        pieces=kept,
+        breaks=part.breaks[: len(kept) + 1],
+        centers=part.centers[: len(kept)],
+        radii=part.radii[: len(kept)],
+        residuals=part.residuals[: len(kept)],
+    )
+    findings.add_branch(replace(whole, branch=half))
+    number = findings.add_branch(whole)
+    findings.match_seeds([0, 1, 2], number)
+    findings.forget_parts()
+    assert findings.branches == [whole.branch]
+    assert findings.fates[0] == SeedFate(Fate.ON_FORM, 0)
