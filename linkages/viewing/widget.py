@@ -78,7 +78,10 @@ class LinkageWidget(anywidget.AnyWidget):
         position = float(proposal["value"])
         if not math.isfinite(position):
             raise traitlets.TraitError(f"position {position}: it must be finite")
-        return self._tracks[self.form].place(position)
+        # held notifications are validated in any order: a form that was named by its
+        # beginning brings the position onto it once it has its name
+        track = self._tracks.get(self.form)
+        return position if track is None else track.place(position)
 
     @traitlets.observe("form")
     def _stay_on_the_form(self, _: traitlets.Bunch) -> None:

@@ -115,6 +115,10 @@ def test_a_position_is_brought_onto_the_form(atlas_of):
     shortest = min(length, key=length.get)
     widget.form = shortest
     assert widget.position == pytest.approx(far % length[shortest])
+    with widget.hold_trait_notifications():
+        widget.position = 100.0
+        widget.form = "Form I"
+    assert widget.position == pytest.approx(100 % length[widget.form])
     rigid = linkages.view(atlas_of("rigid"))
     rigid.position = 100
     assert rigid.position == len(atlas_of("rigid").rigid) - 1
