@@ -2,7 +2,12 @@
 
 import { modulo } from "./tracks.js";
 
-/** The arcs of all forms as {track, start, end, first, last}: nodes are names of singular points and ends of forms. */
+// Over the longest arc: of chains whose lengths differ by less the one of the earlier arcs is taken, as TIE in
+// bifurc/routes/ways.py does, so that page and Python give one route.
+const TIE = 1e-9;
+
+/** The arcs of all forms as {track, start, end, first, last, rank}: nodes are names of singular points and ends of
+ *  forms, the rank is the place in the order of forms, from 1. */
 export function arcsOf(scene, tracks) {
   const arcs = [];
   scene.forms.forEach((form, index) => {
@@ -10,7 +15,7 @@ export function arcsOf(scene, tracks) {
     const stops = stopsOf(scene, track, index);
     for (let k = 0; k + 1 < stops.length; k += 1) {
       const [begin, end] = [stops[k], stops[k + 1]];
-      arcs.push({ track, start: begin.s, end: end.s, first: begin.node, last: end.node });
+      arcs.push({ track, start: begin.s, end: end.s, first: begin.node, last: end.node, rank: arcs.length + 1 });
     }
   });
   return arcs;
@@ -49,9 +54,11 @@ export function middleOf(arcs, track) {
 /** The legs {track, start, end, at} of the shortest way between two places {track, s}; undefined where there is none. */
 export function shortestRoute(arcs, from, to) {
   const ways = splitAt(splitAt(arcs, from, "from here"), to, "to there");
-  const chain = shortestChain(ways, "from here", "to there");
+  const tie = TIE * Math.max(...arcs.map((arc) => arc.end - arc.start));
+  const chain = shortestChain(ways, "from here", "to there", tie);
   if (!chain) return undefined;
-  return chain.filter((leg) => Math.abs(leg.end - leg.start) > 1e-9);
+  const legs = chain.map(({ track, start, end, at }) => ({ track, start, end, at }));
+  return legs.filter((leg) => Math.abs(leg.end - leg.start) > 1e-9);
 }
 
 /** The arcs with the one that holds a place split there by a node. */
@@ -64,15 +71,17 @@ function splitAt(arcs, place, node) {
   const miss = (arc) => Math.max(arc.start - s, s - arc.end, 0);
   const nearest = own.reduce((best, arc) => (miss(arc) < miss(best) ? arc : best));
   const at = Math.min(Math.max(s, nearest.start), nearest.end);
+  const last = Math.max(...arcs.map((arc) => arc.rank));
   const parts = [
-    { ...nearest, end: at, last: node },
-    { ...nearest, start: at, first: node },
+    { ...nearest, end: at, last: node, rank: last + 1 },
+    { ...nearest, start: at, first: node, rank: last + 2 },
   ];
   return [...arcs.filter((arc) => arc !== nearest), ...parts];
 }
 
-/** Dijkstra's shortest chain (1959) of arcs between two nodes, as legs. */
-function shortestChain(arcs, start, goal) {
+/** Dijkstra's shortest chain (1959) of arcs between two nodes, as legs; chains of one length, as symmetry makes them,
+ *  differ by `tie` times the roots of numbers. */
+function shortestChain(arcs, start, goal, tie) {
   const best = new Map([[start, { length: 0, legs: [] }]]);
   const done = new Set();
   for (;;) {
@@ -82,7 +91,7 @@ function shortestChain(arcs, start, goal) {
     done.add(node);
     for (const leg of legsFrom(arcs, node)) {
       const { length, legs } = best.get(node);
-      const total = length + Math.abs(leg.end - leg.start);
+      const total = length + Math.abs(leg.end - leg.start) + tie * Math.sqrt(leg.rank);
       const known = best.get(leg.at);
       if (!known || total < known.length) best.set(leg.at, { length: total, legs: [...legs, leg] });
     }
@@ -100,9 +109,9 @@ function nearestOpen(best, done) {
 
 function legsFrom(arcs, node) {
   const legs = [];
-  for (const { track, start, end, first, last } of arcs) {
-    if (first === node) legs.push({ track, start, end, at: last });
-    if (last === node) legs.push({ track, start: end, end: start, at: first });
+  for (const { track, start, end, first, last, rank } of arcs) {
+    if (first === node) legs.push({ track, start, end, at: last, rank });
+    if (last === node) legs.push({ track, start: end, end: start, at: first, rank });
   }
   return legs;
 }

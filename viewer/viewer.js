@@ -251,10 +251,16 @@ export class Viewer {
 
   /** Go to a track by its name or number, to the middle of its longest arc where `s` is left out. */
   goByName(name, s) {
-    const track = findTrack(this.listed, name);
-    if (!track) throw new RangeError(`form ${name}: it must be one of ${this.listed.map((one) => one.name).join(", ")}`);
+    const track = this.trackCalled(name);
     if (s !== undefined && !Number.isFinite(s)) throw new RangeError(`s = ${s}: it must be a finite number`);
     this.goTo(track, s ?? (isCurve(track) ? middleOf(this.arcs, track) : 0));
+  }
+
+  /** The track of a name or number, as `findTrack`; throws a RangeError for another one. */
+  trackCalled(name) {
+    const track = findTrack(this.listed, name);
+    if (track) return track;
+    throw new RangeError(`form ${name}: it must be one of ${this.listed.map((one) => one.name).join(", ")}`);
   }
 
   /** Leave a singular point along a branch that it offers. */
@@ -291,8 +297,8 @@ export class Viewer {
   /** The legs of the shortest route from here to the middle of a form's longest arc; undefined where there is none. */
   legsTo(name) {
     const { track, s } = this.position;
-    const goal = findTrack(this.listed, name);
-    if (!goal || !isCurve(goal) || !isCurve(track)) return undefined;
+    const goal = this.trackCalled(name);
+    if (!isCurve(goal) || !isCurve(track)) return undefined;
     return shortestRoute(this.arcs, { track, s }, { track: goal, s: middleOf(this.arcs, goal) });
   }
 
@@ -304,8 +310,11 @@ export class Viewer {
 
   /** Play the route to a form, in so many seconds where they are given. */
   playRoute(name, seconds) {
-    this.player.stop();
+    if (seconds != null && !(Number.isFinite(seconds) && seconds > 0)) {
+      throw new RangeError(`seconds = ${seconds}: it must be a finite number above 0`);
+    }
     const legs = this.legsTo(name);
+    this.player.stop();
     if (!legs) {
       this.routeBar.say("there is no route along forms from here");
       return;

@@ -74,10 +74,16 @@ def _default(parameter: Parameter) -> str:
 
 def _map(record: LinkageRecord) -> str:
     """What was found: the sentence, both tables, and how sure that is."""
-    parts = [f"{plain(record.verdict)} In all: {record.counts}.", _forms(record)]
+    parts = [f"{plain(record.verdict)}{_counts(record)}", _forms(record)]
     parts += [_points(record), f"Completeness, {plain(record.completeness)}"]
     words = "[What these words mean](../how_sure.md)."
     return "\n\n".join(part for part in parts if part) + f" {words}"
+
+
+def _counts(record: LinkageRecord) -> str:
+    """The counts as a sentence, where the verdict leaves one of them out."""
+    is_said = all(f" {count}" in record.verdict for count in record.counts.split(", "))
+    return "" if is_said else f" In all: {record.counts}."
 
 
 def _forms(record: LinkageRecord) -> str:

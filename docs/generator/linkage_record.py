@@ -95,7 +95,9 @@ def record_linkage(entry: Entry, atlas: Atlas) -> LinkageRecord:
         counts=_counts(atlas),
         verdict=judge(atlas).sentence,
         completeness=f"{completeness.level}: {completeness.statement}.",
-        forms=tuple(_form_row(form) for form in atlas.forms),
+        forms=tuple(
+            _form_row(form) for form in sorted(atlas.forms, key=lambda form: form.name)
+        ),
         points=tuple(_point_row(atlas, point) for point in atlas.points),
         closed_forms=tuple(_closed_forms(entry)),
     )

@@ -64,8 +64,8 @@ def _couplings(mechanism: Mechanism) -> list[str]:
 def _joint_row(joint: Joint) -> tuple[str, ...]:
     motions = joint.motions * (len(joint.bodies) - 1)
     locks = [
-        _shown(value, motion.is_turn)
-        for value, motion in zip(joint.locked, motions, strict=True)
+        f"{part} {_shown(value, motion.is_turn)}".strip()
+        for part, value, motion in zip(joint.parts, joint.locked, motions, strict=True)
         if value is not None
     ]
     return (

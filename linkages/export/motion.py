@@ -20,6 +20,7 @@ __all__ = [
     "motion_of_form",
     "motion_of_route",
     "poses_of",
+    "quaternions_without_jumps",
 ]
 
 
@@ -71,13 +72,19 @@ def link_poses(loop: Loop, motion: Motion) -> Poses:
 
 def poses_of(transforms: np.ndarray) -> Poses:
     """The poses of n bodies by their transforms (n, k, 4, 4) at k moments."""
+    rotations = quaternions_without_jumps(transforms[..., :3, :3])
+    return Poses(transforms[..., :3, 3], rotations)
+
+
+def quaternions_without_jumps(matrices: np.ndarray) -> np.ndarray:
+    """Unit quaternions (n, k, 4), x, y, z, w, of rotations (n, k, 3, 3) of n bodies at k
+    moments, each near the one before."""
     from scipy.spatial.transform import Rotation
 
-    count, moments = transforms.shape[:2]
-    matrices = transforms[..., :3, :3].reshape(-1, 3, 3)
-    quaternions = Rotation.from_matrix(matrices).as_quat()
-    rotations = quaternions.reshape(count, moments, 4)
+    count, moments = matrices.shape[:2]
+    quaternions = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat()
+    rotations: np.ndarray = quaternions.reshape(count, moments, 4)
     turns = (rotations[:, 1:] * rotations[:, :-1]).sum(axis=-1)
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=1)
     rotations[:, 1:] *= signs[..., None]
-    return Poses(transforms[..., :3, 3], rotations)
+    return rotations

@@ -24,7 +24,7 @@ from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.values import check_angle
 
-__all__ = ["read_mechanism"]
+__all__ = ["FREE", "read_mechanism"]
 
 Content: TypeAlias = Mapping[str, Any]
 
@@ -47,6 +47,7 @@ OF_JOINT = (
 OF_VALUES = ("limits", "locked", "coupled")
 OF_COUPLING = ("to", "ratio", "offset")
 UNITS = {"deg": math.pi / 180, "rad": 1.0}
+FREE = "free"  # in a list of locks: a variable that has none
 
 
 def read_mechanism(content: Content, name: str) -> Mechanism:
@@ -119,17 +120,24 @@ def _read_joint(number: int, table: object, unit: float) -> Joint:
 def _read_limits(
     name: str, given: object, motions: tuple[Motion, ...], unit: float
 ) -> tuple[tuple[float, float] | None, ...]:
+    """The limits of all variables; an empty list stands for none in a joint of
+    several."""
     if given is None:
         return ()
     what = f"limits of joint {name}"
     allowed = "a list [low, high], one for each variable"
+    if len(motions) > 1:
+        allowed += ", [] for those without limits"
     rows = list(given) if isinstance(given, list) else []
     if len(motions) == 1 and not any(isinstance(row, list) for row in rows):
         rows = [rows]
     if len(rows) != len(motions):
         raise GeometryError(what, quoted(given), allowed)
-    limits = []
+    limits: list[tuple[float, float] | None] = []
     for row, motion in zip(rows, motions, strict=True):
+        if row == [] and len(motions) > 1:
+            limits.append(None)
+            continue
         if not isinstance(row, list) or len(row) != 2:
             raise GeometryError(what, quoted(given), allowed)
         low, high = _in_rad(what, row, motion, unit)
@@ -141,28 +149,36 @@ def _read_limits(
 
 def _read_locked(
     name: str, given: object, motions: tuple[Motion, ...], unit: float
-) -> tuple[float, ...]:
+) -> tuple[float | None, ...]:
+    """The locks of all variables; "free" stands for none in a joint of several."""
     if given is None:
         return ()
     what = f"locked of joint {name}"
     values = given if isinstance(given, list) else [given]
     if len(values) != len(motions):
-        allowed = f"{len(motions)} numbers" if len(motions) != 1 else "a number"
+        allowed = "a number"
+        if len(motions) > 1:
+            allowed = f'{len(motions)} numbers, "{FREE}" for a variable that is not'
         raise GeometryError(what, quoted(given), allowed)
-    pairs = zip(values, motions, strict=True)
-    return tuple(_in_rad(what, [value], motion, unit)[0] for value, motion in pairs)
+    locked: list[float | None] = []
+    for value, motion in zip(values, motions, strict=True):
+        if value == FREE and len(motions) > 1:
+            locked.append(None)
+            continue
+        locked += _in_rad(what, [value], motion, unit)
+    return tuple(locked)
 
 
 def _check_locked(
     name: str,
-    locked: Sequence[float],
+    locked: Sequence[float | None],
     limits: Sequence[tuple[float, float] | None],
     motions: Sequence[Motion],
     unit: float,
 ) -> None:
     """Raise `GeometryError`, in the units of the file, for a lock outside limits."""
     for value, pair, motion in zip(locked, limits, motions, strict=False):
-        if pair is None or pair[0] <= value <= pair[1]:
+        if value is None or pair is None or pair[0] <= value <= pair[1]:
             continue
         factor = unit if motion.is_turn else 1.0
         low, high = (f"{end / factor:.10g}" for end in pair)

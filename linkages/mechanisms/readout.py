@@ -113,6 +113,21 @@ class Readout:
     def _poses(self) -> Poses:
         return Poses(self.structure)
 
+    def rotations(self, points: np.ndarray) -> dict[str, np.ndarray]:
+        """The rotations (k, 3, 3) at configurations (k, n) of an atlas that spherical
+        joints make, of each further body with respect to the first one, from the
+        reference configuration. They are called after the joint, "S1", or, in a joint
+        of several bodies, "S1.rod"."""
+        unknowns = self.unknowns(np.atleast_2d(points))
+        rotations = {}
+        for number, pair in enumerate(self.mechanism.pairs):
+            if pair.center is None:
+                continue
+            is_of_several = len(self.mechanism.joint(pair.joint).bodies) > 2
+            label = f"{pair.joint}.{pair.moved}" if is_of_several else pair.joint
+            rotations[label] = self._poses.rotations(unknowns, number)
+        return rotations
+
     def poses(self, points: np.ndarray) -> np.ndarray:
         """The transforms (k, b, 4, 4) of all bodies at configurations (k, n) of an
         atlas, from the reference configuration, the frame at rest."""

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import json
 
+from linkages.mechanisms.file import FREE
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.subject import joint_values
 
 __all__ = ["mechanism_toml"]
 
+# What stands for a variable without a value, by key: a TOML list has no null.
+NOTHING: dict[str, object] = {"limits": [], "locked": FREE}
+
 
 def mechanism_toml(mechanism: Mechanism) -> str:
-    """The text of a TOML file that describes the mechanism, angles in rad.
-
-    Limits and locks of a joint are kept where all of its variables have them; a TOML
-    list has no place for one that is not there. Raises `GeometryError` where only some
-    have.
-    """
+    """The text of a TOML file that describes the mechanism, angles in rad."""
     lines = [f"name = {_quoted(mechanism.name)}", 'angles = "rad"']
     for joint in mechanism.joints:
         lines += ["", "[[joints]]", *_joint_lines(joint)]
@@ -30,15 +29,9 @@ def _joint_lines(joint: Joint) -> list[str]:
         if key == "coupled":
             lines.append(f"coupled = {_couplings(joint)}")
             continue
-        if isinstance(value, list) and None in value:
-            from linkages.loop import GeometryError
-
-            allowed = "given for all of its variables, or for none, in a TOML file"
-            raise GeometryError(f"{key} of joint {joint.name}", value, allowed)
-        if isinstance(value, str):
-            lines.append(f"{key} = {_quoted(value)}")
-        else:
-            lines.append(f"{key} = {json.dumps(value)}")
+        if key in NOTHING:
+            value = [NOTHING[key] if one is None else one for one in value]
+        lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
     return lines
 
 

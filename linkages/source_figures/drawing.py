@@ -9,10 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
 
 from linkages.source_figures.assembly import Assembly, Role
 
 __all__ = [
+    "HALO",
     "LARGE",
     "SMALL",
     "Look",
@@ -34,7 +36,9 @@ LINK_COLORS = {Role.KEPT: "#0072B2", Role.COMMON: "0.55", Role.REMOVED: "0.55"}
 LINK_DASHES = {Role.KEPT: "-", Role.COMMON: "-", Role.REMOVED: (0, (3, 2))}
 OFFSET_COLOR = "#D55E00"
 AXIS_COLOR = "0.5"
+HALO = [withStroke(linewidth=2.5, foreground="white")]  # text on lines stays legible
 NUMBER_DISTANCE = 0.09  # of the extent, from a joint to its number
+FROM_NUMBERS = 0.5  # a number covers more of another one than of a line
 PLACES = 16  # about a joint, where its number may stand
 
 
@@ -302,7 +306,8 @@ def _number_joints(
     pen: Pen,
 ) -> None:
     """Names beside the joints, each where lines and other names leave most room."""
-    taken = [np.array(list(spots.values()))]
+    joints = np.array(list(spots.values()))
+    taken = np.empty((0, 2))
     angles = np.linspace(0, 2 * np.pi, PLACES, endpoint=False)
     ring = np.column_stack([np.cos(angles), np.sin(angles)])
     segments = np.array(lines)
@@ -311,13 +316,23 @@ def _number_joints(
         for factor in (1.0, 1.5):
             places = spots[name] + factor * NUMBER_DISTANCE * extent * ring
             to_lines = _to_segments(places, segments).min(axis=1)
-            others = np.concatenate(taken)
-            to_names = np.linalg.norm(places[:, None] - others, axis=2).min(axis=1)
-            room = np.minimum(to_lines, to_names) - 0.02 * factor * extent
+            to_joints = _to_spots(places, joints)
+            to_numbers = FROM_NUMBERS * _to_spots(places, taken)
+            nearest = np.minimum(np.minimum(to_lines, to_joints), to_numbers)
+            room = nearest - 0.02 * factor * extent
             place = int(np.argmax(np.round(room / extent, 6)))
             if best is None or room[place] > best[0] + 0.03 * extent:
                 best = (room[place], places[place])
         assert best is not None
-        taken.append(best[1][None])
+        taken = np.vstack([taken, best[1]])
         axes.plot(*best[1], alpha=0)  # the frame holds the number
-        write_at(axes, best[1], name, fontsize=pen.text, zorder=6)
+        style = {"fontsize": pen.text, "zorder": 6, "path_effects": HALO}
+        write_at(axes, best[1], name, **style)
+
+
+def _to_spots(places: np.ndarray, spots: np.ndarray) -> np.ndarray:
+    """Distances (p,) of places (p, 2) from the nearest of some spots (q, 2); inf where
+    there is none."""
+    distances = np.linalg.norm(places[:, None] - spots, axis=2)
+    nearest: np.ndarray = distances.min(axis=1, initial=np.inf)
+    return nearest

@@ -19,7 +19,7 @@ from linkages.source_figures.assembly import (
     turn,
 )
 from linkages.source_figures.construction import assembly_of
-from linkages.source_figures.drawing import draw_assembly, look_along, write_at
+from linkages.source_figures.drawing import HALO, draw_assembly, look_along, write_at
 from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["chain_assembly", "draw", "ray_angles"]
@@ -225,6 +225,7 @@ def _write(
         fontsize=9,
         color=color,
         zorder=7,
+        path_effects=HALO,
         annotation_clip=False,
     )
 

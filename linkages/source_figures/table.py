@@ -107,8 +107,10 @@ class UnknownFigureError(BifurcError, KeyError):
         super().__init__(name)
 
     def __str__(self) -> str:
-        hint = ", ".join(self.nearest) if self.nearest else "see bifurc figure --list"
-        return f"no figure is called {self.name!r}; the nearest names are {hint}"
+        hint = "no name is like it; bifurc figure --list has them all"
+        if self.nearest:
+            hint = "the nearest names are " + ", ".join(self.nearest)
+        return f"no figure is called {self.name!r}; {hint}"
 
 
 @cache

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from linkages.source_figures.drawing import Look, look_along, write_at
+from linkages.source_figures.drawing import HALO, Look, look_along, write_at
 from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["Torus", "companion_torus", "draw", "shared_turn"]
@@ -157,7 +157,7 @@ def _draw_vector(
         zorder=5,
     )
     beyond = (point + 0.8 * direction) @ plane
-    write_at(axes, beyond, name, fontsize=8.5, zorder=6)
+    write_at(axes, beyond, name, fontsize=8.5, zorder=6, path_effects=HALO)
 
 
 def _draw_point(axes: Axes, point: np.ndarray, name: str, plane: np.ndarray) -> None:
@@ -172,6 +172,7 @@ def _draw_point(axes: Axes, point: np.ndarray, name: str, plane: np.ndarray) -> 
         zorder=7,
         ha="center",
         va="center",
+        path_effects=HALO,
     )
 
 

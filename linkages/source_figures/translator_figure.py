@@ -22,7 +22,7 @@ from linkages.closed_forms.translator import (
     stroke_angles,
     upright,
 )
-from linkages.source_figures.drawing import look_along
+from linkages.source_figures.drawing import HALO, look_along
 from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["draw"]
@@ -215,6 +215,7 @@ def _draw_mechanism(axes: Axes, centres: np.ndarray, plane: np.ndarray) -> None:
             fontsize=9,
             color=color,
             zorder=5,
+            path_effects=HALO,
         )
     axes.set_aspect("equal")
     axes.margins(0.12)

@@ -27,6 +27,7 @@ from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_of
 from linkages.scene import View, best_view, make_scene
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
+from linkages.viewing.title import title_of
 
 __all__ = ["ViewDocument", "make_view_document"]
 
@@ -174,14 +175,12 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
     structure = _structure_of(atlas)
     if structure is None:
         loop = loop_of(atlas)
-        title = loop.name or "linkage"
         view = best_view(make_scene(loop, _first(atlas)))
-        return _document(atlas, title, verdict, {"loop": _loop(loop)}, view)
+        return _document(atlas, verdict, {"loop": _loop(loop)}, view)
     points = np.concatenate(_configurations(atlas))
-    title = structure.mechanism.name or "mechanism"
     view = best_view_of_mechanism(structure, _first(atlas))
     motion = describe_motion(structure, points)
-    document = _document(atlas, title, verdict, {"mechanism": motion}, view)
+    document = _document(atlas, verdict, {"mechanism": motion}, view)
     if motion["tape"] is None:
         for form, shown in zip(atlas.forms, document["forms"], strict=True):
             shown["smallest"] = _smallest(form)
@@ -200,11 +199,11 @@ def _structure_of(atlas: Atlas) -> Structure | None:
 
 
 def _document(
-    atlas: Atlas, title: str, verdict: str, subject: SubjectDocument, view: View
+    atlas: Atlas, verdict: str, subject: SubjectDocument, view: View
 ) -> ViewDocument:
     completeness = atlas.completeness
     return {
-        "title": title,
+        "title": title_of(atlas),
         "verdict": verdict,
         "completeness": f"Completeness ({completeness.level}): "
         f"{completeness.statement}.",

@@ -3,6 +3,7 @@ finds."""
 
 import json
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -89,6 +90,17 @@ def test_a_page_holds_forms_points_and_closed_forms(dsg):
     assert all(f"| {form.name} |" in page.replace("\\", "") for form in dsg.forms)
     assert all(f"| {point.name} | bifurcation |" in page for point in dsg.points)
     assert page.count("$$") == 2 * sum(len(f.equations) for f in dsg.closed_forms) > 0
+
+
+def test_forms_stand_by_name_and_counts_are_said_once(dsg):
+    names = [form.name for form in dsg.forms]
+    assert names == sorted(names)
+    entry = catalogue()[DSG]
+    assert "In all" not in linkage_page(entry, dsg)
+    more = replace(dsg, counts=f"{dsg.counts}, 1 near miss")
+    assert f"In all: {more.counts}." in linkage_page(entry, more)
+    other = replace(dsg, verdict=dsg.verdict.replace("4 forms", "14 forms"))
+    assert f"In all: {dsg.counts}." in linkage_page(entry, other)
 
 
 def test_a_card_knows_joints_forms_name_and_author(dsg):

@@ -318,16 +318,24 @@ def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
 
 
 def make_table(atlas: Atlas, motion: Motion) -> str:
-    """The joint variables along a motion: angles of a loop, all variables of a
-    mechanism but those of spherical joints."""
+    """The joint variables along a motion: angles of a loop, or all variables of a
+    mechanism and the unit quaternions of its spherical joints."""
+    import numpy as np
+
     from linkages.app.configurations import readout_of
     from linkages.export.angle_table import make_angle_table
+    from linkages.export.motion import quaternions_without_jumps
 
     readout = readout_of(atlas)
     if readout is None:
         return make_angle_table(motion.arclength, motion.configurations, atlas.names)
-    values = readout.values(motion.configurations)
-    return make_angle_table(motion.arclength, values, readout.labels())
+    columns = [readout.values(motion.configurations)]
+    names = readout.labels()
+    for label, rotations in readout.rotations(motion.configurations).items():
+        quaternions = quaternions_without_jumps(rotations[None])[0]
+        columns.append(quaternions)
+        names += [f"{label}.q{part}" for part in "xyzw"]
+    return make_angle_table(motion.arclength, np.hstack(columns), names)
 
 
 def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:

@@ -6,8 +6,10 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy.spatial.transform import Rotation
 
 from linkages.app.cli import main
+from linkages.app.commands.export_command import make_table
 from linkages.app.configurations import readout_of
 from linkages.app.exit_codes import ExitCode
 from linkages.export.glb import make_glb
@@ -197,6 +199,26 @@ def test_a_table_of_a_mechanism_has_its_joints_by_name(five_bar, tmp_path):
     assert np.abs(rows[:, 1:].sum(axis=1) - rows[0, 1:].sum()).max() < 1e-9
 
 
+def test_a_table_of_a_mechanism_has_the_rotations_of_spherical_joints():
+    atlas = mapped("platform")
+    readout = readout_of(atlas)
+    motion = motion_of_form(atlas.forms[0], 60)
+    head, *lines = make_table(atlas, motion).splitlines()
+    names = head.split(",")
+    rows = np.loadtxt(lines, delimiter=",")
+    poses = readout.poses(motion.configurations)
+    bodies = readout.mechanism.bodies
+    for joint in readout.mechanism.joints:
+        if joint.kind != "spherical":
+            continue
+        columns = [names.index(f"{joint.name}.q{part}") for part in "xyzw"]
+        quaternions = rows[:, columns]
+        assert np.linalg.norm(np.diff(quaternions, axis=0), axis=1).max() < 0.5
+        base, moved = (poses[:, bodies.index(body), :3, :3] for body in joint.bodies)
+        turned = Rotation.from_quat(quaternions).as_matrix()
+        assert np.abs(base @ turned - moved).max() < 1e-9
+
+
 def test_without_its_centre_a_network_is_printed_and_measured_as_a_loop(tmp_path):
     straight = ("four-bennett-network", "--lock", "2=0", "--lock", "6=0")
     out = tmp_path / "net.glb"
@@ -301,7 +323,7 @@ def test_a_mechanism_is_viewed_with_locks(five_bar, tmp_path):
     result = bifurc("view", five_bar, "--no-open", "--out", out, "--lock", "J1=40")
     assert result.exit_code == ExitCode.DONE
     document = out.read_text(encoding="utf-8").split('id="bifurc-document"')[1]
-    assert '"title": "five-bar"' in document
+    assert '"title": "five-bar, locked: J1=40\\u00b0"' in document
     driven = bifurc("view", five_bar, "--no-open", "--out", out, "--drive", "J1")
     assert driven.exit_code == ExitCode.DONE
     assert (

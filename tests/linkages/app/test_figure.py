@@ -41,6 +41,7 @@ def test_the_same_figure_has_the_same_bytes(tmp_path):
         (("figure", "004-6"), "--out: give the folder"),
         (("figure", "--list", "004-6"), "--list: it goes without"),
         (("figure", "thesis-5.2.77", "--out", "nowhere"), "the nearest names are"),
+        (("figure", "xyz", "--out", "nowhere"), "no name is like it; bifurc figure"),
         (("map", "bennett", "--axes", "1,2"), "--axes: figures are only drawn with"),
         (("map", "bennett", "--against", "1"), "--against: figures are only drawn"),
         (("map", "bennett", "--axes", "1,5", "--out", "nowhere"), "no joint 5"),

@@ -1,6 +1,7 @@
 """Mechanisms on the command line: maps, JSON, files, locks, and what is refused."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -9,8 +10,12 @@ from click.testing import CliRunner
 from bifurc.files.dataset import load_atlas
 from linkages.app.cli import main
 from linkages.app.commands.map_command import write_numbers
+from linkages.app.mechanism_text import describe_joints
 from linkages.linkage import load
 from linkages.mapping import map_linkage
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
 
 SLIDER_CRANK = """
@@ -201,3 +206,16 @@ def test_a_lock_is_in_degrees_also_where_the_file_counts_in_radians(folder):
 def test_a_command_on_names_says_that_it_takes_no_file(folder, command):
     result = run(command, "slider_crank.toml", code=2)
     assert "a name of the catalogue is needed here, and no file" in result.stderr
+
+
+def test_the_summary_says_which_variable_of_a_joint_is_locked():
+    joints = [
+        Joint("A", "revolute", ("frame", "a"), (0, 0, 0), (0, 0, 1)),
+        Joint("B", "cylindrical", ("a", "b"), (1, 0, 0), (0, 0.5, 1)),
+        Joint("C", "cylindrical", ("b", "c"), (2, 2, 0.3), (0.3, 0.5, 1)),
+        Joint("D", "cylindrical", ("c", "frame"), (0, 2, 1), (1, 0.2, 0.4)),
+    ]
+    locked = Mechanism(tuple(joints)).with_locks({"A": 0.0, "B.slide": 0.25})
+    text = describe_joints(Readout(locked))
+    assert re.search(r"A +revolute .* 0\.0000 deg\n", text)
+    assert re.search(r"B +cylindrical .* slide 0\.25\n", text)

@@ -5,6 +5,7 @@ import pytest
 
 import linkages
 from linkages.file import LinkageFileError
+from linkages.mechanisms.toml_text import mechanism_toml
 
 JOINT = """
 [[joints]]
@@ -59,13 +60,23 @@ def test_joints_are_read_with_limits_and_locks_in_degrees(tmp_path):
 
 def test_a_joint_of_several_variables_has_lists_of_limits_and_locks(tmp_path):
     extra = "limits = [[-90, 90], [-2, 2]]\nlocked = [45, 0.5]\n"
-    text = four_bar(extra)
-    text = text[: text.rindex("revolute")] + text[text.rindex("revolute") :].replace(
-        "revolute", "cylindrical", 1
-    )
-    joint = read(tmp_path, text).joints[3]
+    joint = read(tmp_path, cylindrical_four_bar(extra)).joints[3]
     assert np.allclose(joint.limits, [(-np.pi / 2, np.pi / 2), (-2, 2)])
     assert np.allclose(joint.locked, (np.pi / 4, 0.5))
+
+
+def cylindrical_four_bar(extra):
+    head, last = four_bar(extra).rsplit("revolute", 1)
+    return f"{head}cylindrical{last}"
+
+
+def test_some_variables_of_a_joint_are_locked_or_limited(tmp_path):
+    extra = 'limits = [[], [-2, 2]]\nlocked = ["free", 0.5]\n'
+    mechanism = read(tmp_path, cylindrical_four_bar(extra))
+    joint = mechanism.joints[3]
+    assert joint.limits == (None, (-2.0, 2.0))
+    assert joint.locked == (None, 0.5)
+    assert read(tmp_path, mechanism_toml(mechanism)) == mechanism
 
 
 def test_bars_are_bodies_and_points_are_joints(tmp_path):
@@ -112,6 +123,11 @@ MALFORMED = {
     four_bar("", "name = 3\n"): r"name: 3 .* text",
     four_bar("locked = [1, 2]\n"): r"locked of joint D: \[1, 2\] .* a number",
     four_bar('locked = "x"\n'): r'locked of joint D: "x" .* number',
+    four_bar('locked = ["free"]\n'): r'locked of joint D: "free" .* number',
+    cylindrical_four_bar("locked = [1]\n"): r'\[1\] .* 2 numbers, "free" for a',
+    cylindrical_four_bar('locked = [1, "fre"]\n'): r'"fre" .* number',
+    four_bar("limits = []\n"): r"limits of joint D: .* \[low, high\]",
+    cylindrical_four_bar("limits = []\n"): r"limits of joint D: .* \[\] for those",
     four_bar("limits = 3\n"): r"limits of joint D: 3 .* \[low, high\]",
     four_bar("limits = [1, 2, 3]\n"): r"limits of joint D: .* \[low, high\]",
     four_bar().replace('kind = "revolute"\n', "", 1): r"kind of joint A: a missing key",

@@ -1,9 +1,11 @@
 """What single figures of the sources show: configurations, curves and marks."""
 
 import io
+from itertools import combinations
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from bifurc.torus import difference
 from linkages.source_figures import paths_figure
@@ -257,3 +259,17 @@ def test_the_best_look_sees_no_axis_end_on():
 def test_names_of_figures_are_safe_names_of_files():
     for name in source_figures():
         assert all(letter.isalnum() or letter in ".-" for letter in name)
+
+
+@pytest.mark.parametrize("name", ["thesis-2.3.3", "thesis-3.5.1", "thesis-5.2.7"])
+def test_numbers_of_joints_do_not_cover_each_other(name):
+    figure = draw_source_figure(source_figures()[name])
+    FigureCanvasAgg(figure).draw()
+    for axes in figure.axes:
+        boxes = [
+            text.get_window_extent()
+            for text in axes.texts
+            if text.get_text() in set("123456")
+        ]
+        for first, second in combinations(boxes, 2):
+            assert not first.shrunk(0.7, 0.7).overlaps(second.shrunk(0.7, 0.7))

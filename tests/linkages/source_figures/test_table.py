@@ -74,7 +74,7 @@ def test_a_figure_like_another_takes_over_what_it_does_not_say():
 def test_an_unknown_figure_is_refused_with_the_nearest_names():
     with pytest.raises(UnknownFigureError, match=r"thesis-5\.2\.7"):
         figure_named("thesis-5.2.77")
-    with pytest.raises(UnknownFigureError, match="see bifurc figure"):
+    with pytest.raises(UnknownFigureError, match="no name is like it; bifurc figure"):
         figure_named("nothing")
 
 

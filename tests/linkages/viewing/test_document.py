@@ -2,6 +2,7 @@
 
 import base64
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,15 @@ from bifurc.figures.planes import choose_plane
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from linkages.labels import NoLinkageError, loop_of
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.subject import mechanism_subject
+from linkages.networks.entries import NETWORKS
+from linkages.networks.mechanism import lock_network, network_subject
 from linkages.viewing.document import MOST_SAMPLES, make_view_document
+from linkages.viewing.title import title_of
+from tests.linkages.mechanisms.test_poses import platform
+from tests.linkages.viewing.conftest import slider_crank
 
 DSG = "special-double-subtractive-goldberg"
 
@@ -66,3 +75,27 @@ def test_an_atlas_of_equations_is_refused():
     )
     with pytest.raises(NoLinkageError, match="not of a linkage"):
         make_view_document(explore(circle))
+
+
+def test_the_title_says_what_is_locked(atlas_of):
+    assert title_of(atlas_of("slider-crank")) == "slider-crank"
+    assert title_of(atlas_of("RSRS")) == "mechanism, locked: R1=0°"
+    driven = slider_crank().with_locks({"J1": np.radians(40), "J4": -1.25})
+    subject = {"name": "slider-crank", **mechanism_subject(driven)}
+    atlas = replace(atlas_of("slider-crank"), subject=subject)
+    assert title_of(atlas) == "slider-crank, locked: J1=40°, J4=-1.25"
+    network = NETWORKS["four-bennett-network"].build()
+    locked = lock_network(network, {"2": np.radians(40.0), "6": np.radians(-75.0)})
+    subject = mechanism_subject(locked) | {"network": network_subject(locked)}
+    atlas = replace(atlas, subject=subject)
+    assert title_of(atlas) == f"{network.name}, locked: 2=40°, 6=-75°"
+
+
+def test_a_title_counts_locks_where_they_are_many(atlas_of):
+    legs = platform((0.0, 0.02, -0.03, 0.05, 0.0, None))
+    sixfold = Joint("U", "cylindrical", ("base", "plate"), (0, 0, 0), (0, 0, 1))
+    labels = [*(variable.label for variable in legs.variables), *sixfold.labels]
+    locked = Mechanism((*legs.joints, sixfold), "many legs")
+    subject = mechanism_subject(locked.with_locks(dict.fromkeys(labels, 0.0)))
+    atlas = replace(atlas_of("slider-crank"), subject=subject)
+    assert title_of(atlas) == f"many legs, {len(labels)} variables locked"

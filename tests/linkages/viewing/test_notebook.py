@@ -102,6 +102,42 @@ def test_traits_that_cannot_be_are_refused_by_name(atlas_of):
         widget.position = np.nan
 
 
+def test_a_position_is_brought_onto_the_form(atlas_of):
+    pytest.importorskip("anywidget", reason="the widget needs anywidget")
+    atlas = atlas_of(DSG)
+    length = {form.name: form.branch.length for form in atlas.forms}
+    widget = linkages.view(atlas)
+    widget.position = length[widget.form] + 1.0
+    assert widget.position == pytest.approx(1.0)
+    widget.position = -1.0
+    far = widget.position
+    assert far == pytest.approx(length[widget.form] - 1.0)
+    shortest = min(length, key=length.get)
+    widget.form = shortest
+    assert widget.position == pytest.approx(far % length[shortest])
+    with widget.hold_trait_notifications():
+        widget.position = 100.0
+        widget.form = "Form I"
+    assert widget.position == pytest.approx(100 % length[widget.form])
+    rigid = linkages.view(atlas_of("rigid"))
+    rigid.position = 100
+    assert rigid.position == len(atlas_of("rigid").rigid) - 1
+    rigid.position = 1.4
+    assert rigid.position == 1.0
+
+
+def test_the_browser_places_positions_as_python_does(notebook, atlas_of):
+    pytest.importorskip("anywidget", reason="the widget needs anywidget")
+    widget = linkages.view(atlas_of(DSG))
+    slider = notebook.locator(".bv-slider")
+    for position in (-1.0, 100.0, 2.5):
+        widget.position = position
+        notebook.evaluate("s => model.set('position', s)", position)
+        at_given = slider.input_value()
+        notebook.evaluate("s => model.set('position', s)", widget.position)
+        assert slider.input_value() == at_given
+
+
 def test_what_is_no_atlas_of_a_linkage_is_refused():
     with pytest.raises(ProblemError, match="atlas"):
         linkages.view("bennett")

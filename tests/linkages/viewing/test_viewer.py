@@ -227,27 +227,31 @@ def test_a_route_plays_to_its_end_and_is_the_one_that_python_finds(show_shared):
 
 
 @pytest.mark.parametrize("name", [DSG, "altmann"])
-def test_every_route_between_two_forms_is_as_long_as_that_of_python(show_shared, name):
+def test_every_route_between_two_forms_is_that_of_python(show_shared, name):
     shown = show_shared(name)
     names = [form.name for form in shown.atlas.forms]
     pairs = [(start, goal) for start in names for goal in names if start != goal]
-    lengths = shown.page.evaluate(
+    routes = shown.page.evaluate(
         """pairs => pairs.map(([start, goal]) => {
           bifurc.go(start);
-          return bifurc.route(goal)?.length ?? -1;
+          return bifurc.route(goal) ?? { length: -1, legs: [] };
         })""",
         pairs,
     )
-    for (start, goal), length in zip(pairs, lengths, strict=True):
-        assert length == pytest.approx(length_in_python(shown.atlas, start, goal))
+    for (start, goal), route in zip(pairs, routes, strict=True):
+        length, stops = route_in_python(shown.atlas, start, goal)
+        assert route["length"] == pytest.approx(length)
+        assert [leg["at"] for leg in route["legs"][:-1]] == stops
 
 
-def length_in_python(atlas, start, goal):
-    """The length of the route between two forms, -1 where there is none."""
+def route_in_python(atlas, start, goal):
+    """The length of the route between two forms, and the singular points that it
+    passes; -1 and none where there is no route."""
     try:
-        return find_route(atlas, start, goal, count=2).length
+        route = find_route(atlas, start, goal, count=2)
     except RouteError:
-        return -1.0
+        return -1.0, []
+    return route.length, [leg.at for leg in route.legs[:-1]]
 
 
 def test_playing_pauses_at_a_bifurcation(show):
@@ -356,9 +360,19 @@ def test_a_linkage_that_cannot_be_assembled_is_drawn_open(show_shared):
 
 def test_wrong_calls_of_scripts_are_refused_by_name(show_shared):
     shown = show_shared(DSG)
-    for call, words in (("go('Form X')", "form Form X"), ("go(1, NaN)", "s = NaN")):
+    before = shown.bifurc("state()")
+    for call, words in (
+        ("go('Form X')", "form Form X"),
+        ("go(1, NaN)", "s = NaN"),
+        ("route('Form X')", "form Form X"),
+        ("playRoute('Form X')", "form Form X"),
+        ("playRoute('Form II', 0)", "seconds = 0"),
+        ("playRoute('Form II', -1)", "seconds = -1"),
+        ("playRoute('Form II', '1')", "seconds = 1"),
+    ):
         caught = f"() => {{ try {{ bifurc.{call} }} catch (e) {{ return `${{e}}` }} }}"
         assert words in shown.page.evaluate(caught)
+    assert shown.bifurc("state()") == before
 
 
 @pytest.mark.parametrize("name", [DSG, "generic 12R"])
