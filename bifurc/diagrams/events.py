@@ -17,7 +17,7 @@ from bifurc.numerics.roots import bracketed_roots
 
 __all__ = ["EventFunction", "EventRequests", "event_places", "events_of"]
 
-SAMPLES, BESIDE = 16, 0.1  # places on a branch, so far, over the scale, off it
+SAMPLES, BESIDE = 16, 0.1  # places on a branch, so far, over their sizes, off it
 UnknownsToNumber: TypeAlias = Callable[[np.ndarray], float]
 # By their names: a function whose zeros are looked for, or a function and what it shall
 # be equal to, one value or several. In place of a function the name of an unknown.
@@ -84,9 +84,9 @@ def _function_of(
     return cast(UnknownsToNumber, function)
 
 
-def event_places(branch: Branch, event: EventFunction, scale: float) -> np.ndarray:
+def event_places(branch: Branch, event: EventFunction, sizes: np.ndarray) -> np.ndarray:
     """Arclengths, in order, at which a function passes its value, or takes it at a
-    place that is looked at; ``scale`` is that of the unknowns.
+    place that is looked at; ``sizes`` (n,) are those of the unknowns.
 
     There are none where it jumps, as at a pole, and on a branch along which it has the
     value everywhere.
@@ -94,7 +94,7 @@ def event_places(branch: Branch, event: EventFunction, scale: float) -> np.ndarr
     nodes = branch.places(NODES).ravel()
     s = np.concatenate([[0.0], nodes, [branch.length]])
     values = event.differences(branch(s))
-    beside = _size_beside(branch, event, scale)
+    beside = _size_beside(branch, event, sizes)
     if is_event_all_along(float(np.abs(values).max()), beside):
         return np.empty(0)
     at_once: np.ndarray = s[values == 0.0]
@@ -111,11 +111,11 @@ def event_places(branch: Branch, event: EventFunction, scale: float) -> np.ndarr
     return places
 
 
-def _size_beside(branch: Branch, event: EventFunction, scale: float) -> float:
+def _size_beside(branch: Branch, event: EventFunction, sizes: np.ndarray) -> float:
     """How large the difference of a function to its value is a little way off a
     branch."""
     rng = np.random.default_rng(0)
     points = branch.sample(SAMPLES)
-    points = points + BESIDE * scale * rng.uniform(-1.0, 1.0, points.shape)
+    points = points + BESIDE * sizes * rng.uniform(-1.0, 1.0, points.shape)
     values = np.abs(event.differences(points))
     return float(values[np.isfinite(values)].max(initial=0.0))

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
+import numpy as np
+
 from bifurc.atlas import Atlas, Event
 from bifurc.checks import check_type
 from bifurc.decisions import is_fold_of_crossing
@@ -173,10 +175,12 @@ def _event_points(
     problem: Problem, atlas: Atlas, event: EventFunction
 ) -> list[DiagramPoint]:
     """The places on all forms where a function takes its value."""
+    # an unknown that is counted in a unit of its own is no larger than its bounds
+    sizes = np.minimum(problem.scale, 0.5 * np.diff(problem.bounds, axis=1)[:, 0])
     points = []
     for number, form in enumerate(atlas.forms):
         branch = form.branch
-        for s in event_places(branch, event, problem.scale).tolist():
+        for s in event_places(branch, event, sizes).tolist():
             u, value = branch(s), event.value
             point = DiagramPoint("", PointKind.EVENT, number, s, u, value, event.label)
             points.append(point)

@@ -36,6 +36,8 @@ InverseMaker: TypeAlias = (
 
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences
+STEP_OF_PARAMETER = 1e-10  # least step of the parameter, over it: far above rounding
+SHORTER = 1e-2  # a second step, over the first, which shows the error of a difference
 SAME = 1e-5  # relative difference up to which two kinds of derivative agree
 WRONG = 1e-2  # relative difference from which on a given derivative is wrong
 SAMPLES = 3  # points at which a recording is compared with the function
@@ -128,6 +130,11 @@ class LargeProblem:
         self._tape = recording.tape
         self.derivatives = "recorded"
 
+    @property
+    def is_recorded(self) -> bool:
+        """Whether F' comes from the recorded function: it is exact."""
+        return self._tape is not None
+
     # --- values -----------------------------------------------------------------------
 
     def value(self, point: np.ndarray) -> np.ndarray:
@@ -177,9 +184,11 @@ class LargeProblem:
 
     def _by_parameter(self, point: np.ndarray) -> np.ndarray:
         """The derivative (n - 1,) of F by the parameter, by central differences."""
-        along = np.zeros(self.n)
-        along[-1] = 1.0
-        return self._difference(point, along)
+        only_parameter = np.zeros(self.n)
+        only_parameter[-1] = self._steps(point)[-1]
+        change, steps = self._difference(point, only_parameter)
+        derivative: np.ndarray = change / steps[-1]
+        return derivative
 
     def _by_tape(self, point: np.ndarray) -> csr_array:
         from scipy.sparse import csr_array
@@ -196,16 +205,21 @@ class LargeProblem:
         from scipy.sparse import csr_array
 
         assert self._groups is not None
-        together = np.empty((self.n - 1, self._count))
+        changes = np.empty((self.n - 1, self._count))
+        widths = np.ones(self.n)
+        steps = self._steps(point)
         for group in range(self._count):
-            along = (self._groups == group).astype(float)
+            in_group = self._groups == group
+            along = in_group.astype(float)
             if self._is_complex:
-                together[:, group] = self._complex_step(point, along)
+                changes[:, group] = self._complex_step(point, along)
             else:
-                together[:, group] = self._difference(point, along)
+                changes[:, group], taken = self._difference(point, along * steps)
+                widths[in_group] = taken[in_group]
         starts, columns = self._pattern.indptr, self._pattern.indices
         rows = np.repeat(np.arange(self.n - 1), np.diff(starts))
-        entries = together[rows, self._groups[columns]]
+        # columns of a group share no row, so that each has a step of its own
+        entries = changes[rows, self._groups[columns]] / widths[columns]
         return csr_array((entries, columns, starts), shape=self._pattern.shape)
 
     def _complex_step(self, point: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -213,18 +227,23 @@ class LargeProblem:
         derivative: np.ndarray = np.imag(value) / COMPLEX_STEP
         return derivative
 
-    def _difference(self, point: np.ndarray, along: np.ndarray) -> np.ndarray:
-        """Derivative (n - 1,) of F along a direction (n,) of entries of about 1."""
-        sizes = np.full(self.n, self.size)
-        sizes[-1] = 0.25 * np.diff(self.bounds)[0]
-        steps = DIFFERENCE_STEP * np.maximum(sizes, np.abs(point)) * along
-        width = float(np.abs(steps).max())
-        if np.count_nonzero(along) > 1:
-            # all unknowns of a group by one step, or columns would differ in theirs
-            steps = width * along
-        upper, lower = self.value(point + steps), self.value(point - steps)
-        derivative: np.ndarray = (upper - lower) / (2.0 * width)
-        return derivative
+    def _steps(self, point: np.ndarray) -> np.ndarray:
+        """A step (n,) of each unknown for differences: by its size, which for the
+        parameter is a quarter of the bounds, however far from 0 they are."""
+        sizes = np.maximum(self.size, np.abs(point))
+        steps: np.ndarray = DIFFERENCE_STEP * sizes
+        by_bounds = DIFFERENCE_STEP * 0.25 * float(np.diff(self.bounds)[0])
+        steps[-1] = max(by_bounds, STEP_OF_PARAMETER * abs(float(point[-1])))
+        return steps
+
+    def _difference(
+        self, point: np.ndarray, steps: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """By how much F (n - 1,) changes along ``steps`` (n,), half the difference of
+        both sides; and the steps (n,) that were taken, with their rounding."""
+        upper, lower = point + steps, point - steps
+        change: np.ndarray = 0.5 * (self.value(upper) - self.value(lower))
+        return change, 0.5 * (upper - lower)
 
     def _lets_complex_through(self) -> bool:
         """Whether a complex step gives what differences give, at a point and along a
@@ -232,10 +251,10 @@ class LargeProblem:
         rng = np.random.default_rng(0)
         point = self.size * rng.uniform(-1.0, 1.0, self.n)
         point[-1] = rng.uniform(*self.bounds)
-        along = rng.choice([-1.0, 1.0], self.n)
-        expected = self._difference(point, along)
+        signs = rng.choice([-1.0, 1.0], self.n)
+        expected, steps = self._difference(point, signs * self._steps(point))
         try:
-            by_complex = self._complex_step(point, along)
+            by_complex = self._complex_step(point, steps)
         except (TypeError, ValueError, np.exceptions.ComplexWarning):
             return False
         if by_complex.shape != expected.shape:
@@ -245,22 +264,42 @@ class LargeProblem:
     # --- checks -----------------------------------------------------------------------
 
     def check_start(self, start: object) -> np.ndarray:
-        """A start as an array (n,); raises `ProblemError` for another shape, for values
-        that are not finite there, and for a jacobian that is not the derivative."""
+        """A start as an array (n,); raises `ProblemError` for another shape, for a
+        parameter out of bounds, for values that are not finite there, and for a
+        jacobian that is not the derivative."""
         point = floats_of("start", start)  # type: ignore[arg-type]
         if point.shape != (self.n,):
             raise ProblemError("shape of the start", point.shape, f"({self.n},)")
         check_finite("start", point)
+        low, high = self.bounds.tolist()
+        if not low <= point[-1] <= high:
+            allowed = f"between the bounds {low:.10g} and {high:.10g}"
+            raise ProblemError("parameter of the start", float(point[-1]), allowed)
         check_finite("value of the function at the start", self.value(point))
-        along = np.random.default_rng(0).choice([-1.0, 1.0], self.n)
-        expected = self._difference(point, along)
-        product = self.jacobian(point) @ along
-        if not _relative_difference(product, expected) < WRONG:
-            row = int(np.argmax(np.abs(product - expected)))
-            allowed = f"the derivative of the function, {expected[row]:.6g}"
-            name = f"product of row {row} of the jacobian with a vector of signs"
-            raise ProblemError(name, f"{product[row]:.6g}", allowed)
+        self.check_jacobian(point)
         return point
+
+    def check_jacobian(self, point: np.ndarray) -> None:
+        """Raises `ProblemError` where F' at a point (n,) is not the derivative, by more
+        than the difference that it is held against is wrong itself."""
+        if self.is_recorded:
+            return  # exact, and held against the function when it was recorded
+        rng = np.random.default_rng(0)
+        # of no equal lengths, or entries that are missing could cancel out
+        shares = rng.choice([-1.0, 1.0], self.n) * rng.uniform(0.5, 1.0, self.n)
+        steps = shares * self._steps(point)
+        longer = self._difference(point, steps)[0]
+        change, taken = self._difference(point, SHORTER * steps)
+        expected = change / SHORTER
+        product = self.jacobian(point) @ taken / SHORTER
+        error = np.linalg.norm(expected - longer)
+        size = np.linalg.norm(expected) + np.linalg.norm(product)
+        if np.linalg.norm(product - expected) > WRONG * size + error:
+            row = int(np.argmax(np.abs(product - expected)))
+            derivative = expected[row] / DIFFERENCE_STEP
+            allowed = f"the derivative of the function, {derivative:.6g}"
+            name = f"product of row {row} of the jacobian with a random direction"
+            raise ProblemError(name, f"{product[row] / DIFFERENCE_STEP:.6g}", allowed)
 
 
 def _relative_difference(a: np.ndarray, b: np.ndarray) -> float:

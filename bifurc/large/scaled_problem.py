@@ -33,6 +33,8 @@ __all__ = ["ScaledProblem"]
 DIFFERENCE = 1e-5  # length of the step of a difference of F'
 ROUNDS = 3  # of inverse iteration, by which the size of F' is seen
 ALONG_AXIS = 1e-3  # share of the random vector that the first tangent comes from
+BESIDE = 0.1  # how far beside a singular start F' is of an ordinary size
+SINGULAR = 1e-3  # of that size: a start is singular
 
 
 class ScaledProblem(NumericalProblem):
@@ -148,13 +150,24 @@ class ScaledProblem(NumericalProblem):
         return Inverse(checked(solve), checked(transposed))
 
     def _size_of_jacobian(self, point: np.ndarray) -> float:
-        """About the smallest singular value of F' at a point (n,) across the curve, by
-        inverse iteration."""
+        """About the smallest singular value of F' at a point (n,) across the curve, or,
+        where the point is singular itself, a little way along the curve."""
         rng = np.random.default_rng(0)
         along = ALONG_AXIS * rng.normal(size=self.n) / np.sqrt(self.n)
         along[-1] = 1.0
-        system = self.bordered(point, along[None])
-        vector = rng.normal(size=self.n - 1)
+        last = np.zeros(self.n)
+        last[-1] = 1.0
+        tangent = self.bordered(point, along[None]).solve(last)
+        tangent /= np.linalg.norm(tangent)
+        size = self._size_across(point, tangent)
+        beside = self._size_across(point + BESIDE * tangent, tangent)
+        return beside if size < SINGULAR * beside < np.inf else size
+
+    def _size_across(self, point: np.ndarray, tangent: np.ndarray) -> float:
+        """About the smallest singular value of F' at a point (n,) across a ``tangent``
+        (n,), by inverse iteration."""
+        system = self.bordered(point, tangent[None])
+        vector = np.random.default_rng(1).normal(size=self.n - 1)
         size = 1.0
         for _ in range(ROUNDS):
             vector /= np.linalg.norm(vector)

@@ -19,7 +19,6 @@ __all__ = ["SingularTriple", "smallest_singular_triples"]
 # of singular values, over the largest of their inverse squares: minima are located from
 # them, and singular points by Newton's method
 TOLERANCE = 1e-6
-OF_TANGENT = 0.5  # share of the tangent in a vector that is the tangent itself
 TINY = 1e-300  # keeps the inverse of a singular value of zero from being divided by
 
 
@@ -36,29 +35,37 @@ def smallest_singular_triples(
     problem: ScaledProblem, point: np.ndarray, tangent: np.ndarray, count: int
 ) -> list[SingularTriple]:
     """The ``count`` smallest singular values of F' at a point (n,) of a curve with a
-    ``tangent`` (n,), in increasing order; fewer where they are no smaller than 1 is."""
+    unit ``tangent`` (n,), in increasing order; fewer where there are no more."""
     system = problem.bordered(point, tangent[None])
-    pairs = _largest_of_inverse(system, problem.n, min(count + 1, problem.n - 1))
+    pairs = _largest_of_inverse(system, tangent, min(count, problem.n - 1))
     triples = []
     for inverse_square, right in pairs:
-        if abs(right @ tangent) > OF_TANGENT:
-            continue
         value = 1.0 / np.sqrt(max(inverse_square, TINY))
         left = value * system.solve_transposed(right)[:-1]
         left /= np.linalg.norm(left)
         triples.append(SingularTriple(float(value), left, right))
     triples.sort(key=lambda triple: triple.value)
-    return triples[:count]
+    return triples
 
 
 def _largest_of_inverse(
-    system: BorderedSystem, n: int, count: int
+    system: BorderedSystem, tangent: np.ndarray, count: int
 ) -> list[tuple[float, np.ndarray]]:
-    """The largest eigenvalues of M^-1 M^-T, with unit eigenvectors (n,)."""
+    """The largest eigenvalues of M^-1 M^-T, with unit eigenvectors (n,) square to the
+    ``tangent`` (n,), the row of M under F': it is an eigenvector of 1 itself, which
+    must not be mixed with those of F' that are 1 or more."""
     from scipy.sparse.linalg import LinearOperator, eigsh
 
+    def across(vector: np.ndarray) -> np.ndarray:
+        flat = np.ravel(vector)
+        part: np.ndarray = flat - (tangent @ flat) * tangent
+        return part
+
+    n = len(tangent)
     operator = LinearOperator(
-        (n, n), lambda x: system.solve(system.solve_transposed(x)), dtype=float
+        (n, n),
+        lambda x: across(system.solve(system.solve_transposed(across(x)))),
+        dtype=float,
     )
     if count + 1 >= n:  # ARPACK wants room for one vector more
         values, vectors = np.linalg.eigh(operator @ np.eye(n))

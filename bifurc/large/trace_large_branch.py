@@ -13,13 +13,20 @@ from bifurc.curves.continuation import TraceSettings, follow_curve, joined_branc
 from bifurc.curves.track import Place
 from bifurc.errors import ProblemError
 from bifurc.large.large_branch import LargeBranch
+from bifurc.large.large_point import LargePoint
 from bifurc.large.large_problem import LargeProblem
 from bifurc.large.scaled_problem import ScaledProblem
-from bifurc.large.singular_profile import singular_profile
+from bifurc.large.singular_profile import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
 from bifurc.numerics.null_spaces import null_vector
 
 __all__ = ["LargeSettings", "trace_large_branch"]
+
+NEWTON_STEPS = 12
+DIFFERENCE = 1e-5  # length of the step along a tangent by which F' is checked
+SHORTER = 0.1  # a second step, over the first, which shows the error of a difference
+WRONG = 1e-2  # error of the unknowns, over the way along a curve, by a wrong F'
+SETTLED = 1e-9  # a step after which the next one, its square, would be rounding
 
 
 def _default_tracing() -> TraceSettings:
@@ -68,7 +75,8 @@ def trace_large_branch(
     as long as the settings allow. Trouble on the way is the `Outcome` of the branch. A
     start that cannot be corrected gives a branch of no pieces. Raises `ProblemError` for
     a start, a direction, a value, a jacobian or a solution by the solver that has
-    another shape or is not finite, for a jacobian that is not the derivative, and where
+    another shape or is not finite, for a start outside of the bounds, for a jacobian that is
+    not the derivative at the start or along the curve, and where
     the solver is so poor that the first systems are not solved.
     """
     check_type("problem", problem, LargeProblem)
@@ -83,10 +91,52 @@ def trace_large_branch(
         crossings = crossings_on(scaled, branch, profile)
         points += crossings
         points += near_misses_on(scaled, branch, profile, crossings)
+        _check_jacobian_along(scaled, branch, points)
     points.sort(key=lambda point: point.s)
     return LargeBranch(
         branch, scaled.own_units, tuple(points), profile.places, profile.values
     )
+
+
+def _check_jacobian_along(
+    scaled: ScaledProblem, branch: Branch, points: list[LargePoint]
+) -> None:
+    """Raises `ProblemError` where F' is not the derivative along a curve, in the middle,
+    at its end or at one of its special ``points``.
+
+    At a start with u = 0 much that is wrong is hidden, and along a random direction
+    differences of neighbours hide what the equations add to them. A tangent is smooth.
+    """
+    if scaled.problem.is_recorded or not len(branch.pieces):
+        return
+    places = [0.5 * branch.length, branch.length, *(point.s for point in points)]
+    for s in places:
+        _check_along_tangent(scaled, branch(s), unit_tangent(branch, s))
+
+
+def _check_along_tangent(
+    scaled: ScaledProblem, point: np.ndarray, tangent: np.ndarray
+) -> None:
+    def difference(step: float) -> np.ndarray:
+        both = np.stack([point + step * tangent, point - step * tangent])
+        upper, lower = scaled.relative_residuals(both)
+        derivative: np.ndarray = (upper - lower) / (2.0 * step)
+        return derivative
+
+    product = scaled.jacobian(point) @ tangent / scaled.magnitude
+    expected = difference(DIFFERENCE)
+    error = np.linalg.norm(expected - difference(SHORTER * DIFFERENCE))
+    misses = np.abs(product - expected)
+    if np.linalg.norm(misses) > WRONG + error:
+        row = int(np.argmax(misses))
+        in_units = scaled.magnitude / scaled.own_units.weights[row]
+        parameter = scaled.own_units.outwards(point)[-1]
+        raise ProblemError(
+            f"product of row {row} of the jacobian with the tangent of the curve at "
+            f"{scaled.problem.parameter} = {parameter:.6g}",
+            f"{in_units * product[row]:.6g}",
+            f"the derivative of the function, {in_units * expected[row]:.6g}",
+        )
 
 
 def _checked_direction(problem: LargeProblem, direction: object) -> np.ndarray:
@@ -111,12 +161,37 @@ def _traced(
 ) -> Branch:
     """The curve in the units of the problem."""
     point = scaled.own_units.inwards(start)
-    tangent = null_vector(scaled, point, direction / scaled.own_units.sizes)
+    along = direction / scaled.own_units.sizes
+    tangent = null_vector(scaled, point, along)
     forward = follow_curve(scaled, Place(point, tangent), settings.tracing)
+    if not len(forward.pieces):
+        # corrected across the curve, the start may have left the bounds
+        point = _corrected_at_parameter(scaled, point)
+        tangent = null_vector(scaled, point, along)
+        forward = follow_curve(scaled, Place(point, tangent), settings.tracing)
     ends_here = forward.outcome in (Outcome.CLOSED, Outcome.OPEN)
     if not settings.both_ways or ends_here:
         return forward
     backward = follow_curve(scaled, Place(point, -tangent), settings.tracing)
-    if not len(backward.pieces):
+    if backward.length <= settings.tracing.shortest:
         return forward
     return joined_branch(backward.reversed(), forward)
+
+
+def _corrected_at_parameter(scaled: ScaledProblem, start: np.ndarray) -> np.ndarray:
+    """The solution (n,) near ``start`` (n,) with the same parameter; ``start`` itself
+    where Newton's method does not settle."""
+    point: np.ndarray = start.copy()
+    only_parameter = np.zeros((1, scaled.n))
+    only_parameter[0, -1] = 1.0
+    for _ in range(NEWTON_STEPS):
+        system = scaled.bordered(point, only_parameter)
+        step = system.solve(np.append(-scaled.relative_residuals(point[None])[0], 0.0))
+        length = float(np.linalg.norm(step))
+        if not length < np.inf:
+            return start
+        point = point + step
+        point[-1] = start[-1]
+        if length < SETTLED:
+            return point
+    return start

@@ -76,11 +76,13 @@ def find_points(
 ) -> tuple[JointPoint, ...]:
     """The points of the spherical joints of a mechanism whose pairs have these
     ``ends``; joints of one body in one place, for lengths in this ``unit``, have one
-    point."""
+    point. Bodies that joints hold as they are given are one."""
     spherical = [k for k in ends if mechanism.pairs[k].center is not None]
     same = UnionFind(spherical)
+    body_of = _held_together(mechanism, ends)
     for first, second in combinations(spherical, 2):
-        if set(ends[first][:2]) & set(ends[second][:2]):
+        bodies = {body_of[body] for body in ends[first][:2]}
+        if bodies & {body_of[body] for body in ends[second][:2]}:
             gap = _center(mechanism, first) - _center(mechanism, second)
             if meets_in_one_point(float(np.linalg.norm(gap)), unit):
                 same.union(first, second)
@@ -88,6 +90,18 @@ def find_points(
     for number in spherical:
         members[same[number]].append(number)
     return tuple(_point(mechanism, ends, pairs) for pairs in members.values())
+
+
+def _held_together(mechanism: Mechanism, ends: dict[int, Ends]) -> UnionFind:
+    """The bodies, by number, as parts that rigid joints and locks at 0 make one."""
+    parts = UnionFind(range(len(mechanism.bodies)))
+    for number, (base, moved, unknowns) in ends.items():
+        locks = [
+            mechanism.variables[v].locked for v in mechanism.pairs[number].variables
+        ]
+        if unknowns == 0 and not any(locks):
+            parts.union(base, moved)
+    return parts
 
 
 def _point(mechanism: Mechanism, ends: dict[int, Ends], pairs: list[int]) -> JointPoint:

@@ -168,6 +168,8 @@ def _chain_of(
     points: tuple[JointPoint, ...],
 ) -> _Chain | None:
     """The rod that begins with a group; None where none does."""
+    if _has_free_joint(ends, group):
+        return None
     if not group.outer and len(group.points) == 2:
         first, second = group.points
         return _Chain(group, group, (first, second))
@@ -181,9 +183,17 @@ def _chain_of(
     # the same leg is met once more from its other end
     if other.bodies < group.bodies or other.points == group.points:
         return None
+    if _has_free_joint(ends, other):
+        return None
     chain = _Chain(group, other, (group.points[0], other.points[0]), slide)
     leg = _leg(mechanism, ends, chain, points)
     return None if leg is None else chain._replace(leg=leg)
+
+
+def _has_free_joint(ends: dict[int, Ends], group: Group) -> bool:
+    """Whether a joint inside a group is held by rigid ones beside it alone: it closes a
+    loop, which a rod would leave out."""
+    return any(ends[k].unknowns for k in group.inner)
 
 
 def _leg(

@@ -140,8 +140,9 @@ class Structure:
         """Lock the turns that move nothing else at 0, one after the other."""
         while True:
             ends = _ends_of(self.mechanism)
-            groups = find_groups(self.mechanism, ends, self.points)
-            args = self.mechanism, ends, groups, self.points, self.unit
+            points = find_points(self.mechanism, ends, self.unit)
+            groups = find_groups(self.mechanism, ends, points)
+            args = self.mechanism, ends, groups, points, self.unit
             label = find_idle_turn(*args)
             if label is None:
                 break

@@ -187,6 +187,18 @@ def test_a_value_that_a_form_has_all_along_is_no_event(seed) -> None:
     assert event.u == pytest.approx([np.pi, np.pi], abs=1e-12)
 
 
+@pytest.mark.parametrize("x, p", [(1.0, 1.0), (1e6, 1e-6), (1e-6, 1e6)])
+def test_an_event_is_seen_whatever_unknowns_are_counted_in(x: float, p: float) -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [u[1] / p + u[0] / x - (u[0] / x) ** 3],
+        [(-3 * x, 3 * x), (-2 * p, 2 * p)],
+        names=["x", "p"],
+    )
+    requests = {"half": ("p", 0.5 * p), "one": ("x", x)}
+    events = bifurc.explore(problem, events=requests).diagram.events()
+    assert sorted(event.label for event in events) == ["half", "one"]
+
+
 def test_a_pole_is_no_event() -> None:
     diagram = bifurc.explore(CIRCLE, events={"pole": lambda u: 1 / u[0]}).diagram
     assert not diagram.events()

@@ -68,6 +68,29 @@ def test_columns_of_a_group_share_no_row(dimensions: int) -> None:
     assert groups.max() + 1 <= 10
 
 
+def test_unknowns_of_very_different_sizes_are_differenced_each_by_its_own() -> None:
+    def real(x):
+        values = x[0] ** 3 - x[2], x[1] / 1e6 - x[0] ** 2
+        return np.array([float(np.real(value)) for value in values])
+
+    pattern = csr_array(np.array([[1, 0, 1], [1, 1, 0]]))
+    problem = LargeProblem(real, 3, (-2.0, 2.0), pattern=pattern)
+    assert problem.derivatives == "central differences in 2 groups of columns"
+    point = np.array([1.5, 2e6, 0.3])
+    expected = [[3 * 1.5**2, 0.0, -1.0], [-3.0, 1e-6, 0.0]]
+    np.testing.assert_allclose(problem.jacobian(point).toarray(), expected, rtol=1e-8)
+
+
+def test_entries_that_a_pattern_leaves_out_are_named() -> None:
+    def function(x):
+        return np.array([x[0] ** 3 - x[0] - x[2] + x[1], x[1] - x[0] ** 2])
+
+    pattern = csr_array(np.array([[1, 0, 1], [1, 1, 0]]))
+    problem = LargeProblem(function, 3, (-2.0, 2.0), pattern=pattern)
+    with pytest.raises(ProblemError, match="product of row 0"):
+        problem.check_start([-1.0, 1.0, 1.0])
+
+
 def test_matrices_of_another_size_or_kind_are_named() -> None:
     case = bratu_field(10, 1)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
-from scipy.sparse import eye_array
+from scipy.sparse import csr_array, eye_array
 from scipy.sparse.linalg import LinearOperator, splu
 
 import bifurc
@@ -235,6 +235,11 @@ def test_a_start_and_a_direction_are_checked() -> None:
         trace_large_branch(problem, np.full(11, np.nan))
     with pytest.raises(bifurc.ProblemError, match="direction"):
         trace_large_branch(problem, np.zeros(11), np.zeros(11))
+    outside = np.append(np.zeros(10), -0.5)
+    with pytest.raises(
+        bifurc.ProblemError, match=r"parameter of the start: -0\.5 .* 0"
+    ):
+        trace_large_branch(problem, outside)
     with pytest.raises(bifurc.ProblemError, match="values: -1"):
         LargeSettings(values=-1)
 
@@ -291,3 +296,76 @@ def test_singular_values_by_a_solver_are_those_of_the_factors() -> None:
     assert values[0].shape[1] == 2
     assert np.allclose(values[0], values[1], rtol=1e-5)
     assert np.allclose(values[0], values[2], rtol=1e-5)
+
+
+# --- starts of every kind -------------------------------------------------------------
+
+
+def pitchfork(x):
+    return np.array([x[1] * x[0] - x[0] ** 3])
+
+
+def cubic(x):
+    return np.array([x[0] ** 3 - x[0] - x[1]])
+
+
+WHOLE = LargeSettings(
+    tracing=replace(AROUND_THE_FOLD.tracing, max_length=20.0), values=2, both_ways=True
+)
+
+
+@pytest.mark.parametrize("parameter", [-1.0, 0.0, 1e-9, 1e-3, 0.1])
+def test_a_crossing_is_seen_from_any_start_itself_among_them(parameter: float) -> None:
+    problem = LargeProblem(pitchfork, 2, (-1.0, 1.5))
+    branch = trace_large_branch(problem, [0.0, parameter], settings=WHOLE)
+    assert [point.kind for point in branch.points] == [LargeKind.CROSSING]
+    assert np.abs(branch.crossings[0].u).max() < 1e-12
+    assert np.all(np.isfinite(branch.values))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.0, np.pi / 2])
+def test_a_circle_closes_from_any_start_folds_among_them(angle: float) -> None:
+    problem = LargeProblem(lambda x: np.array([x @ x - 1.0]), 2, (-3.0, 3.0))
+    start = [np.cos(angle), np.sin(angle)]
+    branch = trace_large_branch(problem, start, settings=WHOLE)
+    assert branch.outcome is Outcome.CLOSED
+    assert sorted(fold.parameter for fold in branch.folds) == pytest.approx([-1.0, 1.0])
+    assert len(branch.branch.pieces) < 50
+
+
+@pytest.mark.parametrize("guess", [0.8, 0.9, 1.2])
+def test_a_guess_on_the_bounds_is_corrected_within_them(guess: float) -> None:
+    problem = LargeProblem(cubic, 2, (-0.2, 1.0))
+    branch = trace_large_branch(problem, [guess, -0.2])
+    assert branch.outcome is Outcome.LEFT_REGION
+    assert branch.parameters(np.array([branch.length])) == pytest.approx([1.0])
+    assert branch.length > 3.9
+
+
+@pytest.mark.parametrize("shift", [1e4, -1e6, 1e6])
+def test_a_parameter_far_from_0_within_narrow_bounds_counts_as_any(
+    shift: float,
+) -> None:
+    def shifted(x):
+        return cubic([x[0], x[1] - shift])
+
+    bounds = (shift - 2.0, shift + 2.0)
+    square = LargeProblem(
+        shifted, 2, bounds, jacobian=lambda x: csr_array([[3 * x[0] ** 2 - 1]])
+    )
+    for problem in (LargeProblem(shifted, 2, bounds), square):
+        branch = trace_large_branch(problem, [-1.5, shift - 1.8], settings=WHOLE)
+        folds = [fold.parameter - shift for fold in branch.folds]
+        assert folds == pytest.approx([2 / 27**0.5, -2 / 27**0.5], abs=1e-9)
+
+
+def test_a_jacobian_that_is_wrong_only_beyond_the_start_is_named() -> None:
+    case = bratu_field(100, 1)
+
+    def without_growth(x):
+        # right at u = 0 alone
+        return case.jacobian(np.append(np.zeros(case.n - 1), x[-1]))
+
+    problem = LargeProblem(case.residual, case.n, (0.0, 8.0), jacobian=without_growth)
+    with pytest.raises(bifurc.ProblemError, match=r"row \d+ of the jacobian with the"):
+        trace_large_branch(problem, np.zeros(case.n), settings=AROUND_THE_FOLD)

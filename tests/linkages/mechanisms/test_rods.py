@@ -251,3 +251,64 @@ def test_a_body_that_hangs_in_one_point_by_two_joints_is_refused():
     )
     with pytest.raises(GeometryError, match="joints a and b of body x"):
         MechanismClosure(Mechanism(joints))
+
+
+def test_a_joint_beside_a_rigid_one_closes_a_loop_also_in_a_rod() -> None:
+    start, end = (1.0, 0.2, 0.0), (0.3, 1.0, 2.0)
+    joints = (
+        Joint("hinge", "spherical", ("frame", "plate"), (0.0, 0.0, 0.0)),
+        Joint("a", "spherical", ("frame", "x"), start),
+        Joint("rigid", "rigid", ("x", "y")),
+        Joint("pin", "revolute", ("x", "y"), (0.5, 0.5, 0.5), (1.0, 2.0, 0.5)),
+        Joint("b", "spherical", ("y", "plate"), end),
+    )
+    mechanism = Mechanism(joints)
+    rods = Readout(mechanism).structure.rods
+    assert mobility_at_reference(mechanism) + len(rods) == freedoms(mechanism) == 3
+
+
+def test_a_rod_without_length_is_refused_also_where_an_idle_turn_makes_it() -> None:
+    center, elsewhere = (0.1, 0.2, 0.3), (1.5, 0.3, 0.9)
+    joints = (
+        Joint("a", "spherical", ("frame", "x"), center),
+        Joint("turn", "revolute", ("x", "y"), center, (1.0, 0.5, -0.4)),
+        Joint("b", "spherical", ("y", "z"), center),
+        Joint("c", "universal", ("z", "frame"), elsewhere, (0, 0, 1), (1, 0, 0)),
+    )
+    with pytest.raises(GeometryError, match="joints a and b of body x: at one point"):
+        MechanismClosure(Mechanism(joints))
+
+
+def ring_with_rods(rng):
+    """A ring of bodies with joints of many kinds at few points, and rods across it."""
+    count = int(rng.integers(3, 7))
+    points = rng.normal(size=(int(rng.integers(4, 8)), 3))
+    joints = []
+    for k in range(count):
+        bodies = (f"b{k}", f"b{(k + 1) % count}")
+        here, there = points[rng.choice(len(points), 2, replace=False)]
+        kind = rng.choice(["spherical", "spherical", "revolute", "cylindrical"])
+        # axes run through the points of other joints: some turns are idle
+        axis = None if kind == "spherical" else tuple(there - here)
+        joints.append(Joint(f"J{k}", str(kind), bodies, tuple(here), axis))
+    for k in range(int(rng.integers(1, 5))):
+        ends = points[rng.choice(len(points), 2, replace=False)]
+        bodies = rng.choice(count, 2, replace=False)
+        for letter, body, place in zip("ab", bodies, ends, strict=True):
+            name, pair = f"R{k}{letter}", (f"b{body}", f"rod{k}")
+            joints.append(Joint(name, "spherical", pair, tuple(place)))
+    return Mechanism(tuple(joints))
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_random_mechanisms_have_the_mobility_of_their_joint_twists(seed):
+    mechanism = ring_with_rods(np.random.default_rng(seed))
+    try:
+        structure = Readout(mechanism).structure
+    except GeometryError as error:
+        expected = ("at one point", "every one locked or rigid")
+        assert any(part in str(error) for part in expected)
+        return
+    clusters = sum(len(point.directions) < 3 for point in structure.free_points)
+    idle = len(structure.rods) + len(structure.idle_turns) + clusters
+    assert mobility_at_reference(mechanism) + idle == freedoms(mechanism)
