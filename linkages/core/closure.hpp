@@ -50,8 +50,9 @@ public:
         for (Index i = 0; i < unknowns(); ++i) {
             visit(i, frame.joint());
             const Link<double> link{geometry_(0, i), geometry_(1, i), {geometry_(2, i), geometry_(3, i)}};
-            frame.advance(turn_by(theta[i]), link);
-            q = about_z(q, std::cos(0.5 * theta[i]), std::sin(0.5 * theta[i]));
+            const Turn<double> half = turn_by(0.5 * theta[i]);
+            frame.advance(doubled(half), link);
+            q = about_z(q, half.cosine, half.sine);
             q = about_x(q, geometry_(4, i), geometry_(5, i));
         }
         if (q[0] < 0.0) q = {-q[0], -q[1], -q[2], -q[3]};
