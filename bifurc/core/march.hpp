@@ -246,6 +246,7 @@ private:
     TaylorPiece expand(Vector<const double> point, Vector<const double> tangent, double sigma) {
         TaylorPiece piece{Matrix<double>(settings_.order + 1, n_)};
         piece.sigma = sigma;
+        factorization_.prepare_for_many();
         system_.series(point, tangent, factorization_, piece.coefficients);
         const double known = blur(sigma);
         const double within = 3.0 * settings_.tolerance;

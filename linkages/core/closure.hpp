@@ -310,9 +310,8 @@ void fill_series(const Closure& closure, Vector<const double> theta, Vector<cons
                 right[row + 3] = -known.moment[row];
             }
             double excess = 0.0;  // of the squared speed
-            for (Index m = 1; m < k; ++m) {
-                for (Index j = 0; j < count; ++j) excess += own(m, j) * own(k - m, j);
-            }
+            for (Index m = 1; 2 * m < k; ++m) excess += 2.0 * bifurc::dot(own.row(m), own.row(k - m));
+            if (k % 2 == 0) excess += bifurc::squared_length(own.row(k / 2));
             right[Closure::equation_count] = -0.5 * excess;
             factorization.solve(right, own.row(k));
         }
