@@ -34,12 +34,58 @@ class Brackets:
     def narrow(self, values: np.ndarray) -> bool: ...
     def roots(self) -> np.ndarray: ...
 
-def adjugates(
-    slopes: np.ndarray,
-    jacobians: np.ndarray,
-    left: np.ndarray,
-    to_coefficients: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+class Chebyshev:
+    """What Chebyshev nodes determine: `bifurc.numerics.chebyshev`."""
+
+    def __init__(
+        self,
+        to_coefficients: np.ndarray,
+        to_edges: np.ndarray,
+        powers: np.ndarray,
+        errors: np.ndarray,
+        lebesgue: float,
+        bend: float,
+    ) -> None: ...
+    def coefficients(self, values: np.ndarray) -> np.ndarray: ...
+    def on_edges(self, series: np.ndarray) -> np.ndarray: ...
+    def on_ellipses(self, sizes: np.ndarray) -> np.ndarray: ...
+    def slack(self, series: np.ndarray) -> float: ...
+    def largest(self, at_nodes: np.ndarray, in_coefficients: np.ndarray) -> float: ...
+
+class SecondDerivative:
+    """What is known of F'': `bifurc.curves.kantorovich`."""
+
+    def __init__(
+        self, bound: float, residual: float, growth: float, reach: float, error: float
+    ) -> None: ...
+
+class Arcs:
+    """Arcs at their nodes: `bifurc.curves.kantorovich`."""
+
+    def __init__(
+        self,
+        slopes: np.ndarray,
+        residuals: np.ndarray,
+        jacobians: np.ndarray,
+        left: np.ndarray,
+        images: np.ndarray,
+        travel: np.ndarray,
+        curvature: np.ndarray,
+    ) -> None: ...
+
+def travel_of_arcs(
+    chebyshev: Chebyshev, points: np.ndarray, degree: int
+) -> np.ndarray: ...
+def doubts_of_arcs(
+    chebyshev: Chebyshev,
+    second: SecondDerivative,
+    arcs: Arcs,
+    degree: int,
+    hessians: np.ndarray | None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+def sizes_on_arcs(
+    chebyshev: Chebyshev, arcs: Arcs, degree: int
+) -> tuple[np.ndarray, np.ndarray]: ...
 def returns(
     pieces: np.ndarray,
     centers: np.ndarray,

@@ -247,6 +247,14 @@ class Problem(ABC):
         """F' over the magnitude (k, m, n) at points (k, n)."""
         return self._over_magnitude(self.jacobians(points))
 
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) at points (k, n)."""
+        return np.array([self.hessian(point) for point in points])
+
+    def relative_hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' over the magnitude (k, m, n, n) at points (k, n)."""
+        return self._over_magnitude(self.hessians(points))
+
     def _over_magnitude(self, values: np.ndarray) -> np.ndarray:
         """``values`` over the magnitude; the same array where that is 1, as of every
         loop."""

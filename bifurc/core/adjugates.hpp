@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bifurc/core/arrays.hpp"
+#include "bifurc/core/chebyshev.hpp"
 #include "bifurc/core/inverse.hpp"
 
 namespace bifurc {
@@ -32,25 +33,24 @@ struct ArcAdjugates {
     ColumnNorms at_nodes, in_coefficients;
 };
 
-// Adjugates arc by arc; ``to_coefficients`` (N, N) makes the coefficients of a polynomial from its values
-// at the nodes.
+// Adjugates arc by arc.
 class Adjugates {
 public:
-    Adjugates(Index unknowns, View<const double> to_coefficients)
-        : to_coefficients_(to_coefficients),
+    Adjugates(Index unknowns, const Chebyshev& chebyshev)
+        : chebyshev_(chebyshev),
           frame_(unknowns, unknowns),
           room_(unknowns, unknowns),
-          coefficients_(to_coefficients.rows, unknowns * unknowns) {}
+          coefficients_(chebyshev.nodes(), unknowns * unknowns) {}
 
     void of(const ArcNodes& arc, const ArcAdjugates& out) {
-        const Index nodes = to_coefficients_.rows, n = frame_.rows();
+        const Index nodes = chebyshev_.nodes(), n = frame_.rows();
         for (Index node = 0; node < nodes; ++node) {
             fill_frame(arc, node);
             out.frame_norms[node] = length({frame_.view().data, static_cast<std::size_t>(n * n)});
             out.determinants[node] = adjugate({out.adjugates.data + node * n * n, n, n});
         }
         take_norms({out.adjugates.data, nodes, n * n}, out.at_nodes);
-        take_coefficients({out.adjugates.data, nodes, n * n});
+        chebyshev_.coefficients({out.adjugates.data, nodes, n * n}, coefficients_);
         take_norms(coefficients_.view(), out.in_coefficients);
     }
 
@@ -78,18 +78,6 @@ private:
         return determinant;
     }
 
-    void take_coefficients(View<const double> values) {
-        for (Index k = 0; k < values.rows; ++k) {
-            const Vector<double> row = coefficients_.row(k);
-            std::fill(row.begin(), row.end(), 0.0);
-            for (Index node = 0; node < values.rows; ++node) {
-                const double share = to_coefficients_(k, node);
-                const double* const value = values.row(node).data();
-                for (std::size_t i = 0; i < row.size(); ++i) row[i] += share * value[i];
-            }
-        }
-    }
-
     // Of matrices (n, n), one a row: their last column is that of the slope.
     void take_norms(View<const double> matrices, const ColumnNorms& norms) const {
         const Index n = frame_.rows();
@@ -107,7 +95,7 @@ private:
         }
     }
 
-    const View<const double> to_coefficients_;
+    const Chebyshev& chebyshev_;
     Matrix<double> frame_, room_, coefficients_;
 };
 

@@ -69,11 +69,13 @@ struct SmallMatrix {
     operator View<T>() { return {values.data(), row_count, column_count}; }
 };
 
-inline double squared_length(Vector<const double> values) {
+inline double dot(Vector<const double> p, Vector<const double> q) {
     double total = 0.0;
-    for (double value : values) total += value * value;
+    for (std::size_t i = 0; i < p.size(); ++i) total += p[i] * q[i];
     return total;
 }
+
+inline double squared_length(Vector<const double> values) { return dot(values, values); }
 
 inline double length(Vector<const double> values) { return std::sqrt(squared_length(values)); }
 

@@ -167,11 +167,14 @@ private:
     void evaluate(double s, int derivative, Vector<const double> factors, Vector<double> out) const {
         const Place place = place_of(s);
         const View<const double> of = piece(place.piece);
-        const double scale = std::pow(radii[place.piece], derivative);
+        double scale = 1.0;
+        for (int i = 0; i < derivative; ++i) scale *= radii[place.piece];
+        std::fill(out.begin(), out.end(), 0.0);
+        for (Index k = order(); k >= derivative; --k) {
+            for (Index j = 0; j < unknowns(); ++j) out[j] = out[j] * place.x + factors[k] * of(k, j);
+        }
         for (Index j = 0; j < unknowns(); ++j) {
-            double sum = 0.0;
-            for (Index k = order(); k >= derivative; --k) sum = sum * place.x + factors[k] * of(k, j);
-            out[j] = sum / scale;
+            out[j] /= scale;
             if (derivative == 0 && is_closed()) out[j] += place.turns * travel[j];
         }
     }
@@ -186,15 +189,20 @@ private:
         const View<const double> of = piece(place.piece);
         const double radius = radii[place.piece];
         for (Index j = 0; j < unknowns(); ++j) {
-            double sum = of(order(), j), first = 0.0, second = 0.0;
-            for (Index k = order() - 1; k >= 0; --k) {
-                second = second * place.x + first;
-                first = first * place.x + sum;
-                sum = sum * place.x + of(k, j);
+            jet.value[j] = of(order(), j);
+            jet.slope[j] = jet.bend[j] = 0.0;
+        }
+        for (Index k = order() - 1; k >= 0; --k) {
+            for (Index j = 0; j < unknowns(); ++j) {
+                jet.bend[j] = jet.bend[j] * place.x + jet.slope[j];
+                jet.slope[j] = jet.slope[j] * place.x + jet.value[j];
+                jet.value[j] = jet.value[j] * place.x + of(k, j);
             }
-            jet.value[j] = is_closed() ? sum + place.turns * travel[j] : sum;
-            jet.slope[j] = first / radius;
-            jet.bend[j] = 2.0 * second / (radius * radius);
+        }
+        for (Index j = 0; j < unknowns(); ++j) {
+            if (is_closed()) jet.value[j] += place.turns * travel[j];
+            jet.slope[j] /= radius;
+            jet.bend[j] = 2.0 * jet.bend[j] / (radius * radius);
         }
     }
 

@@ -17,14 +17,16 @@ namespace bifurc {
 // whose first entry is 1, with their scales beside.
 class Factorization {
 public:
-    Factorization(Index rows, Index columns) : matrix_(rows, columns), scale_(columns), work_(rows) {}
+    Factorization(Index rows, Index columns)
+        : matrix_(rows, columns), scale_(columns), work_(std::max(rows, columns)), q_(0, 0), upper_(0, 0) {}
 
     // The matrix to be factored, to be filled before `factor`.
     View<double> matrix() { return matrix_; }
 
     void factor() {
-        const Index rows = matrix_.rows(), columns = matrix_.columns();
-        for (Index k = 0; k < std::min(rows, columns); ++k) {
+        const Index rows = matrix_.rows();
+        has_q_ = false;
+        for (Index k = 0; k < rank(); ++k) {
             double square = 0.0;
             for (Index i = k; i < rows; ++i) square += matrix_(i, k) * matrix_(i, k);
             const double norm = std::sqrt(square);
@@ -37,22 +39,43 @@ public:
             scale_[k] = -pivot / diagonal;
             for (Index i = k + 1; i < rows; ++i) matrix_(i, k) /= pivot;
             matrix_(k, k) = diagonal;
-            for (Index j = k + 1; j < columns; ++j) {
-                double dot = matrix_(k, j);
-                for (Index i = k + 1; i < rows; ++i) dot += matrix_(i, k) * matrix_(i, j);
-                dot *= scale_[k];
-                matrix_(k, j) -= dot;
-                for (Index i = k + 1; i < rows; ++i) matrix_(i, j) -= dot * matrix_(i, k);
-            }
+            reflect(k, matrix_, k + 1);
+        }
+    }
+
+    // Multiplies the reflections out, of a small matrix: many right-hand sides are solved sooner then.
+    void prepare_for_many() {
+        const Index rows = matrix_.rows(), columns = rank();
+        if (columns > few) return;
+        has_q_ = true;
+        if (q_.rows() != rows) {
+            q_ = Matrix<double>(rows, columns);
+            upper_ = Matrix<double>(columns, columns);
+        }
+        std::fill_n(q_.view().data, rows * columns, 0.0);
+        for (Index k = columns - 1; k >= 0; --k) {
+            q_(k, k) = 1.0;
+            reflect(k, q_, k);
+            for (Index j = 0; j < k; ++j) upper_(k, j) = matrix_(j, k);
+            upper_(k, k) = matrix_(k, k) != 0.0 ? 1.0 / matrix_(k, k) : 0.0;
         }
     }
 
     // The least-squares solution for one right-hand side, which is overwritten; with more
     // columns than rows the last unknowns are 0.
     void solve(Vector<double> right, Vector<double> solution) const {
-        const Index rows = matrix_.rows();
-        const Index columns = std::min(rows, matrix_.columns());
+        const Index rows = matrix_.rows(), columns = rank();
         std::fill(solution.begin(), solution.end(), 0.0);
+        if (has_q_) {
+            for (Index i = 0; i < rows; ++i) {
+                for (Index j = 0; j < columns; ++j) solution[j] += right[i] * q_(i, j);
+            }
+            for (Index k = columns - 1; k >= 0; --k) {
+                solution[k] *= upper_(k, k);
+                for (Index j = 0; j < k; ++j) solution[j] -= upper_(k, j) * solution[k];
+            }
+            return;
+        }
         for (Index k = 0; k < columns; ++k) {
             double dot = right[k];
             for (Index i = k + 1; i < rows; ++i) dot += matrix_(i, k) * right[i];
@@ -70,7 +93,7 @@ public:
     // The smallest singular value of R, about, by inverse iteration on R^T R; 0 where R is
     // singular. A diagonal entry of R alone may be larger by any factor.
     double smallest_singular_value() {
-        const Index size = std::min(matrix_.rows(), matrix_.columns());
+        const Index size = rank();
         const Vector<double> vector{work_.data(), static_cast<std::size_t>(size)};
         for (Index k = 0; k < size; ++k) {
             if (matrix_(k, k) == 0.0) return 0.0;
@@ -95,10 +118,33 @@ public:
 
 private:
     static constexpr int inverse_steps = 2;  // a small singular value stands out after one
+    static constexpr Index few = 32;         // unknowns
+
+    // As large as the rank may be.
+    Index rank() const { return std::min(matrix_.rows(), matrix_.columns()); }
+
+    // Applies reflection ``k`` to the columns of a matrix from number ``first`` on.
+    void reflect(Index k, Matrix<double>& to, Index first) {
+        const Index rows = to.rows(), columns = to.columns();
+        for (Index j = first; j < columns; ++j) work_[j] = to(k, j);
+        for (Index i = k + 1; i < rows; ++i) {
+            for (Index j = first; j < columns; ++j) work_[j] += matrix_(i, k) * to(i, j);
+        }
+        for (Index j = first; j < columns; ++j) {
+            work_[j] *= scale_[k];
+            to(k, j) -= work_[j];
+        }
+        for (Index i = k + 1; i < rows; ++i) {
+            for (Index j = first; j < columns; ++j) to(i, j) -= work_[j] * matrix_(i, k);
+        }
+    }
 
     Matrix<double> matrix_;
     std::vector<double> scale_;
     std::vector<double> work_;
+    bool has_q_ = false;
+    Matrix<double> q_;      // the reflections, multiplied out
+    Matrix<double> upper_;  // R, transposed; inverses on its diagonal
 };
 
 // The least-squares solution of a system of any rank and shape by QR with column pivoting.

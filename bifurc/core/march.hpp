@@ -64,13 +64,14 @@ constexpr std::array probes = {1.0, -1.0, 0.8, -0.8, 0.45, -0.45};
 inline void evaluate(View<const double> coefficients, double s, Vector<double> value, Vector<double> slope) {
     const Index order = coefficients.rows - 1;
     for (Index j = 0; j < coefficients.columns; ++j) {
-        double total = coefficients(order, j), rate = 0.0;
-        for (Index k = order - 1; k >= 0; --k) {
-            rate = rate * s + total;
-            total = total * s + coefficients(k, j);
+        value[j] = coefficients(order, j);
+        slope[j] = 0.0;
+    }
+    for (Index k = order - 1; k >= 0; --k) {
+        for (Index j = 0; j < coefficients.columns; ++j) {
+            slope[j] = slope[j] * s + value[j];
+            value[j] = value[j] * s + coefficients(k, j);
         }
-        value[j] = total;
-        slope[j] = rate;
     }
 }
 
@@ -245,6 +246,7 @@ private:
     TaylorPiece expand(Vector<const double> point, Vector<const double> tangent, double sigma) {
         TaylorPiece piece{Matrix<double>(settings_.order + 1, n_)};
         piece.sigma = sigma;
+        factorization_.prepare_for_many();
         system_.series(point, tangent, factorization_, piece.coefficients);
         const double known = blur(sigma);
         const double within = 3.0 * settings_.tolerance;

@@ -1,7 +1,7 @@
 // The Python module bifurc._core.
 #include <string>
 
-#include "bifurc/core/adjugates.hpp"
+#include "bifurc/core/arc_bindings.hpp"
 #include "bifurc/core/brackets.hpp"
 #include "bifurc/core/curve.hpp"
 #include "bifurc/core/eigenvalues.hpp"
@@ -141,40 +141,6 @@ void check_count(const VectorIn<double>& numbers, Index count) {
     if (static_cast<Index>(numbers.size()) != count) throw nb::value_error("there must be a number for each bracket");
 }
 
-// (determinants (a, N), adjugates (a, N, n, n), norms of the frames (a, N), norms of the columns at the nodes
-// (a, 3, N) and of the coefficients (a, 3, N): all columns, the strong ones, the weak one) of arcs
-// with ``slopes`` (a, N, n), ``jacobians`` (a, N, m, n) and ``left`` (a, m, n - 1): `ArcAdjugates`.
-nb::tuple adjugates(const CubeIn<double>& slopes, const nb::ndarray<const double, nb::ndim<4>, nb::c_contig>& jacobians,
-                    const CubeIn<double>& left, const MatrixIn<double>& to_coefficients) {
-    const auto count = static_cast<Index>(slopes.shape(0)), nodes = static_cast<Index>(slopes.shape(1)),
-               n = static_cast<Index>(slopes.shape(2)), m = static_cast<Index>(left.shape(1));
-    const auto is = [](std::size_t extent, Index expected) { return static_cast<Index>(extent) == expected; };
-    const bool fits = n > 0 && is(jacobians.shape(0), count) && is(jacobians.shape(1), nodes) &&
-                      is(jacobians.shape(2), m) && is(jacobians.shape(3), n) && is(left.shape(0), count) &&
-                      is(left.shape(2), n - 1) && is(to_coefficients.shape(0), nodes) &&
-                      is(to_coefficients.shape(1), nodes);
-    if (!fits) throw nb::value_error("the arrays of arcs do not fit each other");
-    Array<double> determinants({count, nodes}), out({count, nodes, n, n}), frame_norms({count, nodes}),
-        at_nodes({count, 3, nodes}), in_coefficients({count, 3, nodes});
-    const auto norms_of = [](Array<double>& norms, Index arc) {
-        const View<double> rows = norms.entry(arc);
-        return ColumnNorms{rows.row(0), rows.row(1), rows.row(2)};
-    };
-    {
-        nb::gil_scoped_release release;
-        Adjugates arcs(n, numpy::view(to_coefficients));
-        for (Index arc = 0; arc < count; ++arc) {
-            const ArcNodes given{{slopes.data() + arc * nodes * n, nodes, n},
-                                 {jacobians.data() + arc * nodes * m * n, nodes * m, n},
-                                 {left.data() + arc * m * (n - 1), m, n - 1}};
-            arcs.of(given, {determinants.matrix().row(arc), out.entry(arc), frame_norms.matrix().row(arc),
-                            norms_of(at_nodes, arc), norms_of(in_coefficients, arc)});
-        }
-    }
-    return nb::make_tuple(determinants.release(), out.release(), frame_norms.release(), at_nodes.release(),
-                          in_coefficients.release());
-}
-
 nb::object turning_points(const Curve& curve, Index unknown) {
     if (unknown < 0 || unknown >= curve.unknowns()) throw nb::index_error("no such unknown");
     const std::vector<double> found = curve.turning_points(unknown);
@@ -265,11 +231,11 @@ NB_MODULE(_core, module) {
             },
             "values"_a)
         .def("roots", &numbers_of<&Brackets::roots>);
-    module.def("adjugates", &adjugates, "slopes"_a, "jacobians"_a, "left"_a, "to_coefficients"_a);
     module.def("null_vector", &null_vector, "matrix"_a, "along"_a, "negligible"_a, "agreeing"_a);
     module.def("returns", &returns_on, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "number"_a, "s"_a, "first"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
     module.def("singular_value_rates", &singular_value_rates, "matrices"_a, "changes"_a, "number"_a);
     module.def("eigenvalues", &eigenvalues, "matrix"_a);
+    bifurc::python::bind_arcs(module);
     bifurc::python::bind_tape(module);
 }

@@ -16,8 +16,8 @@ namespace bifurc {
 // then: two or three sweeps are enough. Small singular values come out to high relative accuracy,
 // and the same on every processor (Drmac and Veselic 2008; Golub and Van Loan 2013, 8.6.3).
 //
-// A rotation waits for its square roots and quotients; those of four matrices are taken abreast,
-// which changes no bit.
+// Abreast matrices are taken abreast, which changes no bit: a rotation waits for its square roots and
+// quotients.
 class SingularValues {
 public:
     static constexpr Index lanes = 4;
@@ -27,7 +27,7 @@ public:
           work_(std::max(rows, columns), std::min(rows, columns)),
           rows_of_r_(work_.columns(), work_.columns()),
           squares_(work_.columns()),
-          columns_(lanes, work_.columns()) {}
+          columns_(work_.columns()) {}
 
     // The singular values of up to four matrices (count * rows, columns), one below the other: a row
     // (count, min(rows, columns)) for each, the largest first; not numbers where an entry is none.
@@ -37,9 +37,10 @@ public:
         std::array<double, lanes> units{};
         for (Index lane = 0; lane < count; ++lane) {
             const double* const begin = matrices.data + lane * rows * matrices.columns;
-            units[lane] = triangularise({begin, rows, matrices.columns}, lane);
+            units[lane] = take({begin, rows, matrices.columns}, lane);
         }
         for (Index lane = count; lane < lanes; ++lane) clear(lane);
+        triangularise();
         for (int sweep = 0; sweep < most_sweeps; ++sweep) {
             if (!rotate_all()) break;
         }
@@ -96,15 +97,17 @@ public:
     }
 
 private:
-    using Four = std::array<double, lanes>;
+    using Abreast = std::array<double, lanes>;  // a number of each matrix
     static constexpr int most_sweeps = 40;
 
     // The singular vector that row ``row`` of R is, over its length, its entries pivoted: on the right of
     // a tall matrix, on the left of another.
     std::vector<double> vector_of(Index row, Index lane) const {
         const double size = std::sqrt(squares_[row][lane]);
-        std::vector<double> vector(columns_.columns());
-        for (Index k = 0; k < columns_.columns(); ++k) vector[columns_(lane, k)] = rows_of_r_(row, k)[lane] / size;
+        std::vector<double> vector(columns_.size());
+        for (std::size_t k = 0; k < columns_.size(); ++k) {
+            vector[columns_[k][lane]] = rows_of_r_(row, static_cast<Index>(k))[lane] / size;
+        }
         return vector;
     }
 
@@ -167,70 +170,94 @@ private:
         return order[number];
     }
 
-    void clear(Index lane) {
-        for (Index i = 0; i < rows_of_r_.rows(); ++i) {
-            for (Index k = 0; k < rows_of_r_.columns(); ++k) rows_of_r_(i, k)[lane] = 0.0;
-        }
-    }
-
-    // R of a QR with column pivoting, by Householder reflections, for one lane. All is divided by the
-    // largest entry, which is given back: squares are not to underflow.
-    double triangularise(View<const double> matrix, Index lane) {
+    // Fills the work of a lane with a matrix, all divided by its largest entry, which is given back: squares
+    // are not to underflow.
+    double take(View<const double> matrix, Index lane) {
         double largest = 0.0;
         for (Index i = 0; i < matrix.rows; ++i) {
             for (double entry : matrix.row(i)) largest = std::max(largest, std::abs(entry));
         }
         const double unit = largest > 0.0 ? largest : 1.0;
-        const Index rows = work_.rows(), columns = work_.columns();
-        for (Index i = 0; i < rows; ++i) {
-            for (Index j = 0; j < columns; ++j) work_(i, j) = (is_tall_ ? matrix(i, j) : matrix(j, i)) / unit;
-        }
-        for (Index k = 0; k < columns; ++k) columns_(lane, k) = k;
-        for (Index k = 0; k < columns; ++k) {
-            pivot(k, lane);
-            double square = 0.0;
-            for (Index i = k; i < rows; ++i) square += work_(i, k) * work_(i, k);
-            const double norm = std::sqrt(square);
-            const double diagonal = work_(k, k) > 0.0 ? -norm : norm;
-            const double head = work_(k, k) - diagonal;
-            if (norm != 0.0) {
-                for (Index j = k + 1; j < columns; ++j) {
-                    double dot = head * work_(k, j);
-                    for (Index i = k + 1; i < rows; ++i) dot += work_(i, k) * work_(i, j);
-                    const double share = dot / (diagonal * head);
-                    work_(k, j) += share * head;
-                    for (Index i = k + 1; i < rows; ++i) work_(i, j) += share * work_(i, k);
-                }
+        for (Index i = 0; i < work_.rows(); ++i) {
+            for (Index j = 0; j < work_.columns(); ++j) {
+                work_(i, j)[lane] = (is_tall_ ? matrix(i, j) : matrix(j, i)) / unit;
             }
-            for (Index j = 0; j < columns; ++j) rows_of_r_(k, j)[lane] = j > k ? work_(k, j) : 0.0;
-            rows_of_r_(k, k)[lane] = diagonal;
         }
         return unit;
     }
 
-    // Brings the column that is longest from row k on to place k.
-    void pivot(Index k, Index lane) {
-        Index best = k;
-        double largest = -1.0;
+    void clear(Index lane) {
+        for (Index i = 0; i < work_.rows(); ++i) {
+            for (Index j = 0; j < work_.columns(); ++j) work_(i, j)[lane] = 0.0;
+        }
+    }
+
+    // R of a QR with column pivoting, by Householder reflections.
+    void triangularise() {
+        const Index rows = work_.rows(), columns = work_.columns();
+        for (Index k = 0; k < columns; ++k) columns_[k].fill(k);
+        for (Index k = 0; k < columns; ++k) {
+            const Abreast squares = pivot(k);
+            Abreast diagonal, head, divisor;
+            for (Index lane = 0; lane < lanes; ++lane) {
+                const double norm = std::sqrt(squares[lane]);
+                diagonal[lane] = work_(k, k)[lane] > 0.0 ? -norm : norm;
+                head[lane] = work_(k, k)[lane] - diagonal[lane];
+                // nothing is left of a column of zeros, nor of those after it
+                divisor[lane] = norm != 0.0 ? diagonal[lane] * head[lane] : 1.0;
+            }
+            for (Index j = k + 1; j < columns; ++j) {
+                Abreast share;
+                for (Index lane = 0; lane < lanes; ++lane) share[lane] = head[lane] * work_(k, j)[lane];
+                for (Index i = k + 1; i < rows; ++i) {
+                    for (Index lane = 0; lane < lanes; ++lane) share[lane] += work_(i, k)[lane] * work_(i, j)[lane];
+                }
+                for (Index lane = 0; lane < lanes; ++lane) {
+                    share[lane] /= divisor[lane];
+                    work_(k, j)[lane] += share[lane] * head[lane];
+                }
+                for (Index i = k + 1; i < rows; ++i) {
+                    for (Index lane = 0; lane < lanes; ++lane) work_(i, j)[lane] += share[lane] * work_(i, k)[lane];
+                }
+            }
+            for (Index j = 0; j < columns; ++j) rows_of_r_(k, j) = j > k ? work_(k, j) : Abreast{};
+            rows_of_r_(k, k) = diagonal;
+        }
+    }
+
+    // Brings the column that is longest from row k on to place k, lane by lane; gives back the squares of
+    // its length.
+    Abreast pivot(Index k) {
+        std::array<Index, lanes> best;
+        Abreast largest;
+        best.fill(k);
+        largest.fill(-1.0);
         for (Index j = k; j < work_.columns(); ++j) {
-            double square = 0.0;
-            for (Index i = k; i < work_.rows(); ++i) square += work_(i, j) * work_(i, j);
-            if (square > largest) {
-                largest = square;
-                best = j;
+            Abreast square{};
+            for (Index i = k; i < work_.rows(); ++i) {
+                for (Index lane = 0; lane < lanes; ++lane) square[lane] += work_(i, j)[lane] * work_(i, j)[lane];
+            }
+            for (Index lane = 0; lane < lanes; ++lane) {
+                if (!(square[lane] > largest[lane])) continue;
+                largest[lane] = square[lane];
+                best[lane] = j;
             }
         }
-        if (best == k) return;
-        std::swap(columns_(lane, k), columns_(lane, best));
-        for (Index i = 0; i < work_.rows(); ++i) std::swap(work_(i, k), work_(i, best));
-        for (Index i = 0; i < k; ++i) std::swap(rows_of_r_(i, k)[lane], rows_of_r_(i, best)[lane]);
+        for (Index lane = 0; lane < lanes; ++lane) {
+            const Index other = best[lane];
+            if (other == k) continue;
+            std::swap(columns_[k][lane], columns_[other][lane]);
+            for (Index i = 0; i < work_.rows(); ++i) std::swap(work_(i, k)[lane], work_(i, other)[lane]);
+            for (Index i = 0; i < k; ++i) std::swap(rows_of_r_(i, k)[lane], rows_of_r_(i, other)[lane]);
+        }
+        return largest;
     }
 
     // Of row i, in every lane.
-    Four squared_lengths(Index i) const {
-        Four total{};
+    Abreast squared_lengths(Index i) const {
+        Abreast total{};
         for (Index k = 0; k < rows_of_r_.columns(); ++k) {
-            const Four entries = rows_of_r_(i, k);
+            const Abreast entries = rows_of_r_(i, k);
             for (Index lane = 0; lane < lanes; ++lane) total[lane] += entries[lane] * entries[lane];
         }
         return total;
@@ -248,20 +275,19 @@ private:
 
     // Turns rows i and j to right angles, in the lanes where they are not.
     bool rotate(Index i, Index j) {
-        const Vector<Four> p = rows_of_r_.row(i), q = rows_of_r_.row(j);
-        Four gamma{};
+        const Vector<Abreast> p = rows_of_r_.row(i), q = rows_of_r_.row(j);
+        Abreast gamma{};
         for (std::size_t k = 0; k < p.size(); ++k) {
             for (Index lane = 0; lane < lanes; ++lane) gamma[lane] += p[k][lane] * q[k][lane];
         }
-        Four cosine, sine;
+        Abreast cosine, sine;
         std::array<bool, lanes> turns;
         for (Index lane = 0; lane < lanes; ++lane) {
             const double orthogonal =
                 std::numeric_limits<double>::epsilon() * std::sqrt(squares_[i][lane] * squares_[j][lane]);
             turns[lane] = std::abs(gamma[lane]) > orthogonal;
         }
-        const bool has_turned = turns[0] || turns[1] || turns[2] || turns[3];
-        if (!has_turned) return false;
+        if (std::none_of(turns.begin(), turns.end(), std::identity())) return false;
         for (Index lane = 0; lane < lanes; ++lane) {
             const double zeta = (squares_[j][lane] - squares_[i][lane]) / (2.0 * gamma[lane]);
             const double tangent = std::copysign(1.0, zeta) / (std::abs(zeta) + std::sqrt(1.0 + zeta * zeta));
@@ -273,7 +299,7 @@ private:
             cosine[lane] = 1.0;
             sine[lane] = 0.0;
         }
-        Four first{}, second{};
+        Abreast first{}, second{};
         for (std::size_t k = 0; k < p.size(); ++k) {
             for (Index lane = 0; lane < lanes; ++lane) {
                 const double turned = cosine[lane] * p[k][lane] - sine[lane] * q[k][lane];
@@ -290,10 +316,10 @@ private:
     }
 
     bool is_tall_;
-    Matrix<double> work_;
-    Matrix<Four> rows_of_r_;
-    std::vector<Four> squares_;
-    Matrix<Index> columns_;  // of the matrix of a lane, in the order of the columns of R
+    Matrix<Abreast> work_;
+    Matrix<Abreast> rows_of_r_;
+    std::vector<Abreast> squares_;
+    std::vector<std::array<Index, lanes>> columns_;  // of the matrices, in the order of the columns of R
 };
 
 }  // namespace bifurc

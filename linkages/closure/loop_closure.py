@@ -71,7 +71,11 @@ class LoopClosure(NumericalProblem):
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
-        return _core.hessian(self.check_point(point, "point"), self._geometry)
+        return self.hessians(self.check_point(point, "point")[None])[0]
+
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """Second derivatives (k, 6, n, n) of the residual."""
+        return _core.hessians(rows_of("points", points, self.n), self._geometry)
 
     def precise_residual(self) -> Callable[[Sequence[Number]], list[Number]]:
         """Closure residuals over mpmath numbers, of the loop's own numbers."""

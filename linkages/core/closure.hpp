@@ -50,8 +50,9 @@ public:
         for (Index i = 0; i < unknowns(); ++i) {
             visit(i, frame.joint());
             const Link<double> link{geometry_(0, i), geometry_(1, i), {geometry_(2, i), geometry_(3, i)}};
-            frame.advance(turn_by(theta[i]), link);
-            q = about_z(q, std::cos(0.5 * theta[i]), std::sin(0.5 * theta[i]));
+            const Turn<double> half = turn_by(0.5 * theta[i]);
+            frame.advance(doubled(half), link);
+            q = about_z(q, half.cosine, half.sine);
             q = about_x(q, geometry_(4, i), geometry_(5, i));
         }
         if (q[0] < 0.0) q = {-q[0], -q[1], -q[2], -q[3]};
@@ -309,9 +310,8 @@ void fill_series(const Closure& closure, Vector<const double> theta, Vector<cons
                 right[row + 3] = -known.moment[row];
             }
             double excess = 0.0;  // of the squared speed
-            for (Index m = 1; m < k; ++m) {
-                for (Index j = 0; j < count; ++j) excess += own(m, j) * own(k - m, j);
-            }
+            for (Index m = 1; 2 * m < k; ++m) excess += 2.0 * bifurc::dot(own.row(m), own.row(k - m));
+            if (k % 2 == 0) excess += bifurc::squared_length(own.row(k / 2));
             right[Closure::equation_count] = -0.5 * excess;
             factorization.solve(right, own.row(k));
         }

@@ -24,11 +24,12 @@ nb::object jacobians(const Table& thetas, const Table& geometry) {
     return python::jacobians(Closure(view(geometry)), thetas);
 }
 
-nb::object hessian(const Doubles& theta, const Table& geometry) {
+nb::object hessians(const Table& thetas, const Table& geometry) {
     const Closure closure(view(geometry));
-    python::check_unknowns("theta", theta.shape(0), closure.unknowns());
-    bifurc::numpy::Array<double> out({closure.equations(), closure.unknowns(), closure.unknowns()});
-    closure.hessian(view(theta), out.matrix());
+    python::check_unknowns("thetas", thetas.shape(1), closure.unknowns());
+    const bifurc::View<const double> at = view(thetas);
+    bifurc::numpy::Array<double> out({at.rows, closure.equations(), closure.unknowns(), closure.unknowns()});
+    for (Index i = 0; i < at.rows; ++i) closure.hessian(at.row(i), out.entry(i));
     return out.release();
 }
 
@@ -59,7 +60,7 @@ NB_MODULE(_core, module) {
     python::leave_what_threads_hold();
     module.def("residuals", &residuals, nb::arg("thetas"), nb::arg("geometry"));
     module.def("jacobians", &jacobians, nb::arg("thetas"), nb::arg("geometry"));
-    module.def("hessian", &hessian, nb::arg("theta"), nb::arg("geometry"));
+    module.def("hessians", &hessians, nb::arg("thetas"), nb::arg("geometry"));
     module.def("march", &march, nb::arg("start"), nb::arg("tangent"), nb::arg("geometry"), nb::arg("order"),
                nb::arg("tolerance"), nb::arg("shortest"), nb::arg("longest"), nb::arg("count"),
                nb::arg("closing"), nb::arg("misclosure"), nb::arg("anchor"), nb::arg("within"), nb::arg("periods"),
