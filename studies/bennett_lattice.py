@@ -25,7 +25,7 @@ __all__ = ["lattice", "lattice_kinks", "locked_lattice"]
 COLUMN_TWISTS, ROW_TWISTS = (35.0, 10.0), (70.0, 10.0)
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # its multiples, modulo 1, are spread
 # Joints are locked nearly folded, to one side and to the other: where they are straight a
-# cell turns some three times as fast as the one before it, and ten of them 1e5 times.
+# cell turns some three times as fast as the one before it, the last of 100 1.6e6 times.
 KINK = np.radians(170.0)
 STATE = 3  # number of the state, of those round the motion, that is the reference
 
