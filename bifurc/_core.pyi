@@ -104,6 +104,18 @@ def singular_value_rates(
 ) -> tuple[np.ndarray, np.ndarray]: ...
 def eigenvalues(matrix: np.ndarray) -> np.ndarray: ...
 
+class FactoredTape:
+    def __init__(
+        self,
+        tape: Tape,
+        units: np.ndarray,
+        weights: np.ndarray,
+        point: np.ndarray,
+        tangent: np.ndarray,
+    ) -> None: ...
+    def smallest_singular_value(self) -> float: ...
+    def solve(self, right: np.ndarray) -> np.ndarray: ...
+
 class Tape:
     """Recorded equations: `bifurc.equations.tape`."""
 
@@ -151,6 +163,7 @@ class Tape:
         periods: np.ndarray,
         bounds: np.ndarray,
         length: float,
+        is_sparse: bool,
     ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def project(
         self,
@@ -159,6 +172,7 @@ class Tape:
         starts: np.ndarray,
         noise: float,
         iterations: int,
+        is_sparse: bool,
     ) -> tuple[np.ndarray, np.ndarray]: ...
     def project_to_sphere(
         self,

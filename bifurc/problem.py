@@ -34,7 +34,7 @@ __all__ = [
 ]
 
 
-# Maps a right-hand side (n,) to the solution (n,) of one linear system.
+# Maps a right-hand side to the solution (n,) of one linear system.
 Solver: TypeAlias = Callable[[np.ndarray], np.ndarray]
 
 PreciseResidual: TypeAlias = "Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]"
@@ -199,6 +199,11 @@ class Problem(ABC):
         return len(self.names)
 
     @property
+    def stride(self) -> float:
+        """The unit of the longest step along a curve."""
+        return self.scale
+
+    @property
     def reach(self) -> float:
         """The unit of the length that a curve may have before it is cut off."""
         return self.scale
@@ -225,9 +230,14 @@ class Problem(ABC):
         """F' (m, n) at one point (n,), sparse where that is how it is made."""
         return self.jacobians(point[None])[0]
 
+    @property
+    def equation_count(self) -> int:
+        """Number of equations that `bordered_solver` solves: those of curves."""
+        return self.n - 1
+
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
-        """What solves systems with F' at a point (n,), over the magnitude, and under it
-        the row ``tangent`` (n,); None where that matrix is to be factored."""
+        """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
+        under it the row ``tangent`` (n,); None where that matrix is to be factored."""
         return None
 
     def largest_entry(self, vectors: np.ndarray) -> float:

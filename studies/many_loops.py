@@ -1,12 +1,14 @@
-"""What a form costs with many loops: sheets of Miura-ori of 1 to 100 vertices.
+"""What a form costs with many loops: sheets of Miura-ori and lattices of Bennett linkages.
 
     python -m studies.many_loops [--out DIR] [--largest 10]
 
 A sheet with k x k inner vertices has k^2 loops, of which one freedom is left. It is given
-folded, as a FOLD file; times are processor times of reading it, of writing its equations,
-and of the one form through its state. The error is the largest residual at places all
-along the form. Memory is the largest resident one so far, which sheets of ascending size
-make that of the last one.
+folded, as a FOLD file. A lattice of k x k Bennett linkages is locked such that one is left,
+too, and is placed by its closed form. Times are processor times of reading or placing it,
+of writing its equations, and of the one form through its state. The error is the largest
+residual at places all along the form. Memory is the largest resident one so far, which
+ascending sizes make that of the last one. All mechanisms are measured three times,
+one after the other; the least times are taken.
 """
 
 from __future__ import annotations
@@ -15,7 +17,9 @@ import csv
 import json
 import resource
 import time
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, fields, replace
+from itertools import product
 from pathlib import Path
 
 import click
@@ -25,34 +29,57 @@ from matplotlib.figure import Figure
 from bifurc.curves.continuation import trace_branch
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.fold import read_fold
+from linkages.mechanisms.mechanism import Mechanism
+from studies.bennett_lattice import locked_lattice
 from studies.miura import miura
 
-__all__ = ["SheetCost", "cost_of_sheet"]
+__all__ = ["FAMILIES", "FormCost", "cost_of_form"]
 
 FOLD = 0.8  # rad, along the zigzags
 PLACES = 2000  # along a form, at which it is checked
+FEWEST = 9  # loops from which on the exponent is taken
+REPEATS = 3
+TIMES = ("read", "equations", "form")
 
 
 @dataclass(frozen=True)
-class SheetCost:
-    """One sheet: its loops and unknowns, seconds of reading it, of its equations and of
-    its form, the form's pieces, the largest residual along it, and megabytes."""
+class FormCost:
+    """One mechanism of a ``family``: its loops and unknowns, seconds of reading it, of
+    its equations and of its form, the form's pieces and length, the largest residual
+    along it, and megabytes."""
 
+    family: str
     loops: int
     unknowns: int
     read: float
     equations: float
     form: float
     pieces: int
+    length: float
     error: float
     memory: float
 
 
-def cost_of_sheet(vertices: int) -> SheetCost:
-    """What the form of a sheet with so many inner vertices a side costs."""
-    text = json.dumps(miura(vertices + 1, vertices + 1, FOLD))
+def folded_sheet(side: int) -> Mechanism:
+    """The sheet with so many inner vertices a side."""
+    return read_fold(json.dumps(miura(side + 1, side + 1, FOLD)), "sheet")
+
+
+def square_lattice(side: int) -> Mechanism:
+    """The lattice of so many cells a side."""
+    return locked_lattice(side, side)
+
+
+FAMILIES: dict[str, Callable[[int], Mechanism]] = {
+    "Miura-ori": folded_sheet,
+    "Bennett lattice": square_lattice,
+}
+
+
+def cost_of_form(family: str, side: int) -> FormCost:
+    """What the form of a mechanism of a family with so many loops a side costs."""
     begin = time.process_time()
-    mechanism = read_fold(text, "sheet")
+    mechanism = FAMILIES[family](side)
     read = time.process_time()
     problem = MechanismClosure(mechanism)
     problem.residuals(problem.reference[None])
@@ -60,37 +87,53 @@ def cost_of_sheet(vertices: int) -> SheetCost:
     branch = trace_branch(problem, problem.reference)
     traced = time.process_time()
     residuals = problem.residuals(branch.sample(PLACES))
-    return SheetCost(
+    return FormCost(
+        family=family,
         loops=mechanism.independent_loops,
         unknowns=problem.n,
         read=read - begin,
         equations=written - read,
         form=traced - written,
         pieces=len(branch.pieces),
+        length=branch.length,
         error=float(np.linalg.norm(residuals, axis=1).max()),
         memory=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
     )
 
 
-def exponent(costs: list[SheetCost]) -> float:
-    """The exponent of the time of a form against the number of loops, by least
-    squares."""
-    loops = np.log([cost.loops for cost in costs])
-    seconds = np.log([cost.form for cost in costs])
+def with_least_times(costs: list[FormCost]) -> FormCost:
+    """The first of the costs of one mechanism with the least times of all."""
+    times = {name: min(getattr(cost, name) for cost in costs) for name in TIMES}
+    return replace(costs[0], **times)
+
+
+def exponent(costs: list[FormCost], what: str) -> float:
+    """The exponent of a time against the number of loops, from the fewest on that are
+    many, by least squares."""
+    many = [cost for cost in costs if cost.loops >= FEWEST]
+    loops = np.log([cost.loops for cost in many])
+    seconds = np.log([getattr(cost, what) for cost in many])
     return float(np.polyfit(loops, seconds, 1)[0])
 
 
-def draw(costs: list[SheetCost]) -> Figure:
-    """Time and memory against the number of loops."""
-    figure = Figure(figsize=(9, 4), layout="constrained")
-    times, memory = figure.subplots(1, 2)
-    loops = [cost.loops for cost in costs]
-    for name in ("read", "equations", "form"):
-        times.loglog(loops, [getattr(c, name) for c in costs], "o-", label=name)
-    times.set(xlabel="loops", ylabel="processor time (s)")
-    times.legend()
-    memory.semilogx(loops, [cost.memory for cost in costs], "o-")
+def draw(costs: dict[str, list[FormCost]]) -> Figure:
+    """Times of every family and memory against the number of loops."""
+    figure = Figure(figsize=(12, 4), layout="constrained")
+    panels = figure.subplots(1, len(costs) + 1)
+    for axes, (family, of_family) in zip(panels, costs.items(), strict=False):
+        loops = [cost.loops for cost in of_family]
+        for name in TIMES:
+            axes.loglog(loops, [getattr(c, name) for c in of_family], "o-", label=name)
+        axes.set(title=family, xlabel="loops", ylabel="processor time (s)")
+        axes.set(xticks=loops, xticklabels=loops)
+        axes.minorticks_off()
+        axes.legend()
+    memory = panels[-1]
+    for family, of_family in costs.items():
+        loops = [cost.loops for cost in of_family]
+        memory.plot(loops, [c.memory for c in of_family], "o-", label=family)
     memory.set(xlabel="loops", ylabel="resident memory (MB)", ylim=(0, None))
+    memory.legend()
     return figure
 
 
@@ -98,23 +141,42 @@ def draw(costs: list[SheetCost]) -> Figure:
 @click.option("--out", type=Path, default=Path("out/many_loops"), show_default=True)
 @click.option("--largest", type=click.IntRange(2, 20), default=10, show_default=True)
 def main(out: Path, largest: int) -> None:
-    """Measure sheets of Miura-ori up to the largest number of vertices a side."""
-    sides = sorted({2, 3, 4, 5, 7, largest})
-    cost_of_sheet(1)  # imports, which are no part of it
-    costs = [cost_of_sheet(side) for side in sides if side <= largest]
+    """Measure sheets and lattices up to the largest number of loops a side."""
+    sides = [side for side in sorted({2, 3, 4, 5, 7, largest}) if side <= largest]
+    for family in FAMILIES:
+        cost_of_form(family, 3)  # imports, which are no part of it
+    mechanisms = list(product(sides, FAMILIES))
+    passes = [
+        [cost_of_form(family, side) for side, family in mechanisms]
+        for _ in range(REPEATS)
+    ]
+    costs: dict[str, list[FormCost]] = {family: [] for family in FAMILIES}
+    for of_mechanism in zip(*passes, strict=True):
+        least = with_least_times(list(of_mechanism))
+        costs[least.family].append(least)
     out.mkdir(parents=True, exist_ok=True)
     with (out / "costs.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(SheetCost)])
+        writer = csv.DictWriter(file, [field.name for field in fields(FormCost)])
         writer.writeheader()
-        writer.writerows(asdict(cost) for cost in costs)
+        for of_family in costs.values():
+            writer.writerows(asdict(cost) for cost in of_family)
     draw(costs).savefig(out / "many_loops.png", dpi=150)
-    for cost in costs:
-        click.echo(
-            f"{cost.loops:4d} loops, {cost.unknowns:4d} unknowns: read {cost.read:.2f} s,"
-            f" equations {cost.equations:.2f} s, form {cost.form:.2f} s in {cost.pieces}"
-            f" pieces, within {cost.error:.1e}, {cost.memory:.0f} MB"
+    for family, of_family in costs.items():
+        click.echo(family)
+        for cost in of_family:
+            click.echo(_line(cost))
+        exponents = ", ".join(
+            f"{name} {exponent(of_family, name):.2f}" for name in TIMES
         )
-    click.echo(f"exponent of a form's time against loops: {exponent(costs):.2f}")
+        click.echo(f"  exponents against loops, from {FEWEST} on: {exponents}")
+
+
+def _line(cost: FormCost) -> str:
+    return (
+        f"  {cost.loops:4d} loops, {cost.unknowns:4d} unknowns: read {cost.read:.2f} s,"
+        f" equations {cost.equations:.2f} s, form {cost.form:.3f} s in {cost.pieces}"
+        f" pieces, within {cost.error:.1e}, {cost.memory:.0f} MB"
+    )
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ nb::object residuals(const S& system, const Table& points) {
     return out.release();
 }
 
-template <System S>
+template <DenseSystem S>
 nb::object jacobians(const S& system, const Table& points) {
     check_unknowns("points", points.shape(1), system.unknowns());
     const View<const double> at = numpy::view(points);
@@ -114,7 +114,7 @@ nb::tuple project(const S& system, const Table& starts, double noise, int iterat
 }
 
 // (points (k, n), gaps (k), last steps (k))
-template <System S>
+template <DenseSystem S>
 nb::tuple project_to_sphere(const S& system, const Table& starts, const Doubles& center, double radius,
                             int iterations) {
     check_unknowns("starts", starts.shape(1), system.unknowns());

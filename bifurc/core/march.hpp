@@ -141,8 +141,7 @@ public:
           settings_(settings),
           n_(system.unknowns()),
           m_(system.equations()),
-          factorization_(m_ + 1, n_),
-          jacobian_(m_, n_),
+          bordered_(system.bordered()),
           residual_(m_),
           right_(m_ + 1),
           step_(n_),
@@ -202,33 +201,24 @@ private:
     Settled settle(Vector<double> point, Vector<double> tangent) {
         double moved = 0.0, gap = std::numeric_limits<double>::infinity();
         for (int iteration = 0; iteration <= march::corrections; ++iteration) {
-            system_.linearize(point, residual_, jacobian_);
+            system_.linearize(point, residual_, bordered_.jacobian());
             const double previous = gap;
             gap = length(residual_);
-            factor_with(tangent);
+            bordered_.factor(tangent);
             if (gap <= march::rounding || gap > 0.5 * previous || iteration == march::corrections) break;
             for (Index row = 0; row < m_; ++row) right_[row] = -residual_[row];
             right_[m_] = 0.0;
-            factorization_.solve(right_, step_);
+            bordered_.solve(right_, step_);
             for (Index j = 0; j < n_; ++j) point[j] += step_[j];
             moved += length(step_);
         }
         std::fill(right_.begin(), right_.end(), 0.0);
         right_[m_] = 1.0;
-        factorization_.solve(right_, step_);
+        bordered_.solve(right_, step_);
         const double norm = length(step_);
         for (Index j = 0; j < n_; ++j) tangent[j] = step_[j] / norm;
-        factor_with(tangent);
-        return {moved, gap, factorization_.smallest_singular_value()};
-    }
-
-    void factor_with(Vector<const double> tangent) {
-        const View<double> matrix = factorization_.matrix();
-        for (Index row = 0; row < m_; ++row) {
-            for (Index j = 0; j < n_; ++j) matrix(row, j) = jacobian_(row, j);
-        }
-        for (Index j = 0; j < n_; ++j) matrix(m_, j) = tangent[j];
-        factorization_.factor();
+        bordered_.factor(tangent);
+        return {moved, gap, bordered_.smallest_singular_value()};
     }
 
     // The distance to which a point is known whose smallest regular singular value is ``sigma``.
@@ -246,8 +236,8 @@ private:
     TaylorPiece expand(Vector<const double> point, Vector<const double> tangent, double sigma) {
         TaylorPiece piece{Matrix<double>(settings_.order + 1, n_)};
         piece.sigma = sigma;
-        factorization_.prepare_for_many();
-        system_.series(point, tangent, factorization_, piece.coefficients);
+        bordered_.prepare_for_many();
+        system_.series(point, tangent, bordered_, piece.coefficients);
         const double known = blur(sigma);
         const double within = 3.0 * settings_.tolerance;
         double radius = trusted_radius(piece.coefficients, std::max(settings_.tolerance, known));
@@ -284,7 +274,7 @@ private:
             system_.residual(place_, Vector<double>(right_).first(m_));
             right_[m_] = 0.0;
             worst.residual = std::max(worst.residual, length(right_));
-            factorization_.solve(right_, step_);
+            bordered_.solve(right_, step_);
             worst.distance = std::max(worst.distance, length(step_));
             if (!worst.is_below(most)) break;
         }
@@ -386,8 +376,7 @@ private:
     const MarchSettings settings_;
     const Index n_, m_;
     double misclosure_ = 0.0;
-    Factorization factorization_;
-    Matrix<double> jacobian_;
+    typename S::Bordered bordered_;
     std::vector<double> residual_, right_, step_, place_, heading_, other_, slope_;
 };
 

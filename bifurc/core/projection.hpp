@@ -24,7 +24,8 @@ template <System S>
 void project(const S& system, View<double> points, Vector<double> gaps, double noise, int iterations) {
     const Index n = system.unknowns(), m = system.equations();
     std::vector<double> residual(m), trial_residual(m), step(n), trial(n);
-    Matrix<double> jacobian(m, n), trial_jacobian(m, n), normal(n, n);
+    typename S::Damped damped = system.damped();
+    auto jacobian = damped.jacobian(), trial_jacobian = damped.jacobian();
     for (Index start = 0; start < points.rows; ++start) {
         const Vector<double> point = points.row(start);
         system.linearize(point, residual, jacobian);
@@ -34,7 +35,7 @@ void project(const S& system, View<double> points, Vector<double> gaps, double n
             // without a floor the step along the null space would be rounding over rounding,
             // next to a solution
             const double damping = std::max(factor * gap, projection::least_damping);
-            damped_step(jacobian, residual, damping, normal, step);
+            damped.step(jacobian, residual, damping, step);
             for (Index j = 0; j < n; ++j) trial[j] = point[j] + step[j];
             system.linearize(trial, trial_residual, trial_jacobian);
             const double reached = length(trial_residual);
@@ -61,7 +62,7 @@ void project(const S& system, View<double> points, Vector<double> gaps, double n
 // ``radius`` from ``center``; residuals (k) and lengths of the last step (k) beside. Next to a
 // singular point the equations differ in size by the radius; undamped Gauss-Newton does not see
 // that, a merit function would. Steps are cut to a third of the radius.
-template <System S>
+template <DenseSystem S>
 void project_to_sphere(const S& system, View<double> points, Vector<const double> center, double radius,
                        int iterations, Vector<double> gaps, Vector<double> last_steps) {
     const Index n = system.unknowns(), m = system.equations();

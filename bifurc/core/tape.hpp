@@ -10,6 +10,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -17,8 +18,9 @@
 #include <vector>
 
 #include "bifurc/core/arrays.hpp"
+#include "bifurc/core/bordered.hpp"
+#include "bifurc/core/damped.hpp"
 #include "bifurc/core/interval.hpp"
-#include "bifurc/core/least_squares.hpp"
 #include "bifurc/core/series.hpp"
 
 namespace bifurc {
@@ -202,6 +204,21 @@ public:
     Vector<const Index> cone(Index equation) const { return cones_[equation]; }
     // Numbers of the unknowns that an equation is made of, in order.
     Vector<const Index> unknowns_of(Index equation) const { return unknowns_of_[equation]; }
+    // Where F' has entries.
+    SparsityPattern pattern() const {
+        SparsityPattern pattern{unknowns_, {0}, {}};
+        for (const std::vector<Index>& row : unknowns_of_) {
+            pattern.entries.insert(pattern.entries.end(), row.begin(), row.end());
+            pattern.starts.push_back(static_cast<Index>(pattern.entries.size()));
+        }
+        return pattern;
+    }
+    // That, and the order in which columns are eliminated. Not for two threads at once when it is called
+    // first.
+    const Sparsity& sparsity() const {
+        if (!sparsity_) sparsity_ = std::make_unique<Sparsity>(pattern());
+        return *sparsity_;
+    }
     // Operations that a gradient of all equations takes, one after the other.
     Index reverse_cost() const { return reverse_cost_; }
 
@@ -318,6 +335,7 @@ private:
     std::vector<Index> needed_;
     std::vector<std::vector<Index>> cones_, unknowns_of_;
     Index reverse_cost_ = 0;
+    mutable std::unique_ptr<Sparsity> sparsity_;
 };
 
 // --- derivatives at a point ------------------------------------------------------------------------
@@ -371,6 +389,19 @@ public:
         const Matrix<T> gradients = forward_gradients();
         for (Index row = 0; row < tape_.equations(); ++row) {
             for (Index j = 0; j < tape_.unknowns(); ++j) jacobian(row, j) = gradients(tape_.output(row), j);
+        }
+    }
+
+    // The entries of F' at the point of `linearize`, in the order of the pattern of the tape.
+    void entries(Vector<T> entries) {
+        std::vector<T> row(tape_.unknowns(), T(0.0));
+        auto next = entries.begin();
+        for (Index equation = 0; equation < tape_.equations(); ++equation) {
+            gradient(equation, [&](Index unknown, const T& entry) { row[unknown] += entry; });
+            for (Index unknown : tape_.unknowns_of(equation)) {
+                *next++ = row[unknown];
+                row[unknown] = T(0.0);
+            }
         }
     }
 
@@ -549,11 +580,16 @@ void series_along(const Tape& tape, View<const T> curve, View<T> out) {
 // infinitely far from a solution. Not for two threads at once: the sweep is shared.
 class TapeSystem {
 public:
+    using Bordered = DenseBordered;
+    using Damped = DenseDamped;
+
     TapeSystem(const Tape& tape, Vector<const double> units, Vector<const double> weights)
         : tape_(tape), units_(units), weights_(weights), sweep_(tape), point_(tape.unknowns()) {}
 
     Index unknowns() const { return tape_.unknowns(); }
     Index equations() const { return tape_.equations(); }
+    Bordered bordered() const { return {equations(), unknowns()}; }
+    Damped damped() const { return {equations(), unknowns()}; }
 
     void residual(Vector<const double> point, Vector<double> residual) const {
         sweep_.evaluate(in_units(point));
@@ -561,8 +597,7 @@ public:
     }
 
     void linearize(Vector<const double> point, Vector<double> residual, View<double> jacobian) const {
-        sweep_.linearize(in_units(point));
-        fill(residual);
+        linearize_sweep(point, residual);
         sweep_.jacobian(jacobian);
         for (Index row = 0; row < equations(); ++row) {
             for (Index j = 0; j < unknowns(); ++j) jacobian(row, j) *= weights_[row] * units_[j];
@@ -571,7 +606,8 @@ public:
 
     // The solution curve: coefficient k of F along it with nothing for coefficient k of the
     // unknowns is the right-hand side for that coefficient. |dv/ds| = 1 gives the last row.
-    void series(Vector<const double> point, Vector<const double> tangent, const Factorization& factorization,
+    template <class Factored>
+    void series(Vector<const double> point, Vector<const double> tangent, const Factored& factored,
                 View<double> coefficients) const {
         const Index order = coefficients.rows - 1, n = unknowns(), m = equations();
         SeriesSweep<double> sweep(tape_, order);
@@ -586,12 +622,22 @@ public:
             } else {
                 for (Index i = 0; i < m; ++i) right[i] = -weights_[i] * sweep.coefficient(i, k);
                 right[m] = along(coefficients, k);
-                factorization.solve(right, row);
+                factored.solve(right, row);
             }
             for (Index j = 0; j < n; ++j) step[j] = units_[j] * row[j];
             sweep.correct(k, step);
         }
     }
+
+protected:
+    void linearize_sweep(Vector<const double> point, Vector<double> residual) const {
+        sweep_.linearize(in_units(point));
+        fill(residual);
+    }
+
+    const Tape& tape_;
+    Vector<const double> units_, weights_;
+    mutable Sweep<double> sweep_;
 
 private:
     // The component of coefficient k along the tangent for which the speed stays 1.
@@ -618,10 +664,34 @@ private:
         }
     }
 
-    const Tape& tape_;
-    Vector<const double> units_, weights_;
-    mutable Sweep<double> sweep_;
     mutable std::vector<double> point_;
+};
+
+// The same with a sparse F'.
+class SparseTapeSystem : public TapeSystem {
+public:
+    using Bordered = SparseBordered;
+    using Damped = SparseDamped;
+
+    SparseTapeSystem(const Tape& tape, Vector<const double> units, Vector<const double> weights)
+        : TapeSystem(tape, units, weights), sparsity_(tape.sparsity()) {}
+
+    Bordered bordered() const { return Bordered(sparsity_); }
+    Damped damped() const { return Damped(sparsity_); }
+
+    void linearize(Vector<const double> point, Vector<double> residual, Vector<double> entries) const {
+        linearize_sweep(point, residual);
+        sweep_.entries(entries);
+        const SparsityPattern& pattern = sparsity_.pattern;
+        for (Index row = 0; row < equations(); ++row) {
+            for (Index entry = pattern.starts[row]; entry < pattern.starts[row + 1]; ++entry) {
+                entries[entry] *= weights_[row] * units_[pattern.entries[entry]];
+            }
+        }
+    }
+
+private:
+    const Sparsity& sparsity_;
 };
 
 }  // namespace bifurc

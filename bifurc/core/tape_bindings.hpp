@@ -81,35 +81,21 @@ inline nb::object tape_series(const Tape& tape, const Table& curve) {
 
 // Where F' (m, n) has entries, by rows: (starts (m + 1), columns).
 inline nb::tuple tape_pattern(const Tape& tape) {
-    std::vector<std::int64_t> columns;
-    numpy::Array<std::int64_t> starts({tape.equations() + 1});
-    for (Index row = 0; row < tape.equations(); ++row) {
-        const auto unknowns = tape.unknowns_of(row);
-        columns.insert(columns.end(), unknowns.begin(), unknowns.end());
-        starts.data()[row + 1] = static_cast<std::int64_t>(columns.size());
-    }
-    numpy::Array<std::int64_t> out({static_cast<Index>(columns.size())});
-    out.fill(columns);
-    return nb::make_tuple(starts.release(), out.release());
+    const SparsityPattern pattern = tape.pattern();
+    numpy::Array<std::int64_t> starts({static_cast<Index>(pattern.starts.size())});
+    numpy::Array<std::int64_t> columns({static_cast<Index>(pattern.entries.size())});
+    std::copy(pattern.starts.begin(), pattern.starts.end(), starts.data());
+    std::copy(pattern.entries.begin(), pattern.entries.end(), columns.data());
+    return nb::make_tuple(starts.release(), columns.release());
 }
 
 // The entries of F' at a point (n), in the order of `tape_pattern`.
 inline nb::object tape_entries(const Tape& tape, const Doubles& point) {
     check_unknowns("point", point.shape(0), tape.unknowns());
-    Index count = 0;
-    for (Index row = 0; row < tape.equations(); ++row) count += static_cast<Index>(tape.unknowns_of(row).size());
-    numpy::Array<double> out({count});
-    std::vector<double> gradient(tape.unknowns(), 0.0);
+    numpy::Array<double> out({static_cast<Index>(tape.pattern().entries.size())});
     Sweep<double> sweep(tape);
     sweep.linearize(numpy::view(point));
-    double* next = out.data();
-    for (Index row = 0; row < tape.equations(); ++row) {
-        sweep.gradient(row, [&](Index unknown, double entry) { gradient[unknown] += entry; });
-        for (Index unknown : tape.unknowns_of(row)) {
-            *next++ = gradient[unknown];
-            gradient[unknown] = 0.0;
-        }
-    }
+    sweep.entries(out.vector());
     return out.release();
 }
 
@@ -163,7 +149,8 @@ inline nb::tuple tape_jacobian_bounds(const Tape& tape, const Table& low, const 
 
 // --- methods over a scaled system --------------------------------------------------------------------
 
-inline TapeSystem system_of(const Tape& tape, const Doubles& units, const Doubles& weights) {
+template <class S>
+S system_of(const Tape& tape, const Doubles& units, const Doubles& weights) {
     check_unknowns("units", units.shape(0), tape.unknowns());
     check_unknowns("weights", weights.shape(0), tape.equations());
     return {tape, numpy::view(units), numpy::view(weights)};
@@ -172,24 +159,61 @@ inline TapeSystem system_of(const Tape& tape, const Doubles& units, const Double
 inline nb::tuple tape_march(const Tape& tape, const Doubles& units, const Doubles& weights, const Doubles& start,
                             const Doubles& tangent, Index order, double tolerance, double shortest, double longest,
                             Index count, double closing, double misclosure, const Table& anchor, double within,
-                            const Doubles& periods, const Table& bounds, double length) {
+                            const Doubles& periods, const Table& bounds, double length, bool is_sparse) {
     const MarchSettings settings{order, tolerance, shortest, longest, count, closing, misclosure};
     const std::optional<Region> region = region_of(anchor, within, periods, bounds, length);
-    return march(system_of(tape, units, weights), start, tangent, settings, region);
+    if (is_sparse) return march(system_of<SparseTapeSystem>(tape, units, weights), start, tangent, settings, region);
+    return march(system_of<TapeSystem>(tape, units, weights), start, tangent, settings, region);
 }
 
 inline nb::tuple tape_project(const Tape& tape, const Doubles& units, const Doubles& weights, const Table& starts,
-                              double noise, int iterations) {
-    return project(system_of(tape, units, weights), starts, noise, iterations);
+                              double noise, int iterations, bool is_sparse) {
+    if (is_sparse) return project(system_of<SparseTapeSystem>(tape, units, weights), starts, noise, iterations);
+    return project(system_of<TapeSystem>(tape, units, weights), starts, noise, iterations);
 }
 
 inline nb::tuple tape_project_to_sphere(const Tape& tape, const Doubles& units, const Doubles& weights,
                                         const Table& starts, const Doubles& center, double radius, int iterations) {
-    return project_to_sphere(system_of(tape, units, weights), starts, center, radius, iterations);
+    return project_to_sphere(system_of<TapeSystem>(tape, units, weights), starts, center, radius, iterations);
 }
+
+// [F'; t] at one point, factored.
+class FactoredTape {
+public:
+    FactoredTape(const Tape& tape, const Doubles& units, const Doubles& weights, const Doubles& point,
+                 const Doubles& tangent)
+        : bordered_(tape.sparsity()), right_(tape.equations() + 1), solution_(tape.unknowns()) {
+        check_unknowns("point", point.shape(0), tape.unknowns());
+        check_unknowns("tangent", tangent.shape(0), tape.unknowns());
+        std::vector<double> residual(tape.equations());
+        const auto system = system_of<SparseTapeSystem>(tape, units, weights);
+        system.linearize(numpy::view(point), residual, bordered_.jacobian());
+        bordered_.factor(numpy::view(tangent));
+    }
+
+    double smallest_singular_value() { return bordered_.smallest_singular_value(); }
+
+    nb::object solve(const Doubles& right) {
+        check_unknowns("right", right.shape(0), static_cast<Index>(right_.size()));
+        std::copy(right.data(), right.data() + right.shape(0), right_.begin());
+        bordered_.solve(right_, solution_);
+        numpy::Array<double> out({static_cast<Index>(solution_.size())});
+        out.fill(solution_);
+        return out.release();
+    }
+
+private:
+    SparseBordered bordered_;
+    std::vector<double> right_, solution_;
+};
 
 inline void bind_tape(nb::module_& module) {
     using nb::arg;
+    nb::class_<FactoredTape>(module, "FactoredTape", "The sparse matrix [F'; t] at a point, factored.")
+        .def(nb::init<const Tape&, const Doubles&, const Doubles&, const Doubles&, const Doubles&>(), arg("tape"),
+             arg("units"), arg("weights"), arg("point"), arg("tangent"), nb::keep_alive<1, 2>())
+        .def("smallest_singular_value", &FactoredTape::smallest_singular_value)
+        .def("solve", &FactoredTape::solve, arg("right"));
     nb::class_<Tape>(module, "Tape", "A list of operations: equations as data.")
         .def("__init__", &make_tape, arg("unknowns"), arg("operations"), arg("operands"), arg("constants"),
              arg("outputs"))
@@ -207,8 +231,9 @@ inline void bind_tape(nb::module_& module) {
         .def("jacobian_bounds", &tape_jacobian_bounds, arg("low"), arg("high"))
         .def("march", &tape_march, arg("units"), arg("weights"), arg("start"), arg("tangent"), arg("order"),
              arg("tolerance"), arg("shortest"), arg("longest"), arg("count"), arg("closing"), arg("misclosure"),
-             arg("anchor"), arg("within"), arg("periods"), arg("bounds"), arg("length"))
-        .def("project", &tape_project, arg("units"), arg("weights"), arg("starts"), arg("noise"), arg("iterations"))
+             arg("anchor"), arg("within"), arg("periods"), arg("bounds"), arg("length"), arg("is_sparse"))
+        .def("project", &tape_project, arg("units"), arg("weights"), arg("starts"), arg("noise"), arg("iterations"),
+             arg("is_sparse"))
         .def("project_to_sphere", &tape_project_to_sphere, arg("units"), arg("weights"), arg("starts"),
              arg("center"), arg("radius"), arg("iterations"));
 }

@@ -32,7 +32,8 @@ CLEAR = 10.0  # times the radius of least caution: from there on a bend is passe
 @dataclass(frozen=True)
 class TraceSettings:
     """How a curve is followed. Lengths are in units of the problem's ``scale``, the
-    ``max_length`` in those of its ``reach``.
+    ``longest`` radius in those of its ``stride`` and the ``max_length`` in those of its
+    ``reach``.
 
     ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the
     ``shortest`` and ``longest`` trusted radius, and the ``max_length`` after which
@@ -149,7 +150,7 @@ def _march(
         order=settings.order,
         tolerance=settings.tolerance,
         shortest=max(track.caution.shortest, settings.shortest) * problem.scale,
-        longest=settings.longest * problem.scale,
+        longest=settings.longest * problem.stride,
         count=AT_A_BEND if track.is_at_a_bend else max(AT_ONCE, len(track)),
         closing=closing,
         length=settings.max_length * problem.reach - track.reached,

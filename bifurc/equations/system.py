@@ -13,8 +13,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.equations.tape import Tape
-from bifurc.problem import March, MarchSettings, MarchStatus, SphereProjection
+from bifurc.problem import (
+    March,
+    MarchSettings,
+    MarchStatus,
+    Solver,
+    SphereProjection,
+)
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
@@ -23,12 +30,16 @@ if TYPE_CHECKING:
 __all__ = ["LARGEST_DENSE", "ScaledTape"]
 
 LARGEST_DENSE = 100  # unknowns up to which dense matrices are factored
+LARGEST_FACTORED_DENSE = 40  # the same, in compiled code
+SINGULAR = 1e-12  # a singular value of F', over the magnitude, that is left to pivoting
 SPARSE = 0.25  # share of entries of a larger Jacobian up to which it is sparse
 ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
 PROJECTION_STEPS = 80
 SPHERE_STEPS = 25
 ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
 SAMPLES, BESIDE = 20, 0.3  # places at which it is measured, so far, over the scale, off
+# the same for many equations, whose roundings make a mean of their own, by the unknowns
+FEWEST_SAMPLES, SAMPLED = 4, 200
 SOLVED = 1e-9  # residual of a solution
 SMALLEST_SHARE = 1e-8  # of the magnitude, with which a curve is followed
 
@@ -89,8 +100,15 @@ class ScaledTape:
     @cached_property
     def is_sparse(self) -> bool:
         """Whether F' is large and has few entries."""
-        if self.tape.n <= LARGEST_DENSE:
-            return False
+        return self.tape.n > LARGEST_DENSE and self._has_few_entries
+
+    @cached_property
+    def is_factored_sparse(self) -> bool:
+        """Whether the compiled methods factor F' as the sparse matrix that it is."""
+        return self.tape.n > LARGEST_FACTORED_DENSE and self._has_few_entries
+
+    @cached_property
+    def _has_few_entries(self) -> bool:
         return len(self._pattern.rows) <= SPARSE * self.tape.m * self.tape.n
 
     @cached_property
@@ -104,6 +122,23 @@ class ScaledTape:
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
         return self.tape.compiled.hessian(_contiguous(point))
+
+    def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
+        """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
+        under it the row ``tangent`` (n,), in the least-squares sense; None where F' is
+        not factored as a sparse matrix, and where it has too low a rank."""
+        if not self.is_factored_sparse:
+            return None
+        factored = _core.FactoredTape(
+            self.tape.compiled,
+            self._units,
+            self._weights,
+            _contiguous(point) / self._unit,
+            _contiguous(tangent),
+        )
+        if not factored.smallest_singular_value() > SINGULAR:
+            return None
+        return factored.solve
 
     # --- curves and solutions ---------------------------------------------------------
 
@@ -134,6 +169,7 @@ class ScaledTape:
             periods=self._periods / unit,
             bounds=self._bounds / unit,
             length=settings.length / unit,
+            is_sparse=self.is_factored_sparse,
         )
         return March(
             status=MarchStatus(status),
@@ -153,7 +189,12 @@ class ScaledTape:
         """
         if len(self._solutions):
             return self._share_at_solutions
-        return self._share_about(np.tile(start, (SAMPLES, 1)))
+        return self._share_about(np.tile(start, (self._sample_count, 1)))
+
+    @property
+    def _sample_count(self) -> int:
+        """At how many places rounding is measured."""
+        return min(max(SAMPLED // self.tape.n, FEWEST_SAMPLES), SAMPLES)
 
     @cached_property
     def _share_at_solutions(self) -> float:
@@ -179,7 +220,7 @@ class ScaledTape:
         low = np.where(np.isfinite(low), low, -self._scale)
         high = np.where(np.isfinite(high), high, self._scale)
         rng = np.random.default_rng(0)
-        inner = rng.uniform(0.25, 0.75, (SAMPLES, self.tape.n))
+        inner = rng.uniform(0.25, 0.75, (self._sample_count, self.tape.n))
         points, gaps = self.project(low + inner * (high - low))
         return points[gaps <= SOLVED * self._unit]
 
@@ -192,6 +233,7 @@ class ScaledTape:
             _contiguous(starts) / self._unit,
             ROUNDING,
             PROJECTION_STEPS,
+            self.is_factored_sparse,
         )
         return self._unit * points, self._unit * gaps
 

@@ -146,8 +146,8 @@ class Tape:
     def size(self) -> int:
         """Number of operations that the equations are made of, without unknowns and
         constants."""
-        leaves = (Operation.UNKNOWN, Operation.CONSTANT)
-        return sum(1 for slot in self._needed if self.operations[slot] not in leaves)
+        operations = self.operations[self._needed]
+        return int(np.count_nonzero(operations > Operation.CONSTANT))
 
     @cached_property
     def compiled(self) -> _core.Tape:
@@ -160,14 +160,17 @@ class Tape:
     def _needed(self) -> list[int]:
         """The slots that the equations are made of, in order; the others serve
         derivatives."""
+        operations = self.operations.tolist()
+        operands = self.operands.tolist()
         needed = set(self.outputs.tolist())
-        for slot in range(len(self.operations) - 1, -1, -1):
-            operation = self.operations[slot]
+        for slot in range(len(operations) - 1, -1, -1):
+            operation = operations[slot]
             if slot not in needed or operation <= Operation.CONSTANT:
                 continue
-            needed.add(int(self.operands[slot, 0]))
+            left, right, _ = operands[slot]
+            needed.add(left)
             if operation in _BINARY:
-                needed.add(int(self.operands[slot, 1]))
+                needed.add(right)
         return sorted(needed)
 
     def over(self, unknowns: Sequence[Any], library: Any) -> list[Any]:

@@ -77,7 +77,7 @@ def bordered_at(problem: Problem, point: np.ndarray, tangent: np.ndarray) -> Bor
     and the row ``tangent`` (n,) under it."""
     solver = problem.bordered_solver(point, tangent)
     if solver is not None:
-        return Bordered(problem.n - 1, solver)
+        return Bordered(problem.equation_count, solver)
     return Bordered.factored(problem.jacobian(point) / problem.magnitude, tangent)
 
 

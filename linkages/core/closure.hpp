@@ -17,7 +17,7 @@
 
 namespace linkages {
 
-using bifurc::Factorization;
+using bifurc::DenseBordered;
 using bifurc::Index;
 using bifurc::Matrix;
 using bifurc::Vector;
@@ -27,6 +27,9 @@ using bifurc::View;
 // twist, cosine and sine of half the twist.
 class Closure {
 public:
+    using Bordered = DenseBordered;
+    using Damped = bifurc::DenseDamped;
+
     static constexpr Index equation_count = 6;
 
     explicit Closure(View<const double> geometry) : geometry_(geometry) {}
@@ -103,8 +106,11 @@ public:
         }
     }
 
+    Bordered bordered() const { return {equations(), unknowns()}; }
+    Damped damped() const { return {equations(), unknowns()}; }
+
     // Taylor coefficients (order + 1, n) of theta(s), s the arclength, from the factored [F'; t].
-    void series(Vector<const double> theta, Vector<const double> tangent, const Factorization& factorization,
+    void series(Vector<const double> theta, Vector<const double> tangent, const DenseBordered& bordered,
                 View<double> coefficients) const;
 
 private:
@@ -122,6 +128,9 @@ private:
 // [M c].
 class CoupledClosure {
 public:
+    using Bordered = DenseBordered;
+    using Damped = bifurc::DenseDamped;
+
     CoupledClosure(const Closure& closure, View<const double> coupling) : closure_(closure), coupling_(coupling) {}
 
     Index unknowns() const { return coupling_.columns - 1; }
@@ -154,7 +163,10 @@ public:
         }
     }
 
-    void series(Vector<const double> unknowns, Vector<const double> tangent, const Factorization& factorization,
+    Bordered bordered() const { return {equations(), unknowns()}; }
+    Damped damped() const { return {equations(), unknowns()}; }
+
+    void series(Vector<const double> unknowns, Vector<const double> tangent, const DenseBordered& bordered,
                 View<double> coefficients) const;
 
 private:
@@ -292,7 +304,7 @@ namespace detail {
 // order k into those of the joints.
 template <class Spread>
 void fill_series(const Closure& closure, Vector<const double> theta, Vector<const double> start,
-                 Vector<const double> tangent, const Factorization& factorization, Spread spread,
+                 Vector<const double> tangent, const DenseBordered& bordered, Spread spread,
                  View<double> coefficients) {
     const Index order = coefficients.rows - 1, count = coefficients.columns;
     MotionSeries motion(closure.unknowns(), order);
@@ -313,7 +325,7 @@ void fill_series(const Closure& closure, Vector<const double> theta, Vector<cons
             for (Index m = 1; 2 * m < k; ++m) excess += 2.0 * bifurc::dot(own.row(m), own.row(k - m));
             if (k % 2 == 0) excess += bifurc::squared_length(own.row(k / 2));
             right[Closure::equation_count] = -0.5 * excess;
-            factorization.solve(right, own.row(k));
+            bordered.solve(right, own.row(k));
         }
         spread(own.row(k), k, motion);
         for (Index j = 0; j < count; ++j) coefficients(k + 1, j) = own(k, j) / static_cast<double>(k + 1);
@@ -324,15 +336,15 @@ void fill_series(const Closure& closure, Vector<const double> theta, Vector<cons
 }  // namespace detail
 
 inline void Closure::series(Vector<const double> theta, Vector<const double> tangent,
-                            const Factorization& factorization, View<double> coefficients) const {
+                            const DenseBordered& bordered, View<double> coefficients) const {
     const auto spread = [](Vector<const double> own, Index k, MotionSeries& motion) {
         for (Index i = 0; i < static_cast<Index>(own.size()); ++i) motion.rate(k, i) = own[i];
     };
-    detail::fill_series(*this, theta, theta, tangent, factorization, spread, coefficients);
+    detail::fill_series(*this, theta, theta, tangent, bordered, spread, coefficients);
 }
 
 inline void CoupledClosure::series(Vector<const double> unknowns, Vector<const double> tangent,
-                                   const Factorization& factorization, View<double> coefficients) const {
+                                   const DenseBordered& bordered, View<double> coefficients) const {
     const auto spread = [this](Vector<const double> own, Index k, MotionSeries& motion) {
         for (Index i = 0; i < joints(); ++i) {
             double total = 0.0;
@@ -340,7 +352,7 @@ inline void CoupledClosure::series(Vector<const double> unknowns, Vector<const d
             motion.rate(k, i) = total;
         }
     };
-    detail::fill_series(closure_, angles(unknowns), unknowns, tangent, factorization, spread, coefficients);
+    detail::fill_series(closure_, angles(unknowns), unknowns, tangent, bordered, spread, coefficients);
 }
 
 }  // namespace linkages

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
@@ -17,6 +18,7 @@ from bifurc.problem import (
     March,
     MarchSettings,
     PreciseResidual,
+    Solver,
     SphereProjection,
 )
 from bifurc.seeding import random_seeds
@@ -35,6 +37,7 @@ __all__ = ["MechanismClosure"]
 # unknowns up to which the compiled methods, with dense matrices, take no longer than
 # collocation: redundant equations leave that to dense factorisations as well
 LARGEST_COMPILED = 250
+STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 
 
 class MechanismClosure(NumericalProblem):
@@ -140,15 +143,32 @@ class MechanismClosure(NumericalProblem):
     # --- curves and solutions ---------------------------------------------------------
 
     @cached_property
-    def _is_dense(self) -> bool:
-        """Whether the methods that are compiled factor the matrices."""
-        return self.n <= LARGEST_COMPILED
+    def _is_compiled(self) -> bool:
+        """Whether curves and solutions come from compiled code: dense matrices are
+        factored there up to some size."""
+        return self._tape.is_factored_sparse or self.n <= LARGEST_COMPILED
+
+    @property
+    def stride(self) -> float:
+        """The unit of the longest step along a form: in a step of the same angles more
+        joints make it longer, by the root of their number."""
+        return self.scale * math.sqrt(max(1.0, self.n / STRIDE_OF))
+
+    @property
+    def equation_count(self) -> int:
+        """Number of equations."""
+        return self._equations.tape.m
+
+    def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
+        """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
+        under it the row ``tangent`` (n,); None where that matrix is to be factored."""
+        return self._tape.bordered_solver(point, tangent)
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
-        if self._is_dense:
+        if self._is_compiled:
             return self._tape.march(start, tangent, settings)
         return super().march(start, tangent, settings)
 
@@ -156,7 +176,7 @@ class MechanismClosure(NumericalProblem):
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
         each."""
         starts = rows_of("starts", starts, self.n)
-        if self._is_dense:
+        if self._is_compiled:
             return self._tape.project(starts)
         return super().project(starts)
 
@@ -165,7 +185,7 @@ class MechanismClosure(NumericalProblem):
     ) -> SphereProjection:
         """Closed configurations near ``starts`` (k, n) at distance ``radius`` from
         ``center`` (n,)."""
-        if self._is_dense:
+        if self.n <= LARGEST_COMPILED:
             return self._tape.project_to_sphere(starts, center, radius)
         return super().project_to_sphere(starts, center, radius)
 

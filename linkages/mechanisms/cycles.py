@@ -9,6 +9,10 @@ import networkx as nx
 __all__ = ["Chain", "Ends", "Step", "chain_between", "cycle_basis"]
 
 
+# times the largest weight of a pair: the weight up to which cycles are looked for first
+FIRST_LIMIT = 6
+
+
 class Step(NamedTuple):
     """One step of a chain: across the pair of this number, from its base to its moved
     body or, with the sign -1, the other way."""
@@ -36,21 +40,56 @@ def cycle_basis(bodies: int, pairs: dict[int, Ends]) -> list[Chain]:
     between their ends. Weights are unique, so that the paths and the basis are.
     """
     graph, weights = _weighted_graph(bodies, pairs)
+    count = len(pairs) - bodies + nx.number_connected_components(graph)
+    longest = FIRST_LIMIT * max(weights.values(), default=0)
+    while True:
+        # as many as a basis has are one, and lighter than any with a longer cycle
+        cycles = _independent(_short_cycles(graph, bodies, pairs, weights, longest))
+        if len(cycles) == count:
+            return [_oriented(cycle, pairs) for cycle in cycles]
+        longest *= 2
+
+
+def _short_cycles(
+    graph: nx.Graph,
+    bodies: int,
+    pairs: dict[int, Ends],
+    weights: dict[int, int],
+    longest: int,
+) -> list[list[int]]:
+    """The cycles of two shortest paths and a pair whose weight is ``longest`` at most,
+    the lightest first.
+
+    The ends of the pair are no farther from the root than half of that: so the search
+    of a large mechanism stays near every root.
+    """
+    beginning: dict[int, list[int]] = {body: [] for body in range(bodies)}
+    for number, ends in pairs.items():
+        beginning[ends.base].append(number)
     candidates = []
     for root in range(bodies):
-        paths = nx.single_source_dijkstra_path(graph, root)
-        for number, ends in pairs.items():
-            cycle = _cycle_across(bodies, paths, number, ends)
-            if cycle is not None:
-                weight = sum(weights[pair] for pair in cycle)
+        # on the way across a pair its weight counts twice
+        paths = nx.single_source_dijkstra_path(graph, root, cutoff=longest)
+        near = sorted(
+            number for body in paths if body < bodies for number in beginning[body]
+        )
+        for number in near:
+            cycle = _cycle_across(bodies, paths, number, pairs[number])
+            if cycle is None:
+                continue
+            weight = sum(weights[pair] for pair in cycle)
+            if weight <= longest:
                 candidates.append((weight, cycle))
     candidates.sort(key=lambda candidate: candidate[0])
+    return [cycle for _, cycle in candidates]
+
+
+def _independent(cycles: list[list[int]]) -> list[list[int]]:
+    """Those of the cycles that are no sum of those before them."""
     rows: dict[int, int] = {}
-    chains = []
-    for _, cycle in candidates:
-        if _adds_to(rows, sum(1 << pair for pair in cycle)):
-            chains.append(_oriented(cycle, pairs))
-    return chains
+    return [
+        cycle for cycle in cycles if _adds_to(rows, sum(1 << pair for pair in cycle))
+    ]
 
 
 def chain_between(
@@ -90,8 +129,8 @@ def _cycle_across(
     bodies: int, paths: dict[int, list[int]], number: int, ends: Ends
 ) -> list[int] | None:
     """The pairs of the cycle from a root to both ends of a pair and across it; None
-    where the two paths share more than the root."""
-    if ends.base not in paths:
+    where the two paths share more than the root, or lead nowhere."""
+    if ends.base not in paths or ends.moved not in paths:
         return None
     first, second = paths[ends.base], paths[ends.moved]
     shared = set(first) & set(second)

@@ -8,8 +8,9 @@ them, two points keep their distance.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -49,8 +50,8 @@ def write_equations(structure: Structure) -> Equations:
     outputs: list[int] = []
     counts = []
     for closure in structure.closures:
-        chain = _ChainWriter(structure, closure, writer, values)
-        slots = _slots(writer, chain.residuals())
+        equations = _ChainWriter(structure, closure, writer, values)
+        slots = _slots(writer, equations.residuals())
         counts.append(len(slots))
         outputs += slots
     for columns in structure.embedded.values():
@@ -165,9 +166,9 @@ class _ChainWriter:
         vector and the translation. It is zero at closure alone, at half turns it is
         not."""
         motor = IDENTITY
-        for step in self.closure.chain:
-            for motion, value in self._elements(step):
-                motor = product(motor, self._motor(motion, value))
+        elements = chain.from_iterable(map(self._elements, self.closure.chain))
+        for motion, value in _joined(elements):
+            motor = product(motor, self._motor(motion, value))
         return [2.0 * number for number in (*motor.real[1:], *motor.dual[1:])]
 
     def _elements(self, step: Step) -> Iterator[tuple[Motion, Number]]:
@@ -245,6 +246,30 @@ class _ChainWriter:
             turned = [_dot(row, offset) for row in rows]
             turned = [x + t for x, t in zip(turned, shift, strict=True)]
         return [float(c) + x for c, x in zip(center, turned, strict=True)]
+
+
+def _joined(
+    elements: Iterable[tuple[Motion, Number]],
+) -> Iterator[tuple[Motion, Number]]:
+    """The elementary motions, those that follow each other about one axis made one, by
+    the sum of their values: as where a chain crosses an axis of several bodies."""
+    before: tuple[Motion, Number] | None = None
+    for motion, value in elements:
+        if before is not None and _is_same(before[0], motion):
+            before = motion, before[1] + value
+            continue
+        if before is not None:
+            yield before
+        before = motion, value
+    if before is not None:
+        yield before
+
+
+def _is_same(motion: Motion, other: Motion) -> bool:
+    if motion.is_turn != other.is_turn or motion.advance != other.advance:
+        return False
+    is_same_axis = np.array_equal(motion.point, other.point) or not motion.is_turn
+    return is_same_axis and np.array_equal(motion.direction, other.direction)
 
 
 def _shifted(point: Point, direction: np.ndarray, distance: Number) -> Point:

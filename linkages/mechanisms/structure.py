@@ -278,14 +278,24 @@ class Structure:
         """The chains that have to close, as short as can be: cycles, then points, then
         rods."""
         cycles = cycle_basis(self.body_count, self._plain)
+        chains = [self._begun_at_a_joint(cycle) for cycle in cycles]
         closures = [
-            Closure(ClosureKind.CYCLE, chain, self._joints(chain)) for chain in cycles
+            Closure(ClosureKind.CYCLE, chain, self._joints(chain)) for chain in chains
         ]
         for number in self._spherical:
             if number not in self._kept_spherical:
                 closures.append(self._point_closure(number))
         closures += [self._rod_closure(rod) for rod in self.rods]
         return tuple(closures)
+
+    def _begun_at_a_joint(self, cycle: Chain) -> Chain:
+        """The cycle from the first of its steps across the joint at which it begins:
+        steps across one axis of several bodies then follow each other."""
+        joints = [self._joint_of(step.pair) for step in cycle]
+        first = 0
+        while joints[first - 1] == joints[0] and -first < len(cycle) - 1:
+            first -= 1
+        return cycle[first:] + cycle[:first] if first else cycle
 
     @cached_property
     def tree_pairs(self) -> dict[int, Ends]:

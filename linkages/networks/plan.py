@@ -72,10 +72,10 @@ class Plan:
         second = cell.axes[(corner + 1) % 4]
         if self._follows(second, first):
             return first + second
-        if self._follows(first, second) or second in self.inside:
+        if self._follows(first, second):
             return second + first
-        if first in self.inside:
-            return first + second
+        if (first in self.inside) != (second in self.inside):
+            return first + second if first in self.inside else second + first
         return min(first, second) + max(first, second)
 
     def _follows(self, second: str, first: str) -> bool:
