@@ -4,7 +4,7 @@ variables of a mechanism."""
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from linkages.networks.mechanism import NetworkMechanism
 
 __all__ = [
+    "ArclengthUnit",
+    "arclength_unit",
     "heading",
     "joint_names",
     "network_at",
@@ -85,6 +87,25 @@ def heading(atlas: Atlas) -> str:
         return "joint angles (deg)"
     unit = "deg" if set(atlas.units) == {"rad"} else "deg, lengths"
     return f"{', '.join(joint_names(atlas))} ({unit})"
+
+
+class ArclengthUnit(NamedTuple):
+    """How arclengths are shown: times ``factor``, with ``name`` behind."""
+
+    factor: float
+    name: str
+
+
+def arclength_unit(atlas: Atlas) -> ArclengthUnit:
+    """The unit of arclengths on the screen: degrees, where all unknowns are angles;
+    else that of the unknowns, in which lengths are over the characteristic length."""
+    if set(atlas.units) == {"rad"}:
+        return ArclengthUnit(float(np.degrees(1.0)), "deg")
+    readout = readout_of(atlas)
+    size = 1.0 if readout is None else readout.structure.unit
+    lengths = f"lengths over {size:.4g}"
+    name = f"rad, {lengths}" if "rad" in atlas.units else lengths
+    return ArclengthUnit(1.0, name)
 
 
 def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:

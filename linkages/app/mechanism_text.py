@@ -11,6 +11,7 @@ from linkages.app.texts import in_degrees, section
 from linkages.mechanisms.facts import VariableRange, form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.plane import is_on_sphere, normal_of_plane
 from linkages.mechanisms.readout import Readout
 
 __all__ = ["describe_joints", "describe_loops", "describe_motions"]
@@ -104,9 +105,21 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
             )
         )
     heads = ("joints", "constraints", "redundant", "motion that others can make")
-    count = f"Mobility {mobility_of(atlas)}; Grübler's count is {gruebler_of(atlas)}."
+    count = f"Mobility {mobility_of(atlas)}; Grübler's count is {gruebler_of(atlas)}"
+    count += f"{_special_count(readout.mechanism)}."
     loops = section("Loops", heads, rows)
     return f"{loops}\n\n{count}" if loops else count
+
+
+def _special_count(mechanism: Mechanism) -> str:
+    """Grübler's count with three freedoms a body, where that is all it has and the
+    mechanism does not say so."""
+    if mechanism.is_planar:
+        return ""
+    count = mechanism.count_of_freedoms(3)
+    if normal_of_plane(mechanism) is not None:
+        return f", and {count} in a plane"
+    return f", and {count} on a sphere" if is_on_sphere(mechanism) else ""
 
 
 def describe_motions(atlas: Atlas, readout: Readout) -> str:

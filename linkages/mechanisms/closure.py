@@ -118,22 +118,22 @@ class MechanismClosure(NumericalProblem):
 
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations;
-        None for a mechanism with embedded spherical joints,
-        free points or legs."""
+        None for a mechanism with embedded spherical joints, or with points that legs
+        carry anywhere."""
         bounds = self._curvature
         return None if bounds is None else bounds.near_solutions
 
     def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
         """Bounds (k,) on |F''| at complex points no farther than ``reach`` (k,) from a
-        real one within the limits; None for a mechanism with embedded spherical
-        joints, free points or legs."""
+        real one within the limits; None as for `curvature_bound`."""
         bounds = self._curvature
         return None if bounds is None else bounds.at_complex_points(reach)
 
     @cached_property
     def _curvature(self) -> CurvatureBounds | None:
-        has_legs = any(rod.leg is not None for rod in self.structure.rods)
-        if self.structure.embedded or self.structure.shifts or has_legs:
+        shifts = [k for columns in self.structure.shifts.values() for k in columns]
+        is_anywhere = not np.all(np.isfinite(self.bounds[shifts]))
+        if self.structure.embedded or is_anywhere:
             return None
         return CurvatureBounds(self.structure, self.curvature_residual)
 

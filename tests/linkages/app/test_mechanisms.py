@@ -106,7 +106,7 @@ def test_a_loop_keeps_its_document_and_has_two_counts_more(folder):
 def test_the_summary_names_joints_limits_and_counts(folder):
     output = run("map", "slider_crank.toml").stdout
     assert "Followed within limits: J4 from -640 to 640." in output
-    assert "Mobility 1; Grübler's count is -2." in output
+    assert "Mobility 1; Grübler's count is -2, and 1 in a plane." in output
     assert "J1, J2, J3, J4 (deg, lengths)" in output
     assert "frame = slider, crank = rod" in output
 
