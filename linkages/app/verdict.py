@@ -112,7 +112,9 @@ def _immobile(atlas: Atlas) -> str:
     gap = f"{atlas.closure_gap:.3g} of the characteristic length"
     if atlas.near_motions:
         unit = arclength_unit(atlas)
-        sentence = f"The linkage nearly moves{_near_motion(atlas.near_motions[0], unit)}."
+        sentence = (
+            f"The linkage nearly moves{_near_motion(atlas.near_motions[0], unit)}."
+        )
     elif assemblies:
         sentence = "The linkage is rigid."
     else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -22,6 +23,7 @@ from bifurc.problem import (
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 from linkages.mechanisms.curvature import CurvatureBounds
+from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
@@ -181,9 +183,15 @@ class MechanismClosure(NumericalProblem):
         return reference
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """The closed configuration nearest to the reference, and what is reached from
-        ``count`` random starts."""
+        """The closed configuration nearest to the reference, those that dyads build
+        where a joint stands at given values, and what is reached from ``count`` random
+        starts."""
         drawn = random_seeds(self, rng, count)
-        points, gaps = self.project(self.reference[None])
+        starts = self.reference[None]
+        slices = slice_by_dyads(self.structure, rng)
+        if slices is not None:
+            starts = np.concatenate([starts, slices.points])
+        points, gaps = self.project(starts)
         is_inside = self.excess(points) <= 0.0
-        return drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
+        seeds = drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
+        return replace(seeds, audit=slices)

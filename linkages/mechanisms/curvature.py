@@ -122,8 +122,9 @@ class _Chain:
         if self.closure.kind is ClosureKind.POINT:
             return self._scattered(second)
         distance = np.sqrt(self._longest**2 + 2 * self._length * misclosure)
-        of_rod = self._of_rod(reach, second, distance)
-        return self._scattered(of_rod) + self._of_leg()
+        of_rod = self._scattered(self._of_rod(reach, second, distance))
+        of_rod += self._of_leg()
+        return of_rod
 
     def anywhere(self) -> np.ndarray:
         """The same at all real points within the limits, for derivatives of the second
@@ -135,8 +136,9 @@ class _Chain:
         second = np.full((len(reach), len(reach)), max(1.0, reach.max(initial=0.0)))
         if self.closure.kind is ClosureKind.POINT:
             return self._scattered(second)
-        of_rod = self._of_rod(reach, second, self._total)
-        return self._scattered(of_rod) + self._of_leg()
+        of_rod = self._scattered(self._of_rod(reach, second, self._total))
+        of_rod += self._of_leg()
+        return of_rod
 
     def _of_cycle(self, reach: np.ndarray, gap: float) -> np.ndarray:
         """Twice a quarter of the product of two screws and a displacement with a
@@ -268,9 +270,7 @@ def _shifts(structure: Structure, placement: Placement, pair: int) -> list[_Elem
     for column, direction in zip(columns, directions, strict=True):
         largest = _largest(structure, Share(column, 1.0, 0.0))
         along = placement.axes @ direction
-        elements.append(
-            _Element(column, 1.0, False, along, np.zeros(3), 0.0, largest)
-        )
+        elements.append(_Element(column, 1.0, False, along, np.zeros(3), 0.0, largest))
     return elements
 
 

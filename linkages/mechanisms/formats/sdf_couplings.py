@@ -129,16 +129,17 @@ def _hinge(
     """The revolute joint that holds a link of a gearbox, by number, on the reference;
     and 1 where its angle is that of the gearbox, -1 where it has the other sign."""
     link, direction = gearbox.links[number], gearbox.directions[number]
+    along = direction / np.linalg.norm(direction)
     for joint in joints:
         if joint.kind is not JointKind.REVOLUTE:
             continue
-        if set(joint.bodies) != {link, gearbox.reference}:
-            continue
         axis = (pose_of(joint.bodies[0]) @ joint.frames[0])[:3, 2]
-        along = direction / np.linalg.norm(direction)
-        if is_one_direction(float(np.linalg.norm(np.cross(axis, along)))):
-            sign = float(np.sign(axis @ along))
-            return joint, sign if joint.bodies[1] == link else -sign
-    value = quoted(gearbox.reference)
-    allowed = f"a link that a revolute joint along <{AXES[number]}> joins to {link}"
-    gearbox.element.refuse("<gearbox_reference_body>", value, allowed)
+        is_along = is_one_direction(float(np.linalg.norm(np.cross(axis, along))))
+        if is_along and set(joint.bodies) == {link, gearbox.reference}:
+            break
+    else:
+        value = quoted(gearbox.reference)
+        allowed = f"a link that a revolute joint along <{AXES[number]}> joins to {link}"
+        gearbox.element.refuse("<gearbox_reference_body>", value, allowed)
+    sign = float(np.sign(axis @ along))
+    return joint, sign if joint.bodies[1] == link else -sign

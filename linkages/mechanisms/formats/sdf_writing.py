@@ -103,9 +103,7 @@ def _kind(variable: Variable) -> str:
     return "screw" if variable.motion.advance else "revolute"
 
 
-def _axis(
-    tag: str, variable: Variable, mechanism: Mechanism, sign: float
-) -> list[str]:
+def _axis(tag: str, variable: Variable, mechanism: Mechanism, sign: float) -> list[str]:
     """The axis of a variable, with the ``sign`` of its direction; none where it is
     locked."""
     if variable.locked is not None:

@@ -124,8 +124,7 @@ def test_the_world_is_no_child(name):
     turned = replace(
         mechanism,
         joints=tuple(
-            replace(joint, bodies=joint.bodies[::-1])
-            for joint in mechanism.joints
+            replace(joint, bodies=joint.bodies[::-1]) for joint in mechanism.joints
         ),
     )
     for one in (mechanism, turned):
@@ -303,7 +302,10 @@ BAD_COUPLINGS = {
     "no multiplier": (mimic("<multiplier>-2.0</multiplier>", ""), "<multiplier>"),
     "a multiplier of 0": (mimic(">-2.0<", ">0<"), "other than 0"),
     "a text": (mimic(">-2.0<", ">two<"), '"two"'),
-    "a joint that follows itself": (mimic('joint="A" axis', 'joint="E" axis'), "E -> E"),
+    "a joint that follows itself": (
+        mimic('joint="A" axis', 'joint="E" axis'),
+        "E -> E",
+    ),
     "an old file": (mimic('version="1.11"', 'version="1.10"'), "1.11"),
     "a gearbox on no link": (
         mimic("</model>", gearbox(reference="b") + "</model>"),
