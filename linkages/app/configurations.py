@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas
 from bifurc.torus import wrap
-from linkages.app.texts import in_degrees
+from linkages.app.texts import in_degrees, in_lengths
 
 if TYPE_CHECKING:
     from linkages.mechanisms.readout import Readout
@@ -129,5 +129,5 @@ def show_travel(atlas: Atlas, point: NDArray[np.float64], digits: int = 4) -> li
         if angle:
             texts.append(in_degrees(value, digits))
         else:
-            texts.append(f"{factor * value:.6g}")
+            texts.append(in_lengths(factor * value, factor))
     return texts

@@ -7,7 +7,7 @@ import numpy as np
 from bifurc.atlas import Atlas
 from linkages.app.mechanism_document import describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
-from linkages.app.texts import in_degrees, section
+from linkages.app.texts import in_degrees, in_lengths, section
 from linkages.mechanisms.facts import VariableRange, form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -129,7 +129,8 @@ def describe_motions(atlas: Atlas, readout: Readout) -> str:
     for index in np.argsort([form.name for form in atlas.forms]):
         facts = form_facts(atlas, int(index), readout)
         ranges = [
-            _range(one, turn) for one, turn in zip(facts.ranges, is_turn, strict=True)
+            _range(one, turn, readout.structure.unit)
+            for one, turn in zip(facts.ranges, is_turn, strict=True)
         ]
         groups = [" = ".join(group) for group in facts.groups]
         rows.append(
@@ -144,11 +145,11 @@ def describe_motions(atlas: Atlas, readout: Readout) -> str:
     return section("Motions (deg, lengths in the unit of the file)", heads, rows)
 
 
-def _range(one: VariableRange, is_turn: bool) -> str:
+def _range(one: VariableRange, is_turn: bool, unit: float) -> str:
     if one.turns:
         times = "once" if abs(one.turns) == 1 else f"{abs(one.turns)} times"
         return f"{one.label} turns {times}"
     low, high = one.low, one.high
     if is_turn:
         return f"{one.label} {in_degrees(low, 2)} to {in_degrees(high, 2)}"
-    return f"{one.label} {low:.5g} to {high:.5g}"
+    return f"{one.label} {in_lengths(low, unit, 5)} to {in_lengths(high, unit, 5)}"
