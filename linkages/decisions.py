@@ -184,6 +184,16 @@ is_one_direction = Decision(
     "directions of a file have 8 digits and more; what is meant to be different is 1e-2 "
     "and more apart",
 )
+is_degenerate_dyad = Decision(
+    "degenerate dyad",
+    "a dyad closes in a whole curve of configurations: two equal circles are one, or a "
+    "circle of no radius is on a line, or two lines are one direction",
+    "distance over the characteristic length, or sine",
+    1e-7,
+    "lengths of a file that are meant to be equal agree to 1e-12; beside it a motion "
+    "turns back within twice that of the driver",
+    third_answer="such a dyad makes no slices, and nothing is certified by them",
+)
 is_stopped = Decision(
     "driver that is stopped",
     "with joints held for it, a driver stays in a singular reference configuration",

@@ -4,20 +4,22 @@ variables of a mechanism."""
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas
 from bifurc.torus import wrap
-from linkages.app.texts import in_degrees
+from linkages.app.texts import in_degrees, in_lengths
 
 if TYPE_CHECKING:
     from linkages.mechanisms.readout import Readout
     from linkages.networks.mechanism import NetworkMechanism
 
 __all__ = [
+    "ArclengthUnit",
+    "arclength_unit",
     "heading",
     "joint_names",
     "network_at",
@@ -87,6 +89,25 @@ def heading(atlas: Atlas) -> str:
     return f"{', '.join(joint_names(atlas))} ({unit})"
 
 
+class ArclengthUnit(NamedTuple):
+    """How arclengths are shown: times ``factor``, with ``name`` behind."""
+
+    factor: float
+    name: str
+
+
+def arclength_unit(atlas: Atlas) -> ArclengthUnit:
+    """The unit of arclengths on the screen: degrees, where all unknowns are angles;
+    else that of the unknowns, in which lengths are over the characteristic length."""
+    if set(atlas.units) == {"rad"}:
+        return ArclengthUnit(float(np.degrees(1.0)), "deg")
+    readout = readout_of(atlas)
+    size = 1.0 if readout is None else readout.structure.unit
+    lengths = f"lengths over {size:.4g}"
+    name = f"rad, {lengths}" if "rad" in atlas.units else lengths
+    return ArclengthUnit(1.0, name)
+
+
 def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:
     """The unknowns (n,) as text: angles in degrees, above -180 and up to 180, lengths
     in the user's unit; those of a mechanism from its reference configuration."""
@@ -108,5 +129,5 @@ def show_travel(atlas: Atlas, point: NDArray[np.float64], digits: int = 4) -> li
         if angle:
             texts.append(in_degrees(value, digits))
         else:
-            texts.append(f"{factor * value:.6g}")
+            texts.append(in_lengths(factor * value, factor))
     return texts

@@ -7,10 +7,11 @@ import numpy as np
 from bifurc.atlas import Atlas
 from linkages.app.mechanism_document import describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
-from linkages.app.texts import in_degrees, section
+from linkages.app.texts import in_degrees, in_lengths, section
 from linkages.mechanisms.facts import VariableRange, form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.plane import is_on_sphere, normal_of_plane
 from linkages.mechanisms.readout import Readout
 
 __all__ = ["describe_joints", "describe_loops", "describe_motions"]
@@ -104,9 +105,21 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
             )
         )
     heads = ("joints", "constraints", "redundant", "motion that others can make")
-    count = f"Mobility {mobility_of(atlas)}; Grübler's count is {gruebler_of(atlas)}."
+    count = f"Mobility {mobility_of(atlas)}; Grübler's count is {gruebler_of(atlas)}"
+    count += f"{_special_count(readout.mechanism)}."
     loops = section("Loops", heads, rows)
     return f"{loops}\n\n{count}" if loops else count
+
+
+def _special_count(mechanism: Mechanism) -> str:
+    """Grübler's count with three freedoms a body, where that is all it has and the
+    mechanism does not say so."""
+    if mechanism.is_planar:
+        return ""
+    count = mechanism.count_of_freedoms(3)
+    if normal_of_plane(mechanism) is not None:
+        return f", and {count} in a plane"
+    return f", and {count} on a sphere" if is_on_sphere(mechanism) else ""
 
 
 def describe_motions(atlas: Atlas, readout: Readout) -> str:
@@ -116,7 +129,8 @@ def describe_motions(atlas: Atlas, readout: Readout) -> str:
     for index in np.argsort([form.name for form in atlas.forms]):
         facts = form_facts(atlas, int(index), readout)
         ranges = [
-            _range(one, turn) for one, turn in zip(facts.ranges, is_turn, strict=True)
+            _range(one, turn, readout.structure.unit)
+            for one, turn in zip(facts.ranges, is_turn, strict=True)
         ]
         groups = [" = ".join(group) for group in facts.groups]
         rows.append(
@@ -131,11 +145,11 @@ def describe_motions(atlas: Atlas, readout: Readout) -> str:
     return section("Motions (deg, lengths in the unit of the file)", heads, rows)
 
 
-def _range(one: VariableRange, is_turn: bool) -> str:
+def _range(one: VariableRange, is_turn: bool, unit: float) -> str:
     if one.turns:
         times = "once" if abs(one.turns) == 1 else f"{abs(one.turns)} times"
         return f"{one.label} turns {times}"
     low, high = one.low, one.high
     if is_turn:
         return f"{one.label} {in_degrees(low, 2)} to {in_degrees(high, 2)}"
-    return f"{one.label} {low:.5g} to {high:.5g}"
+    return f"{one.label} {in_lengths(low, unit, 5)} to {in_lengths(high, unit, 5)}"

@@ -6,7 +6,12 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.routes.route import Route
-from linkages.app.configurations import joint_names, show_configuration, show_travel
+from linkages.app.configurations import (
+    arclength_unit,
+    joint_names,
+    show_configuration,
+    show_travel,
+)
 from linkages.app.texts import table
 
 __all__ = ["describe_route"]
@@ -15,7 +20,10 @@ __all__ = ["describe_route"]
 def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
     """A route as a table: along which form, to which singular point, how far each joint
     turns on the way."""
-    length = np.degrees(route.length)
+    unit = arclength_unit(atlas)
+    length = f"{unit.factor * route.length:.6g} {unit.name}"
+    if unit.name != "deg":
+        length = f"{unit.factor * route.length:.6g} ({unit.name})"
     turns = [f"turn {name}" for name in joint_names(atlas)]
     heads = ("", "along", "to", *turns, "configuration reached")
     explanation = "All in degrees; a turn is the sum of a joint's movements both ways."
@@ -28,7 +36,7 @@ def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
         explanation += " Over a surface the way is a geodesic."
     return (
         f"Route from {start} to {goal}: {len(route.legs)} legs, "
-        f"{length:.6g} deg in joint space\n"
+        f"{length} in joint space\n"
         f"from {show_configuration(atlas, route.path[0])}\n\n"
         f"{table(heads, _rows(atlas, route))}\n\n{explanation}"
     )

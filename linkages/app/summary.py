@@ -11,6 +11,7 @@ from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch
 from bifurc.singular.point import Kind
 from linkages.app.configurations import (
+    arclength_unit,
     heading,
     joint_names,
     network_at,
@@ -93,13 +94,14 @@ def _motions(atlas: Atlas) -> list[str]:
 
 def _forms(atlas: Atlas) -> str:
     rows = []
+    unit = arclength_unit(atlas)
     for form in sorted(atlas.forms, key=lambda form: form.name):
         labels = FormLabels.of(form)
         rows.append(
             (
                 form.name,
                 _closure(form.branch),
-                f"{np.degrees(form.branch.length):.6g}",
+                f"{unit.factor * form.branch.length:.6g}",
                 _winding(form.branch),
                 _inactive_joints(atlas, labels),
                 labels.symmetry.value or "-",
@@ -110,7 +112,7 @@ def _forms(atlas: Atlas) -> str:
     heads = (
         "name",
         "closed",
-        "length (deg)",
+        f"length ({unit.name})",
         "winding",
         "inactive joints",
         "symmetry",
@@ -143,7 +145,10 @@ def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:
 
 
 def _surfaces(atlas: Atlas) -> str:
-    heads = ("name", "dimension", "charts", "area (rad^2)", "covering", "remark")
+    unit = "rad^2"
+    if set(atlas.units) != {"rad"}:
+        unit = f"squares of {arclength_unit(atlas).name}"
+    heads = ("name", "dimension", "charts", f"area ({unit})", "covering", "remark")
     return section("Surfaces", heads, [_surface_row(s) for s in atlas.surfaces])
 
 
@@ -200,15 +205,17 @@ def _rigid_assemblies(atlas: Atlas) -> str:
 
 def _near_motions(atlas: Atlas) -> str:
     rows = []
+    unit = arclength_unit(atlas)
     for near in atlas.near_motions:
         angles = show_configuration(atlas, near.sample)
         closed = "yes" if near.is_closed else "no"
-        length = f"{np.degrees(near.length):.4g}"
+        length = f"{unit.factor * near.length:.4g}"
         if near.mobility > 1:
             closed, length = "-", "-"
         mobility = str(near.mobility)
         rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
-    heads = (heading(atlas), "mobility", "closed", "length (deg)", "misclosure")
+    length = f"length ({unit.name})"
+    heads = (heading(atlas), "mobility", "closed", length, "misclosure")
     return _beginning("Near motions (the loop nearly closes)", heads, rows)
 
 

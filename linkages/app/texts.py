@@ -6,7 +6,9 @@ import numpy as np
 
 from bifurc.text_tables import count_of, section, table
 
-__all__ = ["count_of", "in_degrees", "link_name", "section", "table"]
+__all__ = ["count_of", "in_degrees", "in_lengths", "link_name", "section", "table"]
+
+ROUNDING = 12  # decimals of a length, over the characteristic length, that are shown
 
 
 def in_degrees(angle: float, digits: int = 4) -> str:
@@ -14,6 +16,11 @@ def in_degrees(angle: float, digits: int = 4) -> str:
     shown = f"{np.degrees(angle) + 0.0:.{digits}f}"
     zero = f"{0.0:.{digits}f}"
     return zero if shown == f"-{zero}" else shown
+
+
+def in_lengths(length: float, unit: float, digits: int = 6) -> str:
+    """A length with so many digits; what is rounding of a ``unit`` is 0."""
+    return f"{unit * round(length / unit, ROUNDING) + 0.0:.{digits}g}"
 
 
 def link_name(joint: int, joints: int) -> str:

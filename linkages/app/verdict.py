@@ -14,6 +14,7 @@ from bifurc.decisions import closes_to_rounding
 from bifurc.search.completeness import IN_DOUBT
 from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
+from linkages.app.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
 from linkages.app.texts import count_of
 
@@ -110,7 +111,10 @@ def _immobile(atlas: Atlas) -> str:
     assemblies = len(atlas.rigid) + shaky
     gap = f"{atlas.closure_gap:.3g} of the characteristic length"
     if atlas.near_motions:
-        sentence = f"The linkage nearly moves{_near_motion(atlas.near_motions[0])}."
+        unit = arclength_unit(atlas)
+        sentence = (
+            f"The linkage nearly moves{_near_motion(atlas.near_motions[0], unit)}."
+        )
     elif assemblies:
         sentence = "The linkage is rigid."
     else:
@@ -120,14 +124,16 @@ def _immobile(atlas: Atlas) -> str:
     return f"{sentence} {_assemblies(assemblies, shaky)}"
 
 
-def _near_motion(motion: NearMotion) -> str:
+def _near_motion(motion: NearMotion, unit: ArclengthUnit) -> str:
     """How far a near motion goes, and by how much it is none."""
-    degrees = f"{math.degrees(motion.length):.4g} degrees of joint-space length"
-    stretch = f": all along a closed path of {degrees}"
+    length = f"joint-space length {unit.factor * motion.length:.4g} ({unit.name})"
+    if unit.name == "deg":
+        length = f"{math.degrees(motion.length):.4g} degrees of joint-space length"
+    stretch = f": all along a closed path of {length}"
     if motion.mobility > 1:
         stretch = f" with mobility {motion.mobility}: all over a surface"
     elif not motion.is_closed:
-        stretch = f": along {degrees}"
+        stretch = f": along {length}"
     return (
         f"{stretch} its loop misses closure by {motion.misclosure:.3g} of the "
         "characteristic length at most"

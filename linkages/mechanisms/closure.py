@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -24,6 +25,7 @@ from bifurc.problem import (
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 from linkages.mechanisms.curvature import CurvatureBounds
+from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
@@ -121,22 +123,22 @@ class MechanismClosure(NumericalProblem):
 
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations;
-        None for a mechanism with embedded spherical joints,
-        free points or legs."""
+        None for a mechanism with embedded spherical joints, or with points that legs
+        carry anywhere."""
         bounds = self._curvature
         return None if bounds is None else bounds.near_solutions
 
     def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
         """Bounds (k,) on |F''| at complex points no farther than ``reach`` (k,) from a
-        real one within the limits; None for a mechanism with embedded spherical
-        joints, free points or legs."""
+        real one within the limits; None as for `curvature_bound`."""
         bounds = self._curvature
         return None if bounds is None else bounds.at_complex_points(reach)
 
     @cached_property
     def _curvature(self) -> CurvatureBounds | None:
-        has_legs = any(rod.leg is not None for rod in self.structure.rods)
-        if self.structure.embedded or self.structure.shifts or has_legs:
+        shifts = [k for columns in self.structure.shifts.values() for k in columns]
+        is_anywhere = not np.all(np.isfinite(self.bounds[shifts]))
+        if self.structure.embedded or is_anywhere:
             return None
         return CurvatureBounds(self.structure, self.curvature_residual)
 
@@ -201,9 +203,15 @@ class MechanismClosure(NumericalProblem):
         return reference
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """The closed configuration nearest to the reference, and what is reached from
-        ``count`` random starts."""
+        """The closed configuration nearest to the reference, those that dyads build
+        where a joint stands at given values, and what is reached from ``count`` random
+        starts."""
         drawn = random_seeds(self, rng, count)
-        points, gaps = self.project(self.reference[None])
+        starts = self.reference[None]
+        slices = slice_by_dyads(self.structure, rng)
+        if slices is not None:
+            starts = np.concatenate([starts, slices.points])
+        points, gaps = self.project(starts)
         is_inside = self.excess(points) <= 0.0
-        return drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
+        seeds = drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
+        return replace(seeds, audit=slices)

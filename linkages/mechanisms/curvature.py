@@ -42,7 +42,8 @@ class _Element:
 
 class CurvatureBounds:
     """Bounds on F'' of the closures of a ``structure`` without embedded spherical
-    joints and legs, lengths in its unit, where residuals are at most ``misclosure``."""
+    joints, all lengths of which have limits, in its unit, where residuals are at most
+    ``misclosure``."""
 
     def __init__(self, structure: Structure, misclosure: float):
         self.structure = structure
@@ -86,6 +87,8 @@ class CurvatureBounds:
             share = self.structure.share(number)
             assert share is not None
             rates[share.column] += abs(share.rate)
+        for columns in self.structure.shifts.values():
+            rates[list(columns)] = 1.0
         return float(np.linalg.norm(rates))
 
 
@@ -118,9 +121,10 @@ class _Chain:
         second = self._of_point(reach)
         if self.closure.kind is ClosureKind.POINT:
             return self._scattered(second)
-        length = self._length
-        distance = np.sqrt(length**2 + 2 * length * misclosure)
-        return self._scattered(self._of_rod(reach, second, distance))
+        distance = np.sqrt(self._longest**2 + 2 * self._length * misclosure)
+        of_rod = self._scattered(self._of_rod(reach, second, distance))
+        of_rod += self._of_leg()
+        return of_rod
 
     def anywhere(self) -> np.ndarray:
         """The same at all real points within the limits, for derivatives of the second
@@ -132,7 +136,9 @@ class _Chain:
         second = np.full((len(reach), len(reach)), max(1.0, reach.max(initial=0.0)))
         if self.closure.kind is ClosureKind.POINT:
             return self._scattered(second)
-        return self._scattered(self._of_rod(reach, second, self._total))
+        of_rod = self._scattered(self._of_rod(reach, second, self._total))
+        of_rod += self._of_leg()
+        return of_rod
 
     def _of_cycle(self, reach: np.ndarray, gap: float) -> np.ndarray:
         """Twice a quarter of the product of two screws and a displacement with a
@@ -170,6 +176,16 @@ class _Chain:
         products: np.ndarray = np.outer(first, first) + distance * second
         return products / self._length
 
+    def _of_leg(self) -> np.ndarray:
+        """The bound (n, n) by the variable of a leg, half the square of its length,
+        over what that is in the reference configuration; 0 where there is none."""
+        n = len(self.structure.unknowns)
+        result = np.zeros((n, n))
+        share = self._share_of_leg
+        if share is not None and share.column >= 0:
+            result[share.column, share.column] = share.rate**2 / self._length
+        return result
+
     def _scattered(self, bounds: np.ndarray) -> np.ndarray:
         """Bounds by two elements (e, e) as bounds by two unknowns (n, n)."""
         n = len(self.structure.unknowns)
@@ -187,6 +203,20 @@ class _Chain:
     def _length(self) -> float:
         assert self.closure.rod is not None
         return self.closure.rod.length / self.structure.unit
+
+    @property
+    def _longest(self) -> float:
+        """How long the rod can be."""
+        share = self._share_of_leg
+        change = 0.0 if share is None else _largest(self.structure, share)
+        return self._length + change
+
+    @property
+    def _share_of_leg(self) -> Share | None:
+        rod = self.closure.rod
+        if rod is None or rod.leg is None:
+            return None
+        return _share(self.structure, rod.leg.variable)
 
     @property
     def _before(self) -> np.ndarray:
@@ -221,21 +251,48 @@ def _elements(
     structure: Structure, placement: Placement, pair: int, sign: int
 ) -> list[_Element]:
     """The elementary motions of a pair, in the order of the chain."""
+    if pair in structure.shifts:
+        return _shifts(structure, placement, pair)
     elements = []
     for number in structure.variables_of(pair)[::sign]:
-        variable = structure.mechanism.variables[number]
-        share = structure.share(number)
-        if share is None:
-            assert variable.locked is not None
-            unit = 1.0 if variable.motion.is_turn else structure.unit
-            share = Share(-1, 0.0, variable.locked / unit)
-            largest = abs(share.offset)
-        else:
-            unknown = structure.unknowns[share.column]
-            largest = max(abs(unknown.low), abs(unknown.high))
-            largest = abs(share.rate) * largest + abs(share.offset)
-        elements.append(_element(placement, variable.motion, share, largest))
+        motion = structure.mechanism.variables[number].motion
+        share = _share(structure, number)
+        largest = _largest(structure, share)
+        elements.append(_element(placement, motion, share, largest))
     return elements
+
+
+def _shifts(structure: Structure, placement: Placement, pair: int) -> list[_Element]:
+    """The slides of a free point."""
+    columns = structure.shifts[pair]
+    directions = structure.point_pairs[pair].directions
+    elements = []
+    for column, direction in zip(columns, directions, strict=True):
+        largest = _largest(structure, Share(column, 1.0, 0.0))
+        along = placement.axes @ direction
+        elements.append(_Element(column, 1.0, False, along, np.zeros(3), 0.0, largest))
+    return elements
+
+
+def _share(structure: Structure, number: int) -> Share:
+    """What an unknown makes of a variable, by number; of column -1 where it is
+    locked."""
+    share = structure.share(number)
+    if share is not None:
+        return share
+    variable = structure.mechanism.variables[number]
+    assert variable.locked is not None
+    unit = 1.0 if variable.motion.is_turn else structure.unit
+    return Share(-1, 0.0, variable.locked / unit)
+
+
+def _largest(structure: Structure, share: Share) -> float:
+    """The largest absolute value that a variable takes within the limits."""
+    if share.column < 0:
+        return abs(share.offset)
+    unknown = structure.unknowns[share.column]
+    largest = max(abs(unknown.low), abs(unknown.high))
+    return abs(share.rate) * largest + abs(share.offset)
 
 
 def _element(

@@ -22,13 +22,14 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint, Motion
 from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.plane import normal_of_plane
 from linkages.values import check_angle
 
 __all__ = ["FREE", "read_mechanism"]
 
 Content: TypeAlias = Mapping[str, Any]
 
-OF_FILE = ("name", "angles", "joints")
+OF_FILE = ("name", "angles", "planar", "joints")
 OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars")
 OF_ARCS = ("name", "angles", "fixed", "arcs", "points", "points_on_arcs")
 OF_LOOPS = ("name", "angles", "loops")
@@ -71,7 +72,19 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     if not isinstance(tables, list):
         raise GeometryError("joints", quoted(tables), "tables [[joints]]")
     joints = [_read_joint(k, table, unit) for k, table in enumerate(tables, start=1)]
-    return Mechanism(tuple(joints), given)
+    mechanism = Mechanism(tuple(joints), given)
+    return replace(mechanism, is_planar=_read_planar(content, mechanism))
+
+
+def _read_planar(content: Content, mechanism: Mechanism) -> bool:
+    """Whether a body has three freedoms for Grübler's count, as the file says."""
+    is_planar = content.get("planar", False)
+    if not isinstance(is_planar, bool):
+        raise GeometryError("planar", quoted(is_planar), "true or false")
+    if is_planar and normal_of_plane(mechanism) is None:
+        allowed = "false, as not all axes are parallel and all slides across them"
+        raise GeometryError("planar", "true", allowed)
+    return is_planar
 
 
 def _angle_unit(content: Content) -> float:

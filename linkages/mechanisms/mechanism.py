@@ -144,17 +144,6 @@ class Mechanism:
         """Whether a variable follows another one."""
         return any(leader.number != k for k, leader in enumerate(self._leaders))
 
-    def check_uncoupled(self, what: str) -> None:
-        """Raises `GeometryError` where a variable follows another one, where ``what``
-        cannot say so."""
-        for number, variable in enumerate(self.variables):
-            if variable.leader.number != number:
-                leader = self.variables[variable.leader.number].label
-                allowed = f"left out in {what}"
-                raise GeometryError(
-                    f"coupled of {variable.label}", f"to {leader}", allowed
-                )
-
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
         """The pairs of bodies that joints join: k - 1 for a joint of k bodies."""
@@ -180,12 +169,15 @@ class Mechanism:
         """Grübler's count: the freedoms of the joints that are neither locked nor coupled
         to others, less six for every independent loop, or three in a plane. Only the
         rank tells the true mobility."""
+        return self.count_of_freedoms(3 if self.is_planar else 6)
+
+    def count_of_freedoms(self, of_body: int) -> int:
+        """The same count where a free body has so many freedoms, ``of_body``."""
         freedoms = sum(joint.freedoms for joint in self.joints)
         bound = sum(
             variable.locked is not None or variable.leader.number != number
             for number, variable in enumerate(self.variables)
         )
-        of_body = 3 if self.is_planar else 6
         return freedoms - bound - of_body * self.independent_loops
 
     @property

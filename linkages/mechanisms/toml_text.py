@@ -18,6 +18,8 @@ NOTHING: dict[str, object] = {"limits": [], "locked": FREE}
 def mechanism_toml(mechanism: Mechanism) -> str:
     """The text of a TOML file that describes the mechanism, angles in rad."""
     lines = [f"name = {_quoted(mechanism.name)}", 'angles = "rad"']
+    if mechanism.is_planar:
+        lines.append("planar = true")
     for joint in mechanism.joints:
         lines += ["", "[[joints]]", *_joint_lines(joint)]
     return "\n".join(lines) + "\n"

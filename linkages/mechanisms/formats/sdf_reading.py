@@ -15,6 +15,13 @@ import numpy as np
 from linkages.decisions import is_one_direction
 from linkages.loop import quoted
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, frame_along
+from linkages.mechanisms.formats.sdf_couplings import (
+    AXES,
+    GEARBOX,
+    Gearbox,
+    with_gearboxes,
+    with_mimics,
+)
 from linkages.mechanisms.formats.xml_tree import Element
 from linkages.mechanisms.joint import JointKind, Limits
 
@@ -73,7 +80,7 @@ def read_sdf(root: Element, name: str) -> Assembly:
             value = f"on line {inner.line}"
             model.element.refuse(f"<{tag}>", value, "left out; models are not nested")
     _collect(model)
-    joints = tuple(_read_joint(element, model) for element in _joints(model))
+    joints = _read_joints(model)
     links = [link.attributes["name"] for link in model.element.all("link")]
     is_on_world = any(WORLD in joint.bodies for joint in joints)
     bodies = (WORLD, *links) if is_on_world else tuple(links)
@@ -91,8 +98,18 @@ def _version(root: Element) -> tuple[int, int]:
     return version
 
 
-def _joints(model: _Model) -> list[Element]:
-    return list(model.element.all("joint"))
+def _read_joints(model: _Model) -> tuple[BodyJoint, ...]:
+    """All joints, coupled where they follow others."""
+    joints, gearboxes = [], []
+    elements = {}
+    for element in model.element.all("joint"):
+        if element.attributes.get("type") == GEARBOX:
+            gearboxes.append(_read_gearbox(element, model))
+            continue
+        joints.append(_read_joint(element, model))
+        elements[element.attributes["name"]] = element
+    joints = with_mimics(joints, elements, model.version)
+    return tuple(with_gearboxes(joints, gearboxes, lambda body: _pose(body, model)))
 
 
 # --- poses ----------------------------------------------------------------------------
@@ -181,7 +198,7 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
     name = element.attributes["name"]
     word = element.attributes.get("type", "")
     if word not in KINDS:
-        allowed = f"one of {', '.join(KINDS)}"
+        allowed = f"one of {', '.join(KINDS)}, {GEARBOX}"
         element.refuse("type", quoted(word), allowed)
     kind = KINDS[word]
     first, second = (_body(element, tag, model) for tag in ("parent", "child"))
@@ -207,6 +224,16 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
     pitch = _pitch(element, model) if kind is JointKind.HELICAL else None
     bodies = first, second
     return BodyJoint(name, kind, bodies, frames, cosine, pitch, limits)
+
+
+def _read_gearbox(element: Element, model: _Model) -> Gearbox:
+    first, second, reference = (
+        _body(element, tag, model)
+        for tag in ("parent", "child", "gearbox_reference_body")
+    )
+    place = _pose(element.attributes["name"], model)
+    one, other = (_axis(element, tag, place, model) for tag in AXES)
+    return Gearbox(element, reference, (first, second), (one, other))
 
 
 def _body(joint: Element, tag: str, model: _Model) -> str:

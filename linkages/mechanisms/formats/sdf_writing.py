@@ -2,7 +2,8 @@
 
 The frames of all links coincide in the reference configuration, so that every number of
 the mechanism stands in the file as it is. The body at rest is the world. Cylindrical
-and planar joints, which SDF does not know, are chains with links between them.
+and planar joints, which SDF does not know, are chains with links between them. What is
+coupled has a ``<mimic>``.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Iterable
 from xml.sax.saxutils import escape, quoteattr
 
 from linkages.loop import GeometryError
+from linkages.mechanisms.formats.sdf_couplings import AXES
 from linkages.mechanisms.joint import JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
@@ -23,9 +25,8 @@ WORLD = "world"
 
 def mechanism_sdf(mechanism: Mechanism) -> str:
     """The text of an SDF file with one model in the reference configuration; masses are
-    made up. Raises `GeometryError` where a joint is coupled, or locked elsewhere than
-    at 0, for which SDF has no word."""
-    mechanism.check_uncoupled("an SDF file")
+    made up. Raises `GeometryError` where a joint is locked elsewhere than at 0, for
+    which SDF has no word."""
     moment = repr(Size(mechanism).characteristic_length ** 2)
     links = [body for body in mechanism.bodies if body != mechanism.frame]
     joints = []
@@ -68,23 +69,23 @@ def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
             what = f"locked of joint {variable.label}"
             raise GeometryError(what, variable.locked, allowed)
     base, moved = (_body_name(mechanism, body) for body in (pair.base, pair.moved))
-    name = pair.joint
-    if len(joint.bodies) > 2:
-        name = f"{pair.joint}.{pair.moved}"
+    name = _joint_name(mechanism, pair)
     place = joint.place
     if joint.kind is JointKind.SPHERICAL:
         return _joint(name, "ball", base, moved, place, []), []
     if joint.kind is JointKind.RIGID:
         return _joint(name, "fixed", base, moved, place, []), []
-    is_free = all(variable.locked is None for variable in variables)
-    if joint.kind is JointKind.UNIVERSAL and is_free:
-        axes = _axis("axis", variables[0]) + _axis("axis2", variables[1])
+    if _has_two_axes(mechanism, pair):
+        axes = []
+        for tag, variable in zip(AXES, variables, strict=True):
+            axes += _axis(tag, variable, mechanism, 1.0)
         return _joint(name, "universal", base, moved, place, axes), []
     between = [f"{variable.label}.link" for variable in variables[:-1]]
     bodies = [base, *between, moved]
     lines = []
     for variable, first, second in zip(variables, bodies, bodies[1:], strict=False):
-        axis = _axis("axis", variable)
+        sign = -1.0 if second == WORLD else 1.0
+        axis = _axis(AXES[0], variable, mechanism, sign)
         kind = _kind(variable)
         if kind == "screw":
             pitch = 2 * math.pi * variable.motion.advance
@@ -102,15 +103,57 @@ def _kind(variable: Variable) -> str:
     return "screw" if variable.motion.advance else "revolute"
 
 
-def _axis(tag: str, variable: Variable) -> list[str]:
-    """The axis of a variable; none where it is locked."""
+def _axis(tag: str, variable: Variable, mechanism: Mechanism, sign: float) -> list[str]:
+    """The axis of a variable, with the ``sign`` of its direction; none where it is
+    locked."""
     if variable.locked is not None:
         return []
-    return [f"<{tag}>{_direction(variable.motion)}{_limit(variable)}</{tag}>"]
+    direction, limit = _direction(variable.motion, sign), _limit(variable)
+    mimic = _mimic(variable, mechanism)
+    return [f"<{tag}>{direction}{limit}{mimic}</{tag}>"]
 
 
-def _direction(motion: Motion) -> str:
-    return f"<xyz>{_row(motion.direction)}</xyz>"
+def _mimic(variable: Variable, mechanism: Mechanism) -> str:
+    """What a variable follows; empty where that is itself."""
+    number, ratio, offset = variable.leader
+    if mechanism.variables[number].label == variable.label:
+        return ""
+    joint, tag = _axis_of_variable(mechanism, number)
+    numbers = (
+        f"<multiplier>{ratio!r}</multiplier><offset>{offset!r}</offset>"
+        "<reference>0</reference>"
+    )
+    return f'<mimic joint={quoteattr(joint)} axis="{tag}">{numbers}</mimic>'
+
+
+def _axis_of_variable(mechanism: Mechanism, number: int) -> tuple[str, str]:
+    """The name of the joint in the file that a variable, by number, moves, and which of
+    its axes."""
+    for pair in mechanism.pairs:
+        if number in pair.variables and _has_two_axes(mechanism, pair):
+            tag = AXES[pair.variables.index(number)]
+            return _joint_name(mechanism, pair), tag
+    return mechanism.variables[number].label, AXES[0]
+
+
+def _has_two_axes(mechanism: Mechanism, pair: Pair) -> bool:
+    """Whether a pair is written as a universal joint, not as a chain."""
+    if mechanism.joint(pair.joint).kind is not JointKind.UNIVERSAL:
+        return False
+    if pair.moved == mechanism.frame:
+        return False
+    return all(mechanism.variables[number].locked is None for number in pair.variables)
+
+
+def _joint_name(mechanism: Mechanism, pair: Pair) -> str:
+    """What the joint of a pair is called in the file, where it is one."""
+    if len(mechanism.joint(pair.joint).bodies) > 2:
+        return f"{pair.joint}.{pair.moved}"
+    return pair.joint
+
+
+def _direction(motion: Motion, sign: float) -> str:
+    return f"<xyz>{_row(sign * motion.direction)}</xyz>"
 
 
 def _limit(variable: Variable) -> str:
@@ -128,6 +171,10 @@ def _joint(
     place: Iterable[float],
     axes: list[str],
 ) -> list[str]:
+    """The lines of a joint. The world is no child in SDF: it is the parent then, and
+    the direction of an axis is given as seen from there."""
+    if child == WORLD:
+        parent, child = child, parent
     return [
         f'    <joint name={quoteattr(name)} type="{kind}">',
         f"      <pose>{_row(place)} 0 0 0</pose>",

@@ -5,6 +5,7 @@ from linkages import load
 from linkages.app.cli import main
 from linkages.mechanisms.toml_text import mechanism_toml
 from tests.linkages.mechanisms.formats.examples import EXAMPLES
+from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 
 
 def bifurc(*arguments):
@@ -21,6 +22,15 @@ def slider_crank(tmp_path):
 def test_toml_is_read_as_it_was_written(slider_crank):
     mechanism = load(slider_crank)
     assert mechanism == EXAMPLES["slider_crank"]
+
+
+def test_a_planar_mechanism_stays_one(tmp_path):
+    mechanism = mechanism_of_case(cases()["K(2,3)"])
+    path = tmp_path / "bars.toml"
+    path.write_text(mechanism_toml(mechanism), encoding="utf-8")
+    again = load(path)
+    assert again.is_planar
+    assert again.gruebler == mechanism.gruebler == 1
 
 
 @pytest.mark.parametrize("ending", ["xml", "mjcf", "sdf", "toml"])

@@ -17,6 +17,8 @@ from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
+from linkages.mechanisms.toml_text import mechanism_toml
+from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 
 SLIDER_CRANK = """
 name = "slider-crank"
@@ -106,9 +108,28 @@ def test_a_loop_keeps_its_document_and_has_two_counts_more(folder):
 def test_the_summary_names_joints_limits_and_counts(folder):
     output = run("map", "slider_crank.toml").stdout
     assert "Followed within limits: J4 from -640 to 640." in output
-    assert "Mobility 1; Grübler's count is -2." in output
+    assert "Mobility 1; Grübler's count is -2, and 1 in a plane." in output
     assert "J1, J2, J3, J4 (deg, lengths)" in output
+    assert "length (rad, lengths over " in output
+    assert "Completeness (certified)" in output
     assert "frame = slider, crank = rod" in output
+
+
+def test_a_route_over_slides_is_not_in_degrees(folder):
+    output = run("route", "slider_crank.toml", "Form 1", "Form 2").stdout
+    assert "(rad, lengths over " in output
+    assert "deg in joint space" not in output
+    # the slide stands still on the second leg: no 3.6e-15
+    assert "e-1" not in output
+
+
+def test_counts_on_a_sphere_stand_beside_those_in_space(folder):
+    text = mechanism_toml(
+        mechanism_of_case(cases()["Miura-ori, one vertex (spherical 4R)"])
+    )
+    Path("vertex.toml").write_text(text, encoding="utf-8")
+    output = run("map", "vertex.toml").stdout
+    assert "Grübler's count is -2, and 1 on a sphere." in output
 
 
 def test_locks_are_in_degrees_and_make_forms_of_a_surface(folder):

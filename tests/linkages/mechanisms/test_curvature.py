@@ -6,6 +6,7 @@ import pytest
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from tests.linkages.mechanisms.frameworks import OCTAHEDRON, framework, places_of
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 
 NAMES = [
@@ -42,8 +43,22 @@ def rods():
     )
 
 
+def rods_and_a_leg():
+    """Two rods of a plate to a point, which a leg carries."""
+    return Mechanism(
+        (
+            Joint("A", "spherical", ("base", "a"), (0, 0, 0)),
+            Joint("B", "spherical", ("base", "b"), (1, 0.2, 0)),
+            Joint("C", "spherical", ("base", "c"), (0.3, 1, 0.1)),
+            Joint("P", "prismatic", ("c", "d"), direction=(0.2, -0.6, 0.9)),
+            Joint("D", "spherical", ("a", "b", "d"), (0.5, 0.4, 1)),
+        )
+    )
+
+
 MECHANISMS = [mechanism_of_case(cases()[name]) for name in NAMES]
-MECHANISMS += [one_of_each(), rods()]
+MECHANISMS += [one_of_each(), rods(), rods_and_a_leg()]
+MECHANISMS += [framework(places_of("ABCDEF", 2), OCTAHEDRON)]
 
 
 def samples(problem, rng, count):

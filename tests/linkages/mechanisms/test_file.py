@@ -114,11 +114,17 @@ m = ["a", "b", [0.5, 0.25]]
 
 
 MALFORMED = {
+    "planar = 1\n" + four_bar(): r"planar: 1 .* true or false",
+    "planar = true\n" + four_bar().replace("[0, 0, 1]", "[0, 1, 1]", 1): (
+        r"planar: true .* not all axes are parallel"
+    ),
     "joints = 3\n": r"joints: 3 is not allowed.* tables",
     "joints = []\n": r"number of joints: 0",
     "joints = [1]\n": r"joints\[1\]: 1 .* a table",
     four_bar("axis = 1\n"): r"key of joint D: 'axis' .* one of name, kind",
-    four_bar("", "lengths = [1]\n"): r"key: 'lengths' .* one of name, angles, joints",
+    four_bar(
+        "", "lengths = [1]\n"
+    ): r"key: 'lengths' .* one of name, angles, planar, joints",
     four_bar("", 'angles = "turns"\n'): r'angles: "turns" .* "deg"',
     four_bar("", "name = 3\n"): r"name: 3 .* text",
     four_bar("locked = [1, 2]\n"): r"locked of joint D: \[1, 2\] .* a number",

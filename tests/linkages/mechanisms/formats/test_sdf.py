@@ -1,4 +1,5 @@
 import logging
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,8 +7,11 @@ import pytest
 from linkages import load, map_linkage
 from linkages.file import LinkageFileError
 from linkages.loop import GeometryError
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
-from tests.linkages.mechanisms.formats.examples import EXAMPLES, assert_same_geometry
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from tests.linkages.mechanisms.formats.examples import EXAMPLES, Z, assert_same_geometry
 
 
 def read(tmp_path, text, name="m.sdf"):
@@ -113,6 +117,20 @@ def test_what_is_written_is_read_again(name, tmp_path, caplog):
         assert_same_geometry(mechanism, again)
 
 
+# sdformat.org: the child of a joint must not be the world
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_the_world_is_no_child(name):
+    mechanism = EXAMPLES[name]
+    turned = replace(
+        mechanism,
+        joints=tuple(
+            replace(joint, bodies=joint.bodies[::-1]) for joint in mechanism.joints
+        ),
+    )
+    for one in (mechanism, turned):
+        assert "<child>world</child>" not in mechanism_sdf(one)
+
+
 def test_the_pitch_of_a_screw_has_its_sign_in_old_files_too(tmp_path):
     text = mechanism_sdf(EXAMPLES["screw_loop"])
     pitch = EXAMPLES["screw_loop"].joint("H").pitch
@@ -136,8 +154,8 @@ BAD = {
     "an unknown link": (model().replace("<child>link_BC", "<child>hook", 1), '"hook"'),
     "no child": (model().replace("<child>link_BC</child>", "", 1), "<child>"),
     "a joint type": (
-        model().replace('type="revolute"', 'type="gearbox"', 1),
-        '"gearbox"',
+        model().replace('type="revolute"', 'type="revolute2"', 1),
+        '"revolute2"',
     ),
     "five numbers": (
         model().replace("0.1 -0.31 0 0 0 0", "0.1 -0.31 0 0 0"),
@@ -168,6 +186,149 @@ BAD = {
 @pytest.mark.parametrize("what", BAD)
 def test_a_malformed_model_is_refused_with_its_place(what, tmp_path):
     text, message = BAD[what]
+    with pytest.raises(LinkageFileError) as error:
+        read(tmp_path, text)
+    assert message in str(error.value)
+    assert "m.sdf" in str(error.value)
+
+
+# --- joints that follow others --------------------------------------------------------
+
+
+def geared_five_bar(ratio=-2.0, offset=0.0):
+    """Two cranks with gears on a frame, and two rods between them."""
+    joints = (
+        Joint("A", "revolute", ("frame", "a"), (0, 0, 0), Z),
+        Joint("B", "revolute", ("a", "b"), (0.3, 1.1, 0), Z),
+        Joint("C", "revolute", ("b", "c"), (1.4, 1.9, 0), Z),
+        Joint("D", "revolute", ("c", "d"), (2.6, 1.0, 0), Z),
+        Joint(
+            "E",
+            "revolute",
+            ("d", "frame"),
+            (2.2, 0, 0),
+            Z,
+            coupled=(Coupling("A", ratio, offset),),
+        ),
+    )
+    return Mechanism(joints, "geared five-bar")
+
+
+COUPLED = {
+    "gears": geared_five_bar(offset=0.25),
+    "a rack": replace(
+        EXAMPLES["screw_loop"],
+        joints=(
+            replace(
+                EXAMPLES["screw_loop"].joints[0],
+                coupled=(None, Coupling("H", 0.3)),
+            ),
+            *EXAMPLES["screw_loop"].joints[1:],
+        ),
+    ),
+    "a universal joint": replace(
+        EXAMPLES["spatial_slider_crank"],
+        joints=(
+            replace(
+                EXAMPLES["spatial_slider_crank"].joints[0],
+                coupled=(Coupling("U.second", 0.5),),
+            ),
+            *EXAMPLES["spatial_slider_crank"].joints[1:],
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", COUPLED)
+def test_couplings_are_read_as_they_were_written(name, tmp_path, caplog):
+    mechanism = COUPLED[name]
+    with caplog.at_level(logging.WARNING):
+        again = read(tmp_path, mechanism_sdf(mechanism))
+    assert not caplog.records
+    assert leaders_of(again) == leaders_of(mechanism)
+
+
+def leaders_of(mechanism):
+    """What every coupled variable follows, with ratio and offset."""
+    variables = mechanism.variables
+    return {
+        one.label: (variables[one.leader.number].label, *one.leader[1:])
+        for one in variables
+        if variables[one.leader.number] is not one
+    }
+
+
+def test_a_mimic_counts_from_its_reference(tmp_path):
+    text = mechanism_sdf(geared_five_bar(offset=0.25))
+    text = text.replace("<offset>0.25</offset>", "<offset>0.75</offset>")
+    text = text.replace("<reference>0</reference>", "<reference>0.25</reference>")
+    assert leaders_of(read(tmp_path, text)) == {"E": ("A", -2.0, 1.25)}
+
+
+def gearbox(ratio=3.0, axis="0 0 1", axis2="0 0 1", reference="world"):
+    return (
+        '<joint name="G" type="gearbox"><parent>a</parent><child>d</child>'
+        f"<gearbox_reference_body>{reference}</gearbox_reference_body>"
+        f"<gearbox_ratio>{ratio}</gearbox_ratio>"
+        f"<axis><xyz>{axis}</xyz></axis><axis2><xyz>{axis2}</xyz></axis2></joint>"
+    )
+
+
+# theta_2 = -ratio theta_1, both from the reference (sdformat.org); joint E is counted
+# from its link d to the frame, which turns its sign round
+@pytest.mark.parametrize(
+    ("axis", "axis2", "ratio"),
+    [("0 0 1", "0 0 1", 3.0), ("0 0 1", "0 0 -1", -3.0), ("0 0 -2", "0 0 1", -3.0)],
+)
+def test_a_gearbox_couples_the_joints_of_its_links(axis, axis2, ratio, tmp_path):
+    plain = replace(
+        geared_five_bar(),
+        joints=tuple(replace(one, coupled=()) for one in geared_five_bar().joints),
+    )
+    text = mechanism_sdf(plain)
+    text = text.replace("</model>", gearbox(axis=axis, axis2=axis2) + "</model>")
+    assert leaders_of(read(tmp_path, text)) == {"E": ("A", ratio, 0.0)}
+
+
+def mimic(old, new):
+    return mechanism_sdf(geared_five_bar()).replace(old, new)
+
+
+BAD_COUPLINGS = {
+    "an unknown leader": (mimic('mimic joint="A"', 'mimic joint="X"'), '"X"'),
+    "no leader": (mimic('mimic joint="A"', "mimic"), "joint of <mimic>"),
+    "a second axis": (mimic('axis="axis"', 'axis="axis2"'), "axis2 of A"),
+    "an axis that is none": (mimic('axis="axis"', 'axis="axis3"'), '"axis3"'),
+    "no multiplier": (mimic("<multiplier>-2.0</multiplier>", ""), "<multiplier>"),
+    "a multiplier of 0": (mimic(">-2.0<", ">0<"), "other than 0"),
+    "a text": (mimic(">-2.0<", ">two<"), '"two"'),
+    "a joint that follows itself": (
+        mimic('joint="A" axis', 'joint="E" axis'),
+        "E -> E",
+    ),
+    "an old file": (mimic('version="1.11"', 'version="1.10"'), "1.11"),
+    "a gearbox on no link": (
+        mimic("</model>", gearbox(reference="b") + "</model>"),
+        "<gearbox_reference_body>",
+    ),
+    "a gearbox without a reference": (
+        mimic("</model>", gearbox(reference="") + "</model>"),
+        "<gearbox_reference_body>",
+    ),
+    "a gearbox on what follows": (
+        mimic("</model>", gearbox() + "</model>"),
+        "coupled once",
+    ),
+    "a gearbox about another axis": (
+        mimic("</model>", gearbox(axis="1 0 0") + "</model>"),
+        "along <axis>",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", BAD_COUPLINGS)
+def test_a_malformed_coupling_is_refused_with_its_place(what, tmp_path):
+    text, message = BAD_COUPLINGS[what]
     with pytest.raises(LinkageFileError) as error:
         read(tmp_path, text)
     assert message in str(error.value)

@@ -1,0 +1,1 @@
+"""All configurations of planar mechanisms that are built dyad by dyad."""

@@ -1,0 +1,162 @@
+"""In which order the bodies of a planar mechanism are placed, one dyad after the other.
+
+With one variable known, the driver, bodies that are joined by known variables are one
+part. From the part that holds the frame two parts at a time are placed, which close a
+chain of three joints, or one part that two joints hold already (Assur's decomposition
+into groups of the second class).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from networkx.utils import UnionFind
+
+from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["Contact", "Plan", "Step", "make_plan"]
+
+
+class Contact(NamedTuple):
+    """A joint between two bodies, by number, that turns about the point of the
+    ``variable`` of this number, or slides along its direction."""
+
+    joint: str
+    first: int
+    second: int
+    variable: int
+    is_turn: bool
+
+    def reversed(self) -> Contact:
+        """The joint as seen from its second body."""
+        return self._replace(first=self.second, second=self.first)
+
+
+class Step(NamedTuple):
+    """One ``part`` or two that are placed next, and the ``contacts`` for it: those of
+    one part lead from what stands to it; of two parts, from what stands to the first
+    one, on to the second one, and from what stands to that."""
+
+    parts: tuple[int, ...]
+    contacts: tuple[Contact, ...]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The ``part`` of every body, by number, the ``known`` pairs, by number, and the
+    ``steps`` in which parts are placed after that of body 0."""
+
+    part: tuple[int, ...]
+    known: tuple[int, ...]
+    steps: tuple[Step, ...]
+
+
+def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
+    """How a planar ``mechanism`` is built where the variable of this number has a given
+    value, or, without, where only locked ones have; None where dyads do not do."""
+    known = []
+    for number, pair in enumerate(mechanism.pairs):
+        is_known = [_is_known(mechanism, k, driver) for k in pair.variables]
+        if all(is_known):
+            known.append(number)
+        elif len(is_known) > 1 or _is_coupled(mechanism, pair.variables[0]):
+            return None
+    numbers = {body: k for k, body in enumerate(mechanism.bodies)}
+    parts = UnionFind(range(len(numbers)))
+    for number in known:
+        pair = mechanism.pairs[number]
+        parts.union(numbers[pair.base], numbers[pair.moved])
+    part = tuple(parts[body] for body in range(len(numbers)))
+    contacts = [c for c in _contacts(mechanism, numbers, known) if _parts(c, part)]
+    steps = _steps(part, contacts)
+    return None if steps is None else Plan(part, tuple(known), steps)
+
+
+def _is_known(mechanism: Mechanism, variable: int, driver: int | None) -> bool:
+    one = mechanism.variables[variable]
+    return one.locked is not None or one.leader.number == driver
+
+
+def _is_coupled(mechanism: Mechanism, variable: int) -> bool:
+    leaders = [one.leader.number for one in mechanism.variables]
+    return leaders[variable] != variable or leaders.count(variable) > 1
+
+
+def _contacts(
+    mechanism: Mechanism, numbers: dict[str, int], known: list[int]
+) -> Iterator[Contact]:
+    """The joints between any two bodies that do not stand at a known value; a joint of
+    several joins each to each."""
+    for joint in mechanism.joints:
+        bodies = [
+            (numbers[pair.moved], pair.variables[0])
+            for number, pair in enumerate(mechanism.pairs)
+            if pair.joint == joint.name and number not in known
+        ]
+        if bodies:
+            bodies.insert(0, (numbers[joint.bodies[0]], bodies[0][1]))
+        for k, (second, variable) in enumerate(bodies):
+            is_turn = mechanism.variables[variable].motion.is_turn
+            for first, _ in bodies[:k]:
+                yield Contact(joint.name, first, second, variable, is_turn)
+
+
+def _parts(contact: Contact, part: tuple[int, ...]) -> bool:
+    """Whether a joint joins two parts."""
+    return part[contact.first] != part[contact.second]
+
+
+# --- order ----------------------------------------------------------------------------
+
+
+def _steps(part: tuple[int, ...], contacts: list[Contact]) -> tuple[Step, ...] | None:
+    """The steps that place all parts; None where they do not."""
+    both = contacts + [contact.reversed() for contact in contacts]
+    placed = {part[0]}
+    waiting = set(part) - placed
+    steps = []
+    while waiting:
+        step = _next_step(part, both, placed)
+        if step is None:
+            return None
+        steps.append(step)
+        placed |= set(step.parts)
+        waiting -= placed
+    return tuple(steps)
+
+
+def _next_step(
+    part: tuple[int, ...], contacts: list[Contact], placed: set[int]
+) -> Step | None:
+    """A part, or else two, that are next to be placed."""
+    holding: dict[int, list[Contact]] = {}  # from what is placed, by part
+    for contact in contacts:
+        first, second = part[contact.first], part[contact.second]
+        if first in placed and second not in placed:
+            beside = holding.setdefault(second, [])
+            if all(contact.joint != other.joint for other in beside):
+                beside.append(contact)
+    for number in sorted(holding):
+        if len(holding[number]) > 1:
+            # two slides leave the place open where they are parallel
+            turning = sorted(holding[number], key=lambda one: not one.is_turn)
+            return Step((number,), tuple(turning[:2]))
+    for contact in contacts:
+        first, second = part[contact.first], part[contact.second]
+        if first not in holding or second not in holding:
+            continue
+        for one in holding[first]:
+            for other in holding[second]:
+                step = Step((first, second), (one, contact, other))
+                if _is_dyad(step):
+                    return step
+    return None
+
+
+def _is_dyad(step: Step) -> bool:
+    """Whether three different joints, not all of them slides, place two parts."""
+    joints = {contact.joint for contact in step.contacts}
+    turns = any(contact.is_turn for contact in step.contacts)
+    return len(joints) == len(step.contacts) and turns

@@ -1,0 +1,192 @@
+"""All configurations of a planar mechanism with one joint at given values, and what
+they say of its motions.
+
+Where dyads build the mechanism from a driver (`linkages.mechanisms.dyads.plan`), every
+configuration at a value of the driver is known, and a motion on which the driver passes
+that value cannot be missed. A motion on which it stands still needs a dyad that closes
+in a whole curve of configurations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.seeds import Audit, Level
+from linkages.mechanisms.dyads.build import Builder, TooManyError
+from linkages.mechanisms.dyads.geometry import DegenerateDyadError
+from linkages.mechanisms.dyads.plan import make_plan
+from linkages.mechanisms.plane import normal_of_plane
+from linkages.mechanisms.structure import Structure
+
+__all__ = ["DyadSlices", "slice_by_dyads"]
+
+SLICES = 36  # of a driver's period, or of its limits
+MOST_DRIVERS = 4
+RANDOM_ASSEMBLIES = "isolated assemblies are those that random starts reached"
+
+
+class _Slice(NamedTuple):
+    """What is built at all values of a driver: ``points`` (k, n), whether the driver
+    ``always_moves`` on a motion, and how far apart, rad or the structure's unit, the
+    values are (``step``)."""
+
+    points: np.ndarray
+    always_moves: bool
+    step: float
+
+
+@dataclass(frozen=True, eq=False)
+class DyadSlices:
+    """Configurations ``points`` (k, n) of a ``structure``, all that there are at the
+    values of some ``drivers``, numbers of unknowns, ``step`` apart.
+
+    ``misses_none``: a motion that is not among them is a small one.
+    """
+
+    structure: Structure
+    points: np.ndarray
+    drivers: tuple[int, ...]
+    steps: tuple[float, ...]
+    misses_none: bool
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """How sure it is that no motion is missing: the search has traced one through
+        every configuration in the slices."""
+        nowhere = np.empty((0, len(self.structure.unknowns)))
+        if not self.drivers:
+            text = (
+                "dyads build all configurations: there is no motion, and no assembly is "
+                "missing"
+            )
+            return Audit(Level.CERTIFIED, text, nowhere)
+        text = f"complete slices, built of dyads: every motion is here {self._moves()}"
+        if not self.misses_none:
+            text += ", and others may be missing"
+        level = Level.CERTIFIED if self.misses_none else Level.ESTIMATED
+        return Audit(level, f"{text}; {RANDOM_ASSEMBLIES}", nowhere)
+
+    def _moves(self) -> str:
+        """On which motions a driver passes a slice, as text."""
+        ways: dict[str, list[str]] = {}
+        for driver, step in zip(self.drivers, self.steps, strict=True):
+            unknown = self.structure.unknowns[driver]
+            if unknown.is_angle:
+                way = f"turns by more than {np.degrees(step):.4g} degrees"
+            else:
+                way = f"slides by more than {step * self.structure.unit:.4g}"
+            ways.setdefault(way, []).append(unknown.label)
+        parts = [f"{' or '.join(labels)} {way}" for way, labels in ways.items()]
+        return f"on which {', or '.join(parts)}"
+
+
+def slice_by_dyads(structure: Structure, rng: np.random.Generator) -> DyadSlices | None:
+    """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
+    drawn, of up to `MOST_DRIVERS` of its variables; None where it does not move in a
+    plane, or dyads do not build it."""
+    normal = normal_of_plane(structure.mechanism)
+    if normal is None or _has_wide_limits(structure):
+        return None
+    still = make_plan(structure.mechanism, None)
+    if still is not None:
+        builder = Builder(structure, normal, still)
+        points = _points_at(builder, {None: _values(structure, None, 0.0)})
+        if points is None:
+            return None
+        return DyadSlices(structure, points, (), (), misses_none=True)
+    slices: dict[int, _Slice] = {}
+    for number, one in _slices(structure, normal, rng):
+        slices[number] = one
+        moved = any(one.always_moves for one in slices.values())
+        if moved and len(slices) >= MOST_DRIVERS:
+            break
+    if not slices:
+        return None
+    return DyadSlices(
+        structure,
+        np.concatenate([one.points for one in slices.values()]),
+        tuple(slices),
+        tuple(one.step for one in slices.values()),
+        misses_none=moved or len(slices) == len(structure.unknowns),
+    )
+
+
+def _has_wide_limits(structure: Structure) -> bool:
+    """Whether limits let an angle turn by more than a full turn: configurations that
+    are the same for dyads are several there."""
+    return any(
+        one.is_angle and one.period == np.inf and one.high - one.low > 2 * np.pi
+        for one in structure.unknowns
+    )
+
+
+def _slices(
+    structure: Structure, normal: np.ndarray, rng: np.random.Generator
+) -> Iterator[tuple[int, _Slice]]:
+    """The slices of every unknown, by number, from which dyads build the mechanism."""
+    for number, unknown in enumerate(structure.unknowns):
+        plan = make_plan(structure.mechanism, unknown.variable)
+        if plan is None:
+            continue
+        low, high = unknown.low, unknown.high
+        if np.isfinite(unknown.period):
+            low, high = 0.0, unknown.period
+        step = (high - low) / SLICES
+        places = low + step * (np.arange(SLICES) + rng.uniform())
+        builder = Builder(structure, normal, plan)
+        rows = {place: _values(structure, number, place) for place in places}
+        points = _points_at(builder, rows, number)
+        if points is not None:
+            always_moves = builder.is_never_degenerate(rows[places[0]])
+            yield number, _Slice(points, always_moves, step)
+
+
+def _values(structure: Structure, number: int | None, place: float) -> list[float]:
+    """The values of all variables where an unknown, by number, is at a ``place``, rad
+    and the user's unit; 0 for those that are not known."""
+    point = np.zeros((1, len(structure.unknowns)))
+    if number is not None:
+        point[0, number] = place
+    count = len(structure.mechanism.variables)
+    return [float(structure.values(point, variable)[0]) for variable in range(count)]
+
+
+def _points_at(
+    builder: Builder,
+    rows: Mapping[float | None, list[float]],
+    driver: int | None = None,
+) -> np.ndarray | None:
+    """The configurations (k, n) within the limits at the places of a driver, by number,
+    with the values of all variables at each; None where it is not known that they are
+    all."""
+    points = []
+    for place, values in rows.items():
+        try:
+            states = builder.configurations(values)
+        except (DegenerateDyadError, TooManyError):
+            return None
+        for poses in states:
+            point = builder.unknowns(poses)
+            if driver is not None:
+                point[driver] = place
+            points.append(_within_limits(builder.structure, point))
+    kept = [point for point in points if point is not None]
+    return np.array(kept).reshape(-1, len(builder.structure.unknowns))
+
+
+def _within_limits(structure: Structure, point: np.ndarray) -> np.ndarray | None:
+    """A configuration (n,) with its limited angles within their limits; None where
+    something is beyond them."""
+    for number, unknown in enumerate(structure.unknowns):
+        if np.isfinite(unknown.period) or not np.isfinite(unknown.high):
+            continue
+        if unknown.is_angle:
+            turns = np.ceil((unknown.low - point[number]) / (2 * np.pi))
+            point[number] += 2 * np.pi * turns
+        if not unknown.low <= point[number] <= unknown.high:
+            return None
+    return point

@@ -1,0 +1,147 @@
+"""Slices built of dyads hold every configuration, and what is said of them is true."""
+
+import numpy as np
+import pytest
+
+import linkages
+from bifurc.search.settings import SearchSettings
+from bifurc.seeds import Level
+from linkages.mechanisms.closure import MechanismClosure
+from linkages.mechanisms.couplings import Coupling
+from linkages.mechanisms.dyads.slices import SLICES, slice_by_dyads
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.structure import Structure
+from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.test_maps import slider_crank
+
+FEW = SearchSettings(starts=40, certify=False)
+Z = (0, 0, 1)
+BUILT = {
+    "slider-crank": slider_crank(1.3, 0.2),
+    "planar RPRP": mechanism_of_case(cases()["planar RPRP"]),
+    "K(2,3)": mechanism_of_case(cases()["K(2,3)"]),
+    "cranks": mechanism_of_case(
+        cases()["three equal parallel cranks, pivots on a line"]
+    ),
+    "Dixon I": mechanism_of_case(cases()["Dixon I, K(3,3)"]),
+}
+NOT_BUILT = {
+    # a rhombus folds, and then turns freely at every place of the crank
+    "Peaucellier": mechanism_of_case(cases()["Peaucellier-Lipkin inversor"]),
+    # a group of the third class: a ternary link on three bars
+    "double Watt": mechanism_of_case(
+        cases()["double Watt mechanism with slanted couplers (cusp 3/2)"]
+    ),
+    "two freedoms": mechanism_of_case(cases()["parallelogram lattice 2 x 2"]),
+    "in space": mechanism_of_case(cases()["Bennett geometry with joints CRCR"]),
+}
+
+
+def sliced(mechanism):
+    return slice_by_dyads(Structure(mechanism), np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("name", BUILT)
+def test_all_that_is_built_closes(name):
+    slices = sliced(BUILT[name])
+    problem = MechanismClosure(BUILT[name])
+    assert len(slices.points) > SLICES
+    assert problem.gaps(slices.points).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["slider-crank", "K(2,3)", "cranks"])
+def test_a_slice_holds_what_random_starts_find_with_the_driver_locked(name):
+    mechanism = BUILT[name]
+    slices = sliced(mechanism)
+    driver = slices.drivers[0]
+    label = slices.structure.unknowns[driver].label
+    column = slices.points[:, driver]
+    for turn in (0, 7, 15):
+        value = float(column[0]) + turn * slices.steps[0]
+        locked = mechanism.with_locks({label: value})
+        atlas = linkages.map_linkage(locked, settings=FEW)
+        assert len(atlas.rigid) == np.count_nonzero(np.abs(column - value) < 1e-9)
+
+
+@pytest.mark.parametrize("name", BUILT)
+def test_a_mechanism_of_dyads_is_certified(name):
+    atlas = linkages.map_linkage(BUILT[name], settings=FEW)
+    assert atlas.completeness.level is Level.CERTIFIED
+    assert "turns by more than 10 degrees" in atlas.completeness.statement
+
+
+@pytest.mark.parametrize("name", NOT_BUILT)
+def test_nothing_is_said_where_dyads_do_not_build_it(name):
+    assert sliced(NOT_BUILT[name]) is None
+
+
+def test_one_start_is_enough_to_find_every_form():
+    settings = SearchSettings(starts=1, certify=False)
+    atlas = linkages.map_linkage(BUILT["Dixon I"], settings=settings)
+    assert len(atlas.forms) == 8
+
+
+def test_without_a_freedom_all_assemblies_are_built():
+    mechanism = BUILT["K(2,3)"]
+    label = Structure(mechanism).unknowns[0].label
+    slices = sliced(mechanism.with_locks({label: 0.1}))
+    assert slices.drivers == ()
+    settings = SearchSettings(starts=1)
+    locked = mechanism.with_locks({label: 0.1})
+    atlas = linkages.map_linkage(locked, settings=settings)
+    assert len(atlas.rigid) == len(slices.points)
+    assert "no assembly is missing" in atlas.completeness.statement
+
+
+def four_bar(coupler, rocker, **changes):
+    """A four-bar with a crank of 1 and a frame of 1.2, as a planar mechanism."""
+    places = {"A": 0j, "B": 1j, "D": 1.2 + 0j}
+    gap = places["D"] - places["B"]
+    along = (abs(gap) ** 2 + coupler**2 - rocker**2) / (2 * abs(gap))
+    height = np.sqrt(coupler**2 - along**2)
+    places["C"] = places["B"] + gap / abs(gap) * complex(along, height)
+    bodies = {
+        "A": ("frame", "crank"),
+        "B": ("crank", "coupler"),
+        "C": ("coupler", "rocker"),
+        "D": ("rocker", "frame"),
+    }
+    joints = []
+    for name, pair in bodies.items():
+        point = (places[name].real, places[name].imag, 0.0)
+        more = changes.get(name, {})
+        joints.append(Joint(name, "revolute", pair, point, Z, **more))
+    return Mechanism(tuple(joints))
+
+
+def test_limits_hold_in_slices():
+    limited = four_bar(1.5, 1.1, A={"limits": ((-0.5, 1.0),)})
+    slices = sliced(limited)
+    column = [one.label for one in slices.structure.unknowns].index("A")
+    angles = slices.points[:, column]
+    assert angles.min() >= -0.5
+    assert angles.max() <= 1.0
+
+
+def test_what_is_geared_to_the_driver_is_known_with_it():
+    """A five-bar, its cranks on gears."""
+    joints = (
+        Joint("A", "revolute", ("frame", "a"), (0, 0, 0), Z),
+        Joint("B", "revolute", ("a", "b"), (0.3, 1.1, 0), Z),
+        Joint("C", "revolute", ("b", "c"), (1.4, 1.9, 0), Z),
+        Joint("D", "revolute", ("c", "d"), (2.6, 1.0, 0), Z),
+        Joint(
+            "E",
+            "revolute",
+            ("d", "frame"),
+            (2.2, 0, 0),
+            Z,
+            coupled=(Coupling("A", -2.0, 0.1),),
+        ),
+    )
+    mechanism = Mechanism(joints)
+    slices = sliced(mechanism)
+    labels = [slices.structure.unknowns[driver].label for driver in slices.drivers]
+    assert labels == ["A"]
+    assert MechanismClosure(mechanism).gaps(slices.points).max() < 1e-12
