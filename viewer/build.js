@@ -23,6 +23,7 @@ await build({
   target: "es2022",
   charset: "utf8",
   legalComments: "none",
+  define: { "window.__THREE__": "undefined" }, // two widgets on a page are two three.js, which would warn of each other
   loader: { ".css": "text" },
   banner: { js: `/*! built from viewer/ by make viewer; holds parts of three.js ${version}:\n\n${licence}\n*/` },
 });

@@ -18,14 +18,20 @@ export const KEYS_IN_WORDS = [
 /** Listen to the keys at a node; `actions` are the viewer's. */
 export function listenToKeys(node, actions) {
   node.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.target instanceof Element && event.target.closest("select, textarea, input:not([type=range])")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || isForField(event)) return;
     const action = actionOf(event, actions);
     if (!action) return;
     event.preventDefault();
     event.stopPropagation();
     action();
   });
+  node.addEventListener("keyup", (event) => {
+    if (event.key === " " && !isForField(event)) event.preventDefault(); // Firefox would press the button in focus, too
+  });
+}
+
+function isForField({ target }) {
+  return target instanceof Element && Boolean(target.closest("select, textarea, input:not([type=range])"));
 }
 
 function actionOf(event, actions) {

@@ -39,6 +39,8 @@ const JOINT_REACH = Math.hypot(JOINT_LENGTH, 1); // of its farthest corner from 
 const THICKNESS = 0.03; // of a joint, in the size of the linkage
 const LETTER = 9; // pixels: the width of a letter of a name
 const NAME_GAP = 17; // pixels between the middles of two names, one above the other
+const BESIDE_JOINT = 9; // pixels between the edge of a joint and the middle of its name
+const FARTHEST = 3; // of a name's place from where it belongs, in NAME_GAP beyond its own width
 // symbols of joints, their axis along y, of the size of a joint's radius and of length 1
 const SHAPES = {
   cylinder: () => new CylinderGeometry(1, 1, 1, 24),
@@ -70,6 +72,7 @@ export class LinkageView {
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, this.canvas);
     this.orbit.addEventListener("change", () => this.requestFrame());
+    this.canvas.addEventListener("webglcontextrestored", () => this.requestFrame());
     this.fit(lookOf(scene.view));
     new ResizeObserver(() => this.resize()).observe(container);
   }
@@ -240,7 +243,7 @@ export class LinkageView {
     }
     this.placeAxes(parts.axes);
     this.placeGhosts();
-    this.labelPlaces = parts.labels.map(({ place, lift }) => ({ place: this.scaled(place), lift }));
+    this.labelPlaces = parts.labels.map(({ place, lift }, i) => ({ place: this.scaled(place), seat: this.scaled(parts.seats[i]), lift }));
     this.requestFrame();
   }
 
@@ -341,25 +344,51 @@ export class LinkageView {
   }
 
   draw() {
-    if (!this.labelPlaces) return;
+    if (!this.labelPlaces || this.isGone) return;
     this.lamp.position.copy(this.camera.position).add(new Vector3(0.6, 0.3, 1.2));
     this.renderer.render(this.scene, this.camera);
     this.placeLabels();
   }
 
-  /** The numbers at the ends of the axes, pushed apart where they would overlap. */
+  /** The names at the ends of the axes and beside the joints, pushed apart where they would overlap. Where there is no
+   * room for all, some are left out. */
   placeLabels() {
     const { clientWidth: width, clientHeight: height } = this.container;
-    const spots = this.labelPlaces.map(({ place, lift }) => {
-      const { x, y } = this.spotOf(place);
-      return { x, y: y - lift };
-    });
+    const wanted = this.wantedSpots();
+    const spots = wanted.map((spot) => ({ ...spot }));
     pushApart(spots, this.nameWidth, NAME_GAP);
+    const shown = [];
     spots.forEach(({ x, y }, i) => {
       const half = Math.max(10, (LETTER * this.numbers[i].textContent.length) / 2);
-      const [inX, inY] = [Math.min(Math.max(x, half), width - half), Math.min(Math.max(y, 10), height - 10)];
-      this.numbers[i].style.transform = `translate(-50%, -50%) translate(${inX.toFixed(1)}px, ${inY.toFixed(1)}px)`;
+      const spot = { x: Math.min(Math.max(x, half), width - half), y: Math.min(Math.max(y, 10), height - 10), half };
+      const strayed = Math.hypot(spot.x - wanted[i].x, spot.y - wanted[i].y) > this.nameWidth + FARTHEST * NAME_GAP;
+      const isLegible = !strayed && shown.every((other) => !cover(spot, other));
+      if (isLegible) shown.push(spot);
+      this.numbers[i].classList.toggle("bv-hidden", !isLegible);
+      this.numbers[i].style.transform = `translate(-50%, -50%) translate(${spot.x.toFixed(1)}px, ${spot.y.toFixed(1)}px)`;
     });
+  }
+
+  /** Where names belong, in pixels: at the ends of axes, and beside joints whose axes are seen end on. */
+  wantedSpots() {
+    const seats = this.labelPlaces.map(({ seat }) => this.spotOf(seat));
+    const middle = { x: mean(seats.map(({ x }) => x)), y: mean(seats.map(({ y }) => y)) };
+    const gap = this.pixelsOf(JOINT_LENGTH * this.jointRadius) + BESIDE_JOINT;
+    return this.labelPlaces.map(({ place, lift }, i) => {
+      const { x, y } = this.spotOf(place);
+      const seat = seats[i];
+      if (Math.hypot(x - seat.x, y - lift - seat.y) >= gap) return { x, y: y - lift };
+      const [outX, outY] = [seat.x - middle.x, seat.y - middle.y];
+      const out = Math.hypot(outX, outY);
+      if (out < 1) return { x: seat.x, y: seat.y - gap };
+      return { x: seat.x + (gap * outX) / out, y: seat.y + (gap * outY) / out };
+    });
+  }
+
+  /** How many pixels a length takes that is as far away as the middle of the picture. */
+  pixelsOf(length) {
+    const away = this.camera.position.distanceTo(this.orbit.target);
+    return (length * this.container.clientHeight) / (2 * away * Math.tan((FIELD_OF_VIEW * Math.PI) / 360));
   }
 
   /** Where a place of the picture is on the canvas, in pixels from its upper left corner. */
@@ -382,8 +411,10 @@ export class LinkageView {
   }
 
   dispose() {
+    this.isGone = true;
     this.orbit.dispose();
     this.renderer.dispose();
+    this.renderer.forceContextLoss(); // browsers allow but a few of them, and take their time to collect old ones
   }
 }
 
@@ -438,6 +469,15 @@ function farthestFrom(center, points) {
     if (away > most) [farthest, most] = [point, away];
   }
   return farthest;
+}
+
+/** Whether one name would cover another; a pixel or two do not matter, for letters differ in width. */
+function cover(one, other) {
+  return Math.abs(one.x - other.x) < 0.92 * (one.half + other.half) && Math.abs(one.y - other.y) < 0.92 * NAME_GAP;
+}
+
+function mean(values) {
+  return values.reduce((sum, value) => sum + value, 0) / Math.max(values.length, 1);
 }
 
 function lookOf({ elevation, azimuth }) {

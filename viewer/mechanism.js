@@ -10,6 +10,7 @@ const SMALL = 1e-12; // sine below which two directions are parallel
 const REACH = 0.14; // of the extent: how far an axis is drawn to either side of its joint
 const LIFT = 15; // pixels: how far a name stands above a joint that has no axis to write it at
 const LONGEST = 10; // letters of a name in the picture
+const ENDING = 4; // of these, the last letters of a longer one
 const SHAPES = { prismatic: "box", planar: "plate", spherical: "ball", rigid: null };
 
 export class MechanismFigure {
@@ -17,7 +18,7 @@ export class MechanismFigure {
     this.mechanism = mechanism;
     this.size = mechanism.size;
     this.named = mechanism.symbols.filter(({ label }) => label);
-    this.names = this.named.map(({ label }) => (label.length > LONGEST ? `${label.slice(0, LONGEST - 1)}…` : label));
+    this.names = this.named.map(({ label }) => shortened(label));
     this.bodies = mechanism.bodies.map(({ name }) => name);
     this.mostRods = mechanism.bodies.reduce((sum, { lines }) => sum + lines.length, 0);
     this.shapes = {};
@@ -173,6 +174,12 @@ function identity() {
 
 function shapeOf({ kind }) {
   return kind in SHAPES ? SHAPES[kind] : "cylinder";
+}
+
+/** A name for the picture: of a long one the beginning and the end, by which names in a row differ. */
+function shortened(name) {
+  if (name.length <= LONGEST) return name;
+  return `${name.slice(0, LONGEST - 1 - ENDING)}…${name.slice(-ENDING)}`;
 }
 
 /** Add the symbol of a joint, its axes and its name to the parts. */

@@ -41,6 +41,7 @@ export class Player {
   }
 
   begin(mode) {
+    cancelAnimationFrame(this.request); // one frame at a time is asked for, however often playing begins
     this.mode = mode;
     this.last = undefined;
     this.changed();

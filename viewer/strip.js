@@ -31,9 +31,19 @@ export class Strip {
   show(position) {
     const isNew = this.track !== position.track;
     this.track = position.track;
-    this.slider.value = position.track.length ? (position.s / position.track.length) * STEPS : 0;
+    if (isNew || !this.isAt(position)) this.slider.value = this.step(position);
     this.slider.disabled = position.track.length === 0;
     if (isNew) this.draw();
+  }
+
+  step({ track, s }) {
+    return track.length ? (s / track.length) * STEPS : 0;
+  }
+
+  /** Whether the slider shows a position: at its right end that where a closed form begins again. */
+  isAt(position) {
+    const steps = Math.abs(this.slider.valueAsNumber - this.step(position));
+    return steps === 0 || (position.track.closed && steps === STEPS);
   }
 
   x(s) {

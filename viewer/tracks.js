@@ -86,6 +86,7 @@ export function findTrack(tracks, name) {
   if (typeof name === "number") return tracks[name - 1];
   const equal = tracks.filter((track) => track.name === name);
   if (equal.length) return equal[0];
+  if (/^\d+$/.test(name)) return tracks[name - 1]; // as on the command line
   if (!String(name).trim()) return undefined; // every name contains it
   const beginning = tracks.filter((track) => beginsWith(track.name, name));
   if (beginning.length === 1) return beginning[0];
@@ -98,9 +99,11 @@ function beginsWith(full, name) {
   return full.toLowerCase().startsWith(text) && !/[a-z0-9]/i.test(full.charAt(text.length));
 }
 
+/** What is left of a value after whole periods, from 0 on: exact before the last sum, however far away the value is. */
 export function modulo(value, period) {
-  const rest = value - Math.floor(value / period) * period;
-  return rest >= period ? 0 : rest;
+  const rest = value % period;
+  const shifted = rest < 0 ? rest + period : rest;
+  return shifted >= period ? 0 : shifted;
 }
 
 export function clamp(value, low, high) {

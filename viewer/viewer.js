@@ -119,7 +119,8 @@ export class Viewer {
 
   followTheme() {
     this.systemTheme = window.matchMedia("(prefers-color-scheme: dark)");
-    this.systemTheme.addEventListener("change", () => this.setColors());
+    this.onSystemTheme = () => this.setColors();
+    this.systemTheme.addEventListener("change", this.onSystemTheme);
     this.setColors();
   }
 
@@ -352,6 +353,7 @@ export class Viewer {
 
   dispose() {
     this.player.stop();
+    this.systemTheme.removeEventListener("change", this.onSystemTheme);
     this.view?.dispose();
   }
 }

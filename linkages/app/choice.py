@@ -53,9 +53,9 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     single = Readout(linkage).single_loop
     if single is None:
         raise CommandError(
-            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, `convert` "
-            "and `export` to .glb and .csv take; this takes single loops of 4 to 12 "
-            "revolute joints so far"
+            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, "
+            "`clearance`, `convert` and `export` to .glb and .csv take; this takes "
+            "single loops of 4 to 12 revolute joints so far"
         )
     return single.loop
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 from bifurc.atlas import Atlas, Form
-from bifurc.torus import wrap
+from linkages.app.configurations import numbers_at, readout_of
 from linkages.app.texts import link_name
 from linkages.labels import loop_of
 from linkages.links.clearance import Approach, approaches_along
@@ -17,19 +17,26 @@ __all__ = ["FormClearance", "clearance_document", "clearance_of"]
 @dataclass(frozen=True, eq=False)
 class FormClearance:
     """Where links of some ``diameter`` are nearest along a form, the nearest first;
-    distances are those of their middle lines."""
+    distances are those of their middle lines. ``names`` are those of all links, or of
+    all bodies of a mechanism."""
 
     form: Form
     diameter: float
+    names: tuple[str, ...]
     approaches: tuple[Approach, ...]
 
     def gap(self, approach: Approach) -> float:
         """What is left between two links; below zero they meet."""
         return approach.distance - self.diameter
 
+    def links(self, approach: Approach) -> list[str]:
+        """The names of two links."""
+        return [self.names[link] for link in approach.links]
+
 
 class ApproachDocument(TypedDict):
-    """Two links and where they are nearest, angles in rad."""
+    """Two links and where they are nearest, angles in rad, lengths in the user's
+    unit."""
 
     links: list[str]
     clearance: float
@@ -48,8 +55,17 @@ class FormClearanceDocument(TypedDict):
 
 def clearance_of(atlas: Atlas, form: Form, diameter: float) -> FormClearance:
     """The clearance of links of a diameter along a form."""
-    approaches = approaches_along(loop_of(atlas), form.branch)
-    return FormClearance(form, diameter, tuple(approaches))
+    readout = readout_of(atlas)
+    if readout is None or readout.single_loop is not None:
+        loop = loop_of(atlas)
+        names = tuple(link_name(link, loop.n) for link in range(loop.n))
+        approaches = approaches_along(loop, form.branch)
+    else:
+        from linkages.links.body_clearance import approaches_of_bodies
+
+        names = readout.mechanism.bodies
+        approaches = approaches_of_bodies(readout.structure, form.branch)
+    return FormClearance(form, diameter, names, tuple(approaches))
 
 
 def clearance_document(
@@ -57,17 +73,16 @@ def clearance_document(
 ) -> list[FormClearanceDocument]:
     """What `bifurc clearance --json` prints."""
     documents: list[FormClearanceDocument] = []
-    n = len(atlas.names)
     for clearance in clearances:
         approaches: list[ApproachDocument] = []
         for approach in clearance.approaches:
             approaches.append(
                 {
-                    "links": [link_name(link, n) for link in approach.links],
+                    "links": clearance.links(approach),
                     "clearance": clearance.gap(approach),
                     "error": approach.error,
                     "arclength": approach.s,
-                    "theta": wrap(approach.theta, atlas.periods).tolist(),
+                    "theta": numbers_at(atlas, approach.theta),
                 }
             )
         documents.append(

@@ -2,44 +2,47 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from bifurc.atlas import Atlas
 from linkages.app.clearance import FormClearance
-from linkages.app.configurations import show_configuration
-from linkages.app.texts import link_name, table
+from linkages.app.configurations import heading, readout_of, show_configuration
+from linkages.app.texts import table
 from linkages.labels import loop_of
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.structure import Structure
 
 __all__ = ["describe_clearance"]
 
 SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
-HEADS = (
-    "links",
-    "clearance",
-    "at most less by",
-    "arclength (deg)",
-    "joint angles (deg)",
-)
+HEADS = ("clearance", "at most less by", "arclength (deg)")
 
 
 def describe_clearance(atlas: Atlas, clearances: list[FormClearance]) -> str:
     """A sentence and a table for every form."""
     parts = [_of_form(atlas, clearance) for clearance in clearances]
+    links = _word(atlas)
     explanation = (
-        "Lengths are in the unit of the linkage; links that share a joint are left out."
+        f"Lengths are in the unit of the linkage; {links} that share a joint are left "
+        "out."
     )
     if clearances[0].diameter:
-        explanation += " Links overlap where the clearance is below 0."
+        explanation += f" {links.capitalize()} overlap where the clearance is below 0."
     return "\n\n".join([*parts, explanation])
 
 
 def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
-    smallest = SHOWN * loop_of(atlas).characteristic_length
+    if not clearance.approaches:
+        return f"{clearance.form.name}: every two bodies share a joint"
+    smallest = SHOWN * _size(atlas)
     rows = []
     for approach in clearance.approaches:
         rows.append(
             (
-                _links(atlas, approach.links),
+                " and ".join(clearance.links(approach)),
                 _length(clearance.gap(approach), smallest),
                 f"{approach.error:.1g}",
                 f"{np.degrees(approach.s):.3f}",
@@ -47,15 +50,31 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
             )
         )
     links, least, *_ = rows[0]
-    title = f"{clearance.form.name}: the least clearance is {least} (links {links})"
-    return f"{title}\n{table(HEADS, rows)}"
+    word = _word(atlas)
+    title = f"{clearance.form.name}: the least clearance is {least} ({word} {links})"
+    heads = (word, *HEADS, heading(atlas))
+    return f"{title}\n{table(heads, rows)}"
+
+
+def _word(atlas: Atlas) -> str:
+    """What those are called of which the clearance is shown."""
+    return "links" if _structure(atlas) is None else "bodies"
+
+
+def _size(atlas: Atlas) -> float:
+    """The characteristic length."""
+    structure = _structure(atlas)
+    return loop_of(atlas).characteristic_length if structure is None else structure.unit
+
+
+def _structure(atlas: Atlas) -> Structure | None:
+    """The structure of a mechanism; None for a single loop of revolute joints."""
+    readout = readout_of(atlas)
+    if readout is None or readout.single_loop is not None:
+        return None
+    return readout.structure
 
 
 def _length(length: float, smallest: float) -> str:
     """A length to six digits; what is below the smallest one shown comes out as 0."""
     return "0" if abs(length) < smallest else f"{length:.6g}"
-
-
-def _links(atlas: Atlas, links: tuple[int, int]) -> str:
-    n = len(atlas.names)
-    return " and ".join(link_name(link, n) for link in links)

@@ -5,19 +5,18 @@ from __future__ import annotations
 import contextlib
 import tempfile
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
+from linkages.app.figure_axes import FigureAxes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = [
-    "FigureAxes",
     "prepare_folder",
     "remove_empty",
     "write_data",
@@ -59,16 +58,6 @@ def write_data(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
         (stage / "summary.txt").write_text(summary + "\n", encoding="utf-8")
 
     return replace_files(folder, write)
-
-
-@dataclass(frozen=True)
-class FigureAxes:
-    """What figures are drawn over: two or three unknowns for the transition map, one
-    for the singular values, each numbered from 1; the usual ones where nothing is
-    said."""
-
-    transition_map: tuple[int, ...] = ()
-    singular_values: int | None = None
 
 
 USUAL_AXES = FigureAxes()

@@ -20,7 +20,7 @@ __all__ = [
     "FOLDER",
     "SEED",
     "HoldOptions",
-    "JointNumbers",
+    "JointWords",
     "NamedPath",
     "NumberRange",
     "SearchOptions",
@@ -90,8 +90,8 @@ FILE = NamedPath(dir_okay=False)
 FOLDER = NamedPath(file_okay=False)
 
 
-class JointNumbers(click.ParamType[tuple[int, ...]]):
-    """Numbers of different joints, from 1, separated by commas: ``least`` to ``most``
+class JointWords(click.ParamType[tuple[str, ...]]):
+    """Names or numbers of different joints, separated by commas: ``least`` to ``most``
     of them, as a tuple."""
 
     name = "joints"
@@ -102,27 +102,26 @@ class JointNumbers(click.ParamType[tuple[int, ...]]):
 
     def convert(
         self,
-        value: str | tuple[int, ...],
+        value: str | tuple[str, ...],
         param: click.Parameter | None,
         ctx: click.Context | None,
-    ) -> tuple[int, ...]:
-        """The numbers that a text lists; raises `click.BadParameter`."""
+    ) -> tuple[str, ...]:
+        """The words that a text lists; raises `click.BadParameter`."""
         if isinstance(value, tuple):
             return value
-        words = value.split(",")
-        numbers = [int(word) for word in words if word.strip().isdecimal()]
-        is_list = len(numbers) == len(words) == len(set(numbers)) and 0 not in numbers
+        words = tuple(word.strip() for word in value.split(","))
+        is_list = all(words) and len(words) == len(set(words))
         if not is_list or not self.least <= len(words) <= self.most:
             how_many = f"{self.least} to {self.most} joints"
             if self.least == self.most == 1:
                 how_many = "one joint"
             self.fail(
-                f"{value!r} does not name {how_many}; write numbers from 1, "
+                f"{value!r} does not name {how_many}; write names, or numbers from 1, "
                 "all different, with commas between them.",
                 param,
                 ctx,
             )
-        return tuple(numbers)
+        return words
 
 
 STARTS = click.IntRange(1, MOST_STARTS)

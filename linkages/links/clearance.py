@@ -26,8 +26,8 @@ TOLERANCE = 1e-3  # of the characteristic length: how far below a minimum may be
 
 @dataclass(frozen=True, eq=False)
 class Approach:
-    """Where two links, given by the joints (from 0) that they follow, are nearest along
-    a form.
+    """Where two links are nearest along a form: those of a loop are given by the
+    joints (from 0) that they follow, bodies of a mechanism by their numbers.
 
     ``distance`` of their middle lines, the arclength ``s`` and the configuration
     ``theta`` (n,), rad, there. No distance along the form is less by more than

@@ -13,7 +13,14 @@ from scipy.optimize import minimize_scalar
 
 from bifurc.branch import Branch
 
-__all__ = ["Distance", "LeastDistance", "find_least_distance", "largest_rates"]
+__all__ = [
+    "MARGIN",
+    "RATE_SAMPLES",
+    "Distance",
+    "LeastDistance",
+    "find_least_distance",
+    "largest_rates",
+]
 
 FIRST_INTERVALS = 64
 MOST_INTERVALS = (

@@ -27,6 +27,7 @@ __all__ = [
     "look_along",
     "symmetry_line",
     "write_at",
+    "write_names",
 ]
 
 DIRECTIONS = 240  # from which an assembly is looked at
@@ -226,7 +227,7 @@ def draw_assembly(
     lines += axis_ends
     numbered = [name for name in assembly.axes if name not in unnumbered]
     spots = {name: joints[name] @ plane for name in assembly.axes}
-    _number_joints(axes, spots, numbered, lines, extent, pen)
+    write_names(axes, spots, numbered, lines, extent, pen)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.08)
     axes.set_axis_off()
@@ -297,28 +298,29 @@ def write_at(axes: Axes, spot: np.ndarray, text: str, **style: Any) -> None:
     axes.text(x, y, text, **{"ha": "center", "va": "center", **style})
 
 
-def _number_joints(
+def write_names(
     axes: Axes,
     spots: dict[str, np.ndarray],
-    numbered: list[str],
-    lines: list[np.ndarray],
+    names: Sequence[str],
+    lines: Sequence[np.ndarray],
     extent: float,
     pen: Pen,
 ) -> None:
-    """Names beside the joints, each where lines and other names leave most room."""
-    joints = np.array(list(spots.values()))
+    """Names beside their spots (2,), each where all spots, lines (2, 2) and other names
+    leave most room; the ``extent`` is that of the drawing."""
+    all_spots = np.array(list(spots.values()))
     taken = np.empty((0, 2))
     angles = np.linspace(0, 2 * np.pi, PLACES, endpoint=False)
     ring = np.column_stack([np.cos(angles), np.sin(angles)])
     segments = np.array(lines)
-    for name in numbered:
+    for name in names:
         best = None
         for factor in (1.0, 1.5):
             places = spots[name] + factor * NUMBER_DISTANCE * extent * ring
             to_lines = _to_segments(places, segments).min(axis=1)
-            to_joints = _to_spots(places, joints)
-            to_numbers = FROM_NUMBERS * _to_spots(places, taken)
-            nearest = np.minimum(np.minimum(to_lines, to_joints), to_numbers)
+            to_spots = _to_spots(places, all_spots)
+            to_names = FROM_NUMBERS * _to_spots(places, taken)
+            nearest = np.minimum(np.minimum(to_lines, to_spots), to_names)
             room = nearest - 0.02 * factor * extent
             place = int(np.argmax(np.round(room / extent, 6)))
             if best is None or room[place] > best[0] + 0.03 * extent:

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from linkages.source_figures.drawing import HALO, Look, look_along, write_at
+from linkages.source_figures.drawing import LARGE, look_along, write_names
 from linkages.source_figures.table import Content, SourceFigure
 
 __all__ = ["Torus", "companion_torus", "draw", "shared_turn"]
@@ -120,67 +122,67 @@ def draw(source: SourceFigure) -> Figure:
     return CHARTS[content["chart"]](torus, content)
 
 
-def _plane(look: Look) -> np.ndarray:
-    return np.stack([look.right, look.up], axis=1)
+class TorusDrawing:
+    """A torus with circles, lines and points on paper; names are written last, where
+    all that leaves room."""
 
+    def __init__(self, axes: Axes, torus: Torus):
+        self.axes = axes
+        self.extent = torus.r + torus.s
+        self.plane = np.stack([LOOK.right, LOOK.up], axis=1)
+        self.spots: dict[str, np.ndarray] = {}
+        self.lines: list[np.ndarray] = []
+        for sigma in np.linspace(0, 2 * np.pi, CIRCLES, endpoint=False):
+            spots = torus.points(sigma, TURN) @ self.plane
+            axes.plot(*spots.T, color="0.88", linewidth=0.6, zorder=1)
 
-def _draw_surface(axes: Axes, torus: Torus, plane: np.ndarray) -> None:
-    """The torus by circles, thin."""
-    for sigma in np.linspace(0, 2 * np.pi, CIRCLES, endpoint=False):
-        spots = torus.points(sigma, TURN) @ plane
-        axes.plot(*spots.T, color="0.88", linewidth=0.6, zorder=1)
+    def draw_arm(
+        self, torus: Torus, sigma: float, phi: float, number: int, color: str
+    ) -> None:
+        """The circle at one place, with the lines Q R and R S, and its axis."""
+        centre = torus.centre(sigma)
+        point = torus.points(sigma, np.array([phi]))[0]
+        self._draw_line(torus.points(sigma, TURN), color=color, linewidth=1.4)
+        chain = np.stack([np.zeros(3), centre, point])
+        self._draw_line(chain, color=color, linewidth=2.4, zorder=4)
+        self.draw_vector(centre, torus.axis(sigma), f"Z{number}1")
+        self.draw_point(centre, f"R{number}")
 
+    def draw_vector(self, point: np.ndarray, direction: np.ndarray, name: str) -> None:
+        """An arrow through a point (3,), named at its head."""
+        ends = np.stack([point - 0.25 * direction, point + 0.65 * direction])
+        spots = ends @ self.plane
+        self.axes.annotate(
+            "",
+            xy=tuple(spots[1]),
+            xytext=tuple(spots[0]),
+            arrowprops={"arrowstyle": "-|>", "color": "0.35", "linewidth": 1.0},
+            zorder=5,
+        )
+        self.lines.append(spots)
+        self.spots[name] = spots[1]
 
-def _draw_arm(
-    axes: Axes, torus: Torus, sigma: float, phi: float, number: int, color: str
-) -> None:
-    """The circle at one place, with the lines Q R and R S, and its axis."""
-    plane = _plane(LOOK)
-    centre = torus.centre(sigma)
-    point = torus.points(sigma, np.array([phi]))[0]
-    axes.plot(*(torus.points(sigma, TURN) @ plane).T, color=color, linewidth=1.4)
-    chain = np.stack([np.zeros(3), centre, point]) @ plane
-    axes.plot(*chain.T, color=color, linewidth=2.4, zorder=4)
-    _draw_vector(axes, centre, torus.axis(sigma), f"Z{number}1", plane)
-    _draw_point(axes, centre, f"R{number}", plane)
+    def draw_point(self, point: np.ndarray, name: str) -> None:
+        """A point (3,) with its name."""
+        spot = point @ self.plane
+        self.axes.plot(
+            *spot, "o", markerfacecolor="white", markeredgecolor="black", zorder=6
+        )
+        self.spots[name] = spot
 
+    def finish(self, title: str) -> None:
+        """Write the names and the title."""
+        names = list(self.spots)
+        write_names(self.axes, self.spots, names, self.lines, self.extent, LARGE)
+        self.axes.set_title(title, fontsize=9)
+        self.axes.set_aspect("equal")
+        self.axes.margins(0.04)
+        self.axes.set_axis_off()
 
-def _draw_vector(
-    axes: Axes, point: np.ndarray, direction: np.ndarray, name: str, plane: np.ndarray
-) -> None:
-    ends = np.stack([point - 0.25 * direction, point + 0.65 * direction]) @ plane
-    axes.annotate(
-        "",
-        xy=tuple(ends[1]),
-        xytext=tuple(ends[0]),
-        arrowprops={"arrowstyle": "-|>", "color": "0.35", "linewidth": 1.0},
-        zorder=5,
-    )
-    beyond = (point + 0.8 * direction) @ plane
-    write_at(axes, beyond, name, fontsize=8.5, zorder=6, path_effects=HALO)
-
-
-def _draw_point(axes: Axes, point: np.ndarray, name: str, plane: np.ndarray) -> None:
-    spot = point @ plane
-    axes.plot(*spot, "o", markerfacecolor="white", markeredgecolor="black", zorder=6)
-    axes.annotate(
-        name,
-        tuple(spot),
-        (9, -8),
-        textcoords="offset points",
-        fontsize=8.5,
-        zorder=7,
-        ha="center",
-        va="center",
-        path_effects=HALO,
-    )
-
-
-def _finish(axes: Axes, title: str) -> None:
-    axes.set_title(title, fontsize=9)
-    axes.set_aspect("equal")
-    axes.margins(0.04)
-    axes.set_axis_off()
+    def _draw_line(self, points: np.ndarray, **style: Any) -> None:
+        spots = points @ self.plane
+        self.axes.plot(*spots.T, **style)
+        self.lines += [np.stack(pair) for pair in pairwise(spots)]
 
 
 def _point(torus: Torus, content: Content) -> Figure:
@@ -189,17 +191,15 @@ def _point(torus: Torus, content: Content) -> Figure:
     other = companion_torus(torus)
     titles = ("(a) r larger than s", "(b) r smaller than s")
     pairs = ((torus, FIRST_COLOR), (other, SECOND_COLOR))
-    plane = _plane(LOOK)
     for number, (axes, (one, color)) in enumerate(
         zip(figure.subplots(1, 2), pairs, strict=True), start=1
     ):
-        _draw_surface(axes, one, plane)
-        _draw_arm(axes, one, 0.5, POINT_ANGLE, number, color)
-        _draw_vector(axes, np.zeros(3), np.array([0, 0, 1.0]), "Z", plane)
-        _draw_point(axes, np.zeros(3), "Q", plane)
-        point = one.points(0.5, np.array([POINT_ANGLE]))[0]
-        _draw_point(axes, point, "S", plane)
-        _finish(axes, titles[number - 1])
+        drawing = TorusDrawing(axes, one)
+        drawing.draw_arm(one, 0.5, POINT_ANGLE, number, color)
+        drawing.draw_vector(np.zeros(3), np.array([0, 0, 1.0]), "Z")
+        drawing.draw_point(np.zeros(3), "Q")
+        drawing.draw_point(one.points(0.5, np.array([POINT_ANGLE]))[0], "S")
+        drawing.finish(titles[number - 1])
     return figure
 
 
@@ -208,7 +208,6 @@ def _variants(torus: Torus, content: Content) -> Figure:
     its mirror image in the plane of Q, phi reversed with it."""
     figure = Figure(figsize=(9.0, 8.6), layout="constrained")
     other = companion_torus(torus)
-    plane = _plane(LOOK)
     panels = figure.subplots(2, 2).flat
     names = {1: "", -1: "-"}
     combinations = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
@@ -217,16 +216,16 @@ def _variants(torus: Torus, content: Content) -> Figure:
         two = Torus(other.r, other.s, second * other.chi, other.theta)
         phi_one = first * POINT_ANGLE
         phi_two = second * POINT_ANGLE
-        _draw_surface(axes, one, plane)
         ours = one.points(0.0, np.array([phi_one]))[0]
         theirs = two.points(0.0, np.array([phi_two]))[0]
         turn = np.arctan2(ours[1], ours[0]) - np.arctan2(theirs[1], theirs[0])
-        _draw_arm(axes, one, 0.0, phi_one, 1, FIRST_COLOR)
-        _draw_arm(axes, two, turn, phi_two, 2, SECOND_COLOR)
-        _draw_vector(axes, np.zeros(3), np.array([0, 0, 1.0]), "Z", plane)
-        _draw_point(axes, np.zeros(3), "Q", plane)
-        _draw_point(axes, ours, "S", plane)
-        _finish(axes, f"{names[first]}χ₁, {names[second]}χ₂")
+        drawing = TorusDrawing(axes, one)
+        drawing.draw_arm(one, 0.0, phi_one, 1, FIRST_COLOR)
+        drawing.draw_arm(two, turn, phi_two, 2, SECOND_COLOR)
+        drawing.draw_vector(np.zeros(3), np.array([0, 0, 1.0]), "Z")
+        drawing.draw_point(np.zeros(3), "Q")
+        drawing.draw_point(ours, "S")
+        drawing.finish(f"{names[first]}χ₁, {names[second]}χ₂")
     return figure
 
 

@@ -30,7 +30,7 @@ class Track(NamedTuple):
     def place(self, position: float) -> float:
         """The position brought onto it, as viewer/tracks.js does."""
         if self.is_closed:
-            rest = position - math.floor(position / self.length) * self.length
+            rest = position % self.length
             return 0.0 if rest >= self.length else rest
         clipped = min(max(position, 0.0), self.length)
         return float(math.floor(clipped + 0.5)) if self.is_list else clipped

@@ -52,15 +52,16 @@ def clearance_command(
 ) -> None:
     """Show how near links come to each other along forms, and where.
 
-    Links are rods along offsets and common normals; two that share a joint are left
-    out.
+    Links are rods along offsets and common normals, bodies of a mechanism the lines
+    from joint to joint that `bifurc view` draws; two that share a joint are left out.
 
     \b
     Examples:
       bifurc clearance bricard-trihedral
       bifurc clearance out/atlas.nc --form "Form I" --diameter 0.05
+      bifurc clearance four-bennett-network --lock 2=40 --lock 6=-75
     """
-    from linkages.app.atlas_source import loop_atlas_of
+    from linkages.app.atlas_source import atlas_of
     from linkages.app.clearance import clearance_document, clearance_of
     from linkages.app.clearance_text import describe_clearance
     from linkages.app.forms import choose_forms, require_forms
@@ -70,7 +71,7 @@ def clearance_command(
 
     if verbose:
         say_more()
-    atlas = loop_atlas_of(source, parameters, search, hold)
+    atlas = atlas_of(source, parameters, search, hold)
     require_forms(atlas)
     chosen = choose_forms(atlas, forms)
     clearances = [clearance_of(atlas, form, diameter) for form in chosen]

@@ -12,7 +12,7 @@ from bifurc.limits import HeldInterrupt
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
     HoldOptions,
-    JointNumbers,
+    JointWords,
     SearchOptions,
     hold_options,
     json_option,
@@ -24,9 +24,7 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from linkages.app.files import FigureAxes
-    from linkages.linkage import Linkage
-    from linkages.mechanisms.mechanism import Mechanism
+    from linkages.app.figure_axes import FigureAxes
 
 __all__ = ["map_command"]
 
@@ -50,13 +48,16 @@ __all__ = ["map_command"]
 )
 @click.option(
     "--axes",
-    type=JointNumbers(2, 3),
+    type=JointWords(2, 3),
     metavar="I,J[,K]",
-    help="Draw the transition map over these two or three joints; needs --out.",
+    help=(
+        "Draw the transition map over these two or three joints, by their names or "
+        "numbers; needs --out."
+    ),
 )
 @click.option(
     "--against",
-    type=JointNumbers(1, 1),
+    type=JointWords(1, 1),
     metavar="I",
     help="Draw the singular values against this joint; needs --out.",
 )
@@ -71,8 +72,8 @@ def map_command(
     as_json: bool,
     no_certify: bool,
     digits: int | None,
-    axes: tuple[int, ...] | None,
-    against: tuple[int, ...] | None,
+    axes: tuple[str, ...] | None,
+    against: tuple[str, ...] | None,
     verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
@@ -87,10 +88,12 @@ def map_command(
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map my_linkage.toml --json > map.json
       bifurc map five_bar.toml --lock J1=40
+      bifurc map slider_crank.toml --out out --axes J1,J4
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
     from linkages.app.exploration import explore_linkage
+    from linkages.app.figure_axes import figure_axes
     from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.status import say_more
@@ -168,44 +171,11 @@ def write_map_page(atlas: Atlas, out: Path) -> Path:
         return write_page(document, out / "map.html")
 
 
-def require_out(out: Path | None, **options: tuple[int, ...] | None) -> None:
+def require_out(out: Path | None, **options: tuple[str, ...] | None) -> None:
     """Raise `CommandError` for options of figures where no figure is written."""
     for name, value in options.items():
         if value is not None and out is None:
             raise CommandError(f"--{name}: figures are only drawn with --out DIR")
-
-
-def figure_axes(
-    mechanism: Linkage | Mechanism,
-    axes: tuple[int, ...] | None,
-    against: tuple[int, ...] | None,
-) -> FigureAxes:
-    """What the figures of a mechanism are drawn over; raises `CommandError` for numbers
-    of joints that it does not have."""
-    from linkages.app.files import FigureAxes
-
-    if axes is None and against is None:
-        return FigureAxes()
-    joints = count_unknowns(mechanism)
-    for name, numbers in (("axes", axes), ("against", against)):
-        for number in numbers or ():
-            if number > joints:
-                raise CommandError(
-                    f"--{name}: there is no joint {number}; "
-                    f"the joints are numbered from 1 to {joints}"
-                )
-    return FigureAxes(axes or (), against[0] if against else None)
-
-
-def count_unknowns(mechanism: Linkage | Mechanism) -> int:
-    """How many unknowns the equations of a mechanism have."""
-    from linkages.linkage import Linkage
-
-    if isinstance(mechanism, Linkage):
-        return mechanism.loop.n
-    from linkages.mechanisms.closure import MechanismClosure
-
-    return MechanismClosure(mechanism).n
 
 
 def draw_figures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:

@@ -4,7 +4,10 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
+from linkages.app.figure_axes import number_of
+from linkages.mechanisms.toml_text import mechanism_toml
 from linkages.source_figures.table import source_figures
+from tests.linkages.viewing.conftest import slider_crank
 
 
 def bifurc(*arguments):
@@ -48,8 +51,10 @@ def test_the_same_figure_has_the_same_bytes(tmp_path):
         (("map", "bennett", "--against", "5", "--out", "nowhere"), "no joint 5"),
         (("map", "bennett", "--axes", "1", "--out", "nowhere"), "2 to 3 joints"),
         (("map", "bennett", "--axes", "1,1", "--out", "nowhere"), "all different"),
-        (("map", "bennett", "--axes", "0,1", "--out", "nowhere"), "'0,1'"),
-        (("map", "bennett", "--axes", "1,two", "--out", "nowhere"), "'1,two'"),
+        (("map", "bennett", "--axes", "0,1", "--out", "nowhere"), "no joint 0"),
+        (("map", "bennett", "--axes", "1,two", "--out", "nowhere"), "no joint two"),
+        (("map", "bennett", "--axes", "1,,2", "--out", "nowhere"), "'1,,2'"),
+        (("map", "bennett", "--axes", "1,theta1", "--out", "nowhere"), "named twice"),
         (("map", "bennett", "--against", "1,2", "--out", "nowhere"), "one joint"),
     ],
 )
@@ -74,3 +79,25 @@ def test_a_map_is_drawn_over_the_joints_that_are_named(axes, tmp_path):
         assert (other / name).read_bytes() != (usual / name).read_bytes()
     same = "joint_angles.svg"
     assert (other / same).read_bytes() == (usual / same).read_bytes()
+
+
+def test_joints_of_a_mechanism_go_by_their_names(tmp_path):
+    path = tmp_path / "crank.toml"
+    path.write_text(mechanism_toml(slider_crank()))
+    runs = {"names": ("J4,J1", "J1"), "numbers": ("4,1", "1")}
+    for folder, (axes, against) in runs.items():
+        options = ("--axes", axes, "--against", against)
+        run = bifurc("map", path, "--out", tmp_path / folder, *options)
+        assert run.exit_code == 0, run.output
+    for name in ("singular_values.svg", "transition_map.svg"):
+        one, other = tmp_path / "names" / name, tmp_path / "numbers" / name
+        assert one.read_bytes() == other.read_bytes()
+    wrong = bifurc("map", path, "--out", tmp_path / "nowhere", "--axes", "J1,J5")
+    assert wrong.exit_code == 2
+    assert "no joint J5" in wrong.stderr
+    assert "the names are J1, J2, J3, J4" in wrong.stderr
+
+
+def test_a_joint_that_is_called_by_a_number_is_meant_by_its_name():
+    names = ["5", "1", "2"]
+    assert [number_of(word, names) for word in ("1", "5", "3", "4")] == [2, 1, 3, None]

@@ -35,10 +35,10 @@ def test_distances_are_those_of_the_nearest_points():
             assert distance == pytest.approx(expected, abs=1e-7)
 
 
-def nearest_by_optimisation(first, second):
-    """The least distance of two chains of three rods, by a general optimiser."""
+def nearest_by_optimisation(first, second, rods=3):
+    """The least distance of two chains of some rods, by a general optimiser."""
     best = np.inf
-    for i, j in itertools.product(range(3), repeat=2):
+    for i, j in itertools.product(range(rods), repeat=2):
 
         def square(x, i=i, j=j):
             p = first[i] + x[0] * (first[i + 1] - first[i])

@@ -197,3 +197,30 @@ def test_the_bar_shows_how_far_the_singular_points_are(show_shared):
     assert after.inner_text() == f"{np.degrees(0.1):.1f}° ▸ {point.name}"
     after.click()
     assert shown.bifurc("state().s") == pytest.approx(s)
+
+
+NAMES = """() => {
+  const space = document.querySelector('.bv-space').getBoundingClientRect();
+  return [...document.querySelectorAll('.bv-joint-number')].map((name) => {
+    const box = name.getBoundingClientRect();
+    return [box.left - space.left, box.top - space.top, box.right - space.left, box.bottom - space.top];
+  });
+}"""
+
+
+@pytest.mark.parametrize("name", ["platform", "Kempe"])
+def test_names_cover_neither_each_other_nor_their_joints(show_shared, name):
+    shown = show_shared(name)
+    picture_of(shown)
+    boxes = np.array(shown.page.evaluate(NAMES))
+    joints = np.array(shown.bifurc("canvas()")["joints"])
+    is_shown = boxes[:, 2] > boxes[:, 0]
+    assert np.count_nonzero(is_shown) > 0.5 * len(boxes)
+    for box, joint in zip(boxes[is_shown], joints[is_shown], strict=True):
+        middle = (box[:2] + box[2:]) / 2
+        assert np.linalg.norm(middle - joint) > 8
+    for k, one in enumerate(boxes[is_shown]):
+        for other in boxes[is_shown][:k]:
+            low = np.maximum(one[:2], other[:2])
+            high = np.minimum(one[2:], other[2:])
+            assert not np.all(high - low > 3)

@@ -82,6 +82,33 @@ def test_the_traits_follow_the_reader(notebook):
     notebook.evaluate("() => leave()")
 
 
+def test_a_view_that_is_left_gives_its_picture_back(notebook):
+    is_lost = """() => {
+      const canvas = document.querySelector('.bv-space canvas');
+      leave();
+      return canvas.getContext('webgl2').isContextLost();
+    }"""
+    assert notebook.evaluate(is_lost)
+    notebook.emulate_media(color_scheme="dark")
+    notebook.evaluate("() => model.set('position', 2.0)")
+    notebook.wait_for_timeout(100)
+
+
+def test_two_widgets_on_a_page_move_by_themselves(notebook, atlas_of):
+    values = {"document": make_view_document(atlas_of("bennett"))}
+    values |= {"form": atlas_of("bennett").forms[0].name, "position": 0.5}
+    notebook.evaluate(FAKE_NOTEBOOK, [viewer_script(), json.loads(json.dumps(values))])
+    notebook.wait_for_function(
+        "() => document.querySelectorAll('.bv-forms button').length > 4"
+    )
+    sliders = notebook.locator(".bv-slider")
+    first, second = (float(sliders.nth(k).input_value()) for k in range(2))
+    sliders.nth(1).focus()
+    notebook.keyboard.press("ArrowRight")
+    assert float(sliders.nth(1).input_value()) > second
+    assert float(sliders.nth(0).input_value()) == first
+
+
 def test_a_widget_begins_at_the_first_form_and_knows_all_names(atlas_of):
     pytest.importorskip("anywidget", reason="the widget needs anywidget")
     widget = linkages.view(atlas_of(DSG))

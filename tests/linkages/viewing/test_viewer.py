@@ -170,6 +170,56 @@ def test_the_slider_moves_the_rods(show_shared):
     assert picture_of(shown) != picture
 
 
+def test_the_slider_stays_at_the_end_of_a_closed_form(show_shared):
+    shown = show_shared(DSG)
+    slider = shown.page.locator(".bv-slider")
+    slider.fill("4000")
+    assert shown.bifurc("state().s") == 0
+    assert slider.input_value() == "4000"
+    shown.bifurc("go(1, 0.5)")
+    assert float(slider.input_value()) < 1000
+
+
+def test_places_beyond_the_ends_are_on_the_form_however_far_away(show_shared):
+    shown = show_shared(DSG)
+    length = shown.bifurc("forms")[0]["length"]
+    for s in (-0.5, 2.5 * length, 1e17, -1e17, 1e300, -1e-300):
+        state = shown.page.evaluate("s => bifurc.go(1, s)", s)
+        assert 0 <= state["s"] < length
+        assert state["s"] == pytest.approx(s % length % length)
+        assert np.isfinite(state["angles"]).all()
+    shown = show_shared("slider-crank")
+    for form in shown.bifurc("forms"):
+        if form["closed"]:
+            continue
+        ends = [
+            shown.page.evaluate("([f, s]) => bifurc.go(f, s).s", [form["name"], s])
+            for s in (-1e300, 1e300)
+        ]
+        assert ends == [0, form["length"]]
+
+
+def test_playing_twice_asks_for_no_more_frames_than_once(show):
+    shown = show(DSG)
+    counted = """([times]) => new Promise((resolve) => {
+      const real = requestAnimationFrame;
+      let asked = 0;
+      window.requestAnimationFrame = (call) => { asked += 1; return real(call); };
+      for (let k = 0; k < times; k += 1) bifurc.play();
+      let frames = 0;
+      const next = () => {
+        frames += 1;
+        if (frames < 20) return real(next);
+        window.requestAnimationFrame = real;
+        bifurc.stop();
+        resolve(asked);
+      };
+      real(next);
+    })"""
+    once = shown.page.evaluate(counted, [1])
+    assert shown.page.evaluate(counted, [6]) < once + 10
+
+
 def test_a_click_on_a_bifurcation_offers_the_branches_that_leave_it(show_shared):
     shown = show_shared(DSG)
     point = shown.atlas.bifurcations[1]
@@ -269,10 +319,16 @@ def test_keys_move_the_linkage(show_shared):
     assert shown.bifurc("state().s") > s
     shown.page.keyboard.press("3")
     assert shown.bifurc("state().form") == "Form III (non-constructive 6R)"
+    for key in ("5", "9"):
+        shown.page.keyboard.press(key)
+        assert shown.bifurc("state().form") == "Form III (non-constructive 6R)"
     shown.page.keyboard.press("ArrowUp")
     assert shown.page.locator(".bv-choice button").count() == 4
     shown.page.keyboard.press("Space")
     assert shown.bifurc("state().playing")
+    shown.page.keyboard.press("ArrowLeft")
+    assert not shown.bifurc("state().playing")
+    shown.page.keyboard.press("Space")
     shown.page.keyboard.press("Escape")
     assert not shown.bifurc("state().playing")
 
@@ -363,6 +419,13 @@ def test_wrong_calls_of_scripts_are_refused_by_name(show_shared):
     before = shown.bifurc("state()")
     for call, words in (
         ("go('Form X')", "form Form X"),
+        ("go(0)", "form 0"),
+        ("go(5, 1)", "form 5"),
+        ("go('5')", "form 5"),
+        ("go(1.5)", "form 1.5"),
+        ("go()", "form undefined"),
+        ("go(1, Infinity)", "s = Infinity"),
+        ("go(1, '1')", "s = 1"),
         ("go(1, NaN)", "s = NaN"),
         ("route('Form X')", "form Form X"),
         ("playRoute('Form X')", "form Form X"),

@@ -1,0 +1,64 @@
+"""The clearance of bodies of a mechanism: the least distance that there is."""
+
+import numpy as np
+import pytest
+
+from linkages.links.body_clearance import (
+    approaches_of_bodies,
+    distances_of_bodies,
+    lines_of_bodies,
+)
+from linkages.links.clearance import TOLERANCE
+from linkages.mapping import map_linkage
+from linkages.mechanisms.poses import Poses
+from linkages.mechanisms.structure import Structure
+from tests.linkages.links.test_clearance import nearest_by_optimisation
+from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.test_curvature import rods
+
+MECHANISMS = {
+    "CRCR": lambda: mechanism_of_case(cases()["Bennett geometry with joints CRCR"]),
+    "rods": rods,
+}
+
+
+@pytest.mark.parametrize("name", MECHANISMS)
+def test_no_place_of_a_form_has_bodies_nearer_than_is_said(name):
+    mechanism = MECHANISMS[name]()
+    structure = Structure(mechanism)
+    form = map_linkage(mechanism).forms[0]
+    bodies = lines_of_bodies(structure, form.branch)
+    approaches = approaches_of_bodies(structure, form.branch)
+    assert [one.links for one in approaches]
+    assert approaches == sorted(approaches, key=lambda one: one.distance)
+    samples = form.branch.sample(2001)
+    for approach in approaches:
+        names = {mechanism.bodies[body] for body in approach.links}
+        assert not any(names <= set(joint.bodies) for joint in mechanism.joints)
+        there = distances_of_bodies(bodies, approach.theta[None], approach.links)
+        assert there[0] == pytest.approx(approach.distance, abs=1e-12)
+        sampled = distances_of_bodies(bodies, samples, approach.links).min()
+        assert approach.distance <= sampled + 1e-9 * structure.unit
+        assert approach.error <= 2 * TOLERANCE * structure.unit
+
+
+def test_distances_are_those_of_the_nearest_points_of_two_bodies():
+    mechanism = MECHANISMS["CRCR"]()
+    structure = Structure(mechanism)
+    form = map_linkage(mechanism).forms[0]
+    bodies = lines_of_bodies(structure, form.branch)
+    pair = bodies.pairs_apart()[0]
+    points = form.branch.sample(3)
+    poses = Poses(structure).at(points)
+    distances = distances_of_bodies(bodies, points, pair)
+    for pose, distance in zip(poses, distances, strict=True):
+        lines = [
+            bodies.lines[body] @ pose[body, :3, :3].T + pose[body, :3, 3]
+            for body in pair
+        ]
+        expected = min(
+            nearest_by_optimisation(one, other, rods=1)
+            for one in lines[0]
+            for other in lines[1]
+        )
+        assert distance == pytest.approx(expected, abs=1e-7)
