@@ -57,7 +57,7 @@ def count_status(path: Path | str) -> dict[str, int]:
         names = [Status(number).name for number in numbers.tolist()]
     # zarr raises these for files that are not what they were
     except (OSError, ValueError, KeyError, RuntimeError) as error:
-        raise StoreError(path, f"it is damaged ({error}); {MADE_AGAIN}") from None
+        raise StoreError(Path(path), f"it is damaged ({error}); {MADE_AGAIN}") from None
     return dict(zip(names, counts.tolist(), strict=True))
 
 
