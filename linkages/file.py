@@ -25,15 +25,15 @@ from __future__ import annotations
 import difflib
 import logging
 import math
-import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
 from bifurc.errors import BifurcError
+from bifurc.files.text_file import TextFileError, read_text, read_toml
 from linkages.axes import Vectors, loop_from_axes
 from linkages.loop import (
     MAX_JOINTS,
@@ -177,8 +177,7 @@ def read_precisely(path: Path | str) -> Loop:
     loop, configuration = read_linkage(path)
     if configuration is not None:
         return loop
-    text = Path(path).read_text(encoding="utf-8")
-    content = tomllib.loads(text, parse_float=mpmath.mpf)
+    content = cast(Mapping[str, Any], _parse(Path(path), mpmath.mpf))
     lengths = tuple(mpmath.mpf(length) for length in content["lengths"])
     twists = tuple(mpmath.mpf(twist) for twist in content["twists"])
     offsets = tuple(mpmath.mpf(offset) for offset in content["offsets"])
@@ -190,26 +189,21 @@ def read_precisely(path: Path | str) -> Loop:
 # --- the file and its keys ------------------------------------------------------------
 
 
-def _parse(path: Path) -> Content:
+def _parse(
+    path: Path, parse_float: Callable[[str], object] = float
+) -> dict[str, object]:
+    """What a TOML file holds, decimals as ``parse_float`` reads them."""
     try:
-        return tomllib.loads(_text(path))
-    except tomllib.TOMLDecodeError as error:
-        # its message ends with the line and the column
-        raise LinkageFileError(path, f"is not valid TOML: {error}") from None
+        return read_toml(path, parse_float)
+    except TextFileError as error:
+        raise LinkageFileError(path, error.reason) from None
 
 
 def _text(path: Path) -> str:
-    if path.is_dir():
-        raise LinkageFileError(path, "is a folder, and a linkage is a file")
     try:
-        return path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise LinkageFileError(path, "there is no such file") from None
-    except OSError as error:
-        raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        message = f"is not UTF-8 text: byte {error.start} is wrong"
-        raise LinkageFileError(path, message) from None
+        return read_text(path)
+    except TextFileError as error:
+        raise LinkageFileError(path, error.reason) from None
 
 
 def _check_keys(content: Content) -> None:

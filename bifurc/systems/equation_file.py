@@ -27,7 +27,6 @@ from __future__ import annotations
 import difflib
 import math
 import re
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -44,6 +43,7 @@ from bifurc.equations.expression import (
 )
 from bifurc.equations.symbolic import SymbolicFunction, SymbolicProblem
 from bifurc.errors import ProblemError
+from bifurc.files.text_file import TextFileError, read_toml
 from bifurc.systems.system import EquationFileError, EquationSystem
 
 __all__ = ["read_equations"]
@@ -83,20 +83,10 @@ class _Refusal(Exception):
 
 def _parsed(path: Path) -> Content:
     """What the file holds, decimals as texts."""
-    if path.is_dir():
-        raise EquationFileError(path, "is a folder, and equations are a file")
     try:
-        text = path.read_text(encoding="utf-8")
-        return tomllib.loads(text, parse_float=str)
-    except FileNotFoundError:
-        raise EquationFileError(path, "there is no such file") from None
-    except OSError as error:
-        raise EquationFileError(path, f"cannot be read: {error.strerror}") from None
-    except UnicodeDecodeError as error:
-        message = f"is not UTF-8 text: byte {error.start} is wrong"
-        raise EquationFileError(path, message) from None
-    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        raise EquationFileError(path, f"is not valid TOML: {error}") from None
+        return read_toml(path, parse_float=str)
+    except TextFileError as error:
+        raise EquationFileError(path, error.reason) from None
 
 
 class _Unknown(NamedTuple):

@@ -22,6 +22,7 @@ __all__ = ["Journal", "JournalError", "Line"]
 Line: TypeAlias = dict[str, Any]  # values of JSON; who writes a line knows which
 
 NO_JOURNAL = "it is no journal of a sweep; choose another --out or delete it"
+WITHOUT_LINE = "delete this line, and what it held is mapped again"
 CHUNK = 4096  # bytes read at a time on the way back to the last newline
 
 
@@ -31,6 +32,13 @@ class JournalError(BifurcError, ValueError):
     def __init__(self, path: Path, why: str):
         self.path = path
         super().__init__(f"{path}: {why}")
+
+    @classmethod
+    def of_line(cls, path: Path, number: int) -> JournalError:
+        """The error of a line that says nothing of this sweep, numbered from 1."""
+        if number == 1:
+            return cls(path, NO_JOURNAL)
+        return cls(path, f"line {number} is damaged; {WITHOUT_LINE}")
 
 
 class Journal:
@@ -75,21 +83,12 @@ class Journal:
     def lines(self) -> Iterator[Line]:
         """All lines, the header first, read one at a time; raises `JournalError` for a
         line that is no JSON object."""
-        with open(self.path, encoding="utf-8") as file:
-            try:
-                for text in file:
-                    yield self._parsed(text)
-            except UnicodeDecodeError:
-                raise JournalError(self.path, NO_JOURNAL) from None
-
-    def _parsed(self, text: str) -> Line:
-        try:
-            line = json.loads(text)
-        except json.JSONDecodeError:
-            line = None
-        if not isinstance(line, dict):
-            raise JournalError(self.path, NO_JOURNAL)
-        return line
+        with open(self.path, "rb") as file:
+            for number, content in enumerate(file, start=1):
+                line = _parsed(content)
+                if line is None:
+                    raise JournalError.of_line(self.path, number)
+                yield line
 
     def _lock(self) -> None:
         if fcntl is None:
@@ -119,3 +118,12 @@ class Journal:
         elif first != json.loads(json.dumps(header)):
             why = "it belongs to another sweep; choose another --out or delete it"
             raise JournalError(self.path, why)
+
+
+def _parsed(content: bytes) -> Line | None:
+    """The JSON object that a line holds; None where it holds none."""
+    try:
+        line = json.loads(content.decode("utf-8"))
+    except (ValueError, RecursionError):  # also for numbers of thousands of digits
+        return None
+    return line if isinstance(line, dict) else None

@@ -5,7 +5,8 @@ The journal is the truth. A finished member is one line in it, forced to disk; w
 members of a block are finished the block is written to the dataset and a line says so.
 After a kill, the lines are read again: written blocks are left alone, members of the
 others that are finished are taken from their lines, the rest is mapped. No more than a
-few blocks are ever held in memory.
+few blocks are ever held in memory, but where the dataset was deleted: all of it is made
+again from the journal.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
+from linkages.app.sweep.entries import WrittenBlock, read_entries
 from linkages.app.sweep.journal import Journal
 from linkages.app.sweep.member import Record, atlas_name, map_member
 from linkages.app.sweep.plan import Block, Plan
@@ -149,12 +151,19 @@ class Sweep:
             self._collect(progress)
 
     def _read_journal(self) -> _Finished:
-        blocks = {line["block"] for line in self.journal.lines() if "block" in line}
+        """What is finished. Where the dataset is new no block is in it, whatever the
+        journal says, and all records are needed again."""
+        blocks = set()
+        if not self.store.is_new:
+            for entry in read_entries(self.journal, self.plan):
+                if isinstance(entry, WrittenBlock):
+                    blocks.add(entry.number)
         records: dict[int, Record] = {}
-        for line in self.journal.lines():
-            index = line.get("member")
-            if index is not None and self.plan.block_of(index) not in blocks:
-                records[index] = line
+        for entry in read_entries(self.journal, self.plan):
+            if isinstance(entry, WrittenBlock):
+                continue
+            if self.plan.block_of(entry.index) not in blocks:
+                records[entry.index] = entry.record
         return _Finished(blocks, records)
 
     def _make_room(self, progress: Progress) -> None:

@@ -24,6 +24,11 @@ if TYPE_CHECKING:
 __all__ = ["StoreError", "SweepStore", "count_status", "open_sweep", "require_room"]
 
 
+MADE_AGAIN = (
+    "delete it, and the same command makes it again from the journal, without mapping"
+)
+
+
 class StoreError(BifurcError):
     """A place where the dataset of a sweep cannot be written: ``path`` and why."""
 
@@ -44,10 +49,16 @@ def open_sweep(path: Path | str) -> xr.Dataset:
 
 
 def count_status(path: Path | str) -> dict[str, int]:
-    """How many members have each status that occurs."""
-    status, counts = np.unique(open_sweep(path)["status"].values, return_counts=True)
-    pairs = zip(status.tolist(), counts.tolist(), strict=True)
-    return {Status(number).name: count for number, count in pairs}
+    """How many members have each status that occurs; raises `StoreError` where the
+    dataset is damaged."""
+    try:
+        statuses = open_sweep(path)["status"].values
+        numbers, counts = np.unique(statuses, return_counts=True)
+        names = [Status(number).name for number in numbers.tolist()]
+    # zarr raises these for files that are not what they were
+    except (OSError, ValueError, KeyError, RuntimeError) as error:
+        raise StoreError(Path(path), f"it is damaged ({error}); {MADE_AGAIN}") from None
+    return dict(zip(names, counts.tolist(), strict=True))
 
 
 def require_room(path: Path, plan: Plan) -> None:
@@ -74,7 +85,7 @@ def _text(plan: Plan) -> str:
 
 class SweepStore:
     """Zarr arrays for the summaries of all members of a plan; values not yet written
-    are missing."""
+    are missing. It ``is_new`` where nothing was there."""
 
     def __init__(self, path: Path, plan: Plan):
         import zarr
@@ -82,7 +93,8 @@ class SweepStore:
         self.plan = plan
         self.joints = entry(plan.family).build().n
         self._group: zarr.Group = zarr.open_group(path, mode="a")
-        if not all(name in self._group for name in FIELDS):
+        self.is_new = not all(name in self._group for name in FIELDS)
+        if self.is_new:
             self._create()
 
     def write(self, block: Block, records: Mapping[int, Record]) -> None:

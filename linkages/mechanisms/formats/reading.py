@@ -51,6 +51,6 @@ def _assembly(path: Path, content: bytes) -> Assembly:
 def _text(content: bytes) -> str:
     """The text of a file; letters beyond ASCII stand in comments only."""
     try:
-        return content.decode("utf-8")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         return content.decode("latin-1")
