@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.decisions import (
     fills_circle,
     is_null,
@@ -21,7 +22,6 @@ from bifurc.decisions import (
     is_same_half_branch,
 )
 from bifurc.numerics.directions import unit_vectors
-from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
@@ -222,6 +222,14 @@ class _FourierSeries:
         waves: np.ndarray = np.exp(1j * phases)
         return waves
 
+    def roots(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Angles (k,), one between each of ``low`` and ``high`` (k,), at which the
+        function, which has opposite signs there, is zero."""
+        offsets = _core.roots_of_waves(
+            self._coefficients, low - FIRST, high - FIRST, ROOT_TOLERANCE
+        )
+        return FIRST + offsets
+
     def times_sign(self, angles: np.ndarray, signs: np.ndarray) -> np.ndarray:
         """Values at angles (...), times ``signs`` (...)."""
         return np.asarray(signs * self(angles))
@@ -258,7 +266,7 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
         contacts = bottom.x[np.abs(bottom.f_x) <= zero]
     crossings = np.empty(0)
     if len(low):
-        crossings = bracketed_roots(function, low, high, ROOT_TOLERANCE)
+        crossings = function.roots(low, high)
     return _Zeros(crossings, contacts)
 
 
