@@ -55,7 +55,8 @@ class TracedBranch:
     ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
     regular singular value. ``located`` are the arclengths of minima that led to a
     singular point, ``passes`` those at which the branch passes it. ``misclosure`` is
-    the largest along the branch. ``certificate`` says what is certified of it, None
+    the largest along the branch, ``blur`` the distance, over the scale, to which its
+    points are known. ``certificate`` says what is certified of it, None
     where that was not asked for or the problem has no bounds.
     """
 
@@ -64,6 +65,7 @@ class TracedBranch:
     minima: tuple[np.ndarray, np.ndarray]
     located: tuple[float, ...]
     misclosure: float = 0.0
+    blur: float = 0.0
     passes: tuple[float, ...] = ()
     certificate: Certificate | None = None
 

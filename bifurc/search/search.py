@@ -518,6 +518,7 @@ class Search:
             minima=minima,
             located=tuple(located),
             misclosure=misclosure,
+            blur=blur_along(self.problem, branch),
             passes=tuple(passes),
             certificate=certificate,
         )
