@@ -141,7 +141,11 @@ class _ReducedEquations:
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
         """The reduced equations (k, codimension) at unit vectors x (k, nullity)."""
-        residuals = self._problem.relative_residuals(self.points(x))
+        return self.reduced(self.points(x))
+
+    def reduced(self, points: np.ndarray) -> np.ndarray:
+        """The reduced equations (k, codimension) at `points` (k, n)."""
+        residuals = self._problem.relative_residuals(points)
         reduced: np.ndarray = residuals @ self._left_null_space / self._radius**2
         return reduced
 
@@ -168,13 +172,14 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     # a root is exact to rounding, so that all equations hold there or not
     is_crossing = np.arange(len(angles)) < len(zeros.crossings)
     limit = np.where(is_crossing, ROOT, TOUCH) * size + noise
-    left_over = np.linalg.norm(equations(unit_vectors(angles)), axis=1)
+    points = equations.points(unit_vectors(angles))
+    left_over = np.linalg.norm(equations.reduced(points), axis=1)
     in_doubt = is_crossing & (left_over > limit) & (left_over < TOUCH * size + noise)
     if np.any(in_doubt):
         condition = _conditions(values, leading, angles[in_doubt])
         limit[in_doubt] += noise * condition
     is_solution = is_on_circle(left_over, limit)
-    points = equations.points(unit_vectors(angles[is_solution]))
+    points = points[is_solution]
     is_doubtful = bool(np.any(is_solution & ~is_crossing))
     return Section(points, 1 if len(points) else 0, is_doubtful)
 
