@@ -125,6 +125,11 @@ class Branch:
         """Points (count, n) at equally spaced arclengths."""
         return self(self.arclengths(count))
 
+    def ends_of_pieces(self, derivative: int = 0) -> np.ndarray:
+        """Where each of the p pieces begins, and where each of them ends (2, p, n), or
+        the derivatives in s there."""
+        return self._curve.ends_of_pieces(derivative)
+
     def places(self, fractions: np.ndarray) -> np.ndarray:
         """Arclengths (p, k) at ``fractions`` (k,) of each of the p pieces, from 0 where
         it begins to 1 where it ends."""
@@ -240,6 +245,28 @@ class Branch:
         if unknown >= self.n:
             raise ProblemError("unknown", unknown, f"below {self.n}")
         return self._curve.turning_points(unknown)
+
+    # --- heights ----------------------------------------------------------------------
+
+    def rates_of_height(self, coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """The rates in s (k,) of a height, at arclengths s (k,).
+
+        It is the sum over the unknowns of a weight times (cos(angular u - phase) +
+        linear u); the ``coefficients`` (4, n) are the weights, the phases, and the
+        factors angular and linear.
+        """
+        return self._curve.rates_of_height(coefficients, s)
+
+    def level_places(
+        self,
+        coefficients: np.ndarray,
+        low: np.ndarray,
+        high: np.ndarray,
+        tolerance: float = 1e-15,
+    ) -> np.ndarray:
+        """Arclengths (k,), one between each of ``low`` and ``high`` (k,), at which the
+        rate of a height, which has opposite signs there, is zero."""
+        return self._curve.level_places(coefficients, low, high, tolerance)
 
     # --- what is derived from the pieces ----------------------------------------------
 

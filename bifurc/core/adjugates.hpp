@@ -39,7 +39,7 @@ public:
     Adjugates(Index unknowns, const Chebyshev& chebyshev)
         : chebyshev_(chebyshev),
           frame_(unknowns, unknowns),
-          room_(unknowns, unknowns),
+          pivots_(unknowns),
           coefficients_(chebyshev.nodes(), unknowns * unknowns) {}
 
     void of(const ArcNodes& arc, const ArcAdjugates& out) {
@@ -71,9 +71,9 @@ private:
     // The determinant of the frame, which is overwritten; fills its adjugate. A singular frame, to the
     // last bit, says nothing of it: zero.
     double adjugate(View<double> out) {
-        const double determinant = invert(frame_, room_);
+        const double determinant = invert(frame_, pivots_);
         const Index size = out.rows * out.columns;
-        const double* const inverse = room_.view().data;
+        const double* const inverse = frame_.view().data;
         for (Index i = 0; i < size; ++i) out.data[i] = determinant == 0.0 ? 0.0 : determinant * inverse[i];
         return determinant;
     }
@@ -96,7 +96,9 @@ private:
     }
 
     const Chebyshev& chebyshev_;
-    Matrix<double> frame_, room_, coefficients_;
+    Matrix<double> frame_;
+    std::vector<Index> pivots_;
+    Matrix<double> coefficients_;
 };
 
 }  // namespace bifurc

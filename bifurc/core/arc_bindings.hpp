@@ -26,7 +26,7 @@ inline Chebyshev chebyshev_of(const MatrixIn<double>& to_coefficients, const Mat
                               const MatrixIn<double>& powers, const VectorIn<double>& errors, double lebesgue,
                               double bend) {
     const std::size_t nodes = to_coefficients.shape(0);
-    const bool fits = to_coefficients.shape(1) == nodes && to_edges.shape(0) == nodes && powers.shape(0) == nodes &&
+    const bool fits = nodes % 2 == 0 && to_coefficients.shape(1) == nodes && to_edges.shape(0) == nodes && powers.shape(0) == nodes &&
                       powers.shape(1) == errors.size();
     if (!fits) throw nb::value_error("the tables of Chebyshev nodes do not fit each other");
     return Chebyshev(copied(to_coefficients), copied(to_edges), copied(powers),

@@ -95,4 +95,24 @@ private:
     double tolerance_;
 };
 
+// Roots of a ``function`` of a number, one in each bracket; fills ``roots`` (k).
+template <class Function>
+void find_roots(Function function, Vector<const double> low, Vector<const double> high, double tolerance,
+                Vector<double> roots) {
+    constexpr int most_steps = 100;
+    std::vector<double> points(low.begin(), low.end()), values(low.size()), at_low(low.size());
+    const auto evaluate = [&](Vector<const double> at, Vector<double> out) {
+        for (std::size_t i = 0; i < at.size(); ++i) out[i] = function(at[i]);
+    };
+    evaluate(low, at_low);
+    evaluate(high, values);
+    Brackets brackets(low, high, at_low, values, tolerance);
+    for (int step = 0; step < most_steps; ++step) {
+        brackets.points(points);
+        evaluate(points, values);
+        if (brackets.narrow(values)) break;
+    }
+    brackets.roots(roots);
+}
+
 }  // namespace bifurc

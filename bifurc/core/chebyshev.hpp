@@ -11,7 +11,7 @@
 
 namespace bifurc {
 
-// What the nodes alone determine: ``to_coefficients`` (N, N) from values at the nodes to coefficients,
+// What the nodes alone determine, N of them, an even number: ``to_coefficients`` (N, N) from values at the nodes to coefficients,
 // ``to_edges`` (N, c + 1) from these to the values at the edges of cells, ``powers`` (N, e) on the ellipses,
 // ``errors`` (e): how far an interpolant may be off, for a bound of 1 on an ellipse. ``lebesgue``: how much
 // larger an interpolant may be than at the nodes. ``bend``: how far it may be, within a cell, from the line
@@ -31,15 +31,24 @@ public:
     Index edges() const { return to_edges_.columns(); }
     Index ellipses() const { return powers_.columns(); }
 
-    // The first coefficients (k, q) of the interpolants of values (N, q) at the nodes.
+    // The first coefficients (k, q) of the interpolants of values (N, q) at the nodes. Those of even
+    // degrees come from the even parts of the values, the others from the odd ones.
     void coefficients(View<const double> values, View<double> out) const {
+        const Index width = values.columns, half = nodes() / 2;
+        Matrix<double> even(half, width), odd(half, width);
+        for (Index node = 0; node < half; ++node) {
+            for (Index i = 0; i < width; ++i) {
+                const double one = values(node, i), other = values(nodes() - 1 - node, i);
+                even(node, i) = one + other;
+                odd(node, i) = one - other;
+            }
+        }
         for (Index k = 0; k < out.rows; ++k) {
-            const Vector<double> row = out.row(k);
-            std::fill(row.begin(), row.end(), 0.0);
-            for (Index node = 0; node < nodes(); ++node) {
+            const Matrix<double>& parts = k % 2 == 0 ? even : odd;
+            std::fill(out.row(k).begin(), out.row(k).end(), 0.0);
+            for (Index node = 0; node < half; ++node) {
                 const double share = to_coefficients_(k, node);
-                const double* const value = values.row(node).data();
-                for (std::size_t i = 0; i < row.size(); ++i) row[i] += share * value[i];
+                for (Index i = 0; i < width; ++i) out(k, i) += share * parts(node, i);
             }
         }
     }

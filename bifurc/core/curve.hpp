@@ -28,6 +28,11 @@ struct CurveData {
     std::vector<double> periods, travel;
 };
 
+// A function of the unknowns: the coefficients (n) of `Curve::rate_of_height`.
+struct Height {
+    Vector<const double> weights, phases, angular, linear;
+};
+
 class Curve : private CurveData {
 public:
     explicit Curve(CurveData data) : CurveData(std::move(data)) { take_samples(); }
@@ -44,11 +49,34 @@ public:
 
     // u(s), or its derivative of the given order in s, (k, n) at arclengths (k).
     void evaluate(Vector<const double> s, int derivative, View<double> out) const {
-        std::vector<double> factors(order() + 1, 1.0);  // k (k - 1) ... of the derivative of x^k
-        for (int j = 0; j < derivative; ++j) {
-            for (Index k = 0; k <= order(); ++k) factors[k] *= std::max<double>(static_cast<double>(k) - j, 0.0);
-        }
+        const std::vector<double> factors = factors_of(derivative);
         for (Index row = 0; row < out.rows; ++row) evaluate(s[row], derivative, factors, out.row(row));
+    }
+
+    // Where each piece begins and ends (2 * p, n), the begins first, or their derivatives in s.
+    void evaluate_ends(int derivative, View<double> out) const {
+        const std::vector<double> factors = factors_of(derivative);
+        for (Index number = 0; number < count(); ++number) {
+            for (Index end = 0; end < 2; ++end) {
+                const double x = (breaks[number + end] - centers[number]) / radii[number];
+                evaluate_on({0.0, number, x}, derivative, factors, out.row(end * count() + number));
+            }
+        }
+    }
+
+    // The rate in s of a height, the sum of ``weights`` (n) times ``linear`` (n) times u and cosines of
+    // ``angular`` (n) times u less ``phases`` (n). ``room`` is that for a foot.
+    double rate_of_height(const Height& height, double s, std::vector<double>& room) const {
+        const std::size_t n = unknowns();
+        const Jet jet{{room.data(), n}, {room.data() + n, n}, {room.data() + 2 * n, n}};
+        fill(s, jet);
+        double rate = 0.0;
+        for (std::size_t j = 0; j < n; ++j) {
+            const double angle = jet.value[j] * height.angular[j] - height.phases[j];
+            const double gradient = height.linear[j] - height.angular[j] * std::sin(angle);
+            rate += height.weights[j] * gradient * jet.slope[j];
+        }
+        return rate;
     }
 
     // Arclengths, in order, at which the derivative of an unknown changes sign between two neighbours
@@ -164,8 +192,20 @@ private:
         return {turns, number, (local - centers[number]) / radii[number]};
     }
 
+    // k (k - 1) ... of a derivative of x^k.
+    std::vector<double> factors_of(int derivative) const {
+        std::vector<double> factors(order() + 1, 1.0);
+        for (int j = 0; j < derivative; ++j) {
+            for (Index k = 0; k <= order(); ++k) factors[k] *= std::max<double>(static_cast<double>(k) - j, 0.0);
+        }
+        return factors;
+    }
+
     void evaluate(double s, int derivative, Vector<const double> factors, Vector<double> out) const {
-        const Place place = place_of(s);
+        evaluate_on(place_of(s), derivative, factors, out);
+    }
+
+    void evaluate_on(const Place& place, int derivative, Vector<const double> factors, Vector<double> out) const {
         const View<const double> of = piece(place.piece);
         double scale = 1.0;
         for (int i = 0; i < derivative; ++i) scale *= radii[place.piece];

@@ -45,11 +45,68 @@ void check_width(const char* name, std::size_t given, Index needed) {
     }
 }
 
+void check_count(const VectorIn<double>& numbers, Index count) {
+    if (static_cast<Index>(numbers.size()) != count) throw nb::value_error("there must be a number for each bracket");
+}
+
 nb::object values_on(const Curve& curve, const VectorIn<double>& s, int derivative) {
     if (curve.count() == 0 && s.size() > 0) throw nb::value_error("a curve of no pieces has no points");
     Array<double> out({static_cast<Index>(s.shape(0)), curve.unknowns()});
     curve.evaluate(numpy::view(s), derivative, out.matrix());
     return out.release();
+}
+
+// (2, p, n): `Curve::evaluate_ends`.
+nb::object ends_of_pieces(const Curve& curve, int derivative) {
+    Array<double> out({2, curve.count(), curve.unknowns()});
+    curve.evaluate_ends(derivative, out.matrix());
+    return out.release();
+}
+
+Height height_of(const Curve& curve, const MatrixIn<double>& coefficients) {
+    check_width("the coefficients of a height", coefficients.shape(1), curve.unknowns());
+    if (coefficients.shape(0) != 4) throw nb::value_error("the coefficients of a height must be four rows");
+    const View<const double> rows = numpy::view(coefficients);
+    return {rows.row(0), rows.row(1), rows.row(2), rows.row(3)};
+}
+
+// (k) at arclengths (k): `Curve::rate_of_height`.
+nb::object rates_of_height(const Curve& curve, const MatrixIn<double>& coefficients, const VectorIn<double>& s) {
+    const Height height = height_of(curve, coefficients);
+    std::vector<double> room(curve.room_for_a_foot());
+    Array<double> rates({static_cast<Index>(s.size())});
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        rates.data()[i] = curve.rate_of_height(height, s.data()[i], room);
+    }
+    return rates.release();
+}
+
+// Arclengths (k), one in each bracket from ``low`` to ``high`` (k), at which a height is level.
+nb::object level_places(const Curve& curve, const MatrixIn<double>& coefficients, const VectorIn<double>& low,
+                        const VectorIn<double>& high, double tolerance) {
+    check_count(high, static_cast<Index>(low.size()));
+    const Height height = height_of(curve, coefficients);
+    std::vector<double> room(curve.room_for_a_foot());
+    Array<double> roots({static_cast<Index>(low.size())});
+    find_roots([&](double s) { return curve.rate_of_height(height, s, room); }, numpy::view(low), numpy::view(high),
+               tolerance, roots.vector());
+    return roots.release();
+}
+
+// Roots (k) of a sum of waves, the real part of sum_j c_j exp(i j angle), one in each bracket.
+nb::object roots_of_waves(const VectorIn<std::complex<double>>& coefficients, const VectorIn<double>& low,
+                          const VectorIn<double>& high, double tolerance) {
+    check_count(high, static_cast<Index>(low.size()));
+    const auto waves = numpy::view(coefficients);
+    const auto value = [&](double angle) {
+        const std::complex<double> turn{std::cos(angle), std::sin(angle)};
+        std::complex<double> total = 0.0;
+        for (std::size_t j = waves.size(); j-- > 0;) total = total * turn + waves[j];
+        return total.real();
+    };
+    Array<double> roots({static_cast<Index>(low.size())});
+    find_roots(value, numpy::view(low), numpy::view(high), tolerance, roots.vector());
+    return roots.release();
 }
 
 nb::tuple nearest(const Curve& curve, const MatrixIn<double>& points, double within) {
@@ -137,10 +194,6 @@ nb::object numbers_of(const Brackets& brackets) {
     return out.release();
 }
 
-void check_count(const VectorIn<double>& numbers, Index count) {
-    if (static_cast<Index>(numbers.size()) != count) throw nb::value_error("there must be a number for each bracket");
-}
-
 nb::object turning_points(const Curve& curve, Index unknown) {
     if (unknown < 0 || unknown >= curve.unknowns()) throw nb::index_error("no such unknown");
     const std::vector<double> found = curve.turning_points(unknown);
@@ -207,6 +260,9 @@ NB_MODULE(_core, module) {
             },
             "breaks"_a, "centers"_a, "radii"_a, "pieces"_a, "periods"_a, "travel"_a)
         .def("evaluate", &values_on, "s"_a, "derivative"_a)
+        .def("ends_of_pieces", &ends_of_pieces, "derivative"_a)
+        .def("rates_of_height", &rates_of_height, "coefficients"_a, "s"_a)
+        .def("level_places", &level_places, "coefficients"_a, "low"_a, "high"_a, "tolerance"_a)
         .def("nearest", &nearest, "points"_a, "within"_a)
         .def("turning_points", &turning_points, "unknown"_a)
         .def("passes", &passes, "point"_a, "within"_a, "same"_a);
@@ -233,6 +289,7 @@ NB_MODULE(_core, module) {
         .def("roots", &numbers_of<&Brackets::roots>);
     module.def("null_vector", &null_vector, "matrix"_a, "along"_a, "negligible"_a, "agreeing"_a);
     module.def("returns", &returns_on, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "number"_a, "s"_a, "first"_a);
+    module.def("roots_of_waves", &roots_of_waves, "coefficients"_a, "low"_a, "high"_a, "tolerance"_a);
     module.def("singular_values", &singular_values, "matrices"_a);
     module.def("singular_value_rates", &singular_value_rates, "matrices"_a, "changes"_a, "number"_a);
     module.def("eigenvalues", &eigenvalues, "matrix"_a);

@@ -39,9 +39,12 @@ def repeats_itself(problem: Problem, branch: Branch) -> bool:
     line."""
     within = is_same_point.threshold * problem.scale
     repeated = 0
-    for s in branch.length * PLACES:
-        arclengths = branch.passes(branch(s), within)
-        cosines = branch(arclengths, 1) @ branch(s, 1)
+    places = branch.length * PLACES
+    for point, along in zip(branch(places), branch(places, 1), strict=True):
+        arclengths = branch.passes(point, within)
+        if len(arclengths) < 2:
+            continue
+        cosines = branch(arclengths, 1) @ along
         is_along = is_same_line(1.0 - np.abs(cosines))
         repeated += int(np.count_nonzero(is_along) > 1)
     return repeated >= SEVERAL
@@ -50,8 +53,8 @@ def repeats_itself(problem: Problem, branch: Branch) -> bool:
 def kinks(branch: Branch, from_ends: float = 0.0) -> np.ndarray:
     """Arclengths (k,) at which a curve goes on in another direction, farther
     ``from_ends`` than that."""
-    begins = _directions(branch, branch.breaks[:-1])
-    ends = _directions(branch, branch.breaks[1:])
+    slopes = branch.ends_of_pieces(derivative=1)
+    begins, ends = slopes / np.linalg.norm(slopes, axis=2, keepdims=True)
     arclengths = branch.breaks[1:]
     after = np.roll(begins, -1, axis=0)
     if not branch.closed:
@@ -61,16 +64,6 @@ def kinks(branch: Branch, from_ends: float = 0.0) -> np.ndarray:
     goes_on = is_same_line(1.0 - cosines)
     places: np.ndarray = arclengths[is_inside][~goes_on]
     return places
-
-
-def _directions(branch: Branch, s: np.ndarray) -> np.ndarray:
-    """Unit tangents (p, n) of the p pieces at arclengths (p,), one for each."""
-    x = (s - branch.centers) / branch.radii
-    degrees = np.arange(1, branch.pieces.shape[1])
-    powers = degrees * x[:, None] ** (degrees - 1)
-    slopes = np.einsum("pk,pkn->pn", powers, branch.pieces[:, 1:])
-    directions: np.ndarray = slopes / np.linalg.norm(slopes, axis=1, keepdims=True)
-    return directions
 
 
 def changes_of_course(branch: Branch, profile: Profile, cuts: np.ndarray) -> np.ndarray:

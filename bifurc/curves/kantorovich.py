@@ -73,8 +73,7 @@ class Joints:
     @staticmethod
     def of(problem: Problem, branch: Branch) -> Joints:
         """The joints of a branch."""
-        ends = _points_of_pieces(branch, branch.breaks[1:])
-        begins = _points_of_pieces(branch, branch.breaks[:-1])
+        begins, ends = branch.ends_of_pieces()
         left, right = ends[:-1], begins[1:]
         arclengths = branch.breaks[1:-1]
         if branch.closed:
@@ -93,20 +92,11 @@ class Joints:
     def at(self, s: np.ndarray) -> np.ndarray:
         """What F' makes of the steps (k, m) at arclengths (k,), 0 where there is no
         joint."""
-        first = np.searchsorted(self.arclengths, s, side="left")
-        last = np.searchsorted(self.arclengths, s, side="right")
+        number = np.searchsorted(self.arclengths, s)
+        is_joint = np.append(self.arclengths, np.inf)[number] == s
         images = np.zeros((len(s), self.images.shape[1]))
-        for k in np.flatnonzero(last > first):
-            images[k] = self.images[first[k] : last[k]].sum(axis=0)
+        images[is_joint] = self.images[number[is_joint]]
         return images
-
-
-def _points_of_pieces(branch: Branch, s: np.ndarray) -> np.ndarray:
-    """Points (p, n) of the p pieces at arclengths (p,), one for each."""
-    x = (s - branch.centers) / branch.radii
-    powers = x[:, None] ** np.arange(branch.pieces.shape[1])
-    points: np.ndarray = np.einsum("pk,pkn->pn", powers, branch.pieces)
-    return points
 
 
 def check_arcs(

@@ -55,16 +55,19 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
         return Minima(np.empty(0), np.empty(0))
     places = _places_to_look(branch, profile)
     here = _values_and_slopes(problem, branch, rank, places)
-    low, high = _valleys(branch, places, here.slopes * problem.scale)
-    if not len(low):
+    before, after = _valleys(branch, here.slopes * problem.scale)
+    if not len(before):
         return Minima(np.empty(0), np.empty(0))
+    low, high = places[before], places[after]
+    high[after < before] += branch.length  # once round a closed curve
 
     def slope_of_square(s: np.ndarray) -> np.ndarray:
         there = _values_and_slopes(problem, branch, rank, s)
-        product: np.ndarray = there.values * there.slopes
-        return product
+        return there.slopes_of_squares
 
-    bottoms = bracketed_roots(slope_of_square, low, high, LOCATED * problem.scale)
+    at_ends = here.slopes_of_squares[before], here.slopes_of_squares[after]
+    tolerance = LOCATED * problem.scale
+    bottoms = bracketed_roots(slope_of_square, low, high, tolerance, at_ends)
     samples = np.concatenate([profile.arclength.ravel(), places])
     heights = np.concatenate([profile.smallest.ravel(), here.values])
     cut = 0.0
@@ -217,6 +220,12 @@ class _ValuesAndSlopes(NamedTuple):
     values: np.ndarray
     slopes: np.ndarray
 
+    @property
+    def slopes_of_squares(self) -> np.ndarray:
+        """Half the derivatives of their squares (k,)."""
+        slopes: np.ndarray = self.values * self.slopes
+        return slopes
+
 
 def _values_and_slopes(
     problem: Problem, branch: Branch, rank: int, s: np.ndarray
@@ -240,18 +249,14 @@ def _values_and_slopes(
 # --- valleys and the walls beside them ------------------------------------------------
 
 
-def _valleys(
-    branch: Branch, s: np.ndarray, slopes: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Brackets (low, high) between which the ``slopes`` (k,) at ``s`` (k,) turn to
-    rising."""
-    steep = ~is_level(np.abs(slopes))
-    s, slopes = s[steep], slopes[steep]
-    if branch.closed and len(s):
-        s = np.append(s, s[0] + branch.length)
-        slopes = np.append(slopes, slopes[0])
-    turns = np.flatnonzero((slopes[:-1] < 0) & (slopes[1:] > 0))
-    return s[turns], s[turns + 1]
+def _valleys(branch: Branch, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of the places before and after which the ``slopes`` (k,), in order along
+    the curve, turn to rising."""
+    steep = np.flatnonzero(~is_level(np.abs(slopes)))
+    after = np.roll(steep, -1) if branch.closed else steep[1:]
+    before = steep[: len(after)]
+    turns = (slopes[before] < 0) & (slopes[after] > 0)
+    return before[turns], after[turns]
 
 
 def _highest_between(

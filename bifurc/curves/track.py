@@ -145,7 +145,7 @@ class Track:
 
     def append(self, march: March) -> None:
         """The track goes on with the pieces of a march from its front."""
-        centers = self.reached + np.cumsum(march.steps)
+        centers = self.reached + march.steps.cumsum()
         self.pieces = np.concatenate([self.pieces, march.pieces])
         self.centers = np.concatenate([self.centers, centers])
         self.radii = np.concatenate([self.radii, march.radii])

@@ -20,6 +20,7 @@ from bifurc.problem import Problem
 __all__ = [
     "ROUNDING",
     "blur_along",
+    "change_by_blur",
     "change_by_rounding",
     "distance_to_singular",
     "known_to",
@@ -95,7 +96,13 @@ def blur_along(problem: Problem, branch: Branch) -> float:
 def change_by_rounding(problem: Problem, branch: Branch) -> float:
     """The largest change of an unknown along a curve, over the scale, that rounding may
     make; the largest rate as well."""
-    return MADE * blur_along(problem, branch)
+    return change_by_blur(blur_along(problem, branch))
+
+
+def change_by_blur(blur: float) -> float:
+    """That of a curve of which points are known to a distance ``blur``, over the
+    scale."""
+    return MADE * blur
 
 
 def rounding_unit(problem: Problem, points: np.ndarray) -> float:

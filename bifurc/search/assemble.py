@@ -21,7 +21,7 @@ from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
 from bifurc.curves.near_miss import near_miss_value
 from bifurc.decisions import closes_to_rounding, is_faint
-from bifurc.numerics.blur import change_by_rounding
+from bifurc.numerics.blur import change_by_blur
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.canonical_course import wrapped_periods
@@ -294,8 +294,7 @@ def _dead_points(
     """The dead points, form by form and unknown by unknown."""
     events = []
     for form, branch in enumerate(traced):
-        by_rounding = change_by_rounding(problem, branch.branch)
-        roots = dead_points(branch.branch, by_rounding)
+        roots = dead_points(branch.branch, change_by_blur(branch.blur))
         unknowns = np.repeat(np.arange(problem.n), [len(each) for each in roots])
         arclengths = np.concatenate(roots)
         places = wrap(branch.branch(arclengths), periods)

@@ -15,7 +15,6 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.decisions import is_slow_at_start, is_unclear_start
-from bifurc.numerics.roots import bracketed_roots
 from bifurc.problem import Problem
 from bifurc.torus import wrap
 
@@ -120,6 +119,11 @@ class _Height:
     angular: np.ndarray
     linear: np.ndarray
 
+    @property
+    def coefficients(self) -> np.ndarray:
+        """Those (4, n) of `Branch.rates_of_height`."""
+        return np.array([self.weights, self.phases, self.angular, self.linear])
+
     @staticmethod
     def of(problem: Problem, number: int, branch: Branch) -> _Height:
         """Function ``number`` of those that are tried: their coefficients are spread
@@ -141,14 +145,6 @@ class _Height:
         heights: np.ndarray = terms @ self.weights
         return heights
 
-    def slopes(self, s: np.ndarray) -> np.ndarray:
-        """Rates of the height (k,) at arclengths (k,)."""
-        angles = self.branch(s) * self.angular - self.phases
-        gradients = self.linear - self.angular * np.sin(angles)
-        rates = gradients * self.branch(s, 1)
-        slopes: np.ndarray = rates @ self.weights
-        return slopes
-
     def top(self, samples: np.ndarray, points: np.ndarray) -> _Top:
         """Where the height is largest on the curve, of which ``samples`` (k,) are
         arclengths in order and ``points`` (k, n) what stands there."""
@@ -160,7 +156,7 @@ class _Height:
         low[0] -= self.branch.length
         high[-1] += self.branch.length
         near = is_high & is_top
-        tops = bracketed_roots(self.slopes, low[near], high[near])
+        tops = self.branch.level_places(self.coefficients, low[near], high[near])
         order = np.argsort(self.at(self.branch(tops)))
         if not len(tops):
             return _Top(0.0, 0.0)
@@ -178,7 +174,8 @@ class _Height:
         """Minus the second derivative at a top times the square of the length of the
         curve, over what is clear."""
         step = BEND_STEP * self.branch.length
-        before, after = self.slopes(np.array([top - step, top + step]))
+        places = np.array([top - step, top + step])
+        before, after = self.branch.rates_of_height(self.coefficients, places)
         bend = (before - after) / (2 * step)
         return float(bend) * self.branch.length**2 / CLEAR_BEND
 

@@ -18,7 +18,7 @@ from bifurc.decisions import (
     stands_still,
     unit_over_rounding,
 )
-from bifurc.numerics.blur import blur_along, change_by_rounding, rounding_unit
+from bifurc.numerics.blur import change_by_blur, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
@@ -97,13 +97,12 @@ def _doubts_of_form(
     branch, profile = traced.branch, traced.profile
     doubts = []
     is_regular = profile.rank == branch.n - 1
-    distance = blur_along(problem, branch)
-    if is_regular and not is_known_curve(distance):
+    if is_regular and not is_known_curve(traced.blur):
         doubts.append(
             f"form {index + 1} may be a curve or a part of a surface: its place is "
-            f"known to {distance:.1e} of the scale"
+            f"known to {traced.blur:.1e} of the scale"
         )
-    hidden = _hidden_by_rounding(problem, branch)
+    hidden = _hidden_by_rounding(traced)
     if len(hidden):
         numbers = ", ".join(str(k + 1) for k in hidden)
         doubts.append(
@@ -132,11 +131,11 @@ def _doubts_of_form(
     return doubts
 
 
-def _hidden_by_rounding(problem: Problem, branch: Branch) -> np.ndarray:
+def _hidden_by_rounding(traced: TracedBranch) -> np.ndarray:
     """Indices (k,) of the unknowns whose rates along a branch are no larger than what
     rounding may make, and no rounding of an ordinary curve."""
-    rates = largest_rates(branch)
-    by_rounding = change_by_rounding(problem, branch)
+    rates = largest_rates(traced.branch)
+    by_rounding = change_by_blur(traced.blur)
     stands = stands_still(rates, unit_over_rounding(stands_still, by_rounding))
     hidden: np.ndarray = np.flatnonzero(stands & (rates >= stands_still.threshold))
     return hidden

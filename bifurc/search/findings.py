@@ -55,7 +55,8 @@ class TracedBranch:
     ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
     regular singular value. ``located`` are the arclengths of minima that led to a
     singular point, ``passes`` those at which the branch passes it. ``misclosure`` is
-    the largest along the branch. ``certificate`` says what is certified of it, None
+    the largest along the branch, ``blur`` the distance, over the scale, to which its
+    points are known. ``certificate`` says what is certified of it, None
     where that was not asked for or the problem has no bounds.
     """
 
@@ -64,6 +65,7 @@ class TracedBranch:
     minima: tuple[np.ndarray, np.ndarray]
     located: tuple[float, ...]
     misclosure: float = 0.0
+    blur: float = 0.0
     passes: tuple[float, ...] = ()
     certificate: Certificate | None = None
 
@@ -288,9 +290,9 @@ class Findings:
     def point_near(self, u: np.ndarray, within: float) -> PointSighting | None:
         """The first known singular point at less than ``within`` scales from ``u``
         (n,)."""
-        for number, point in enumerate(self.points):
-            if self._distance(point.u, u) < within * self.problem.scale:
-                return PointSighting(point, number, is_new=False)
+        for number, distance in enumerate(self._distances_to_points(u)):
+            if distance < within * self.problem.scale:
+                return PointSighting(self.points[number], number, is_new=False)
         return None
 
     def point_at(self, u: np.ndarray, error: float) -> PointSighting | None:
@@ -308,20 +310,23 @@ class Findings:
     ) -> PointSighting | None:
         """The first known singular point that is at ``u`` (n,) by a ``decision`` on the
         distance, the error of the point or another one allowed for twice."""
-        for number, point in enumerate(self.points):
+        distances = self._distances_to_points(u)
+        for number, (point, distance) in enumerate(
+            zip(self.points, distances, strict=True)
+        ):
             within = 2 * max(error, point.error)
             unit = self.problem.scale + within / decision.threshold
-            if decision(self._distance(point.u, u), unit):
+            if decision(distance, unit):
                 return PointSighting(point, number, is_new=False)
         return None
 
     def nearest_point(self, number: int) -> tuple[int, float]:
         """The number of the singular point next to another one, given by its number, and
         how far apart they are; infinitely far where there is none."""
-        apart = [self._distance(p.u, self.points[number].u) for p in self.points]
+        apart = self._distances_to_points(self.points[number].u)
         apart[number] = np.inf
         nearest = int(np.argmin(apart))
-        return nearest, float(apart[nearest])
+        return nearest, apart[nearest]
 
     def merge_points(self, pairs: Sequence[tuple[int, int]]) -> None:
         """Take each of the ``pairs`` of singular points, by their numbers, for one: that
@@ -362,6 +367,15 @@ class Findings:
             return known
         self.rigid.append(u)
         return len(self.rigid) - 1
+
+    def _distances_to_points(self, u: np.ndarray) -> list[float]:
+        """How far each known singular point is from ``u`` (n,)."""
+        if not self.points:
+            return []
+        places = np.array([point.u for point in self.points])
+        gaps = self.problem.difference(places, u)
+        distances: list[float] = np.linalg.norm(gaps, axis=1).tolist()
+        return distances
 
     def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
         return float(np.linalg.norm(self.problem.difference(one, other)))

@@ -518,6 +518,7 @@ class Search:
             minima=minima,
             located=tuple(located),
             misclosure=misclosure,
+            blur=blur_along(self.problem, branch),
             passes=tuple(passes),
             certificate=certificate,
         )
@@ -722,27 +723,19 @@ def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
     """
     values = profile.smallest.ravel()
     arclengths = profile.arclength.ravel()
-    before, after = _highest_beside(values)
-    is_deep = may_be_crossed(values) & is_deep_place(values, np.minimum(before, after))
     walled = np.concatenate([[np.inf], values, [np.inf]])
     is_lowest = (values <= walled[:-2]) & (values < walled[2:])
     candidates = []
-    for k in np.flatnonzero(is_deep & is_lowest):
+    for k in np.flatnonzero(is_lowest & may_be_crossed(values)):
+        before = values[max(k - BESIDE, 0) : k].max(initial=0.0)
+        after = values[k + 1 : k + 1 + BESIDE].max(initial=0.0)
         beside = arclengths[max(k - 1, 0) : k + 2]
         is_found = (minima >= beside[0]) & (minima <= beside[-1])
-        if not np.any(is_found):
+        is_deep = is_deep_place(float(values[k]), float(min(before, after)))
+        if is_deep and not np.any(is_found):
             look = arclengths[k : k + 1]
             candidates.append(_Candidate(look, may_be_crossed.threshold))
     return candidates
-
-
-def _highest_beside(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The largest of a few values before each of a row (k,), and of a few after it."""
-    nothing = np.zeros(BESIDE)
-    padded = np.concatenate([nothing, values, nothing])
-    windows = np.lib.stride_tricks.sliding_window_view(padded, BESIDE)
-    highest = windows.max(axis=1)
-    return highest[: len(values)], highest[BESIDE + 1 :]
 
 
 def _small_minima(arclengths: np.ndarray, values: np.ndarray) -> list[_Candidate]:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.decisions import (
     fills_circle,
     is_null,
@@ -21,7 +22,6 @@ from bifurc.decisions import (
     is_same_half_branch,
 )
 from bifurc.numerics.directions import unit_vectors
-from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
@@ -141,7 +141,11 @@ class _ReducedEquations:
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
         """The reduced equations (k, codimension) at unit vectors x (k, nullity)."""
-        residuals = self._problem.relative_residuals(self.points(x))
+        return self.reduced(self.points(x))
+
+    def reduced(self, points: np.ndarray) -> np.ndarray:
+        """The reduced equations (k, codimension) at `points` (k, n)."""
+        residuals = self._problem.relative_residuals(points)
         reduced: np.ndarray = residuals @ self._left_null_space / self._radius**2
         return reduced
 
@@ -168,13 +172,14 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     # a root is exact to rounding, so that all equations hold there or not
     is_crossing = np.arange(len(angles)) < len(zeros.crossings)
     limit = np.where(is_crossing, ROOT, TOUCH) * size + noise
-    left_over = np.linalg.norm(equations(unit_vectors(angles)), axis=1)
+    points = equations.points(unit_vectors(angles))
+    left_over = np.linalg.norm(equations.reduced(points), axis=1)
     in_doubt = is_crossing & (left_over > limit) & (left_over < TOUCH * size + noise)
     if np.any(in_doubt):
         condition = _conditions(values, leading, angles[in_doubt])
         limit[in_doubt] += noise * condition
     is_solution = is_on_circle(left_over, limit)
-    points = equations.points(unit_vectors(angles[is_solution]))
+    points = points[is_solution]
     is_doubtful = bool(np.any(is_solution & ~is_crossing))
     return Section(points, 1 if len(points) else 0, is_doubtful)
 
@@ -222,6 +227,14 @@ class _FourierSeries:
         waves: np.ndarray = np.exp(1j * phases)
         return waves
 
+    def roots(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Angles (k,), one between each of ``low`` and ``high`` (k,), at which the
+        function, which has opposite signs there, is zero."""
+        offsets = _core.roots_of_waves(
+            self._coefficients, low - FIRST, high - FIRST, ROOT_TOLERANCE
+        )
+        return FIRST + offsets
+
     def times_sign(self, angles: np.ndarray, signs: np.ndarray) -> np.ndarray:
         """Values at angles (...), times ``signs`` (...)."""
         return np.asarray(signs * self(angles))
@@ -258,7 +271,7 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
         contacts = bottom.x[np.abs(bottom.f_x) <= zero]
     crossings = np.empty(0)
     if len(low):
-        crossings = bracketed_roots(function, low, high, ROOT_TOLERANCE)
+        crossings = function.roots(low, high)
     return _Zeros(crossings, contacts)
 
 

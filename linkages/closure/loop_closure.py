@@ -60,6 +60,11 @@ class LoopClosure(NumericalProblem):
         self.bounds = np.full((n, 2), [-np.inf, np.inf])
         self._geometry = loop.link_geometry
 
+    @property
+    def has_rim(self) -> bool:
+        """False: angles have no bounds."""
+        return False
+
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """Closure residuals (k, 6): rotation, then translation over the characteristic
         length."""
@@ -71,7 +76,8 @@ class LoopClosure(NumericalProblem):
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
-        return self.hessians(self.check_point(point, "point")[None])[0]
+        hessian: np.ndarray = self.hessians(self.check_point(point, "point")[None])[0]
+        return hessian
 
     def hessians(self, points: np.ndarray) -> np.ndarray:
         """Second derivatives (k, 6, n, n) of the residual."""

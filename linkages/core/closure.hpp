@@ -199,17 +199,25 @@ inline Packed load(const Lanes& from) {
 
 inline void store(const Packed& value, Lanes& to) { std::memcpy(to.data(), &value, sizeof value); }
 
-// Coefficient k of the product of rates and screws from order ``first`` of the screws on; every
+// Coefficient k of the product of rates and screws, but for what the rates of order k add to it; every
 // ``stride``-th entry belongs to a series.
-LINKAGES_VECTORISED inline void multiply(const Lanes* rates, const ScrewLanes* screws, Index k, Index first,
-                                         Index stride, ScrewLanes& product) {
+LINKAGES_VECTORISED inline void multiply(const Lanes* rates, const ScrewLanes* screws, Index k, Index stride,
+                                         ScrewLanes& product) {
     Packed total[6] = {};
-    for (Index m = first; m <= k; ++m) {
+    for (Index m = 1; m <= k; ++m) {
         const Packed rate = load(rates[(k - m) * stride]);
         const ScrewLanes& screw = screws[m * stride];
         for (int row = 0; row < 6; ++row) total[row] = total[row] + rate * load(screw.rows[row]);
     }
     for (int row = 0; row < 6; ++row) store(total[row], product.rows[row]);
+}
+
+// Adds a rate times a screw.
+LINKAGES_VECTORISED inline void add_product(const Lanes& rates, const ScrewLanes& screws, ScrewLanes& product) {
+    const Packed rate = load(rates);
+    for (int row = 0; row < 6; ++row) {
+        store(load(product.rows[row]) + rate * load(screws.rows[row]), product.rows[row]);
+    }
 }
 
 // Coefficient k of the Lie bracket of two series, times ``share``.
@@ -252,7 +260,8 @@ public:
           blocks_((joints + lane_count - 1) / lane_count),
           screws_((order + 1) * blocks_),
           twists_((order + 1) * blocks_),
-          rates_(order * blocks_) {}
+          rates_(order * blocks_),
+          products_(blocks_) {}
 
     void set_screw(Index joint, const Screw<double>& screw) {
         screws_[joint / lane_count].set_lane(joint % lane_count, screw);
@@ -260,11 +269,11 @@ public:
     double& rate(Index k, Index joint) { return rates_[k * blocks_ + joint / lane_count][joint % lane_count]; }
 
     // What is left of coefficient k of sum_i S_i dtheta_i/ds without the rates of order k.
-    Screw<double> known_part(Index k) const {
+    Screw<double> known_part(Index k) {
         Screw<double> total{};
         for (Index block = 0; block < blocks_; ++block) {
-            ScrewLanes product;
-            lanes::multiply(&rates_[block], &screws_[block], k, 1, blocks_, product);
+            ScrewLanes& product = products_[block];
+            lanes::multiply(&rates_[block], &screws_[block], k, blocks_, product);
             for (Index row = 0; row < 3; ++row) {
                 total.direction[row] += sum(product.rows[row]);
                 total.moment[row] += sum(product.rows[row + 3]);
@@ -273,12 +282,12 @@ public:
         return total;
     }
 
-    // Coefficients k + 1 of the screws, once the rates of order k are known.
+    // Coefficients k + 1 of the screws, once the rates of order k are known, after `known_part` of them.
     void advance(Index k) {
         Screw<double> twist{};
         for (Index block = 0; block < blocks_; ++block) {
-            ScrewLanes gained;
-            lanes::multiply(&rates_[block], &screws_[block], k, 0, blocks_, gained);
+            ScrewLanes& gained = products_[block];
+            lanes::add_product(rates_[k * blocks_ + block], screws_[block], gained);
             const Index last = std::min<Index>(lane_count, joints_ - block * lane_count);
             for (Index i = 0; i < last; ++i) {
                 twists_[k * blocks_ + block].set_lane(i, twist);
@@ -296,6 +305,7 @@ private:
     Index joints_, blocks_;
     std::vector<ScrewLanes> screws_, twists_;  // coefficient by coefficient, block by block
     std::vector<Lanes> rates_;
+    std::vector<ScrewLanes> products_;  // of rates and screws, of the coefficient that is made
 };
 
 namespace detail {
@@ -313,10 +323,10 @@ void fill_series(const Closure& closure, Vector<const double> theta, Vector<cons
     std::vector<double> right(Closure::equation_count + 1);
     std::copy(start.begin(), start.end(), coefficients.row(0).begin());
     for (Index k = 0; k < order; ++k) {
+        const Screw<double> known = motion.known_part(k);
         if (k == 0) {
             std::copy(tangent.begin(), tangent.end(), own.row(0).begin());
         } else {
-            const Screw<double> known = motion.known_part(k);
             for (Index row = 0; row < 3; ++row) {
                 right[row] = -known.direction[row];
                 right[row + 3] = -known.moment[row];

@@ -18,6 +18,7 @@ from bifurc import _core
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
+from bifurc.numerics.chebyshev import CHEBYSHEV, NODE_COUNT, RHOS
 from linkages import _core as linkages_core
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
@@ -121,54 +122,93 @@ def test_a_direction_across_the_null_space_says_nothing():
     assert np.abs(found) == pytest.approx(np.abs(expected), abs=1e-15)
 
 
-NODE_COUNT = 7
-TO_COEFFICIENTS = np.linalg.inv(np.vander(np.linspace(-1, 1, NODE_COUNT)))
+# --- arcs -----------------------------------------------------------------------------
 
 
 @pytest.fixture
 def arcs():
-    """Slopes, Jacobians and combinations of equations at the nodes of three arcs."""
+    """What three arcs are at their nodes, of a curve in 5 unknowns."""
     rng = np.random.default_rng(2)
-    slopes = rng.standard_normal((3, NODE_COUNT, 5))
     jacobians = rng.standard_normal((3, NODE_COUNT, 6, 5))
     left, _, _ = np.linalg.svd(jacobians[:, 0], full_matrices=False)
-    return slopes, jacobians, np.ascontiguousarray(left[:, :, :4])
+    return {
+        "slopes": rng.standard_normal((3, NODE_COUNT, 5)),
+        "residuals": np.zeros((3, NODE_COUNT, 6)),
+        "jacobians": jacobians,
+        "left": np.ascontiguousarray(left[:, :, :4]),
+        "images": np.zeros((3, 2, 6)),
+        "travel": np.zeros((3, len(RHOS))),
+        "curvature": np.zeros((3, len(RHOS))),
+    }
 
 
-def test_adjugates_and_their_norms_are_those_of_lapack(arcs):
-    slopes, jacobians, left = arcs
-    jacobians[0, 0, :, 0] = 0.0  # a pivot has to be looked for
-    found = _core.adjugates(*arcs, TO_COEFFICIENTS)
-    across = np.einsum("ame,akmn->aken", left, jacobians)
-    frames = np.concatenate([across, slopes[:, :, None]], axis=2)
-    determinants = np.linalg.det(frames)
-    expected = determinants[..., None, None] * np.linalg.inv(frames)
-    assert found[0] == pytest.approx(determinants, rel=1e-11)
-    assert found[1] == pytest.approx(expected, rel=1e-10, abs=1e-11)
-    assert found[2] == pytest.approx(np.linalg.norm(frames, axis=(2, 3)))
-    flat = expected.reshape(3, NODE_COUNT, -1)
-    polynomials = (TO_COEFFICIENTS @ flat).reshape(expected.shape)
-    groups = (slice(None), slice(None, -2), slice(-2, -1))
-    for group, columns in enumerate(groups):
-        at_nodes = np.linalg.norm(expected[..., columns], axis=(2, 3))
-        in_coefficients = np.linalg.norm(polynomials[..., columns], axis=(2, 3))
-        assert found[3][:, group] == pytest.approx(at_nodes, rel=1e-10)
-        assert found[4][:, group] == pytest.approx(in_coefficients, rel=1e-8)
+def test_a_singular_frame_is_bounded_by_nothing(arcs):
+    arcs["jacobians"][:] = arcs["jacobians"][:, :1]  # the same all along
+    arcs["slopes"][:] = arcs["slopes"][:, :1]
+    arcs["jacobians"][1] = 0.0
+    sizes, _ = _core.sizes_on_arcs(CHEBYSHEV, _core.Arcs(**arcs), 16)
+    assert np.all(np.isfinite(sizes[[0, 2]]))
+    assert np.all(np.isinf(sizes[1]))
 
 
-def test_a_singular_frame_has_determinant_and_adjugate_zero(arcs):
-    arcs[1][1, 2] = 0.0
-    determinants, adjugates, *_ = _core.adjugates(*arcs, TO_COEFFICIENTS)
-    assert determinants[1, 2] == 0.0
-    assert np.all(adjugates[1, 2] == 0.0)
-
-
-def test_arrays_of_arcs_that_do_not_fit_are_refused(arcs):
-    slopes, jacobians, left = arcs
+@pytest.mark.parametrize("name", ["left", "images", "travel", "jacobians"])
+def test_arrays_of_arcs_that_do_not_fit_are_refused(arcs, name):
+    arcs[name] = arcs[name][:2]
     with pytest.raises(ValueError, match="do not fit"):
-        _core.adjugates(slopes, jacobians, left[:2], TO_COEFFICIENTS)
-    with pytest.raises(ValueError, match="do not fit"):
-        _core.adjugates(slopes, jacobians, left, TO_COEFFICIENTS[:3])
+        _core.sizes_on_arcs(CHEBYSHEV, _core.Arcs(**arcs), 16)
+
+
+# --- places on curves -----------------------------------------------------------------
+
+
+def test_the_ends_of_pieces_are_where_they_hand_over(branch):
+    begins, ends = branch.ends_of_pieces()
+    assert begins == pytest.approx(branch(branch.breaks[:-1]), abs=1e-14)
+    assert ends[:-1] == pytest.approx(begins[1:], abs=1e-11)
+    assert ends[-1] - begins[0] == pytest.approx(branch.travel, abs=1e-14)
+    slopes, _ = branch.ends_of_pieces(derivative=1)
+    assert slopes == pytest.approx(branch(branch.breaks[:-1], 1), abs=1e-12)
+
+
+def test_a_height_is_level_where_its_rate_changes_sign(branch):
+    rng = np.random.default_rng(4)
+    weights, phases, linear = rng.uniform(0.5, 1.5, (3, branch.n))
+    coefficients = np.array([weights, phases, np.ones(branch.n), linear])
+
+    def height(s):
+        points = branch(s)
+        return (np.cos(points - phases) + linear * points) @ weights
+
+    s = branch.arclengths(200)[1:-1]
+    step = 1e-5
+    rates = branch.rates_of_height(coefficients, s)
+    assert rates == pytest.approx((height(s + step) - height(s - step)) / (2 * step))
+    turns = np.flatnonzero(rates[:-1] * rates[1:] < 0)
+    level = branch.level_places(coefficients, s[turns], s[turns + 1])
+    assert len(level)
+    assert np.all((s[turns] < level) & (level < s[turns + 1]))
+    assert np.abs(branch.rates_of_height(coefficients, level)).max() < 1e-12
+
+
+def test_coefficients_of_a_height_that_do_not_fit_are_refused(branch):
+    with pytest.raises(ValueError, match="four rows"):
+        branch.rates_of_height(np.ones((3, branch.n)), np.zeros(1))
+    with pytest.raises(ValueError, match="another number of unknowns"):
+        branch.level_places(np.ones((4, 2)), np.zeros(1), np.ones(1))
+
+
+def test_roots_of_waves_are_those_of_the_sum():
+    coefficients = np.array([0.2, 1.0 - 0.5j, 0.3j])
+    low, high = np.array([0.0, 3.0]), np.array([3.0, 2 * np.pi])
+
+    def values(angles):
+        waves = np.exp(1j * np.outer(angles, np.arange(3)))
+        return (waves @ coefficients).real
+
+    assert np.all(values(low) * values(high) < 0)
+    roots = _core.roots_of_waves(coefficients, low, high, 1e-15)
+    assert np.all((low < roots) & (roots < high))
+    assert np.abs(values(roots)).max() < 1e-14
 
 
 # --- references -----------------------------------------------------------------------

@@ -3,17 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.numerics.chebyshev import (
-    CELL_EDGES,
-    ERRORS,
-    NODES,
-    RHOS,
-    cell_slack,
-    coefficients,
-    largest_between,
-    on_cell_edges,
-    on_ellipses,
-)
+from bifurc.numerics.chebyshev import CELL_EDGES, CHEBYSHEV, ERRORS, NODES, RHOS
 
 X = np.linspace(-1.0, 1.0, 5001)
 CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 2000))
@@ -27,7 +17,7 @@ FUNCTIONS = {
 
 def interpolant(values):
     """Chebyshev coefficients (N,) of the interpolant of values (N,)."""
-    return coefficients(values[None, :, None])[0, :, 0]
+    return CHEBYSHEV.coefficients(values[:, None])[:, 0]
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
@@ -50,7 +40,7 @@ def test_an_interpolant_is_off_by_no_more_than_the_bound_and_not_by_far_less(nam
 def test_a_polynomial_is_bounded_on_ellipses_by_its_coefficients():
     rng = np.random.default_rng(0)
     series = rng.normal(size=8)
-    bounds = on_ellipses(np.abs(series)[None])[0]
+    bounds = CHEBYSHEV.on_ellipses(np.abs(series))
     for rho, bound in zip(RHOS, bounds, strict=True):
         ellipse = 0.5 * (rho * CIRCLE + 1.0 / (rho * CIRCLE))
         values = np.polynomial.chebyshev.chebval(ellipse, series)
@@ -59,18 +49,26 @@ def test_a_polynomial_is_bounded_on_ellipses_by_its_coefficients():
 
 def test_an_interpolant_stays_within_the_slack_of_the_lines_between_cell_edges():
     rng = np.random.default_rng(1)
-    series = rng.normal(size=(1, len(NODES))) / (1.0 + np.arange(len(NODES))) ** 2
-    edges = on_cell_edges(series)[0]
+    series = rng.normal(size=len(NODES)) / (1.0 + np.arange(len(NODES))) ** 2
+    edges = CHEBYSHEV.on_edges(series)
     lines = np.interp(-np.arccos(X), -np.arccos(CELL_EDGES), edges)
-    values = np.polynomial.chebyshev.chebval(X, series[0])
+    values = np.polynomial.chebyshev.chebval(X, series)
     off = np.abs(values - lines).max()
-    assert off < cell_slack(series)[0] < 30 * off
+    assert off < CHEBYSHEV.slack(series) < 30 * off
 
 
 def test_the_largest_value_between_the_nodes_is_bounded():
     rng = np.random.default_rng(2)
-    values = rng.normal(size=(1, len(NODES), 3))
-    series = coefficients(values)[0]
+    values = rng.normal(size=(len(NODES), 3))
+    series = CHEBYSHEV.coefficients(values)
     between = np.polynomial.chebyshev.chebval(X, series)
     largest = np.linalg.norm(between, axis=0).max()
-    assert largest < largest_between(values)[0] < 5 * largest
+    sizes = [np.linalg.norm(rows, axis=1) for rows in (values, series)]
+    assert largest < CHEBYSHEV.largest(*sizes) < 5 * largest
+
+
+def test_what_does_not_fit_the_nodes_is_refused():
+    with pytest.raises(ValueError, match="a row for each node"):
+        CHEBYSHEV.coefficients(np.ones((3, 2)))
+    with pytest.raises(ValueError, match="more than nodes"):
+        CHEBYSHEV.on_edges(np.ones(len(NODES) + 1))

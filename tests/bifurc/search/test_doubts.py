@@ -10,6 +10,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
+from bifurc.numerics.blur import blur_along
 from bifurc.search.completeness import IN_DOUBT, judge_completeness
 from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
@@ -50,7 +51,9 @@ def test_a_surface_is_not_in_doubt():
 
 def traced(problem, branch: Branch) -> TracedBranch:
     nothing = (np.empty(0), np.empty(0))
-    return TracedBranch(branch, profile_branch(problem, branch), nothing, ())
+    profile = profile_branch(problem, branch)
+    blur = blur_along(problem, branch)
+    return TracedBranch(branch, profile, nothing, (), blur=blur)
 
 
 def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
