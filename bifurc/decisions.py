@@ -507,6 +507,53 @@ is_zero_form = Decision(
     1e-6,
     "the coefficients are exact to rounding times the error of the point",
 )
+leaves_to_same_side = Decision(
+    "cusp",
+    "two half-branches leave a singular point to the same side",
+    "one less the cosine of the angle between them, on a small sphere",
+    0.5,
+    "they are halves of one branch, so that it tends to 0 or 2; at a fiftieth of the "
+    "scale it is 0.04 at an ordinary cusp",
+    third_answer="between this and a pass the point is undecided, unless exact "
+    "equations tell",
+)
+leaves_to_other_side = Decision(
+    "pass of a single branch",
+    "two half-branches leave a singular point to opposite sides",
+    "one and the cosine of the angle between them, on a small sphere",
+    0.5,
+    "as for a cusp; where a smooth branch passes it is of the order of the square of "
+    "the radius",
+    third_answer="between this and a cusp the point is undecided, unless exact "
+    "equations tell",
+)
+settles = Decision(
+    "half-branches that settle",
+    "two half-branches on a smaller sphere are as near to each other as on a larger one, "
+    "or to opposite directions, or nearer",
+    "change of the cosine of the angle between them against that",
+    1e-3,
+    "on half the sphere the angle at a cusp shrinks by a quarter or more; where a "
+    "branch with infinite curvature passes it grows as much",
+    third_answer="else the sections are in doubt, and other radii are tried",
+)
+is_zero_coefficient = Decision(
+    "term of a germ",
+    "a coefficient of the equation that is left at a singular point is zero, or a root "
+    "of it real",
+    "its size over the largest, in many digits",
+    1e-50,
+    "what vanishes is 1e-60 and less, what decides and does not 1e-10 and more",
+    third_answer="where one that decides is up to 1e25 times larger the germ says "
+    "nothing, and sections in doubles decide",
+)
+is_same_coefficient = Decision(
+    "two halves of a branch",
+    "two half-branches have the same coefficient, and so are halves of one branch",
+    "difference over the coefficient, in many digits",
+    1e-20,
+    "it is 1e-35 and less; the roots on an edge differ by 1e-10 and more",
+)
 may_fill_null_space = Decision(
     "probe that stays",
     "the solutions may fill the null space, and are looked at above it",

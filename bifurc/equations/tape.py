@@ -177,24 +177,32 @@ class Tape:
         """F, m numbers, of n ``unknowns`` of any kind, with the constructor ``mpf`` and
         the functions of a ``library`` like mpmath."""
         values: dict[int, Any] = {}
-        for slot in self._needed:
-            operation = Operation(int(self.operations[slot]))
-            left, right, _ = self.operands[slot].tolist()
+        for slot, (operation, left, right, constant) in self._program:
             if operation is Operation.UNKNOWN:
                 values[slot] = unknowns[left]
-                continue
-            constant = library.mpf(float(self.constants[slot]))
-            if operation is Operation.CONSTANT:
-                values[slot] = constant
+            elif operation is Operation.CONSTANT:
+                values[slot] = library.mpf(constant)
             elif operation in _BINARY:
                 second = values[right]
                 values[slot] = _binary(operation, library)(values[left], second)
             elif operation in _WITH_CONSTANT:
-                values[slot] = _WITH_CONSTANT[operation](values[left], constant)
+                number = library.mpf(constant)
+                values[slot] = _WITH_CONSTANT[operation](values[left], number)
             else:
                 function = getattr(library, operation.name.lower())
                 values[slot] = function(values[left])
         return [values[slot] for slot in self.outputs.tolist()]
+
+    @cached_property
+    def _program(self) -> list[tuple[int, Node]]:
+        """The slots that the equations are made of, in order, and what they hold."""
+        program = []
+        for slot in self._needed:
+            operation = Operation(int(self.operations[slot]))
+            left, right, _ = self.operands[slot].tolist()
+            constant = float(self.constants[slot])
+            program.append((slot, Node(operation, left, right, constant)))
+        return program
 
     def nodes(self) -> tuple[list[Node], list[int]]:
         """The operations that the equations are made of, their operands by their

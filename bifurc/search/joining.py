@@ -46,10 +46,11 @@ def joined_through(
         return None
     if is_loop:
         before = _part(before, first, before.length - last)
-        return _with_piece(problem, before, before, Outcome.CLOSED)
+        return _with_piece(problem, point, before, before, Outcome.CLOSED)
     before = _part(before, 0.0, before.length - last)
     after = _part(after, first, after.length)
-    return _with_piece(problem, before, after, _outcome(problem, before, after))
+    outcome = _outcome(problem, before, after)
+    return _with_piece(problem, point, before, after, outcome)
 
 
 def _clear_of(
@@ -80,10 +81,14 @@ def _part(branch: Branch, begin: float, end: float) -> Branch:
 
 
 def _with_piece(
-    problem: Problem, before: Branch, after: Branch, outcome: Outcome
+    problem: Problem,
+    point: SingularPoint,
+    before: Branch,
+    after: Branch,
+    outcome: Outcome,
 ) -> Branch | None:
-    """Two branches with a cubic between them, or one closed by it; None where that is no
-    solution."""
+    """Two branches with a polynomial through a point between them, or one closed by it;
+    None where that is no solution."""
     order = before.pieces.shape[1] - 1
     begin, end = before(before.length), after(0.0)
     shift = problem.difference(end, begin) - (end - begin)  # whole periods
@@ -95,6 +100,10 @@ def _with_piece(
     cubic[1] = 0.75 * chord - 0.25 * (slopes[0] + slopes[1])
     cubic[2] = 0.25 * (slopes[1] - slopes[0])
     cubic[3] = 0.25 * (slopes[0] + slopes[1]) - 0.25 * chord
+    if order >= 4:
+        # (1 - t^2)^2 leaves ends and slopes, and the middle goes to the point
+        aside = problem.difference(point.u, cubic[0])
+        cubic[[0, 2, 4]] += np.outer([1.0, -2.0, 1.0], aside)
     piece, length = reparametrised(cubic)
     powers = WITHIN[:, None] ** np.arange(order + 1)
     residual = float(problem.gaps(powers @ piece).max())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -58,6 +58,9 @@ from bifurc.singular.classify import classify_from_nearby, classify_singular_poi
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.singular.sphere import is_on_surface
+
+if TYPE_CHECKING:
+    from bifurc.singular.germ import Germ
 
 __all__ = ["Limits", "Search", "Start"]
 
@@ -598,22 +601,30 @@ class Search:
         known = self.findings.point_at(located.u, located.error)
         if known is not None:
             return known
-        located = self._in_more_digits(located)
+        located, germ = self._in_more_digits(located)
         known = self.findings.point_at(located.u, located.error)
         if known is not None:
             return known
-        point = classify_singular_point(self.problem, located)
+        point = classify_singular_point(self.problem, located, germ=germ)
         return self.findings.add_point(point)
 
-    def _in_more_digits(self, located: LocatedPoint) -> LocatedPoint:
-        """The located point, in more digits where these tell more."""
+    def _in_more_digits(
+        self, located: LocatedPoint
+    ) -> tuple[LocatedPoint, Germ | None]:
+        """The located point, in more digits where these tell more, and the germ of the
+        curves there, where the exact equations give it."""
         is_open = not is_precise_enough(located.error, self.problem.scale)
         if not (is_open and self.problem.is_exact):
-            return located
+            return located, None
         # mpmath takes longer to import than an ordinary search
+        from bifurc.singular.germ import germ_at, placed_at
         from bifurc.singular.precise_location import precisely_located
 
-        return precisely_located(self.problem, located)
+        germ = germ_at(self.problem, located)
+        if germ is None:
+            located = precisely_located(self.problem, located)
+            germ = germ_at(self.problem, located)
+        return (located if germ is None else placed_at(located, germ)), germ
 
     def _singular_values(self, points: np.ndarray) -> np.ndarray:
         """Singular values (k, n) of F' at points (k, n)."""

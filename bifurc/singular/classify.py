@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bifurc.decisions import settles
 from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import SingularPoint
 from bifurc.singular.second_order import second_order_tangents
 from bifurc.singular.sphere import Section, section
+
+if TYPE_CHECKING:
+    from bifurc.singular.germ import Germ  # mpmath takes long to import
 
 __all__ = ["classify_from_nearby", "classify_singular_point"]
 
@@ -26,19 +30,27 @@ FARTHER_RADII = (0.16, 0.32)
 
 
 def classify_singular_point(
-    problem: Problem, located: LocatedPoint, within: float = np.inf
+    problem: Problem,
+    located: LocatedPoint,
+    within: float = np.inf,
+    germ: Germ | None = None,
 ) -> SingularPoint:
     """The located point with its half-branches, tangents and local dimension, seen from
     no farther away than ``within``, where other singular points are.
 
     The half-branches are those of a section with a small sphere, at whose radius and
     at half of it the same is seen; both are larger than the error of the point.
-    Tangents of second order are kept where their number agrees with the section.
+    Tangents of second order are kept where their number agrees with the section. Where
+    exact equations give the ``germ``, the section shows its half-branches; where rounding
+    hides them from every section, they are those of the germ.
     """
-    cut = _choose_sections(problem, located, within)
+    count = None if germ is None else len(germ.directions)
+    cut = _choose_sections(problem, located, within, count)
     no_directions = np.empty((0, problem.n))
     half_branches, dimension = no_directions, -1
-    if cut.agree:
+    if germ is not None and not cut.are_clear:
+        half_branches, dimension = germ.directions, min(len(germ.directions), 1)
+    elif cut.agree:
         half_branches = (cut.outer.points - located.u) / cut.radius
         dimension = cut.outer.dimension
     tangents = second_order_tangents(problem, located.u, located.null_space)
@@ -56,8 +68,9 @@ def classify_singular_point(
         dimension=dimension,
         order=order,
         radius=cut.radius,
-        is_clear=cut.agree and cut.are_clear,
+        is_clear=germ is not None or (cut.agree and cut.are_clear),
         is_confirmed=located.is_confirmed,
+        is_through=None if germ is None else germ.is_through,
     )
 
 
@@ -87,8 +100,8 @@ def classify_from_nearby(
 class _Sections(NamedTuple):
     """The sections with a sphere of ``radius`` and with one half as large.
 
-    They ``agree`` where both show the same dimension and as many half-branches, and the
-    exact point lies inside both spheres; they ``are_clear`` where neither is in doubt.
+    They ``agree`` where both show the same dimension and as many half-branches, which
+    settle, and the exact point lies inside both spheres; they ``are_clear`` where neither is in doubt.
     """
 
     radius: float
@@ -98,39 +111,61 @@ class _Sections(NamedTuple):
 
 
 def _choose_sections(
-    problem: Problem, located: LocatedPoint, within: float
+    problem: Problem, located: LocatedPoint, within: float, count: int | None = None
 ) -> _Sections:
     """The first sections, of radii up to ``within``, that agree and are clear; else the
-    first that agree; else those of the first radius."""
+    first that agree; else those of the first radius. Where the ``count`` of half-branches
+    is known only those are clear that show it, and they are."""
     farther = FARTHER_RADII if problem.is_exact else ()
     radii = [FIRST_RADIUS, *OTHER_RADII, *farther]
     largest = within / problem.scale
     radii = [radius for radius in radii if radius <= largest]
     if len(radii) < 2:
         radii = [largest, largest / 4]
-    best = _cut(problem, located, radii[0])
+    best = _cut(problem, located, radii[0], count)
     for radius in radii[1:]:
         if best.agree and best.are_clear:
             break
         if radius * problem.scale / 2 < located.error:
             continue  # the exact point may lie outside of the smaller sphere
-        cut = _cut(problem, located, radius)
+        cut = _cut(problem, located, radius, count)
         if cut.agree and (cut.are_clear or not best.agree):
             best = cut
     return best
 
 
-def _cut(problem: Problem, located: LocatedPoint, radius: float) -> _Sections:
-    """The sections at a ``radius`` over the problem's scale, and at half of it."""
+def _cut(
+    problem: Problem, located: LocatedPoint, radius: float, count: int | None
+) -> _Sections:
+    """The sections at a ``radius`` over the problem's scale, and at half of it; the
+    ``count`` of half-branches may be known."""
     size = radius * problem.scale
     outer = section(problem, located.u, located.null_space, size)
     inner = section(problem, located.u, located.null_space, size / 2)
     same_dimension = outer.dimension == inner.dimension
     same_count = len(outer.points) == len(inner.points)
     holds_point = size / 2 > located.error
-    return _Sections(
-        radius=size,
-        outer=outer,
-        agree=same_dimension and same_count and holds_point,
-        are_clear=not (outer.doubtful or inner.doubtful),
-    )
+    agree = same_dimension and same_count and holds_point
+    if count is None:
+        agree = agree and _settle(located.u, outer, inner)
+        are_clear = not (outer.doubtful or inner.doubtful)
+    else:
+        are_clear = agree and len(outer.points) == count
+    return _Sections(size, outer, agree, are_clear)
+
+
+def _settle(point: np.ndarray, outer: Section, inner: Section) -> bool:
+    """Whether two half-branches of a point (n,) get nearer to one direction, or to
+    opposite ones, from a sphere to a smaller one."""
+    if not len(outer.points) == len(inner.points) == 2:
+        return True
+    before = _cosine(outer.points - point)
+    after = _cosine(inner.points - point)
+    turn = before - after if before > 0 else after - before
+    return settles(turn)
+
+
+def _cosine(pair: np.ndarray) -> float:
+    """The cosine of the angle between two vectors (2, n)."""
+    one, other = pair
+    return float(one @ other / (np.linalg.norm(one) * np.linalg.norm(other)))

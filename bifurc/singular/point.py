@@ -7,6 +7,8 @@ from enum import Enum
 
 import numpy as np
 
+from bifurc.decisions import leaves_to_other_side, leaves_to_same_side
+
 __all__ = ["Kind", "SingularPoint"]
 
 
@@ -41,6 +43,9 @@ class SingularPoint:
     argument that decided: 2, or 0 for the section alone, which was made at ``radius``;
     ``is_clear`` where nothing in it is a zero but for rounding, ``is_confirmed`` unless
     the equations are known exactly and more digits did not show the point.
+    ``is_through`` says whether two half-branches leave to opposite sides, where exact
+    equations tell: seen from a sphere they may still turn. Else they do so, or not,
+    where the sections leave no doubt.
     """
 
     u: np.ndarray
@@ -54,6 +59,7 @@ class SingularPoint:
     radius: float
     is_clear: bool = True
     is_confirmed: bool = True
+    is_through: bool | None = None
 
     @property
     def kind(self) -> Kind:
@@ -66,9 +72,22 @@ class SingularPoint:
         if count == 0:
             return Kind.ISOLATED
         if count == 2:
-            one, other = self.half_branches
-            return Kind.CUSP if one @ other > 0 else Kind.RANK_DROP
+            return self._kind_of_two
         return Kind.BIFURCATION if count % 2 == 0 else Kind.UNDECIDED
+
+    @property
+    def _kind_of_two(self) -> Kind:
+        """What two half-branches make: they are halves of one branch, and their tangents
+        the same or opposite."""
+        if self.is_through is not None:
+            return Kind.RANK_DROP if self.is_through else Kind.CUSP
+        one, other = self.half_branches
+        cosine = float(one @ other)
+        if leaves_to_same_side(1.0 - cosine):
+            return Kind.CUSP
+        if leaves_to_other_side(1.0 + cosine):
+            return Kind.RANK_DROP
+        return Kind.UNDECIDED
 
     def __repr__(self) -> str:
         return (

@@ -1,5 +1,7 @@
 """What a singular point says of itself."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -29,6 +31,9 @@ def point(half_branches: list[tuple[float, float]], dimension: int) -> SingularP
         ([AHEAD, BEHIND, LEFT, RIGHT], 1, Kind.BIFURCATION),
         ([AHEAD, BEHIND], 1, Kind.RANK_DROP),
         ([AHEAD, (0.8, 0.6)], 1, Kind.CUSP),
+        ([AHEAD, (0.28, 0.96)], 1, Kind.UNDECIDED),
+        ([AHEAD, (-0.28, 0.96)], 1, Kind.UNDECIDED),
+        ([AHEAD, (-0.8, 0.6)], 1, Kind.RANK_DROP),
         ([], 0, Kind.ISOLATED),
         ([AHEAD, BEHIND], 2, Kind.DIMENSION_CHANGE),
         ([], 2, Kind.SURFACE),
@@ -40,6 +45,15 @@ def test_the_half_branches_and_the_dimension_make_the_kind(
     half_branches: list[tuple[float, float]], dimension: int, kind: Kind
 ) -> None:
     assert point(half_branches, dimension).kind is kind
+
+
+@pytest.mark.parametrize("is_through", [False, True])
+def test_exact_equations_tell_to_which_sides_two_half_branches_leave(
+    is_through: bool,
+) -> None:
+    seen = point([AHEAD, (0.8, 0.6)], 1)
+    kind = replace(seen, is_through=is_through).kind
+    assert kind is (Kind.RANK_DROP if is_through else Kind.CUSP)
 
 
 def test_a_singular_point_is_shown_in_one_line() -> None:

@@ -1,0 +1,61 @@
+"""Germs of curves at points that doubles know to a few digits."""
+
+import numpy as np
+import pytest
+
+from bifurc.function_problem import FunctionProblem
+from bifurc.singular.germ import germ_at, placed_at
+from bifurc.singular.locate import LocatedPoint
+
+BOX = [[-1.1, 1.0], [-1.05, 1.2]]
+CENTER = np.array([0.3, -0.2])
+TURN = np.linalg.qr(np.random.default_rng(3).normal(size=(2, 2)))[0]
+CURVES = {  # polynomial at the origin, number of half-branches, passes of one branch
+    "cusp of order 9": (lambda x, y: y**2 - x**9, 2, False),
+    "x^3 = y^4": (lambda x, y: x**3 - y**4, 2, True),
+    "x^3 = y^4, stretched": (lambda x, y: x**3 - (10 * y) ** 4, 2, True),
+    "contact of order 4": (lambda x, y: y * (y - x**4), 4, None),
+    "isolated point": (lambda x, y: y**2 + x**6, 0, None),
+    "three parabolas": (lambda x, y: y * (y**2 - x**4), 6, None),
+    "not a polynomial": (
+        lambda x, y: np.sin(y) ** 2 - x**2 * (np.exp(x) - 1),
+        2,
+        False,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_the_germ_has_the_exact_point_and_its_branches(name):
+    polynomial, count, is_through = CURVES[name]
+    problem = FunctionProblem(
+        lambda u: np.array([polynomial(*(TURN @ (u - CENTER)))]), BOX
+    )
+    beside = CENTER + np.array([2e-6, -1e-6])
+    located = LocatedPoint(beside, np.eye(2), 1e-5)
+    germ = germ_at(problem, located)
+    assert (len(germ.directions), germ.is_through) == (count, is_through)
+    assert np.array_equal(germ.u, CENTER)
+    error = placed_at(located, germ).error
+    assert error >= np.linalg.norm(beside - CENTER)
+
+
+def test_a_germ_in_space_is_that_of_the_equation_that_is_left():
+    problem = FunctionProblem(
+        lambda u: np.array([u[1] ** 2 - u[0] ** 5 + u[2] ** 3, u[2] - u[0] ** 2]),
+        [[-1, 1]] * 3,
+    )
+    place = np.array([1e-6, 2e-6, 0.0])
+    germ = germ_at(problem, LocatedPoint(place, np.eye(3)[:, :2], 1e-5))
+    assert germ.is_through is False
+    assert np.allclose(germ.directions, [[1, 0, 0]] * 2)
+
+
+def test_an_equation_without_a_singular_point_has_no_germ():
+    problem = FunctionProblem(lambda u: np.array([u[1] ** 2 - u[0] ** 3 + 1e-12]), BOX)
+    assert germ_at(problem, LocatedPoint(np.zeros(2), np.eye(2), 1e-5)) is None
+
+
+def test_nothing_is_said_of_more_than_one_equation_on_the_null_space():
+    problem = FunctionProblem(lambda u: np.array([u[0] * u[1]] * 2), BOX)
+    assert germ_at(problem, LocatedPoint(np.zeros(2), np.eye(2), 1e-5)) is None
