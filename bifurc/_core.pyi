@@ -106,6 +106,15 @@ def returns(
     s: float,
     first: int,
 ) -> list[tuple[float, float, float, float, np.ndarray]]: ...
+def exit_of_bounds(
+    pieces: np.ndarray,
+    centers: np.ndarray,
+    radii: np.ndarray,
+    periods: np.ndarray,
+    first: int,
+    bounds: np.ndarray,
+    slack: float,
+) -> float | None: ...
 def null_vector(
     matrix: np.ndarray, along: np.ndarray, negligible: float, agreeing: float
 ) -> np.ndarray: ...

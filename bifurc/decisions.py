@@ -457,6 +457,69 @@ is_crossing_of_many = Decision(
     "thousand",
     third_answer="what misses by more is listed as a near miss, with its singular value",
 )
+is_derivative = Decision(
+    "derivative",
+    "a Jacobian that a user gives is the derivative of the function",
+    "its difference to differences of the function, less the error of these, over the "
+    "size of both",
+    1e-2,
+    "right ones differ by 1e-6 and less, those that lack a term by 1e-1 and more",
+)
+is_derivative_along = Decision(
+    "derivative along a curve",
+    "a Jacobian of a large problem is the derivative of the function all along a curve",
+    "error of the unknowns over the way along the curve, by what its product with the "
+    "tangent is off, less the error of differences",
+    1e-2,
+    "right ones are off by 1e-6 and less; a branch is followed to 1e-6 of its size",
+)
+is_singular_start = Decision(
+    "singular start of a large problem",
+    "a large problem begins at a singular point, and F' is measured beside it",
+    "smallest singular value at the start, over that a little way along the curve",
+    1e-3,
+    "either value serves as a unit; that of a singular start would be rounding",
+    Role.LOOK,
+)
+is_multiple_of_many = Decision(
+    "multiple singular point of a large problem",
+    "several singular values of a large problem are zero at one point, and not next to "
+    "each other",
+    "the largest of them at the point where they are least, over the smallest one at the "
+    "start",
+    1e-7,
+    "rounding of F' over that value is 1e-10 with a thousand unknowns",
+    third_answer="points of one value each are located next to each other",
+)
+is_without_crossing_speed = Decision(
+    "without crossing speed",
+    "a singular value of a large problem does not go to zero at a rate of its own along "
+    "the branch, and the directions of other branches are not computed",
+    "smallest rate at which the values go to zero at a multiple singular point, over the "
+    "largest",
+    1e-4,
+    "rates come from differences, to eight digits or so; for fields on symmetric regions "
+    "they are equal",
+    third_answer="the point is listed, and its directions are said to be not computed",
+)
+is_without_quadratic_terms = Decision(
+    "without quadratic terms",
+    "the directions of branches at a double singular point of a large problem are those "
+    "of third order",
+    "quadratic terms of the equations on the null space, over the crossing speed",
+    1e-5,
+    "differences leave 1e-9 where symmetry forbids them",
+    third_answer="the point is listed with the order from which its directions come",
+)
+is_multiple_line = Decision(
+    "multiple line of a form",
+    "two lines on which a binary form vanishes are one, or nearly, and their number is "
+    "open",
+    "an extremum of the form on the unit circle, over the size of what it is made of",
+    1e-3,
+    "third derivatives by differences are right to 1e-5",
+    third_answer="the point is listed, and its directions are said to be not computed",
+)
 is_located = Decision(
     "located",
     "the iteration for a singular point has settled, and what it came to is looked at",

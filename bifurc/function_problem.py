@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc.checks import check_callable, floats_of
-from bifurc.decisions import is_solved_from_afar, is_whole_circle
+from bifurc.decisions import is_derivative, is_solved_from_afar, is_whole_circle
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
@@ -40,7 +40,6 @@ __all__ = ["FunctionProblem", "NumericalProblem"]
 
 PROBES = 7  # points at which a function is tried out and its derivatives are measured
 CHECKS = 20  # more points at which a recording is compared with the function
-WRONG = 1e-2  # relative difference from which on a given derivative is wrong
 LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
 FARTHEST = 100.0  # over the size of solutions, bounds where none are given
@@ -448,7 +447,7 @@ class FunctionProblem(NumericalProblem):
         if not np.all(np.isfinite(expected)):
             return  # at the rim of where the function is defined
         gaps = np.abs(jacobian - expected)
-        if gaps.max() > WRONG * (1.0 + np.abs(expected).max()):
+        if not is_derivative(float(gaps.max()), 1.0 + float(np.abs(expected).max())):
             row, column = np.unravel_index(np.argmax(gaps), gaps.shape)
             allowed = (
                 f"the derivative of the function, {expected[row, column]:.6g} "

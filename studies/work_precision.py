@@ -40,7 +40,7 @@ from studies.work_precision_figures import draw_case, draw_ratios
 from studies.work_precision_findings import TOLERANCES, ratios, summarise
 from studies.work_precision_runs import Run
 
-__all__ = ["CaseRuns", "measure", "measure_case"]
+__all__ = ["CaseRuns", "least_in_turn", "measure", "measure_case"]
 
 log = logging.getLogger(__name__)
 
@@ -48,6 +48,7 @@ FAILURES = (MethodFailure, ArithmeticError, ValueError, np.linalg.LinAlgError)
 PLACES = 12  # of the exact curve, where its own error is measured
 ROUNDING = 1e-16  # the least error shown
 MOST_REPEATS = 9
+IN_A_TURN = 3  # runs of one method where methods take turns
 QUICK, PATIENT = 0.1, 0.5  # s, after which a method's tolerance is tightened no more
 
 
@@ -86,6 +87,18 @@ def measure(
         points=curve.points,
         note="" if np.isfinite(error) else "a part of the curve is left out",
     )
+
+
+def least_in_turn(
+    case: Case, runs: Sequence[tuple[Method, float]], turns: int
+) -> list[float]:
+    """The least processor time (s) of each of some runs, a method with a tolerance, that
+    take turns of a few runs each: what else the machine does falls on all of them."""
+    times: list[list[float]] = [[] for _ in runs]
+    for _ in range(turns):
+        for (method, tolerance), own in zip(runs, times, strict=True):
+            own += [_timed(case, method, tolerance)[1] for _ in range(IN_A_TURN)]
+    return [min(own) for own in times]
 
 
 def _repeats(seconds: float, budget: float) -> int:

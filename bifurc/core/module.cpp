@@ -5,6 +5,7 @@
 #include "bifurc/core/brackets.hpp"
 #include "bifurc/core/curve.hpp"
 #include "bifurc/core/eigenvalues.hpp"
+#include "bifurc/core/exits.hpp"
 #include "bifurc/core/march.hpp"
 #include "bifurc/core/numpy.hpp"
 #include "bifurc/core/returns.hpp"
@@ -202,15 +203,19 @@ nb::object turning_points(const Curve& curve, Index unknown) {
     return out.release();
 }
 
+Trail trail_of(const CubeIn<double>& pieces, const VectorIn<double>& centers, const VectorIn<double>& radii,
+               const VectorIn<double>& periods) {
+    check_width("periods", periods.size(), static_cast<Index>(pieces.shape(2)));
+    const bool fits = centers.size() == pieces.shape(0) && radii.size() == centers.size();
+    if (!fits) throw nb::value_error("the arrays of a curve do not fit each other");
+    return {numpy::rows(pieces), numpy::view(centers), numpy::view(radii), numpy::view(periods)};
+}
+
 // A list of (s, distance, forward, speed, offset (n)): `Return`.
 nb::list returns_on(const CubeIn<double>& pieces, const VectorIn<double>& centers, const VectorIn<double>& radii,
                  const VectorIn<double>& periods, Index number, double s, Index first) {
-    const auto count = static_cast<Index>(pieces.shape(0));
-    check_width("periods", periods.size(), static_cast<Index>(pieces.shape(2)));
-    const bool fits = static_cast<Index>(centers.size()) == count && static_cast<Index>(radii.size()) == count;
-    if (!fits) throw nb::value_error("the arrays of a curve do not fit each other");
-    if (number < 0 || number >= count || first < 0) throw nb::index_error("no such piece");
-    const Trail trail{numpy::rows(pieces), numpy::view(centers), numpy::view(radii), numpy::view(periods)};
+    const Trail trail = trail_of(pieces, centers, radii, periods);
+    if (number < 0 || number >= trail.count() || first < 0) throw nb::index_error("no such piece");
     nb::list found;
     for (const Return& passing : returns_to(trail, number, s, first)) {
         Array<double> offset({static_cast<Index>(passing.offset.size())});
@@ -219,6 +224,17 @@ nb::list returns_on(const CubeIn<double>& pieces, const VectorIn<double>& center
             nb::make_tuple(passing.s, passing.distance, passing.forward, passing.speed, offset.release()));
     }
     return found;
+}
+
+// The arclength, or None.
+nb::object exit_of(const CubeIn<double>& pieces, const VectorIn<double>& centers, const VectorIn<double>& radii,
+                   const VectorIn<double>& periods, Index first, const MatrixIn<double>& bounds, double slack) {
+    const Trail trail = trail_of(pieces, centers, radii, periods);
+    check_width("bounds", bounds.shape(0), static_cast<Index>(pieces.shape(2)));
+    if (bounds.shape(1) != 2) throw nb::value_error("bounds: a row must have two ends");
+    if (first < 0) throw nb::index_error("no such piece");
+    const std::optional<double> s = exit_of_bounds(trail, first, numpy::view(bounds), slack);
+    return s ? nb::cast(*s) : nb::none();
 }
 
 // (n) of a matrix (m, n), for ``along`` (n) or (0).
@@ -287,6 +303,8 @@ NB_MODULE(_core, module) {
             },
             "values"_a)
         .def("roots", &numbers_of<&Brackets::roots>);
+    module.def("exit_of_bounds", &exit_of, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "first"_a,
+               "bounds"_a, "slack"_a);
     module.def("null_vector", &null_vector, "matrix"_a, "along"_a, "negligible"_a, "agreeing"_a);
     module.def("returns", &returns_on, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "number"_a, "s"_a, "first"_a);
     module.def("roots_of_waves", &roots_of_waves, "coefficients"_a, "low"_a, "high"_a, "tolerance"_a);

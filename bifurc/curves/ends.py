@@ -18,7 +18,7 @@ from bifurc.problem import Problem
 
 __all__ = ["end_of_curve", "same_place"]
 
-# Shares of a piece at which it is held against the bounds, and the slack that they have
+# Shares of a piece at which it is held against its region, and the slack that this has
 # there, over the scale.
 GRID = np.linspace(0.0, 1.0, 33)
 SLACK = 1e-12
@@ -129,8 +129,24 @@ def _known_to(problem: Problem, point: np.ndarray) -> float:
 
 
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:
-    """Arclength at which the curve, from piece ``first`` on, first leaves the
-    bounds."""
+    """Arclength at which the curve, from piece ``first`` on, first leaves its
+    region."""
+    if type(problem).excess is not Problem.excess:
+        return _leaving_by_samples(problem, track, first)
+    return _core.exit_of_bounds(
+        pieces=track.pieces,
+        centers=track.centers,
+        radii=track.radii,
+        periods=problem.periods,
+        first=first,
+        bounds=problem.bounds,
+        slack=SLACK * problem.scale,
+    )
+
+
+def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | None:
+    """The same for a problem whose class says in a way of its own what lies outside, by
+    `Problem.excess`."""
     if not problem.has_rim:
         return None
     breaks = track.breaks(track.reached)[first:]
@@ -149,8 +165,8 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
 
 
 def _exit(problem: Problem, piece: np.ndarray, low: float, high: float) -> float:
-    """Coordinate at which a piece (order + 1, n) leaves the bounds, between one of a
-    point on or inside them, ``low``, and one of a point outside, ``high``."""
+    """Coordinate at which a piece (order + 1, n) leaves the region, between one of a
+    point on or inside it, ``low``, and one of a point outside, ``high``."""
 
     def excess(x: np.ndarray) -> np.ndarray:
         return problem.excess(points_on_piece(piece, x))

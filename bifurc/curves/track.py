@@ -146,10 +146,14 @@ class Track:
     def append(self, march: March) -> None:
         """The track goes on with the pieces of a march from its front."""
         centers = self.reached + march.steps.cumsum()
+        residuals = march.residuals[: len(march.pieces)]  # not the gap of an open one
+        if not len(self):
+            self.pieces, self.centers = march.pieces, centers
+            self.radii, self.residuals = march.radii, residuals
+            return
         self.pieces = np.concatenate([self.pieces, march.pieces])
         self.centers = np.concatenate([self.centers, centers])
         self.radii = np.concatenate([self.radii, march.radii])
-        residuals = march.residuals[: len(march.pieces)]  # not the gap of an open one
         self.residuals = np.concatenate([self.residuals, residuals])
 
     def append_bridge(self, bridge: Bridge) -> None:

@@ -16,10 +16,13 @@ class LargeKind(Enum):
 
     # The parameter turns back: a limit point.
     FOLD = "fold"
-    # The rank of F' drops, and another curve passes in a direction of its own.
+    # The rank of F' drops, and other curves pass in directions of their own.
     CROSSING = "crossing"
-    # The rank of F' drops, and second order shows no other curve.
+    # The rank of F' drops by one, and second order shows no other curve.
     RANK_DROP = "rank drop"
+    # The rank of F' drops by two or more, and the directions of other curves are not
+    # computed.
+    MULTIPLE = "multiple singular point, directions not computed"
     # The smallest singular value has a minimum above zero.
     NEAR_MISS = "near miss"
 
@@ -30,9 +33,11 @@ class LargePoint:
 
     ``gap`` is what F misses there, over the magnitude, to be singular: the smallest
     singular value at a near miss, rounding at the others. ``bend``: the second
-    derivative of the parameter in the arclength at a fold. ``directions`` (k, n): du/ds
-    of the curves that pass at a crossing, the first that of the branch; u + 0.1
-    directions[1] is a start on the other one.
+    derivative of the parameter in the arclength at a fold. ``null_vectors`` (q, n) are
+    the directions across the branch in which F' vanishes where its rank drops by q.
+    ``directions`` (k, n): du/ds of the curves that pass at a crossing, the first that of
+    the branch; u + 0.1 directions[1] is a start on another one. ``order`` is that of
+    the derivatives of F that give them, 0 where they give none besides the first.
     """
 
     kind: LargeKind
@@ -41,6 +46,13 @@ class LargePoint:
     gap: float
     bend: float = 0.0
     directions: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    null_vectors: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    order: int = 0
+
+    @property
+    def multiplicity(self) -> int:
+        """By how much the rank of F' drops there."""
+        return len(self.null_vectors)
 
     @property
     def parameter(self) -> float:
@@ -49,4 +61,8 @@ class LargePoint:
 
     def __repr__(self) -> str:
         place = f"{self.parameter:.12g} at s = {self.s:.6g}"
-        return f"<LargePoint: {self.kind.value}, parameter {place}, gap {self.gap:.2g}>"
+        times = f", multiplicity {self.multiplicity}" if self.multiplicity > 1 else ""
+        return (
+            f"<LargePoint: {self.kind.value}{times}, parameter {place}, "
+            f"gap {self.gap:.2g}>"
+        )

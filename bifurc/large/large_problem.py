@@ -14,6 +14,7 @@ from bifurc.checks import (
     check_whole,
     floats_of,
 )
+from bifurc.decisions import is_derivative
 from bifurc.equations.recording import record
 from bifurc.errors import ProblemError
 from bifurc.large.colouring import column_groups
@@ -39,7 +40,6 @@ DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences
 STEP_OF_PARAMETER = 1e-10  # least step of the parameter, over it: far above rounding
 SHORTER = 1e-2  # a second step, over the first, which shows the error of a difference
 SAME = 1e-5  # relative difference up to which two kinds of derivative agree
-WRONG = 1e-2  # relative difference from which on a given derivative is wrong
 SAMPLES = 3  # points at which a recording is compared with the function
 
 
@@ -294,7 +294,8 @@ class LargeProblem:
         product = self.jacobian(point) @ taken / SHORTER
         error = np.linalg.norm(expected - longer)
         size = np.linalg.norm(expected) + np.linalg.norm(product)
-        if np.linalg.norm(product - expected) > WRONG * size + error:
+        off = float(np.linalg.norm(product - expected) - error)
+        if not is_derivative(off, float(size)) and off > 0.0:
             row = int(np.argmax(np.abs(product - expected)))
             derivative = expected[row] / DIFFERENCE_STEP
             allowed = f"the derivative of the function, {derivative:.6g}"

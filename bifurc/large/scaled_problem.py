@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bifurc.decisions import is_singular_start
 from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
 from bifurc.large.bordered_system import (
@@ -31,10 +32,10 @@ if TYPE_CHECKING:
 __all__ = ["ScaledProblem"]
 
 DIFFERENCE = 1e-5  # length of the step of a difference of F'
+SECOND_DIFFERENCE = 3e-3  # the same of a second difference
 ROUNDS = 3  # of inverse iteration, by which the size of F' is seen
 ALONG_AXIS = 1e-3  # share of the random vector that the first tangent comes from
 BESIDE = 0.1  # how far beside a singular start F' is of an ordinary size
-SINGULAR = 1e-3  # of that size: a start is singular
 
 
 class ScaledProblem(NumericalProblem):
@@ -95,14 +96,25 @@ class ScaledProblem(NumericalProblem):
     def second_derivative(
         self, point: np.ndarray, a: np.ndarray, b: np.ndarray
     ) -> np.ndarray:
-        """F''(a, b) (n - 1,), over the magnitude, by a central difference of F'."""
+        """F''(a, b) (n - 1,), over the magnitude, by a central difference of F'; of
+        several b (n, k) at once (n - 1, k)."""
         length = float(np.linalg.norm(a))
         if length == 0.0:
-            return np.zeros(self.n - 1)
+            return np.zeros((self.n - 1, *b.shape[1:]))
         step = DIFFERENCE / length
         upper = self.jacobian(point + step * a) @ b
         lower = self.jacobian(point - step * a) @ b
         derivative: np.ndarray = (upper - lower) / (2.0 * step * self.magnitude)
+        return derivative
+
+    def third_derivative(self, point: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """The third derivative F''' along a (n,), thrice, (n - 1,), over the magnitude,
+        by a second difference of F': to some four digits."""
+        step = SECOND_DIFFERENCE / float(np.linalg.norm(a))
+        upper = self.jacobian(point + step * a) @ a
+        lower = self.jacobian(point - step * a) @ a
+        change = upper - 2.0 * (self.jacobian(point) @ a) + lower
+        derivative: np.ndarray = change / (step**2 * self.magnitude)
         return derivative
 
     # --- linear systems ---------------------------------------------------------------
@@ -161,7 +173,8 @@ class ScaledProblem(NumericalProblem):
         tangent /= np.linalg.norm(tangent)
         size = self._size_across(point, tangent)
         beside = self._size_across(point + BESIDE * tangent, tangent)
-        return beside if size < SINGULAR * beside < np.inf else size
+        is_singular = np.isfinite(beside) and is_singular_start(size, beside)
+        return beside if is_singular else size
 
     def _size_across(self, point: np.ndarray, tangent: np.ndarray) -> float:
         """About the smallest singular value of F' at a point (n,) across a ``tangent``

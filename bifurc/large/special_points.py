@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.decisions import is_crossing_of_many, is_passed, stands_out
+from bifurc.decisions import (
+    is_crossing_of_many,
+    is_multiple_of_many,
+    is_passed,
+    stands_out,
+)
+from bifurc.large.crossing_tangents import null_vectors_across, tangents_at
 from bifurc.large.crossings import LocatedCrossing, locate_crossing
 from bifurc.large.folds import locate_fold
 from bifurc.large.large_branch import last_unknown
@@ -13,13 +19,14 @@ from bifurc.large.large_point import LargeKind, LargePoint
 from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_profile import SingularProfile, triples_at, unit_tangent
 from bifurc.large.smallest_singular_values import SingularTriple
-from bifurc.singular.second_order import lines_of_form
+from bifurc.large.vanishing_group import vanishing_group, zero_ahead
 
 __all__ = ["crossings_on", "folds_on", "near_misses_on"]
 
 BEYOND = 1.5  # distances to the next place within which a zero is looked for
 FOOT_STEPS = 5  # of Newton's method to the foot of a point
-SAME = 1e-4  # arclength: crossings of one curve no farther apart are one
+SAME = 1e-4  # arclength: crossings of one curve no farther apart may be one
+HALF = 0.7  # cosine between the two cases, null vectors that agree or are square
 CLOSED_IN = 1e-4  # share of the distance between places to which a minimum is located
 
 
@@ -56,11 +63,15 @@ def crossings_on(
     for number, triples in enumerate(profile.triples):
         low, high = _beside(profile, number, branch.length)
         for triple in triples:
-            zero = _zero_ahead(problem, branch, float(profile.places[number]), triple)
+            s = float(profile.places[number])
+            zero = zero_ahead(problem, branch, s, triple)
             if not low <= zero <= high:
                 continue
-            point = _crossing_at(problem, branch, zero, triple)
-            if point is not None and _is_new(point, points):
+            right = problem.own_units.sizes * triple.right
+            if not _is_new(zero, right[None], points):
+                continue
+            point = _crossing_at(problem, branch, zero, high - low, triple)
+            if point is not None and _is_new(point.s, point.null_vectors, points):
                 points.append(point)
     return points
 
@@ -75,38 +86,44 @@ def _beside(
     return max(low, 0.0), min(high, length)
 
 
-def _zero_ahead(
-    problem: ScaledProblem, branch: Branch, s: float, triple: SingularTriple
-) -> float:
-    """Where a singular value would be zero by its slope along the curve."""
-    tangent = unit_tangent(branch, s)
-    change = problem.second_derivative(branch(s), tangent, triple.right)
-    slope = float(triple.left @ change)
-    return s - triple.value / slope if slope else np.inf
+def _is_new(s: float, vectors: np.ndarray, points: list[LargePoint]) -> bool:
+    """Whether a singular point at arclength ``s`` with null ``vectors`` (q, n) is none
+    of those that are known: next to it on the branch, with a null space that holds
+    these."""
+    near = [other for other in points if abs(s - other.s) <= SAME]
+    return not any(_is_part_of(vectors, one.null_vectors) for one in near)
 
 
-def _is_new(point: LargePoint, points: list[LargePoint]) -> bool:
-    return all(abs(point.s - other.s) > SAME for other in points)
+def _is_part_of(vectors: np.ndarray, others: np.ndarray) -> bool:
+    """Whether vectors (q, n) lie in the span of ``others`` (p, n), and not across it."""
+    basis = np.linalg.qr(others.T)[0]
+    shares = np.linalg.norm(vectors @ basis, axis=1) / np.linalg.norm(vectors, axis=1)
+    return bool(np.all(shares > HALF))
 
 
 def _crossing_at(
-    problem: ScaledProblem, branch: Branch, s: float, triple: SingularTriple
+    problem: ScaledProblem,
+    branch: Branch,
+    s: float,
+    width: float,
+    triple: SingularTriple,
 ) -> LargePoint | None:
-    """The singular point next to arclength ``s`` of a curve, None where there is none on
-    it."""
-    tangent = unit_tangent(branch, s)
-    located = locate_crossing(problem, branch(s), tangent, triple)
-    if located is None or not is_crossing_of_many(located.gap):
-        return None
-    place = _foot(branch, located.point, s)
-    distance = float(np.linalg.norm(branch(place) - located.point))
-    if not is_passed(distance, problem.scale):
-        return None
-    directions = _directions(located, unit_tangent(branch, place))
-    kind = LargeKind.CROSSING if len(directions) > 1 else LargeKind.RANK_DROP
-    restated = problem.own_units.sizes * directions
-    u = problem.own_units.outwards(located.point)
-    return LargePoint(kind, place, u, located.gap, directions=restated)
+    """The singular point next to arclength ``s`` of a curve, where the value of a
+    ``triple`` would be zero, None where there is none on it; places are about ``width``
+    apart."""
+    group = vanishing_group(problem, branch, s, width)
+    tries = [group, [triple]] if len(group) > 1 else [[triple]]
+    for triples in tries:
+        located = locate_crossing(problem, branch(s), unit_tangent(branch, s), triples)
+        if located is None or not is_crossing_of_many(located.gap):
+            continue
+        if len(triples) > 1 and not is_multiple_of_many(located.regular):
+            continue
+        place = _foot(branch, located.point, s)
+        distance = float(np.linalg.norm(branch(place) - located.point))
+        if is_passed(distance, problem.scale):
+            return _large_point(problem, branch, place, located)
+    return None
 
 
 def _foot(branch: Branch, point: np.ndarray, s: float) -> float:
@@ -117,15 +134,27 @@ def _foot(branch: Branch, point: np.ndarray, s: float) -> float:
     return s
 
 
-def _directions(located: LocatedCrossing, tangent: np.ndarray) -> np.ndarray:
-    """Unit tangents (k, n) of the curves through a singular point, first that along
-    ``tangent`` (n,); it alone where second order shows no other."""
-    lines = [located.basis @ line for line in lines_of_form(located.form)]
-    if len(lines) < 2:
-        return tangent[None]
-    lines.sort(key=lambda line: -abs(float(line @ tangent)))
-    own = lines[0] * np.sign(lines[0] @ tangent)
-    return np.stack([own, lines[1]])
+def _large_point(
+    problem: ScaledProblem, branch: Branch, s: float, located: LocatedCrossing
+) -> LargePoint:
+    """A located singular point at arclength ``s`` of a curve, with what is known of the
+    other curves through it."""
+    tangent = unit_tangent(branch, s)
+    tangents = tangents_at(problem, located, tangent)
+    kind = LargeKind.CROSSING
+    if len(tangents.directions) < 2:
+        is_simple = located.multiplicity == 1
+        kind = LargeKind.RANK_DROP if is_simple else LargeKind.MULTIPLE
+    sizes = problem.own_units.sizes
+    return LargePoint(
+        kind,
+        s,
+        problem.own_units.outwards(located.point),
+        located.gap,
+        directions=sizes * tangents.directions,
+        null_vectors=sizes * null_vectors_across(located, tangent),
+        order=tangents.order,
+    )
 
 
 # --- near misses ----------------------------------------------------------------------

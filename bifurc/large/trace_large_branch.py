@@ -11,6 +11,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.checks import check_type, check_whole, floats_of
 from bifurc.curves.continuation import TraceSettings, follow_curve, joined_branch
 from bifurc.curves.track import Place
+from bifurc.decisions import is_derivative_along
 from bifurc.errors import ProblemError
 from bifurc.large.large_branch import LargeBranch
 from bifurc.large.large_point import LargePoint
@@ -25,7 +26,6 @@ __all__ = ["LargeSettings", "trace_large_branch"]
 NEWTON_STEPS = 12
 DIFFERENCE = 1e-5  # length of the step along a tangent by which F' is checked
 SHORTER = 0.1  # a second step, over the first, which shows the error of a difference
-WRONG = 1e-2  # error of the unknowns, over the way along a curve, by a wrong F'
 SETTLED = 1e-9  # a step after which the next one, its square, would be rounding
 
 
@@ -127,7 +127,7 @@ def _check_along_tangent(
     expected = difference(DIFFERENCE)
     error = np.linalg.norm(expected - difference(SHORTER * DIFFERENCE))
     misses = np.abs(product - expected)
-    if np.linalg.norm(misses) > WRONG + error:
+    if not is_derivative_along(float(np.linalg.norm(misses) - error)):
         row = int(np.argmax(misses))
         in_units = scaled.magnitude / scaled.own_units.weights[row]
         parameter = scaled.own_units.outwards(point)[-1]

@@ -309,6 +309,51 @@ def test_returns_to_no_piece_are_refused(branch, number, first):
         _core.returns(*arrays, number, 0.0, first)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_a_curve_leaves_its_bounds_where_the_excess_is_first_above_zero(seed):
+    rng = np.random.default_rng(seed)
+    pieces = rng.normal(size=(4, 9, 3)) * 0.5 ** np.arange(9)[:, None]
+    pieces[:, 0] *= 0.3
+    radii = np.array([1.0, 0.5, 2.0, 1.0])
+    centers = np.array([0.9, 2.3, 4.7, 7.5])
+    inner = centers[:-1] + radii[:-1] / (radii[:-1] + radii[1:]) * np.diff(centers)
+    bounds = np.array([[-2.0, 2.0], [-np.inf, 1.8], [-np.inf, np.inf]])
+    curve = Branch(
+        pieces=pieces,
+        centers=centers,
+        radii=radii,
+        breaks=np.concatenate([[0.0], inner, [8.5]]),
+        residuals=np.zeros(4),
+        periods=np.full(3, np.inf),
+        outcome=Outcome.OPEN,
+    )
+    arrays = (pieces, centers, radii, curve.periods)
+    for first in range(4):
+        end = _core.exit_of_bounds(*arrays, first, bounds, 1e-12)
+        # between places, 32 on each piece; pieces do not meet each other here
+        shares = np.arange(32) / 32
+        places = curve.places(shares)[first:].ravel()
+        points = curve(places)
+        excess = np.maximum(bounds[:, 0] - points, points - bounds[:, 1]).max(axis=1)
+        outside = np.flatnonzero(excess > 1e-12)
+        if not len(outside):
+            continue
+        k = int(outside[0])
+        assert places[max(k - 1, 0)] - 1e-12 <= end <= places[k] + 1e-12
+        if k % 32:
+            point = curve(end)
+            there = np.maximum(bounds[:, 0] - point, point - bounds[:, 1]).max()
+            assert abs(there) < 1e-13
+
+
+def test_a_curve_inside_its_bounds_does_not_leave_them(branch):
+    arrays = (branch.pieces, branch.centers, branch.radii, branch.periods)
+    nowhere = np.full((branch.n, 2), [-np.inf, np.inf])
+    assert _core.exit_of_bounds(*arrays, 0, nowhere, 1e-12) is None
+    with pytest.raises(IndexError, match="no such piece"):
+        _core.exit_of_bounds(*arrays, -1, nowhere, 1e-12)
+
+
 def test_turning_points_are_where_the_derivative_changes_sign(branch):
     fine = np.linspace(0.0, branch.length, 100_001)
     for unknown in range(branch.n):

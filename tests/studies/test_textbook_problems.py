@@ -15,7 +15,7 @@ from studies.textbook.discretised import DISCRETISED
 from studies.textbook.fortran import fortran_of
 from studies.textbook.problems import PointKind, PrintedPoint, load_problems
 from studies.textbook_problems import run_problem
-from studies.textbook_times import seconds_at
+from studies.textbook_times import fastest_within
 from studies.work_precision_runs import Run
 
 PROBLEMS = {problem.name: problem for problem in load_problems()}
@@ -162,5 +162,5 @@ def test_the_time_at_an_error_is_the_least_that_reaches_it():
         Run("case", "method", 16, 1e-6, seconds, error, 10)
         for seconds, error in ((1.0, 1e-4), (3.0, 1e-9), (2.0, 1e-7))
     ]
-    assert seconds_at(runs, 1e-6) == 2.0 and seconds_at(runs, 1e-8) == 3.0
-    assert seconds_at(runs, 1e-12) == np.inf
+    assert [fastest_within(runs, error) for error in (1e-6, 1e-8)] == [runs[2], runs[1]]
+    assert fastest_within(runs, 1e-12) is None

@@ -69,6 +69,21 @@ def test_a_curve_that_leaves_the_region_is_followed_both_ways_to_the_bounds():
     assert np.abs(ends) == pytest.approx(np.ones((2, 2)), abs=1e-11)
 
 
+class Disc(FunctionProblem):
+    """Curves are followed within the unit circle."""
+
+    def excess(self, points):
+        return np.linalg.norm(points, axis=1) - 1.0
+
+
+def test_a_region_that_is_no_box_is_followed_to_its_own_rim():
+    problem = Disc(lambda u: np.array([u[1] - u[0] ** 3]), [(-2.0, 2.0)] * 2)
+    branch = trace_branch(problem, [0.2, 0.008])
+    assert branch.outcome is Outcome.LEFT_REGION
+    ends = branch(np.array([0.0, branch.length]))
+    assert np.linalg.norm(ends, axis=1) == pytest.approx([1.0, 1.0], abs=1e-13)
+
+
 def test_a_start_that_is_no_solution_gives_no_curve_and_its_gap():
     problem = plane(lambda x, y: x * x + y * y + 0.5)
     branch = trace_branch(problem, [0.5, 0.5])
