@@ -116,17 +116,19 @@ def correct_normal(
     points = points.copy()
     border = bases @ np.swapaxes(bases, 1, 2)
     damping = DAMPING * np.eye(problem.n)
+    unsettled = np.arange(len(points))
     for _ in range(NORMAL_STEPS):
-        residuals = problem.relative_residuals(points)[:, :, None]
-        jacobians = problem.relative_jacobians(points)
+        residuals = problem.relative_residuals(points[unsettled])[:, :, None]
+        jacobians = problem.relative_jacobians(points[unsettled])
         transposed = np.swapaxes(jacobians, 1, 2)
         with np.errstate(over="ignore", invalid="ignore"):  # such points stay
-            matrices = transposed @ jacobians + border + damping
+            matrices = transposed @ jacobians + border[unsettled] + damping
             right = (transposed @ residuals)[:, :, 0]
         steps = -_solutions(matrices, right)
-        points += limited(steps, 0.5 * problem.scale)
+        points[unsettled] += limited(steps, 0.5 * problem.scale)
         lengths = np.linalg.norm(steps, axis=1)
-        if lengths.max(initial=0.0) < 1e-9 * problem.scale:
+        unsettled = unsettled[lengths >= 1e-9 * problem.scale]
+        if not len(unsettled):
             break
     return points, problem.gaps(points)
 

@@ -150,19 +150,17 @@ def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.nda
     entries = charts.charts_about(point)
     if len(entries):
         return entries
-    near = charts.charts_next_to(point)
-    if not len(near):
-        return near
-    offsets = charts.difference(charts.centers[near], point)
-    steps = SHARES[:, None] * offsets[:, None]  # (k, 12, n)
-    lines = (point + steps).reshape(-1, len(point))
-    bases = np.repeat(charts.bases[near], len(SHARES), axis=0)
-    ends, gaps = correct_normal(problem, lines, bases)
-    off_line = np.linalg.norm(ends - lines, axis=1)
-    length = np.linalg.norm(steps, axis=2).ravel()
-    is_joined = (gaps < SOLVED) & (off_line / length < OFF_LINE)
-    is_joined = is_joined.reshape(steps.shape[:2])  # (k, 12)
-    return near[np.all(is_joined, axis=1)]
+    joined = charts.charts_next_to(point)
+    for share in SHARES:  # next to the point, most of those that are not are found out
+        if not len(joined):
+            break
+        steps = share * charts.difference(charts.centers[joined], point)
+        line = point + steps
+        ends, gaps = correct_normal(problem, line, charts.bases[joined])
+        off_line = np.linalg.norm(ends - line, axis=1)
+        length = np.linalg.norm(steps, axis=1)
+        joined = joined[(gaps < SOLVED) & (off_line / length < OFF_LINE)]
+    return joined
 
 
 def _chart_chains(
