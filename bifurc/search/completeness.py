@@ -44,8 +44,8 @@ def _without_doubts(findings: Findings, provenance: Provenance) -> Completeness:
     missed = missed_probability(list(hits.values()))
     estimate = _estimate(hits, missed)
     audit = findings.audit
-    if audit is None and provenance.out_of_time:
-        left = len(findings.open_seeds)
+    left = len(findings.open_seeds)
+    if provenance.out_of_time and (audit is None or left):
         statement = (
             f"the budget of {provenance.settings.budget:.4g} s was used up with "
             f"{left} starts not looked at; {estimate}"

@@ -29,6 +29,7 @@ from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
+from linkages.mechanisms.whole_turns import WholeTurns, helical_unknowns
 
 if TYPE_CHECKING:
     import mpmath
@@ -214,4 +215,7 @@ class MechanismClosure(NumericalProblem):
         points, gaps = self.project(starts)
         is_inside = self.excess(points) <= 0.0
         seeds = drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
+        helical = helical_unknowns(self.structure)
+        if slices is None and helical:
+            return replace(seeds, audit=WholeTurns(self, helical))
         return replace(seeds, audit=slices)

@@ -1,1 +1,1 @@
-"""All configurations of planar mechanisms that are built dyad by dyad."""
+"""All configurations of mechanisms that are built dyad by dyad."""

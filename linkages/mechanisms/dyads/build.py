@@ -1,31 +1,18 @@
-"""The configurations of a planar mechanism at a value of its driver."""
+"""The configurations of a mechanism at a value of its driver, built part by part."""
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Sequence
-from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 
-from linkages.mechanisms.dyads.geometry import (
-    End,
-    Middle,
-    Pin,
-    Pivot,
-    Rail,
-    Slider,
-    close_dyad,
-    close_monad,
-    may_be_degenerate,
-)
 from linkages.mechanisms.dyads.plan import Contact, Plan, Step
-from linkages.mechanisms.dyads.poses import AT_REST, PlanePose
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Pair
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["Builder", "TooManyError"]
+__all__ = ["Builder", "Geometry", "TooManyError"]
 
 MOST = 256  # configurations at one value of the driver
 
@@ -34,18 +21,46 @@ class TooManyError(ArithmeticError):
     """There are more configurations than are worth the time."""
 
 
-class Builder:
-    """Builds the mechanism of a ``structure``, which moves in the plane across
-    ``normal`` (3,), by a ``plan``."""
+class Geometry(Protocol):
+    """How bodies move and dyads close, in a plane or in space; poses have ``after`` and
+    ``inverse``."""
 
-    def __init__(self, structure: Structure, normal: np.ndarray, plan: Plan):
+    rest: Any
+
+    def motion(self, motion: Motion, value: float) -> Any:
+        """The displacement that a joint variable makes."""
+
+    def value(self, relative: Any, motion: Motion) -> float:
+        """The joint variable that makes a displacement."""
+
+    def end(self, pose: Any, own: Any, motion: Motion) -> Any:
+        """A joint on a standing body with this ``pose``, of a body that has the pose
+        ``own`` in the part that is placed."""
+
+    def middle(self, first: Any, second: Any, motion: Motion) -> Any:
+        """A joint between bodies that have these poses in two parts."""
+
+    def close_monad(self, one: Any, other: Any) -> list[Any]:
+        """The poses of a part that two joints hold on what stands."""
+
+    def close_dyad(self, one: Any, middle: Any, other: Any) -> list[tuple[Any, Any]]:
+        """The poses of both parts of a dyad, in every way in which it closes."""
+
+    def may_be_degenerate(self, one: Any, middle: Any, other: Any) -> bool:
+        """Whether a dyad may close in a whole curve of configurations somewhere."""
+
+
+class Builder:
+    """Builds the mechanism of a ``structure`` by a ``plan``, in a ``geometry``."""
+
+    def __init__(self, structure: Structure, geometry: Geometry, plan: Plan):
         self.structure = structure
         self.mechanism = structure.mechanism
+        self.geometry = geometry
         self.plan = plan
-        self.normal = normal
         self.numbers = {body: k for k, body in enumerate(self.mechanism.bodies)}
 
-    def configurations(self, values: Sequence[float]) -> list[list[PlanePose]]:
+    def configurations(self, values: Sequence[float]) -> list[list[Any]]:
         """The poses of all bodies in every configuration in which the known variables
         have these ``values`` (those of others are not read), rad and the user's unit.
 
@@ -53,7 +68,7 @@ class Builder:
         `TooManyError`.
         """
         inner = self._inner_poses(values)
-        states: list[dict[int, PlanePose]] = [{self.plan.part[0]: AT_REST}]
+        states: list[dict[int, Any]] = [{self.plan.start: self.geometry.rest}]
         for step in self.plan.steps:
             states = [
                 {**state, **dict(zip(step.parts, poses, strict=True))}
@@ -68,24 +83,22 @@ class Builder:
         """Whether no dyad can close in a curve of configurations, wherever the parts
         are that it stands on. The known ``values`` within parts are of no account."""
         inner = self._inner_poses(values)
-        standing = dict.fromkeys(self.plan.part, AT_REST)
+        standing = dict.fromkeys(self.plan.part, self.geometry.rest)
         for step in self.plan.steps:
             if len(step.parts) == 1:
                 if not any(contact.is_turn for contact in step.contacts):
                     return False
                 continue
-            one, contact, other = step.contacts
-            ends = self._end(one, standing, inner), self._end(other, standing, inner)
-            middle = self._middle(contact, inner)
-            if may_be_degenerate(ends[0], middle, ends[1], self.structure.unit):
+            joints = self._dyad(step, standing, inner)
+            if self.geometry.may_be_degenerate(*joints):
                 return False
         return True
 
     # --- parts ------------------------------------------------------------------------
 
-    def _inner_poses(self, values: Sequence[float]) -> dict[int, PlanePose]:
+    def _inner_poses(self, values: Sequence[float]) -> dict[int, Any]:
         """The pose of every body in its part, by number: in the first body of it."""
-        poses = dict.fromkeys(self.plan.part, AT_REST)
+        poses = dict.fromkeys(self.plan.part, self.geometry.rest)
         left = [self.mechanism.pairs[number] for number in self.plan.known]
         while left:
             for pair in left:
@@ -100,106 +113,68 @@ class Builder:
                 poses[base] = poses[moved].after(motion.inverse())
         return poses
 
-    def _pair_motion(self, pair: Pair, values: Sequence[float]) -> PlanePose:
-        pose = AT_REST
+    def _pair_motion(self, pair: Pair, values: Sequence[float]) -> Any:
+        pose = self.geometry.rest
         for number in pair.variables:
             motion = self.mechanism.variables[number].motion
-            pose = pose.after(self._motion(motion, values[number]))
+            pose = pose.after(self.geometry.motion(motion, values[number]))
         return pose
-
-    def _motion(self, motion: Motion, value: float) -> PlanePose:
-        if not motion.is_turn:
-            return PlanePose(1 + 0j, value * self._flat(motion.direction))
-        turn = cmath.exp(1j * value * self._sense(motion))
-        center = self._flat(motion.point)
-        return PlanePose(turn, center - turn * center)
-
-    def _sense(self, motion: Motion) -> float:
-        """1 where a turn is about the normal, -1 where it is the other way round."""
-        return 1.0 if motion.direction @ self.normal > 0 else -1.0
-
-    @cached_property
-    def _axes(self) -> np.ndarray:
-        """Unit vectors (2, 3) of the plane, right-handed about the normal."""
-        other = np.eye(3)[np.argmin(np.abs(self.normal))]
-        first = np.cross(other, self.normal)
-        first /= np.linalg.norm(first)
-        return np.array([first, np.cross(self.normal, first)])
-
-    def _flat(self, vector: np.ndarray) -> complex:
-        """A vector (3,) in the plane."""
-        x, y = self._axes @ vector
-        return complex(x, y)
 
     # --- steps ------------------------------------------------------------------------
 
     def _closed(
-        self, step: Step, state: dict[int, PlanePose], inner: dict[int, PlanePose]
-    ) -> Sequence[tuple[PlanePose, ...]]:
+        self, step: Step, state: dict[int, Any], inner: dict[int, Any]
+    ) -> Sequence[tuple[Any, ...]]:
         """The poses of the parts of a step, in every way in which it closes."""
-        size = self.structure.unit
         if len(step.parts) == 1:
             ends = [self._end(contact, state, inner) for contact in step.contacts]
-            return [(pose,) for pose in close_monad(ends[0], ends[1], size)]
+            return [(pose,) for pose in self.geometry.close_monad(*ends)]
+        return self.geometry.close_dyad(*self._dyad(step, state, inner))
+
+    def _dyad(
+        self, step: Step, state: dict[int, Any], inner: dict[int, Any]
+    ) -> tuple[Any, Any, Any]:
+        """The three joints of a dyad."""
         one, contact, other = step.contacts
-        middle = self._middle(contact, inner)
-        ends = [self._end(one, state, inner), self._end(other, state, inner)]
-        return close_dyad(ends[0], middle, ends[1], size)
+        middle = self.geometry.middle(
+            inner[contact.first], inner[contact.second], self._motion(contact)
+        )
+        return self._end(one, state, inner), middle, self._end(other, state, inner)
 
     def _end(
-        self,
-        contact: Contact,
-        state: dict[int, PlanePose],
-        inner: dict[int, PlanePose],
-    ) -> End:
+        self, contact: Contact, state: dict[int, Any], inner: dict[int, Any]
+    ) -> Any:
         """A joint that leads from what stands to a part."""
         pose = state[self.plan.part[contact.first]].after(inner[contact.first])
         own = inner[contact.second]
-        motion = self.mechanism.variables[contact.variable].motion
-        if contact.is_turn:
-            center = self._flat(motion.point)
-            return Pivot(pose(center), own(center))
-        along = pose.turn * self._flat(motion.direction)
-        return Rail(pose.after(own.inverse()), along)
+        return self.geometry.end(pose, own, self._motion(contact))
 
-    def _middle(self, contact: Contact, inner: dict[int, PlanePose]) -> Middle:
-        """A joint between the two parts of a step."""
-        one, other = inner[contact.first], inner[contact.second]
-        motion = self.mechanism.variables[contact.variable].motion
-        if contact.is_turn:
-            center = self._flat(motion.point)
-            return Pin(one(center), other(center))
-        along = one.turn * self._flat(motion.direction)
-        return Slider(one.after(other.inverse()), along)
+    def _motion(self, contact: Contact) -> Motion:
+        return self.mechanism.variables[contact.variable].motion
 
     def _poses_of_bodies(
-        self, state: dict[int, PlanePose], inner: dict[int, PlanePose]
-    ) -> list[PlanePose]:
+        self, state: dict[int, Any], inner: dict[int, Any]
+    ) -> list[Any]:
         return [
             state[part].after(inner[body]) for body, part in enumerate(self.plan.part)
         ]
 
     # --- unknowns ---------------------------------------------------------------------
 
-    def unknowns(self, poses: Sequence[PlanePose]) -> np.ndarray:
-        """The unknowns (n,) of the structure at these poses of all bodies; angles
-        between -pi and pi."""
+    def unknowns(self, poses: Sequence[Any]) -> np.ndarray:
+        """The unknowns (n,) of the structure at these poses of all bodies, but for what
+        others are coupled to; angles between -pi and pi."""
         result = np.zeros(len(self.structure.unknowns))
         for pair in self.mechanism.pairs:
-            base, moved = self.numbers[pair.base], self.numbers[pair.moved]
-            relative = poses[base].inverse().after(poses[moved])
             if len(pair.variables) != 1:
                 continue
             (number,) = pair.variables
-            motion = self.mechanism.variables[number].motion
             share = self.structure.share(number)
-            if share is None:
+            if share is None or share.rate != 1.0 or share.offset != 0.0:
                 continue
-            if motion.is_turn:
-                value = cmath.phase(relative.turn) * self._sense(motion)
-            else:
-                way = relative.shift / self._flat(motion.direction)
-                value = way.real / self.structure.unit
-            if share.rate == 1.0 and share.offset == 0.0:
-                result[share.column] = value
+            base, moved = self.numbers[pair.base], self.numbers[pair.moved]
+            relative = poses[base].inverse().after(poses[moved])
+            motion = self.mechanism.variables[number].motion
+            unit = 1.0 if motion.is_turn else self.structure.unit
+            result[share.column] = self.geometry.value(relative, motion) / unit
         return result

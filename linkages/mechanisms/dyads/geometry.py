@@ -8,18 +8,25 @@ points or at none.
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import NamedTuple, TypeAlias
 
+import numpy as np
+
 from linkages.decisions import is_degenerate_dyad
-from linkages.mechanisms.dyads.poses import PlanePose
+from linkages.mechanisms.dyads.poses import AT_REST, PlanePose
+from linkages.mechanisms.joint import Motion
 
 __all__ = [
+    "MISFIT",
+    "TOUCHING",
     "DegenerateDyadError",
     "End",
     "Middle",
     "Pin",
     "Pivot",
+    "PlaneGeometry",
     "Rail",
     "Slider",
     "close_dyad",
@@ -71,6 +78,72 @@ Poses: TypeAlias = list[tuple[PlanePose, PlanePose]]
 
 class DegenerateDyadError(ArithmeticError):
     """A dyad closes in a whole curve of configurations."""
+
+
+class PlaneGeometry:
+    """Bodies that turn and slide in the plane across ``normal`` (3,); ``size`` is a
+    length of the mechanism."""
+
+    def __init__(self, normal: np.ndarray, size: float):
+        self.normal = normal
+        self.size = size
+        self.rest = AT_REST
+        other = np.eye(3)[np.argmin(np.abs(normal))]
+        first = np.cross(other, normal)
+        first /= np.linalg.norm(first)
+        self._axes = np.array([first, np.cross(normal, first)])
+
+    def motion(self, motion: Motion, value: float) -> PlanePose:
+        """The displacement that a joint variable makes."""
+        if not motion.is_turn:
+            return PlanePose(1 + 0j, value * self._flat(motion.direction))
+        turn = cmath.exp(1j * value * self._sense(motion))
+        center = self._flat(motion.point)
+        return PlanePose(turn, center - turn * center)
+
+    def value(self, relative: PlanePose, motion: Motion) -> float:
+        """The variable, an angle between -pi and pi, that makes a displacement."""
+        if motion.is_turn:
+            return cmath.phase(relative.turn) * self._sense(motion)
+        return (relative.shift / self._flat(motion.direction)).real
+
+    def end(self, pose: PlanePose, own: PlanePose, motion: Motion) -> End:
+        """A joint on a standing body with this ``pose``, of a body that has the pose
+        ``own`` in the part that is placed."""
+        if motion.is_turn:
+            center = self._flat(motion.point)
+            return Pivot(pose(center), own(center))
+        along = pose.turn * self._flat(motion.direction)
+        return Rail(pose.after(own.inverse()), along)
+
+    def middle(self, first: PlanePose, second: PlanePose, motion: Motion) -> Middle:
+        """A joint between bodies that have these poses in two parts."""
+        if motion.is_turn:
+            center = self._flat(motion.point)
+            return Pin(first(center), second(center))
+        along = first.turn * self._flat(motion.direction)
+        return Slider(first.after(second.inverse()), along)
+
+    def close_monad(self, one: End, other: End) -> list[PlanePose]:
+        """As the function of this name."""
+        return close_monad(one, other, self.size)
+
+    def close_dyad(self, one: End, middle: Middle, other: End) -> Poses:
+        """As the function of this name."""
+        return close_dyad(one, middle, other, self.size)
+
+    def may_be_degenerate(self, one: End, middle: Middle, other: End) -> bool:
+        """As the function of this name."""
+        return may_be_degenerate(one, middle, other, self.size)
+
+    def _sense(self, motion: Motion) -> float:
+        """1 where a turn is about the normal, -1 where it is the other way round."""
+        return 1.0 if motion.direction @ self.normal > 0 else -1.0
+
+    def _flat(self, vector: np.ndarray) -> complex:
+        """A vector (3,) in the plane."""
+        x, y = self._axes @ vector
+        return complex(x, y)
 
 
 # --- one body -------------------------------------------------------------------------

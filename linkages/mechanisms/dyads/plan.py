@@ -1,13 +1,14 @@
-"""In which order the bodies of a planar mechanism are placed, one dyad after the other.
+"""In which order the bodies of a mechanism are placed, one dyad after the other.
 
 With one variable known, the driver, bodies that are joined by known variables are one
-part. From the part that holds the frame two parts at a time are placed, which close a
+part. From one of the largest parts on two parts at a time are placed, which close a
 chain of three joints, or one part that two joints hold already (Assur's decomposition
 into groups of the second class).
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -17,6 +18,9 @@ from networkx.utils import UnionFind
 from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["Contact", "Plan", "Step", "make_plan"]
+
+
+MOST_BEGUN = 3  # parts with which a plan may begin
 
 
 class Contact(NamedTuple):
@@ -46,15 +50,16 @@ class Step(NamedTuple):
 @dataclass(frozen=True)
 class Plan:
     """The ``part`` of every body, by number, the ``known`` pairs, by number, and the
-    ``steps`` in which parts are placed after that of body 0."""
+    ``steps`` in which parts are placed after the part ``start``."""
 
+    start: int
     part: tuple[int, ...]
     known: tuple[int, ...]
     steps: tuple[Step, ...]
 
 
 def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
-    """How a planar ``mechanism`` is built where the variable of this number has a given
+    """How a ``mechanism`` is built where the variable of this number has a given
     value, or, without, where only locked ones have; None where dyads do not do."""
     known = []
     for number, pair in enumerate(mechanism.pairs):
@@ -70,8 +75,12 @@ def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
         parts.union(numbers[pair.base], numbers[pair.moved])
     part = tuple(parts[body] for body in range(len(numbers)))
     contacts = [c for c in _contacts(mechanism, numbers, known) if _parts(c, part)]
-    steps = _steps(part, contacts)
-    return None if steps is None else Plan(part, tuple(known), steps)
+    sizes = Counter(part)
+    for start in sorted(sizes, key=lambda one: (-sizes[one], one))[:MOST_BEGUN]:
+        steps = _steps(start, part, contacts)
+        if steps is not None:
+            return Plan(start, part, tuple(known), steps)
+    return None
 
 
 def _is_known(mechanism: Mechanism, variable: int, driver: int | None) -> bool:
@@ -111,10 +120,12 @@ def _parts(contact: Contact, part: tuple[int, ...]) -> bool:
 # --- order ----------------------------------------------------------------------------
 
 
-def _steps(part: tuple[int, ...], contacts: list[Contact]) -> tuple[Step, ...] | None:
-    """The steps that place all parts; None where they do not."""
+def _steps(
+    start: int, part: tuple[int, ...], contacts: list[Contact]
+) -> tuple[Step, ...] | None:
+    """The steps that place all parts after one; None where they do not."""
     both = contacts + [contact.reversed() for contact in contacts]
-    placed = {part[0]}
+    placed = {start}
     waiting = set(part) - placed
     steps = []
     while waiting:

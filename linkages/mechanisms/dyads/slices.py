@@ -1,4 +1,4 @@
-"""All configurations of a planar mechanism with one joint at given values, and what
+"""All configurations of a mechanism with one joint at given values, and what
 they say of its motions.
 
 Where dyads build the mechanism from a driver (`linkages.mechanisms.dyads.plan`), every
@@ -9,7 +9,7 @@ in a whole curve of configurations.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -17,9 +17,10 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.seeds import Audit, Level
-from linkages.mechanisms.dyads.build import Builder, TooManyError
-from linkages.mechanisms.dyads.geometry import DegenerateDyadError
+from linkages.mechanisms.dyads.build import Builder, Geometry, TooManyError
+from linkages.mechanisms.dyads.geometry import DegenerateDyadError, PlaneGeometry
 from linkages.mechanisms.dyads.plan import make_plan
+from linkages.mechanisms.dyads.space import SpaceGeometry
 from linkages.mechanisms.plane import normal_of_plane
 from linkages.mechanisms.structure import Structure
 
@@ -27,6 +28,7 @@ __all__ = ["DyadSlices", "slice_by_dyads"]
 
 SLICES = 36  # of a driver's period, or of its limits
 MOST_DRIVERS = 4
+MOST_TRIED = 16  # variables that are looked at as drivers
 RANDOM_ASSEMBLIES = "isolated assemblies are those that random starts reached"
 
 
@@ -86,20 +88,29 @@ class DyadSlices:
 
 def slice_by_dyads(structure: Structure, rng: np.random.Generator) -> DyadSlices | None:
     """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
-    drawn, of up to `MOST_DRIVERS` of its variables; None where it does not move in a
-    plane, or dyads do not build it."""
-    normal = normal_of_plane(structure.mechanism)
-    if normal is None or _has_wide_limits(structure):
+    drawn, of a few of its variables; None where dyads do not build it, or build too
+    many configurations."""
+    try:
+        return _slice_by_dyads(structure, rng)
+    except TooManyError:
+        return None
+
+
+def _slice_by_dyads(
+    structure: Structure, rng: np.random.Generator
+) -> DyadSlices | None:
+    geometry = _geometry(structure)
+    if geometry is None or _has_wide_limits(structure):
         return None
     still = make_plan(structure.mechanism, None)
     if still is not None:
-        builder = Builder(structure, normal, still)
-        points = _points_at(builder, {None: _values(structure, None, 0.0)})
+        builder = Builder(structure, geometry, still)
+        points = _points_at(builder, None, (0.0,))
         if points is None:
             return None
         return DyadSlices(structure, points, (), (), misses_none=True)
     slices: dict[int, _Slice] = {}
-    for number, one in _slices(structure, normal, rng):
+    for number, one in _slices(structure, geometry, rng):
         slices[number] = one
         moved = any(one.always_moves for one in slices.values())
         if moved and len(slices) >= MOST_DRIVERS:
@@ -115,6 +126,20 @@ def slice_by_dyads(structure: Structure, rng: np.random.Generator) -> DyadSlices
     )
 
 
+def _geometry(structure: Structure) -> Geometry | None:
+    """That of the plane in which all moves, else that of turns in space; None where
+    other joints move, too."""
+    mechanism = structure.mechanism
+    normal = normal_of_plane(mechanism)
+    if normal is not None:
+        return PlaneGeometry(normal, structure.unit)
+    motions = [one.motion for one in mechanism.variables if one.locked is None]
+    is_free = any(pair.center is not None for pair in mechanism.pairs)
+    if is_free or any(not one.is_turn or one.advance for one in motions):
+        return None
+    return SpaceGeometry(structure.unit)
+
+
 def _has_wide_limits(structure: Structure) -> bool:
     """Whether limits let an angle turn by more than a full turn: configurations that
     are the same for dyads are several there."""
@@ -125,10 +150,10 @@ def _has_wide_limits(structure: Structure) -> bool:
 
 
 def _slices(
-    structure: Structure, normal: np.ndarray, rng: np.random.Generator
+    structure: Structure, geometry: Geometry, rng: np.random.Generator
 ) -> Iterator[tuple[int, _Slice]]:
     """The slices of every unknown, by number, from which dyads build the mechanism."""
-    for number, unknown in enumerate(structure.unknowns):
+    for number, unknown in enumerate(structure.unknowns[:MOST_TRIED]):
         plan = make_plan(structure.mechanism, unknown.variable)
         if plan is None:
             continue
@@ -137,11 +162,11 @@ def _slices(
             low, high = 0.0, unknown.period
         step = (high - low) / SLICES
         places = low + step * (np.arange(SLICES) + rng.uniform())
-        builder = Builder(structure, normal, plan)
-        rows = {place: _values(structure, number, place) for place in places}
-        points = _points_at(builder, rows, number)
+        builder = Builder(structure, geometry, plan)
+        points = _points_at(builder, number, places)
         if points is not None:
-            always_moves = builder.is_never_degenerate(rows[places[0]])
+            at_first = _values(structure, number, places[0])
+            always_moves = builder.is_never_degenerate(at_first)
             yield number, _Slice(points, always_moves, step)
 
 
@@ -156,18 +181,16 @@ def _values(structure: Structure, number: int | None, place: float) -> list[floa
 
 
 def _points_at(
-    builder: Builder,
-    rows: Mapping[float | None, list[float]],
-    driver: int | None = None,
+    builder: Builder, driver: int | None, places: Iterable[float]
 ) -> np.ndarray | None:
-    """The configurations (k, n) within the limits at the places of a driver, by number,
-    with the values of all variables at each; None where it is not known that they are
-    all."""
+    """The configurations (k, n) within the limits at the ``places`` of a driver, by
+    number; None where it is not known that they are all. Raises `TooManyError`."""
     points = []
-    for place, values in rows.items():
+    for place in places:
+        values = _values(builder.structure, driver, place)
         try:
             states = builder.configurations(values)
-        except (DegenerateDyadError, TooManyError):
+        except DegenerateDyadError:
             return None
         for poses in states:
             point = builder.unknowns(poses)
