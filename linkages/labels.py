@@ -77,9 +77,9 @@ def loop_of(atlas: Atlas) -> Loop:
     subject = atlas.subject
     if "mechanism" in subject and "lengths" not in subject:
         raise NoLinkageError("it is of a mechanism, no single loop of joints")
-    for key in Subject.__required_keys__:
-        if key not in subject:
-            raise NoLinkageError(f"its subject has no {key}")
+    missing = [key for key in Subject.__annotations__ if key not in subject]
+    if missing:
+        raise NoLinkageError(f"its subject has no {', '.join(missing)}")
     try:
         return Loop(
             subject["lengths"],

@@ -359,8 +359,9 @@ export class LinkageView {
     pushApart(spots, this.nameWidth, NAME_GAP);
     const shown = [];
     spots.forEach(({ x, y }, i) => {
-      const half = Math.max(10, (LETTER * this.numbers[i].textContent.length) / 2);
-      const spot = { x: Math.min(Math.max(x, half), width - half), y: Math.min(Math.max(y, 10), height - 10), half };
+      const half = (LETTER * this.numbers[i].textContent.length) / 2;
+      const edge = Math.max(half, 10);
+      const spot = { x: Math.min(Math.max(x, edge), width - edge), y: Math.min(Math.max(y, 10), height - 10), half };
       const strayed = Math.hypot(spot.x - wanted[i].x, spot.y - wanted[i].y) > this.nameWidth + FARTHEST * NAME_GAP;
       const isLegible = !strayed && shown.every((other) => !cover(spot, other));
       if (isLegible) shown.push(spot);

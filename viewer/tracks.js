@@ -72,8 +72,17 @@ function pointTrack(points) {
 /** The tracks as they are listed and numbered: forms by their names, as in the summary, then the others. */
 export function inOrder(tracks) {
   const forms = tracks.filter(isCurve);
-  forms.sort((a, b) => (a.name < b.name ? -1 : 1));
+  forms.sort((a, b) => compareNames(a.name, b.name));
   return [...forms, ...tracks.filter((track) => !isCurve(track))];
+}
+
+/** Less than 0 where a name comes before another: Form 2 before Form 10, as linkages/app/forms.py has it. */
+function compareNames(a, b) {
+  const [one, other] = [a, b].map((name) => name.split(/([0-9]+)/)); // words and numbers in turn
+  const k = one.findIndex((part, i) => part !== other[i]);
+  if (k < 0 || other[k] === undefined) return one.length - other.length;
+  if (k % 2) return Number(one[k]) - Number(other[k]);
+  return one[k] < other[k] ? -1 : 1;
 }
 
 /** Whether the slider moves along the track without steps. */

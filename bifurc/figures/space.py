@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
-from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
 from bifurc.atlas import Atlas
@@ -43,8 +43,8 @@ def plot_map_in_space(
         FigureCanvasAgg(figure)
         axes = figure.add_subplot(projection="3d", proj_type="ortho")
         _draw_forms(axes, atlas, indices, scales)
-        _draw_points(axes, atlas, indices, scales)
         _set_frame(axes, scales)
+        _draw_points(axes, atlas, indices, scales)
         draw_legend_outside(figure, atlas)
     return figure
 
@@ -87,14 +87,29 @@ def _draw_points(
             markeredgecolor="black",
             zorder=4,
         )
-        axes.text(*spot, f"  {point.name}", fontsize=8.5, fontweight="bold", zorder=5)
+        _write_name(axes, spot, point.name)
     for solution in atlas.rigid:
         spot = _shown(solution[None, list(indices)], scales)[0]
         axes.plot(*spot[:, None], "x", color="0.3", markersize=4)
 
 
+def _write_name(axes: Axes3D, spot: np.ndarray, name: str) -> None:
+    """A name beside a spot (3,), towards the middle: at the right are ticks."""
+    across, _, _ = proj3d.proj_transform(*spot, axes.get_proj())
+    is_right = across > 0
+    text, side = (f"{name}  ", "right") if is_right else (f"  {name}", "left")
+    axes.text(*spot, text, ha=side, fontsize=8.5, fontweight="bold", zorder=5)
+
+
+def _inner_number(degrees: float, _: int | None = None) -> str:
+    """The number at a tick; nothing at the ends of a turn."""
+    number = round(degrees)
+    return "" if abs(number) >= 180 else str(number).replace("-", "\N{MINUS SIGN}")
+
+
 def _set_frame(axes: Axes3D, scales: Sequence[Scale]) -> None:
-    """Names, ticks and limits of the three axes."""
+    """Names, ticks and limits of the three axes. The second one begins where the first
+    ends, and ends where the third begins: its ticks there have no numbers."""
     labels = (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel)
     limits = (axes.set_xlim, axes.set_ylim, axes.set_zlim)
     lines = (axes.xaxis, axes.yaxis, axes.zaxis)
@@ -106,5 +121,10 @@ def _set_frame(axes: Axes3D, scales: Sequence[Scale]) -> None:
             line.set_major_locator(MultipleLocator(90))
         else:
             line.set_major_locator(MaxNLocator(5))
+    second, half = axes.yaxis, scales[1].half
+    if half == 180.0:
+        second.set_major_formatter(_inner_number)
+    else:
+        second.set_major_locator(MaxNLocator(5, prune="both"))
     axes.set_box_aspect((1, 1, 1), zoom=0.9)
     axes.view_init(elev=22, azim=-58)

@@ -12,8 +12,8 @@ from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
 from linkages.app.inputs import choose_held
 from linkages.app.options import HoldOptions, SearchOptions
-from linkages.labels import loop_of
 from linkages.linkage import Linkage
+from linkages.mechanisms.subject import mechanism_of
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -67,7 +67,9 @@ def loop_atlas_of(
     loop of revolute joints; raises `CommandError` for a mechanism as well."""
     if is_atlas_file(source):
         atlas = atlas_of(source, parameters, search, hold)
-        loop_of(atlas)
+        mechanism = mechanism_of(atlas)
+        if mechanism is not None:
+            require_loop(source, mechanism)
         return atlas
     linkage = choose_held(source, parameters, hold)
     require_loop(source, linkage)

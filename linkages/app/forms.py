@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from bifurc.atlas import Atlas, Form
@@ -13,8 +14,15 @@ __all__ = ["choose_form", "choose_forms", "listed_forms", "require_forms"]
 
 
 def listed_forms(atlas: Atlas) -> list[Form]:
-    """The forms in the order in which the summary lists them."""
-    return sorted(atlas.forms, key=lambda form: form.name)
+    """The forms in the order in which the summary lists them: by their names, Form 2
+    before Form 10."""
+    return sorted(atlas.forms, key=lambda form: _words_and_numbers(form.name))
+
+
+def _words_and_numbers(name: str) -> list[str | int]:
+    """A name as words and numbers in turn, a word first."""
+    parts = re.split("([0-9]+)", name)
+    return [int(part) if k % 2 else part for k, part in enumerate(parts)]
 
 
 def choose_forms(atlas: Atlas, texts: Sequence[str]) -> list[Form]:

@@ -71,21 +71,22 @@ def require_ending(option: str, out: Path, *endings: str) -> None:
         raise CommandError(f"{option} {out}: it must end with {allowed}")
 
 
-def require_writable(out: Path) -> None:
-    """Make sure, before anything is computed, that the file ``out`` can be written;
-    raises `CommandError`."""
+def require_writable(out: Path, option: str = "--out") -> None:
+    """Make sure, before anything is computed, that the file ``out`` behind an option
+    can be written; raises `CommandError`."""
     from bifurc.files.atomic import require_replaceable
 
-    with writing_to(out):
+    with writing_to(out, option):
         require_replaceable(out)
 
 
 @contextmanager
-def writing_to(out: Path) -> Iterator[None]:
-    """A block that writes to ``out``; raises `CommandError` where that fails."""
+def writing_to(out: Path, option: str = "--out") -> Iterator[None]:
+    """A block that writes to ``out``, the value of an option; raises `CommandError`
+    where that fails."""
     try:
         yield
     except OSError as error:
         reason = error.strerror or str(error)
-        message = f"--out {out}: nothing can be written there ({reason})"
+        message = f"{option} {out}: nothing can be written there ({reason})"
         raise CommandError(message) from None

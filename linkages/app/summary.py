@@ -19,6 +19,7 @@ from linkages.app.configurations import (
     show_configuration,
 )
 from linkages.app.entry_text import describe_geometry
+from linkages.app.forms import listed_forms
 from linkages.app.texts import in_degrees, section
 from linkages.app.verdict import judge
 from linkages.labels import FormLabels, loop_of
@@ -95,7 +96,7 @@ def _motions(atlas: Atlas) -> list[str]:
 def _forms(atlas: Atlas) -> str:
     rows = []
     unit = arclength_unit(atlas)
-    for form in sorted(atlas.forms, key=lambda form: form.name):
+    for form in listed_forms(atlas):
         labels = FormLabels.of(form)
         rows.append(
             (
@@ -229,7 +230,7 @@ def _beginning(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) 
 
 def _certificates(atlas: Atlas) -> str:
     rows = []
-    for form in sorted(atlas.forms, key=lambda form: form.name):
+    for form in listed_forms(atlas):
         certificate = form.certificate
         if certificate is None:
             continue

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,7 +50,7 @@ class BodyLines:
 
 def lines_of_bodies(structure: Structure, branch: Branch) -> BodyLines:
     """The lines of all bodies, with rails as long as slides are used along a branch."""
-    drawings = draw_bodies(structure, _samples(branch))
+    drawings = draw_bodies(structure, branch(_places(branch)))
     lines = [np.array(one["lines"]).reshape(-1, 2, 3) for one in drawings]
     return BodyLines(structure, tuple(structure.unit * one for one in lines))
 
@@ -58,10 +59,12 @@ def approaches_of_bodies(structure: Structure, branch: Branch) -> list[Approach]
     """Where every two bodies that share no joint are nearest along a branch of the
     closure of a structure, the nearest first; bodies are given by their numbers."""
     bodies = lines_of_bodies(structure, branch)
-    return sorted(
-        (_nearest(bodies, branch, pair) for pair in bodies.pairs_apart()),
-        key=lambda approach: approach.distance,
-    )
+    steps = _steps_along(structure, branch)
+    approaches = []
+    for pair in bodies.pairs_apart():
+        speed = _closing_speed(bodies, steps, pair)
+        approaches.append(_nearest(bodies, branch, pair, speed))
+    return sorted(approaches, key=lambda approach: approach.distance)
 
 
 def _share_a_joint(mechanism: Mechanism, pair: tuple[int, int]) -> bool:
@@ -69,15 +72,17 @@ def _share_a_joint(mechanism: Mechanism, pair: tuple[int, int]) -> bool:
     return any(names <= set(joint.bodies) for joint in mechanism.joints)
 
 
-def _nearest(bodies: BodyLines, branch: Branch, pair: tuple[int, int]) -> Approach:
-    """Where two bodies are nearest along a branch."""
+def _nearest(
+    bodies: BodyLines, branch: Branch, pair: tuple[int, int], speed: float
+) -> Approach:
+    """Where two bodies, which near each other no faster than at some speed, are nearest
+    along a branch."""
 
     def distance(_: np.ndarray, s: np.ndarray) -> np.ndarray:
         return distances_of_bodies(bodies, branch(s), pair)
 
-    slope = _closing_speed(bodies, branch, pair)
     error = TOLERANCE * bodies.structure.unit
-    least = find_least_distance(distance, np.array([slope]), branch.length, error)
+    least = find_least_distance(distance, np.array([speed]), branch.length, error)
     return Approach(pair, least.value, least.s, branch(least.s), least.error)
 
 
@@ -109,42 +114,45 @@ def _moved(lines: np.ndarray, poses: np.ndarray) -> np.ndarray:
 # --- speeds ---------------------------------------------------------------------------
 
 
-def _samples(branch: Branch) -> np.ndarray:
-    """Configurations (k, n) along a branch, some on each piece."""
-    places = branch.places(np.linspace(0.0, 1.0, RATE_SAMPLES)).ravel()
-    samples: np.ndarray = branch(places)
-    return samples
+class _Steps(NamedTuple):
+    """The poses (k, b, 4, 4) of all bodies `STEP` before and after some places of a
+    branch."""
+
+    before: np.ndarray
+    after: np.ndarray
 
 
-def _closing_speed(bodies: BodyLines, branch: Branch, pair: tuple[int, int]) -> float:
+def _steps_along(structure: Structure, branch: Branch) -> _Steps:
+    """Steps at some places on each piece of a branch."""
+    places = _places(branch)
+    points, rates = branch(places), branch(places, derivative=1)
+    poses = Poses(structure)
+    return _Steps(poses.at(points - STEP * rates), poses.at(points + STEP * rates))
+
+
+def _places(branch: Branch) -> np.ndarray:
+    """Arclengths (k,) on every piece of a branch."""
+    places: np.ndarray = branch.places(np.linspace(0.0, 1.0, RATE_SAMPLES)).ravel()
+    return places
+
+
+def _closing_speed(bodies: BodyLines, steps: _Steps, pair: tuple[int, int]) -> float:
     """How fast two bodies can near each other for each unit of arclength: no faster
     than the fastest end of a line of one, seen from the other, either way round."""
     first, second = pair
     speeds = [
-        _largest_speed(bodies, branch, first, second),
-        _largest_speed(bodies, branch, second, first),
+        _largest_speed(bodies.lines[second], steps, first, second),
+        _largest_speed(bodies.lines[first], steps, second, first),
     ]
     return MARGIN * min(speeds)
 
 
 def _largest_speed(
-    bodies: BodyLines, branch: Branch, seen_from: int, body: int
+    lines: np.ndarray, steps: _Steps, seen_from: int, body: int
 ) -> float:
-    """The largest speed of an end of a line of a body, seen from another one, at
-    samples along a branch."""
-    places = branch.places(np.linspace(0.0, 1.0, RATE_SAMPLES)).ravel()
-    steps = STEP * branch(places, derivative=1)
+    """The largest speed of an end of the lines of a body, seen from another one."""
     before, after = (
-        _seen_from(bodies, branch(places) + sign * steps, seen_from, body)
-        for sign in (-1.0, 1.0)
+        _moved(lines, np.linalg.inv(poses[:, seen_from]) @ poses[:, body])
+        for poses in steps
     )
     return float(np.linalg.norm(after - before, axis=-1).max()) / (2 * STEP)
-
-
-def _seen_from(
-    bodies: BodyLines, points: np.ndarray, seen_from: int, body: int
-) -> np.ndarray:
-    """The ends (k, 2 m, 3) of the lines of a body in the frame of another one."""
-    poses = Poses(bodies.structure).at(points)
-    relative = np.linalg.inv(poses[:, seen_from]) @ poses[:, body]
-    return _moved(bodies.lines[body], relative)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.mechanisms.displacements import displacement_of, transforms, turns
+from linkages.mechanisms.displacements import displacement_of, transforms
 from linkages.mechanisms.rods import Rod
 from linkages.mechanisms.structure import Structure
 
@@ -170,15 +170,16 @@ def rotation_vectors(rotations: np.ndarray) -> np.ndarray:
 def _shortest_rotations(start: np.ndarray, goals: np.ndarray) -> np.ndarray:
     """The smallest rotations (k, 3, 3) that turn a unit vector (3,) to ``goals``
     (k, 3)."""
-    rotations = []
-    for goal in goals:
-        axis = np.cross(start, goal)
-        sine, cosine = float(np.linalg.norm(axis)), float(start @ goal)
-        if sine < SMALL:
-            axis = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
-        axis = axis / np.linalg.norm(axis)
-        rotations.append(turns(axis, np.array([np.arctan2(sine, cosine)]))[0])
-    return np.array(rotations).reshape(-1, 3, 3)
+    from scipy.spatial.transform import Rotation
+
+    axes = np.cross(start, goals)
+    sines, cosines = np.linalg.norm(axes, axis=1), goals @ start
+    across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
+    axes = np.where(sines[:, None] < SMALL, across, axes)
+    axes = axes / np.linalg.norm(axes, axis=1)[:, None]
+    angles = np.arctan2(sines, cosines)
+    rotations: np.ndarray = Rotation.from_rotvec(angles[:, None] * axes).as_matrix()
+    return rotations
 
 
 def _inverse(transforms: np.ndarray) -> np.ndarray:

@@ -3,9 +3,12 @@ all others in the middle of their neighbours (Tutte 1963), links with their name
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import networkx as nx
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.textpath import TextPath
 
 from linkages.source_figures.assembly import Assembly, Role, Seat
 from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES, write_at
@@ -19,6 +22,11 @@ FRACTIONS = np.array([0.5, 0.4, 0.6, 0.3, 0.7])  # of a link, where its name may
 BESIDE = 0.13  # from a link of the ring to its name
 ENOUGH = 0.35  # room for a name, where the ring has radius 1
 FURTHEST = 1.45  # of a drawn link: how far beyond it a joint is drawn
+NAME_SIZE = 7.5  # points
+ROOM_AT_EDGE = 4  # points, between a name and the edge of the panel
+LETTER_ROOM = 0.3  # that a letter needs, where the ring has radius 1
+LETTER_STEP = 0.16  # how far a letter may move aside, where the ring has radius 1
+LETTER_PLACES = 8  # around where it belongs
 
 
 def places_of(assembly: Assembly, ring: tuple[str, ...]) -> dict[str, np.ndarray]:
@@ -97,6 +105,8 @@ def draw_graph(
     of its joints."""
     places = places_of(assembly, ring)
     taken = list(places.values())  # joints, and names that stand already
+    outside: list[np.ndarray] = []
+    half = max(1.5, float(np.abs(taken).max()) + 0.2)
     for bar in assembly.bars:
         ends = np.array([places[bar.first], places[bar.last]])
         axes.plot(
@@ -109,18 +119,19 @@ def draw_graph(
         if not bar.label:
             continue
         if bar.first in ring and bar.last in ring and bar.role is not Role.REMOVED:
-            _name_outside(axes, ends, bar.label)
+            name = _name_outside(axes, ends, bar.label, half)
+            half = max(half, name.half)
+            outside.append(name.place)
         else:
             taken.append(_name_link(axes, ends, bar.label, np.array(taken)))
-    for name, place in places.items():
-        text = "" if name in unnumbered else name
-        _draw_joint(axes, place, text, name in filled)
+    for joint, place in places.items():
+        text = "" if joint in unnumbered else joint
+        _draw_joint(axes, place, text, joint in filled)
     for letter, joints in letters:
         middle = np.mean([places[name] for name in joints], axis=0)
-        write_at(axes, middle, letter, fontsize=11, zorder=4)
+        place = _place_of_letter(middle, np.array([*taken, *outside]))
+        write_at(axes, place, letter, fontsize=11, zorder=4)
     axes.set_aspect("equal")
-    spots = np.array(list(places.values()))
-    half = max(1.5, float(np.abs(spots).max()) + 0.2)
     axes.set(xlim=(-half, half), ylim=(-half, half))
     axes.set_axis_off()
 
@@ -137,16 +148,53 @@ def _draw_joint(axes: Axes, place: np.ndarray, text: str, is_filled: bool) -> No
         zorder=3,
     )
     color = "white" if is_filled else "black"
-    write_at(axes, place, text, fontsize=7.5, color=color, zorder=4)
+    write_at(axes, place, text, fontsize=NAME_SIZE, color=color, zorder=4)
 
 
-def _name_outside(axes: Axes, ends: np.ndarray, label: str) -> None:
-    """The name of a link of the ring, beside it."""
+def _place_of_letter(middle: np.ndarray, taken: np.ndarray) -> np.ndarray:
+    """Where a letter stands (2,): in the middle of its joints, or beside that where it
+    would cover what is ``taken`` (k, 2)."""
+    angles = 2 * np.pi * np.arange(LETTER_PLACES) / LETTER_PLACES
+    ring = np.column_stack([np.cos(angles), np.sin(angles)])
+    places = np.vstack([middle, middle + LETTER_STEP * ring])
+    room = np.linalg.norm(places[:, None] - taken, axis=2).min(axis=1)
+    best = int(np.argmax(np.round(np.minimum(room, LETTER_ROOM), 6)))
+    return np.asarray(places[best])
+
+
+class _Name(NamedTuple):
+    """Where a name stands (2,), and half the width that its panel must have for it,
+    where the ring has radius 1."""
+
+    place: np.ndarray
+    half: float
+
+
+def _name_outside(axes: Axes, ends: np.ndarray, label: str, half: float) -> _Name:
+    """The name of a link of the ring, just written beside it: in two lines where it
+    would not fit into a panel of ``half`` the width."""
     middle = ends.mean(axis=0)
     away = middle / max(float(np.linalg.norm(middle)), 1e-9)
     sides = {-1: "right", 0: "center", 1: "left"}
     side = sides[int(np.sign(away[0]) * (abs(away[0]) > 0.3))]
-    write_at(axes, middle + BESIDE * away, label, ha=side, fontsize=7.5)
+    place = middle + BESIDE * away
+    text = label
+    if _half_width(axes, place, [label], side) > half:
+        text = label.replace("/", "/\n", 1)
+    write_at(axes, place, text, ha=side, fontsize=NAME_SIZE)
+    return _Name(place, _half_width(axes, place, text.split("\n"), side))
+
+
+def _half_width(axes: Axes, place: np.ndarray, lines: list[str], side: str) -> float:
+    """Half the width of a panel that has room for some lines to one side of a place
+    (2,)."""
+    figure = axes.figure.get_figure(root=True)
+    assert figure is not None
+    panel = 72 * figure.get_figwidth() * axes.get_position(original=True).width
+    paths = [TextPath((0, 0), line, size=NAME_SIZE) for line in lines]
+    width = max(path.get_extents().width for path in paths) + ROOM_AT_EDGE
+    share = 0.5 if side == "center" else 1.0
+    return float(abs(place[0]) / (1 - 2 * share * width / panel))
 
 
 def _name_link(
@@ -158,5 +206,5 @@ def _name_link(
     room = np.linalg.norm(places[:, None] - taken, axis=2).min(axis=1)
     place = places[int(np.argmax(np.round(np.minimum(room, ENOUGH), 6)))]
     box = {"boxstyle": "square,pad=0.12", "facecolor": "white", "linewidth": 0}
-    write_at(axes, place, label, fontsize=7.5, zorder=2, bbox=box)
+    write_at(axes, place, label, fontsize=NAME_SIZE, zorder=2, bbox=box)
     return np.asarray(place)

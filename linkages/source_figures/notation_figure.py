@@ -28,6 +28,7 @@ UP = np.array([0.0, 0.0, 1.0])
 OBLIQUE = look_along(np.array([0.75, -1.0, 0.6]), UP)
 REACH = 0.9  # of the extent: how far the axes of a chain are drawn
 ARC = 0.3  # radius of an arc, in the unit of the chain
+EARLY = 0.2  # of a link: where a name stands that has no room in its middle
 ARC_POINTS = 30
 STUB = 0.75  # length of a ray that shows a direction
 ARC_COLOR = "#D55E00"
@@ -96,7 +97,11 @@ def _draw_chain(axes: Axes, content: Content) -> None:
     centre = points.mean(axis=0) @ plane
     for bar in assembly.bars:
         pair = f"{bar.first}{bar.last}"
-        _write_beside(axes, bar.ends @ plane, f"$a_{{{pair}}}$", centre)
+        is_closing = (
+            bar.last == names[0]
+        )  # its twist stands near, and at its start nothing
+        share = EARLY if is_closing else 0.5
+        _write_beside(axes, bar.ends @ plane, f"$a_{{{pair}}}$", centre, share)
         _draw_twist(axes, assembly, bar, f"$\\alpha_{{{pair}}}$", plane)
     for name in names:
         _name_axis(axes, assembly, name, plane)
@@ -104,14 +109,17 @@ def _draw_chain(axes: Axes, content: Content) -> None:
     axes.margins(0.12)
 
 
-def _write_beside(axes: Axes, ends: np.ndarray, text: str, centre: np.ndarray) -> None:
-    """A text beside the middle of a line (2, 2), on the side away from ``centre``."""
+def _write_beside(
+    axes: Axes, ends: np.ndarray, text: str, centre: np.ndarray, share: float = 0.5
+) -> None:
+    """A text beside a line (2, 2), after a share of it, on the side away from
+    ``centre``."""
     along = ends[1] - ends[0]
     across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
     middle = ends.mean(axis=0)
     if across @ (middle - centre) < 0:
         across = -across
-    _write(axes, middle, text, 11 * across)
+    _write(axes, ends[0] + share * along, text, 11 * across)
 
 
 def _name_axis(axes: Axes, assembly: Assembly, name: str, plane: np.ndarray) -> None:

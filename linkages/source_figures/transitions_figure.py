@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
-from bifurc.figures.drawing import draw_forms, draw_legend_outside, draw_marks
-from bifurc.figures.labels import label_points
+from bifurc.figures.drawing import draw_forms, draw_marks
 from bifurc.figures.planes import Plane, plane_of
+from bifurc.figures.plotting import plot_transition_map
 from bifurc.figures.style import form_style
 from linkages.loop import Loop
 from linkages.source_figures.assembly import loop_assembly
@@ -48,14 +48,10 @@ def draw(source: SourceFigure) -> Figure:
     content = source.content
     atlas = atlas_of(content)
     horizontal, vertical = content["axes"]
-    plane = plane_of(atlas, horizontal - 1, vertical - 1)
     stops = tour_of(atlas, content) if "tour" in content else []
     if not stops:
-        figure = Figure(figsize=(6.6, 4.9), layout="constrained")
-        axes = figure.subplots()
-        _draw_map(axes, atlas, plane, stops)
-        draw_legend_outside(figure, atlas)
-        return figure
+        return plot_transition_map(atlas, joints=(horizontal, vertical))
+    plane = plane_of(atlas, horizontal - 1, vertical - 1)
     rows = -(-len(stops) // COLUMNS)
     height = max(rows * (SNAPSHOT + 0.15), 5.4)
     figure = Figure(figsize=(5.2 + COLUMNS * SNAPSHOT, height))
@@ -86,9 +82,6 @@ def _draw_form_names(axes: Axes, atlas: Atlas) -> None:
 def _draw_map(axes: Axes, atlas: Atlas, plane: Plane, stops: Sequence[Stop]) -> None:
     draw_forms(axes, atlas, plane)
     draw_marks(axes, atlas, plane)
-    if not stops:
-        label_points(axes, atlas, plane)
-        return
     for letter, stop in zip(ascii_lowercase, stops, strict=False):
         spot = plane.spot(stop.theta)
         if not stop.is_bifurcation:

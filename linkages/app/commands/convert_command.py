@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["convert_command"]
 
+TARGET = "OUT"
 ENDINGS = (".toml", ".xml", ".mjcf", ".sdf")
 
 
@@ -34,15 +35,14 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     The configuration written is the reference configuration, where all joint variables
     are 0; that of a network is one with its locks.
     """
-    require_ending("OUT", out, *ENDINGS)
+    require_ending(TARGET, out, *ENDINGS)
     from bifurc.files.atomic import replace_file
     from linkages.app.mechanism_file import mechanism_text
 
     mechanism = _mechanism(source, hold)
     text = mechanism_text(mechanism, out)
-    require_writable(out)
-
-    with writing_to(out):
+    require_writable(out, TARGET)
+    with writing_to(out, TARGET):
         replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
     bodies, joints = len(mechanism.bodies), len(mechanism.joints)
     say(f"{out}: {mechanism.name}, {bodies} bodies, {joints} joints")

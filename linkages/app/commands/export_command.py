@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["export_command"]
 
+TO = "--to"
 MODEL, TABLE = ".glb", ".csv"
 MOTIONS = (MODEL, TABLE)
 PARTS = (".stl", ".step")
@@ -48,7 +49,7 @@ TARGETS = {
 @click.command("export", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
 @click.option(
-    "--to",
+    TO,
     "out",
     type=FILE,
     required=True,
@@ -114,10 +115,10 @@ def export_command(
 
     if verbose:
         say_more()
-    require_ending("--to", out, *MOTIONS, *PARTS, *MECHANISMS)
+    require_ending(TO, out, *MOTIONS, *PARTS, *MECHANISMS)
     check_options(out)
     check_count_of_forms(out, forms)
-    require_writable(out)
+    require_writable(out, TO)
     atlas = choose_atlas(source, out, parameters, search, hold)
     require_forms(atlas)
     if is_one_of(out, PARTS):
@@ -206,7 +207,7 @@ def export_parts(
     if not seating.is_apart:
         say(describe_meetings(atlas, seating, meetings_along(seating, forms)))
     if seating.is_apart or printing.offsets is not None:
-        with writing_to(out):
+        with writing_to(out, TO):
             write_parts(atlas, forms[0], seating, out)
         click.echo(f"wrote {out}", err=True)
     if not seating.is_apart:
@@ -225,7 +226,7 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     form = choose_forms(atlas, texts)[0]
     mechanism = mechanism_of_loop(loop_of(atlas), form.branch(0.0))
     text = mechanism_text(mechanism, out)
-    with writing_to(out):
+    with writing_to(out, TO):
         replace_file(out, lambda part: part.write_text(text, encoding="utf-8"))
     click.echo(f"wrote {out}: {form.name}", err=True)
 
@@ -243,7 +244,7 @@ def export_motions(
 
     motions = choose_motions(atlas, forms, routes, count)
     content = make_content(atlas, motions, out)
-    with writing_to(out):
+    with writing_to(out, TO):
         replace_file(out, lambda part: part.write_bytes(content))
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)

@@ -1,7 +1,10 @@
 """The figures over unknowns of the reader's choice."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from bifurc.errors import ProblemError
 from bifurc.figures.singular_values_against import plot_singular_values_against
@@ -46,3 +49,21 @@ def test_other_numbers_than_three_of_the_unknowns_are_refused(parallelogram, unk
 def test_an_unknown_that_is_not_there_is_refused(parallelogram, unknown):
     with pytest.raises(ProblemError, match="numbered from 1 to 3"):
         plot_singular_values_against(parallelogram, unknown)
+
+
+def test_numbers_and_names_of_a_map_in_space_are_apart(parallelogram):
+    figure = plot_map_in_space(parallelogram, [1, 2, 3])
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (axes,) = figure.axes
+    shown = [text.get_text() for text in axes.yaxis.get_ticklabels()]
+    assert {"\N{MINUS SIGN}90", "0", "90"} <= set(shown)
+    assert not {"\N{MINUS SIGN}180", "180"} & set(shown)
+    texts = [*axes.texts]
+    for line in (axes.xaxis, axes.yaxis, axes.zaxis):
+        texts += [text for text in line.get_ticklabels() if text.get_text()]
+    boxes = [text.get_window_extent() for text in texts]
+    # ticks beyond the frame stand somewhere, and are not drawn
+    boxes = [box for box in boxes if 0 < box.x1 < 2 * figure.bbox.width]
+    for first, second in combinations(boxes, 2):
+        assert not first.shrunk(0.6, 0.6).overlaps(second.shrunk(0.6, 0.6))

@@ -630,6 +630,31 @@ def test_a_full_disk_keeps_what_is_on_the_screen(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        (("export", "bennett", "--to"), "old.glb"),
+        (("export", "bennett", "--to"), "old.csv"),
+        (("view", "bennett", "--no-open", "--out"), "old.html"),
+        (("figure", "004-6", "--out"), "figures"),
+    ],
+)
+def test_a_full_disk_names_the_option_and_leaves_older_files(arguments, name, tmp_path):
+    out = tmp_path / name
+    if out.suffix:
+        out.write_text("old", encoding="utf-8")
+    process = start(*arguments, out, stdout=subprocess.PIPE, preexec_fn=full_disk)
+    _, message = process.communicate()
+    assert process.returncode == ExitCode.BAD_INPUT
+    assert len(messages(message)) == 1, message
+    assert f"{arguments[-1]} {out}: nothing can be written there" in message
+    if out.suffix:
+        assert out.read_text(encoding="utf-8") == "old"
+        assert list(tmp_path.iterdir()) == [out]
+    else:
+        assert list(tmp_path.iterdir()) == []
+
+
 def test_the_dataset_of_another_sweep_is_left_alone(tmp_path):
     pytest.importorskip("zarr")
     from linkages.app.sweep.plan import read_plan

@@ -197,6 +197,12 @@ def test_what_a_mechanism_cannot_do_is_said_in_one_line(folder, arguments, messa
     assert set(Path().iterdir()) == before
 
 
+def test_parts_of_a_saved_mechanism_are_refused_as_those_of_its_file(folder):
+    run("map", "slider_crank.toml", "--out", "out")
+    told = run("export", "out/atlas.nc", "--to", "x.stl", code=2).stderr
+    assert "out/atlas.nc: it is a mechanism, which" in told
+
+
 def test_the_clearance_of_a_mechanism_is_that_of_its_bodies(folder):
     output = run("clearance", "slider_crank.toml", "--form", "1").stdout
     assert "the least clearance is" in output

@@ -1,6 +1,5 @@
 """The clearance of bodies of a mechanism: the least distance that there is."""
 
-import numpy as np
 import pytest
 
 from linkages.links.body_clearance import (

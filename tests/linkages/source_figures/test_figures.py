@@ -273,3 +273,36 @@ def test_numbers_of_joints_do_not_cover_each_other(name):
         ]
         for first, second in combinations(boxes, 2):
             assert not first.shrunk(0.7, 0.7).overlaps(second.shrunk(0.7, 0.7))
+
+
+CROWDED = ("thesis-2.4.1", "thesis-4.4.7", "thesis-5.3.1", "thesis-5.4.14", "003-2")
+
+
+@pytest.mark.parametrize("name", CROWDED)
+def test_texts_are_whole_and_cover_each_other_nowhere(name):
+    figure = draw_source_figure(source_figures()[name])
+    FigureCanvasAgg(figure).draw()
+    boxes = {
+        text: text.get_window_extent()
+        for text in texts_of(figure)
+        if text.get_text().strip()
+    }
+    for box in boxes.values():
+        assert box.x0 > -1
+        assert box.y0 > -1
+        assert box.x1 < figure.bbox.width + 1
+        assert box.y1 < figure.bbox.height + 1
+    for (one, first), (other, second) in combinations(boxes.items(), 2):
+        across = min(first.x1, second.x1) - max(first.x0, second.x0)
+        upwards = min(first.y1, second.y1) - max(first.y0, second.y0)
+        assert across < 4 or upwards < 4, (one.get_text(), other.get_text())
+
+
+def texts_of(figure):
+    """What is written in a figure, but for the numbers of ticks."""
+    texts = list(figure.texts)
+    for axes in figure.axes:
+        texts += [*axes.texts, axes.title]
+        if axes.axison:
+            texts += [axes.xaxis.label, axes.yaxis.label]
+    return texts

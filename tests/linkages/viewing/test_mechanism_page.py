@@ -208,6 +208,15 @@ NAMES = """() => {
 }"""
 
 
+def test_names_of_joints_in_one_place_stand_beside_each_other(show_shared):
+    shown = show_shared("kite")
+    folded = next(form.name for form in shown.atlas.forms if "folded" in form.name)
+    shown.page.evaluate("name => bifurc.go(name)", folded)
+    picture_of(shown)
+    boxes = np.array(shown.page.evaluate(NAMES))
+    assert (boxes[:, 2] > boxes[:, 0]).all()
+
+
 @pytest.mark.parametrize("name", ["platform", "Kempe"])
 def test_names_cover_neither_each_other_nor_their_joints(show_shared, name):
     shown = show_shared(name)

@@ -7,10 +7,12 @@ from bifurc.errors import RouteError
 from bifurc.figures.style import form_style
 from bifurc.routes.route import find_route
 from bifurc.torus import wrap
+from linkages.app.forms import listed_forms
 from linkages.closure.loop_closure import LoopClosure
 from linkages.labels import loop_of
 from linkages.links.rods import place_links
 from linkages.viewing.document import make_view_document
+from linkages.viewing.page import write_page
 
 DSG = "special-double-subtractive-goldberg"
 NOT_EMPTY = """() => {
@@ -459,3 +461,15 @@ def test_without_webgl_map_and_numbers_work(show):
     assert "no WebGL" in shown.page.locator(".bv-no-webgl").inner_text()
     shown.click(".bv-map [data-point=B1]")
     assert shown.page.locator(".bv-choice button").count() == 4
+
+
+def test_forms_stand_in_the_order_of_their_numbers(browser, atlas_of, tmp_path):
+    atlas = atlas_of(DSG).renamed(["Form 10", "Form 2", "Form 1", "Bennett 4R"])
+    path = write_page(make_view_document(atlas), tmp_path / "page.html")
+    page = browser.new_page()
+    page.goto(path.as_uri())
+    page.wait_for_selector("body[data-ready=true]", timeout=20_000)
+    names = page.evaluate("() => bifurc.forms.map((form) => form.name)")
+    page.close()
+    assert names == ["Bennett 4R", "Form 1", "Form 2", "Form 10"]
+    assert names == [form.name for form in listed_forms(atlas)]
