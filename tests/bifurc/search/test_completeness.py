@@ -64,5 +64,8 @@ def test_what_ended_a_search_early_is_said_first():
     assert late.level is Level.OUT_OF_TIME
     assert "budget of 2 s was used up with 2 starts not looked at" in late.statement
     assert late.missed_probability == 1.0
+    proven = findings_of([FORM])
+    proven.set_audit(Audit(Level.PROVED, "so it is", np.empty((0, 2))))
+    assert judge_completeness(proven, provenance).level is Level.OUT_OF_TIME
     stopped = judge_completeness(findings_of([FORM]), Provenance(interrupted=True))
     assert stopped.level is Level.INTERRUPTED
