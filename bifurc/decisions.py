@@ -364,6 +364,17 @@ is_weakly_isolated = Decision(
     "1e-6",
     Role.LOOK,
 )
+is_known_assembly = Decision(
+    "hidden assembly",
+    "an isolated solution is one, and known",
+    "half the stretch of the valley about it, over the scale, on which the residual is "
+    "rounding",
+    1e-6,
+    "points as near as that count as one; about a double solution it is 1e-7, about "
+    "three together 1e-5",
+    third_answer="such solutions count as one, and the statement says that rounding "
+    "does not tell how many they are",
+)
 is_plainly_closed_curve = Decision(
     "closed curve",
     "what closes is a curve, and no trace of rounding",

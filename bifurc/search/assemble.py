@@ -20,7 +20,7 @@ from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
 from bifurc.curves.near_miss import near_miss_value
-from bifurc.decisions import closes_to_rounding, is_faint
+from bifurc.decisions import closes_to_rounding, is_faint, is_known_assembly
 from bifurc.numerics.blur import change_by_blur
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
@@ -76,6 +76,7 @@ def assemble_atlas(
     near_motions = _near_motions(problem, findings, periods)
     if near_motions:
         doubts = (*doubts, *_doubts_of_near_motions(findings), NEAR_ASSEMBLIES)
+    doubts = (*doubts, *_doubts_of_assemblies(problem, findings))
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
@@ -242,6 +243,19 @@ def _doubts_of_near_motions(findings: Findings) -> list[str]:
             "misclosure; there they may be interrupted"
         )
     return doubts
+
+
+def _doubts_of_assemblies(problem: Problem, findings: Findings) -> list[str]:
+    """How many isolated solutions there are where rounding hides it."""
+    hidden = np.array(findings.hidden)
+    hidden = hidden[~is_known_assembly(hidden, problem.scale)]
+    if not len(hidden):
+        return []
+    reach = hidden.max() / problem.scale
+    return [
+        f"rounding does not tell how many isolated solutions lie together, up to "
+        f"{reach:.1e} of the scale apart, at {len(hidden)} of the places listed"
+    ]
 
 
 def _with_misclosure(

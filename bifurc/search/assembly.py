@@ -1,4 +1,9 @@
-"""An isolated solution, as exact as doubles make it."""
+"""An isolated solution, as exact as doubles make it.
+
+Where solutions come together F vanishes to a higher order, and along the weakest
+direction it is rounding on a whole stretch: 1e-15 is the cube of 1e-5. How many
+solutions lie on such a stretch, and where, doubles do not tell.
+"""
 
 from __future__ import annotations
 
@@ -6,39 +11,98 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.decisions import closes_to_rounding, is_blurred
-from bifurc.numerics.null_spaces import decompose
+from bifurc.curves.valley import correct_to_valley
+from bifurc.decisions import (
+    closes_to_rounding,
+    is_blurred,
+    is_known_assembly,
+    is_weakly_isolated,
+)
+from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
 __all__ = ["IsolatedSolution", "polished"]
 
-STEPS = 6  # of Newton's method
+# Of Newton's method: at a solution of order k each step leaves (1 - 1 / k) of the way.
+STEPS = 60
+FLOOR = 1e-20  # over the largest singular value: steps stay finite
 NEARBY = 1e-2  # of the scale: how far a solution may lie from where it was found
+# Distances along the weakest direction, over the scale, at which F is looked at, and
+# the rounds in which these places are corrected across it.
+DISTANCES = np.geomspace(1e-8, NEARBY, 121)
+CORRECTIONS = 5
 
 
 class IsolatedSolution(NamedTuple):
     """A ``point`` (n,) with its ``stiffness``, the smallest of all n singular values
     there. It ``is_isolated`` where rounding moves it by less than what tells points
-    apart."""
+    apart. It, or several, lie ``hidden`` on a stretch that reaches as far from the
+    point to either side."""
 
     point: np.ndarray
     stiffness: float
     is_isolated: bool
+    hidden: float
 
 
 def polished(problem: Problem, start: np.ndarray) -> IsolatedSolution:
-    """The solution next to ``start`` (n,), by Newton's method of full rank."""
+    """The solution next to ``start`` (n,), by Newton's method of full rank; where it is
+    hidden by rounding, the middle of the stretch."""
+    best, gap = _solved(problem, start)
+    stiffness = float(singular_values(problem, best)[problem.n - 1])
+    is_isolated = closes_to_rounding(gap) and not is_blurred(stiffness)
+    if not (closes_to_rounding(gap) and is_weakly_isolated(stiffness)):
+        return IsolatedSolution(best, stiffness, is_isolated, 0.0)
+    stretch = _hidden_stretch(problem, best)
+    if is_known_assembly(stretch.half_length, problem.scale):
+        return IsolatedSolution(best, stiffness, is_isolated, stretch.half_length)
+    return IsolatedSolution(stretch.middle, stiffness, is_isolated, stretch.half_length)
+
+
+def _solved(problem: Problem, start: np.ndarray) -> tuple[np.ndarray, float]:
+    """Where Newton's method of full rank ends next to ``start`` (n,), and the relative
+    residual there.
+
+    A step in a weak direction may raise the residual by the bend of the other
+    equations, and is then corrected across that direction.
+    """
     best = start
     gap = float(problem.gaps(start[None])[0])
-    point = start
     for _ in range(STEPS):
-        point = point + decompose(problem, point[None]).newton_steps(problem.n)[0]
+        point = best + decompose(problem, best[None]).newton_steps(problem.n, FLOOR)[0]
         new_gap = float(problem.gaps(point[None])[0])
+        if not (new_gap < gap or closes_to_rounding(gap)):
+            points, gaps = correct_to_valley(problem, point[None], CORRECTIONS)
+            point, new_gap = points[0], float(gaps[0])
         distance = np.linalg.norm(point - start)
         if not distance < NEARBY * problem.scale or not new_gap < gap:
             break
         best, gap = point, new_gap
-    stiffness = float(singular_values(problem, best)[problem.n - 1])
-    is_isolated = closes_to_rounding(gap) and not is_blurred(stiffness)
-    return IsolatedSolution(best, stiffness, is_isolated)
+    return best, gap
+
+
+class _Stretch(NamedTuple):
+    """A stretch of the valley of |F|: its ``middle`` (n,) and half of its length."""
+
+    middle: np.ndarray
+    half_length: float
+
+
+def _hidden_stretch(problem: Problem, solution: np.ndarray) -> _Stretch:
+    """The stretch of the valley on both sides of a ``solution`` (n,) on which F is
+    rounding."""
+    _, right = null_spaces(problem, solution[None])
+    weakest = right[0, -1]
+    distances = DISTANCES * problem.scale
+    reaches = []
+    for sense in (1.0, -1.0):
+        ahead = solution + sense * distances[:, None] * weakest
+        _, gaps = correct_to_valley(problem, ahead, CORRECTIONS)
+        visible = np.flatnonzero(~closes_to_rounding(gaps))
+        last = visible[0] if len(visible) else -1
+        reaches.append(float(distances[last]))
+    offset = 0.5 * (reaches[0] - reaches[1])
+    beside = solution + offset * weakest
+    middle = correct_to_valley(problem, beside[None], CORRECTIONS)[0][0]
+    return _Stretch(middle, 0.5 * (reaches[0] + reaches[1]))

@@ -44,8 +44,9 @@ def _without_doubts(findings: Findings, provenance: Provenance) -> Completeness:
     missed = missed_probability(list(hits.values()))
     estimate = _estimate(hits, missed)
     audit = findings.audit
-    left = len(findings.open_seeds)
-    if provenance.out_of_time and (audit is None or left):
+    # what an audit says holds once all that it led to is looked at
+    if provenance.out_of_time:
+        left = len(findings.open_seeds)
         statement = (
             f"the budget of {provenance.settings.budget:.4g} s was used up with "
             f"{left} starts not looked at; {estimate}"

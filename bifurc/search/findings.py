@@ -112,6 +112,7 @@ class Findings:
         self.traced: list[TracedBranch] = []
         self.points: list[SingularPoint] = []
         self.rigid: list[np.ndarray] = []
+        self.hidden: list[float] = []  # about each of them
         self.near_motions: list[NearMotionTrace] = []
         self.short_stretches: list[NearMotionTrace] = []
         self.near_surfaces: list[NearSurface] = []
@@ -345,27 +346,35 @@ class Findings:
         point = self.points[number]
         return point.is_confirmed, point.error
 
-    def rigid_at(self, u: np.ndarray, stiffness: float = np.inf) -> int | None:
+    def rigid_at(
+        self, u: np.ndarray, stiffness: float = np.inf, hidden: float = 0.0
+    ) -> int | None:
         """The number of the known rigid assembly at ``u`` (n,), where the smallest
         singular value is its ``stiffness``.
 
-        One that is weak has another beside it, as near as it is weak.
+        One that is weak has another beside it, as near as it is weak. All that rounding
+        may have ``hidden`` on a stretch, as far from its middle, count as one.
         """
         unit = self.problem.scale
         if is_weakly_isolated(stiffness):
             unit *= SHARPER
         for number, known in enumerate(self.rigid):
-            if is_same_point(self._distance(known, u), unit):
+            distance = self._distance(known, u)
+            is_hidden = distance < max(hidden, self.hidden[number])
+            if is_hidden or is_same_point(distance, unit):
                 return number
         return None
 
-    def rigid_assembly(self, u: np.ndarray, stiffness: float = np.inf) -> int:
+    def rigid_assembly(
+        self, u: np.ndarray, stiffness: float = np.inf, hidden: float = 0.0
+    ) -> int:
         """The number of the rigid assembly at ``u`` (n,), which is recorded if new; see
         `rigid_at`."""
-        known = self.rigid_at(u, stiffness)
+        known = self.rigid_at(u, stiffness, hidden)
         if known is not None:
             return known
         self.rigid.append(u)
+        self.hidden.append(hidden)
         return len(self.rigid) - 1
 
     def _distances_to_points(self, u: np.ndarray) -> list[float]:

@@ -245,7 +245,8 @@ class Search:
         """
         findings = self.findings
         solution = polished(self.problem, point)
-        known = findings.rigid_at(*solution[:2])
+        place = (solution.point, solution.stiffness, solution.hidden)
+        known = findings.rigid_at(*place)
         if known is not None:
             return SeedFate(Fate.RIGID, known)
         if is_weakly_isolated(solution.stiffness):
@@ -256,7 +257,7 @@ class Search:
         if self.settings.near_motions and may_nearly_move(solution.stiffness):
             near = self._near_motion_through(point)
         if near is None or solution.is_isolated:
-            return SeedFate(Fate.RIGID, findings.rigid_assembly(*solution[:2]))
+            return SeedFate(Fate.RIGID, findings.rigid_assembly(*place))
         return SeedFate(Fate.ON_NEAR_MOTION, near)
 
     def _shaky_assembly(self, point: np.ndarray) -> int | None:

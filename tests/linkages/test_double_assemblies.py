@@ -71,3 +71,26 @@ def test_a_motion_however_small_is_a_form(missing):
     turn = form.branch(np.linspace(0.0, form.branch.length, 2001))[:, 0]
     swing = math.sqrt(4.0 * missing / 3.0)
     assert np.ptp(turn) / 2 == pytest.approx(swing, rel=1e-3 + 1e-9 / swing)
+
+
+def loop_with_triple_assembly(error):
+    """Three assemblies or so lie ``error`` apart about (180, 180, 180, 0, 180, 0)
+    degrees."""
+    right = math.pi / 2
+    twists = (right, right, -right, right, right, -right)
+    return Loop((1, 2, 2, 2, 1, 2), twists, (-1.0, error, 1.0, 0, 0, 0))
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("error", [1.6e-6, 1e-6, 3e-7])
+def test_assemblies_that_rounding_hides_count_as_one_and_are_in_doubt(error, seed):
+    # starts stop up to 1.6e-4 from them, where F is below 1e-12 already
+    atlas = map_linkage(loop_with_triple_assembly(error), seed=seed)
+    assert len(atlas.forms) == 1
+    assert len(atlas.rigid) == 6
+    place = np.array([math.pi, math.pi, math.pi, 0.0, math.pi, 0.0])
+    off = np.abs(np.sin((atlas.rigid - place) / 2)).max(axis=1)
+    assert np.count_nonzero(off < 1e-4) == 1
+    assert atlas.completeness.level is Level.ESTIMATED
+    statement = atlas.completeness.statement
+    assert statement.startswith("in doubt: rounding does not tell how many isolated")

@@ -67,5 +67,8 @@ def test_what_ended_a_search_early_is_said_first():
     findings = findings_of([FORM, None])
     findings.set_audit(Audit(Level.PROVED, "so it is", np.empty((0, 2))))
     assert judge_completeness(findings, provenance).level is Level.OUT_OF_TIME
+    proven = findings_of([FORM])
+    proven.set_audit(Audit(Level.PROVED, "so it is", np.empty((0, 2))))
+    assert judge_completeness(proven, provenance).level is Level.OUT_OF_TIME
     stopped = judge_completeness(findings_of([FORM]), Provenance(interrupted=True))
     assert stopped.level is Level.INTERRUPTED

@@ -202,6 +202,13 @@ def test_every_isolated_assembly_is_in_the_atlas_whatever_the_seed(loop, count, 
     )
 
 
+@pytest.mark.parametrize("budget", np.geomspace(0.01, 0.3, 12))
+def test_a_budget_that_ends_at_any_moment_leaves_no_proof_of_half_a_list(budget):
+    settings = SearchSettings(starts=1, budget=float(budget))
+    atlas = explore(LoopClosure(SIXTEEN), settings=settings)
+    assert len(atlas.rigid) == 16 or atlas.completeness.level == "out of time"
+
+
 def test_without_time_isolated_assemblies_are_said_to_be_those_of_random_starts():
     problem = LoopClosure(SIXTEEN)
     atlas = explore(problem, settings=NUMBERS_ALONE)
