@@ -18,7 +18,7 @@ namespace bifurc {
 class Factorization {
 public:
     Factorization(Index rows, Index columns)
-        : matrix_(rows, columns), scale_(columns), work_(std::max(rows, columns)), q_(0, 0), upper_(0, 0) {}
+        : matrix_(rows, columns), scale_(columns), inverse_diagonal_(columns), work_(std::max(rows, columns)), q_(0, 0), upper_(0, 0) {}
 
     // The matrix to be factored, to be filled before `factor`.
     View<double> matrix() { return matrix_; }
@@ -31,7 +31,7 @@ public:
             for (Index i = k; i < rows; ++i) square += matrix_(i, k) * matrix_(i, k);
             const double norm = std::sqrt(square);
             if (norm == 0.0) {
-                scale_[k] = 0.0;
+                scale_[k] = inverse_diagonal_[k] = 0.0;
                 continue;
             }
             const double diagonal = matrix_(k, k) > 0.0 ? -norm : norm;
@@ -39,6 +39,7 @@ public:
             scale_[k] = -pivot / diagonal;
             for (Index i = k + 1; i < rows; ++i) matrix_(i, k) /= pivot;
             matrix_(k, k) = diagonal;
+            inverse_diagonal_[k] = 1.0 / diagonal;
             reflect(k, matrix_, k + 1);
         }
     }
@@ -57,7 +58,6 @@ public:
             q_(k, k) = 1.0;
             reflect(k, q_, k);
             for (Index j = 0; j < k; ++j) upper_(k, j) = matrix_(j, k);
-            upper_(k, k) = matrix_(k, k) != 0.0 ? 1.0 / matrix_(k, k) : 0.0;
         }
     }
 
@@ -71,7 +71,7 @@ public:
                 for (Index j = 0; j < columns; ++j) solution[j] += right[i] * q_(i, j);
             }
             for (Index k = columns - 1; k >= 0; --k) {
-                solution[k] *= upper_(k, k);
+                solution[k] *= inverse_diagonal_[k];
                 for (Index j = 0; j < k; ++j) solution[j] -= upper_(k, j) * solution[k];
             }
             return;
@@ -86,7 +86,7 @@ public:
         for (Index k = columns - 1; k >= 0; --k) {
             double total = right[k];
             for (Index j = k + 1; j < columns; ++j) total -= matrix_(k, j) * solution[j];
-            solution[k] = matrix_(k, k) != 0.0 ? total / matrix_(k, k) : 0.0;
+            solution[k] = total * inverse_diagonal_[k];
         }
     }
 
@@ -104,12 +104,12 @@ public:
             for (Index k = 0; k < size; ++k) {
                 double total = vector[k] / norm;
                 for (Index j = 0; j < k; ++j) total -= matrix_(j, k) * vector[j];
-                vector[k] = total / matrix_(k, k);
+                vector[k] = total * inverse_diagonal_[k];
             }
             for (Index k = size - 1; k >= 0; --k) {
                 double total = vector[k];
                 for (Index j = k + 1; j < size; ++j) total -= matrix_(k, j) * vector[j];
-                vector[k] = total / matrix_(k, k);
+                vector[k] = total * inverse_diagonal_[k];
             }
             norm = length(vector);
         }
@@ -141,10 +141,11 @@ private:
 
     Matrix<double> matrix_;
     std::vector<double> scale_;
+    std::vector<double> inverse_diagonal_;  // of R, 0 where that is 0
     std::vector<double> work_;
     bool has_q_ = false;
     Matrix<double> q_;      // the reflections, multiplied out
-    Matrix<double> upper_;  // R, transposed; inverses on its diagonal
+    Matrix<double> upper_;  // R above its diagonal, transposed
 };
 
 // The least-squares solution of a system of any rank and shape by QR with column pivoting.

@@ -161,7 +161,7 @@ public:
         MarchOutcome outcome{MarchStatus::open, first.gap, {}};
         if (!(first.gap <= settings_.closing)) return outcome;
         misclosure_ = std::max({settings_.misclosure, march::rounding, first.gap});
-        TaylorPiece piece = expand(point, direction, first.sigma);
+        TaylorPiece piece = expand(point, direction, first.sigma, 0.0);
         outcome.status = MarchStatus::stalled;
         if (piece.radius < settings_.shortest) return outcome;
         outcome.pieces.push_back(std::move(piece));
@@ -226,14 +226,14 @@ private:
         return misclosure_ / std::max(sigma, misclosure_ / march::most_blurred);
     }
 
-    // The series at a settled point; its radius is 0 where no length of it is trusted. It is cut
+    // The series at a settled point; its radius is 0 where no length of it beyond ``needed`` is trusted. It is cut
     // off where its last terms fall to the tolerance, or to the distance to which the point is
     // known: below that the terms are rounding, which a small singular value makes grow like a
     // series that does not reach to where that value vanishes. The residual has to be within the
     // tolerance in any case, but for the misclosure at the best points of the curve, which is no
     // fault of the series, and the estimated distance from the curve within that or what
     // rounding explains.
-    TaylorPiece expand(Vector<const double> point, Vector<const double> tangent, double sigma) {
+    TaylorPiece expand(Vector<const double> point, Vector<const double> tangent, double sigma, double needed) {
         TaylorPiece piece{Matrix<double>(settings_.order + 1, n_)};
         piece.sigma = sigma;
         bordered_.prepare_for_many();
@@ -241,7 +241,7 @@ private:
         const double known = blur(sigma);
         const double within = 3.0 * settings_.tolerance;
         double radius = trusted_radius(piece.coefficients, std::max(settings_.tolerance, known));
-        for (int i = 0; i < march::shrinks; ++i) {
+        for (int i = 0; i < march::shrinks && radius > needed; ++i) {
             const Error most{within + 4.0 * misclosure_, within + march::handover * known};
             const Error error = largest_error(piece.coefficients, radius, most);
             if (error.is_below(most)) {
@@ -294,8 +294,8 @@ private:
             if (settled.moved > march::farthest_correction * radius || settled.gap > settings_.closing) continue;
             if (is_beside_singular(settled.sigma, pieces.back().sigma)) continue;
             misclosure_ = std::max(misclosure_, settled.gap);
-            TaylorPiece piece = expand(point, direction, settled.sigma);
-            if (piece.radius <= reach_needed(beyond) * radius) continue;
+            TaylorPiece piece = expand(point, direction, settled.sigma, reach_needed(beyond) * radius);
+            if (piece.radius == 0.0) continue;
             const Meeting meeting = meet(pieces.back(), piece, -beyond * radius);
             const double known = blur(std::min(pieces.back().sigma, piece.sigma));
             const bool is_same = meeting.distance <= 100.0 * settings_.tolerance + march::handover * known;

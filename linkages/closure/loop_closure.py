@@ -60,11 +60,6 @@ class LoopClosure(NumericalProblem):
         self.bounds = np.full((n, 2), [-np.inf, np.inf])
         self._geometry = loop.link_geometry
 
-    @property
-    def has_rim(self) -> bool:
-        """False: angles have no bounds."""
-        return False
-
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """Closure residuals (k, 6): rotation, then translation over the characteristic
         length."""
