@@ -313,15 +313,15 @@ class FunctionProblem(NumericalProblem):
     ) -> March:
         """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,): Taylor series
         where the equations are recorded, else by collocation."""
-        if self._compiled is not None:
-            return self._compiled.march(start, tangent, settings)
+        if self._scaled is not None and self._scaled.is_marched:
+            return self._scaled.march(start, tangent, settings)
         return super().march(start, tangent, settings)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
         left at each, by least squares."""
-        if self._compiled is not None:
-            return self._compiled.project(starts)
+        if self._scaled is not None and self._scaled.is_marched:
+            return self._scaled.project(starts)
         return super().project(starts)
 
     def project_to_sphere(

@@ -31,6 +31,9 @@ __all__ = ["LARGEST_DENSE", "ScaledTape"]
 
 LARGEST_DENSE = 100  # unknowns up to which dense matrices are factored
 LARGEST_FACTORED_DENSE = 40  # the same, in compiled code
+# up to which pieces of a curve are made in compiled code: the factors of a net of more
+# unknowns take longer than collocation with SuperLU
+LARGEST_SPARSE = 250
 SINGULAR = 1e-12  # a singular value of F', over the magnitude, that is left to pivoting
 SPARSE = 0.25  # share of entries of a larger Jacobian up to which it is sparse
 ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
@@ -106,6 +109,13 @@ class ScaledTape:
     def is_factored_sparse(self) -> bool:
         """Whether the compiled methods factor F' as the sparse matrix that it is."""
         return self.tape.n > LARGEST_FACTORED_DENSE and self._has_few_entries
+
+    @property
+    def is_marched(self) -> bool:
+        """Whether marches and projections are to be made in compiled code."""
+        if self.tape.n <= LARGEST_DENSE:
+            return True
+        return self.tape.n <= LARGEST_SPARSE and self.is_factored_sparse
 
     @cached_property
     def _has_few_entries(self) -> bool:

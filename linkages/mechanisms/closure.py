@@ -147,8 +147,8 @@ class MechanismClosure(NumericalProblem):
 
     @cached_property
     def _is_compiled(self) -> bool:
-        """Whether curves and solutions come from compiled code: dense matrices are
-        factored there up to some size."""
+        """Whether curves and solutions come from compiled code: sparse matrices of any
+        size are factored there, dense ones up to some size."""
         return self._tape.is_factored_sparse or self.n <= LARGEST_COMPILED
 
     @property

@@ -131,3 +131,29 @@ def test_random_starts_reach_solutions_of_sparse_equations():
     points, gaps = problem.project(starts)
     assert gaps.max() < 1e-13
     assert np.ptp(points - on_curve(0.0), axis=1).max() < 1e-11
+
+
+def test_a_curve_crosses_another_one_in_many_unknowns():
+    # x_0 is free, the others follow by a chain; the last one is on one of two curves
+    length = 60
+
+    def equations(u):
+        chain = [u[k + 1] - np.sin(u[k]) for k in range(length)]
+        first, last = u[0], u[length + 1]
+        crossing = (last - 0.3 * first) * (last + u[length] + first**2)
+        return [*chain, crossing, 2 * crossing + chain[3]]
+
+    problem = FunctionProblem(equations, [(-1.0, 1.0)] * (length + 2))
+    chain = [0.5]
+    for _ in range(length):
+        chain.append(np.sin(chain[-1]))
+    for last in (0.15, -chain[-1] - 0.25):
+        branch = trace_branch(problem, np.array([*chain, last]))
+        assert branch.outcome is Outcome.LEFT_REGION
+        points = branch.sample(300)
+        first = points[:, 0]
+        assert np.ptp(first) > 1.2  # through the crossing at 0
+        on_line = np.abs(points[:, -1] - 0.3 * first).max()
+        on_curve_beside = np.abs(points[:, -1] + points[:, length] + first**2).max()
+        is_on_line = last > 0
+        assert (on_line if is_on_line else on_curve_beside) < 1e-12

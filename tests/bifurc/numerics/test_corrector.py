@@ -137,3 +137,27 @@ def test_equations_too_large_to_square_do_not_stop_the_others():
     assert np.all(np.isfinite(points))
     assert points[0] == pytest.approx([0.0, 0.1, 0.2], abs=1e-9)
     assert gaps[0] < 1e-12 < gaps[1]
+
+
+def test_points_onto_a_surface_settle_each_for_itself():
+    # the last one has no solution above it: the others do not wait for it
+    calls = []
+
+    def sphere(u):
+        return [u @ u - 1.0]
+
+    problem = FunctionProblem(sphere, BOX)
+    jacobians = problem.jacobians
+    problem.jacobians = lambda points: calls.append(len(points)) or jacobians(points)
+    starts = np.array(
+        [[0.1, 0.2, 0.9], [0.3, -0.1, 1.2], [0.0, 0.0, 1.0 + 1e-12], [1.2, 0, 0]]
+    )
+    planes = np.tile(np.eye(3)[:, :2], (len(starts), 1, 1))
+    points, gaps = correct_normal(problem, starts, planes)
+    assert gaps[:3].max() < 1e-15 < 1e-3 < gaps[3]
+    assert points[:3, :2] == pytest.approx(starts[:3, :2], abs=1e-15)
+    assert calls[0] == 4
+    assert calls[-1] == 1
+    for start, plane, point in zip(starts[:3], planes, points, strict=False):
+        alone, _ = correct_normal(problem, start[None], plane[None])
+        assert alone[0] == pytest.approx(point, abs=1e-15)
