@@ -2,6 +2,8 @@
 
 A face is a body, a crease between two faces a revolute joint. A folded state that the
 file gives, by coordinates in space or by fold angles, is the reference configuration.
+Thick panels have their hinges above and below the paper: on the faces that come
+together there, or at heights that the file gives (Chen, Peng and You 2015).
 """
 
 from __future__ import annotations
@@ -35,16 +37,23 @@ FOLDED = "foldedForm"
 HINGES = ("M", "V", "U")
 RIGID = ("F", "J")
 CUTS = ("B", "C")
+# where hinges of thick panels are, over the thickness: on the faces that come together
+SIDES = {"V": 0.5, "M": -0.5}
 STRAIGHT = 180.0  # degrees, the largest fold angle
 
 
+# keys of this program, which FOLD tells by the colon
+THICKNESS, HEIGHTS = "bifurc:thickness", "bifurc:edges_height"
+
+
 class _Edge(NamedTuple):
-    """What a file says of an edge: its name, its letter, and its fold angle in
-    degrees."""
+    """What a file says of an edge: its name, its letter, its fold angle in degrees, and
+    how high its hinge is above the flat paper."""
 
     name: str
     letter: str = "U"
     angle: float = 0.0
+    height: float = 0.0
 
 
 class _Crease(NamedTuple):
@@ -65,7 +74,8 @@ def read_fold(text: str, name: str) -> Mechanism:
     Every crease is called after its vertices, ``3-7``, every face ``f2``; a variable is
     the change of the fold angle, positive where a valley is folded further. Flat edges
     (F) and joins (J) are rigid, cuts (C) and boundaries (B) hold nothing. Fold angles
-    are moved to the nearest ones that close. Raises `GeometryError` for anything wrong.
+    are moved to the nearest ones that close. Of thick panels the flat state is given.
+    Raises `GeometryError` for anything wrong.
     """
     try:
         content = json.loads(text)
@@ -81,12 +91,15 @@ def read_fold(text: str, name: str) -> Mechanism:
     faces = _faces(frame, len(points))
     edges = _edges(frame, len(points))
     creases = _creases(faces, edges)
+    if any(key in frame for key in (THICKNESS, HEIGHTS)):
+        _check_thick(frame, points)
     bodies = _bodies(len(faces), creases)
     angles: dict[str, float] = {}
     joints: list[Joint] = []
     for crease in creases:
         if crease.edge.letter in HINGES:
-            joint = _joint(crease, points, bodies)
+            upwards = _normal(points[faces[crease.left]])
+            joint = _joint(crease, points, bodies, upwards)
             if not any(_is_same_hinge(joint, other) for other in joints):
                 joints.append(joint)
                 angles[joint.name] = np.radians(crease.edge.angle)
@@ -131,6 +144,14 @@ def _check_flat(points: np.ndarray) -> None:
             f'folded has "{FOLDED}" in its frame_classes'
         )
         raise GeometryError("vertices_coords", f"heights {heights:.6g} apart", allowed)
+
+
+def _check_thick(frame: Frame, points: np.ndarray) -> None:
+    """Refuse thick panels in a state that is folded in space."""
+    key = THICKNESS if THICKNESS in frame else HEIGHTS
+    if FOLDED in frame.get("frame_classes", []) or np.ptp(points[:, 2]) > 0.0:
+        allowed = "left out, or given with the flat crease pattern and its fold angles"
+        raise GeometryError(key, "given with folded coordinates,", allowed)
 
 
 def _frame(content: Mapping[str, Any]) -> Frame:
@@ -213,7 +234,7 @@ def _check_vertex(what: str, vertex: object, vertices: int) -> None:
 def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
     """What is said of edges, by their vertices in ascending order."""
     if "edges_vertices" not in frame:
-        for key in ("edges_assignment", "edges_foldAngle"):
+        for key in ("edges_assignment", "edges_foldAngle", THICKNESS, HEIGHTS):
             if key in frame:
                 allowed = f"given together with {key}"
                 raise GeometryError("edges_vertices", "a missing key", allowed)
@@ -221,6 +242,8 @@ def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
     ends = _list(frame, "edges_vertices")
     letters = _of_edges(frame, "edges_assignment", len(ends))
     angles = _of_edges(frame, "edges_foldAngle", len(ends))
+    heights = _of_edges(frame, HEIGHTS, len(ends))
+    thickness = _thickness(frame)
     edges = {}
     for number, pair in enumerate(ends):
         what = f"edges_vertices[{number}]"
@@ -238,8 +261,22 @@ def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
             what = f"edges_foldAngle[{number}]"
             raise GeometryError(what, angle, "from -180 to 180, in degrees")
         name = f"{pair[0]}-{pair[1]}"
-        edges[min(pair), max(pair)] = _Edge(name, letter, float(angle))
+        height = heights[number]
+        if height is None:
+            height = SIDES.get(letter, 0.0) * thickness
+        check_number(f"{HEIGHTS}[{number}]", height)
+        edge = _Edge(name, letter, float(angle), float(height))
+        edges[min(pair), max(pair)] = edge
     return edges
+
+
+def _thickness(frame: Frame) -> float:
+    """How thick all panels are."""
+    thickness = frame.get(THICKNESS, 0.0)
+    check_number(THICKNESS, thickness)
+    if thickness < 0:
+        raise GeometryError(THICKNESS, thickness, "0 or more")
+    return float(thickness)
 
 
 def _of_edges(frame: Frame, key: str, count: int) -> list[Any]:
@@ -289,9 +326,22 @@ def _bodies(faces: int, creases: Sequence[_Crease]) -> list[str]:
     return [f"f{firsts[panels[face]]}" for face in range(faces)]
 
 
-def _joint(crease: _Crease, points: np.ndarray, bodies: Sequence[str]) -> Joint:
-    """The hinge of a crease. Its first face lies on the left of its side, so that a
-    valley turns the other one about the opposite direction."""
+def _normal(corners: np.ndarray) -> np.ndarray:
+    """The unit normal (3,) of a face with these corners (k, 3), on the side from which
+    they run counterclockwise; 0 where it has no area."""
+    spokes = corners - corners[0]
+    double_area = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
+    length = float(np.linalg.norm(double_area))
+    normal: np.ndarray = double_area / length if length > 0.0 else np.zeros(3)
+    return normal
+
+
+def _joint(
+    crease: _Crease, points: np.ndarray, bodies: Sequence[str], upwards: np.ndarray
+) -> Joint:
+    """The hinge of a crease, at its height ``upwards`` (3,). Its first face lies on the
+    left of its side, so that a valley turns the other one about the opposite
+    direction."""
     start, end = points[crease.start], points[crease.end]
     length = float(np.linalg.norm(end - start))
     if length == 0.0:
@@ -302,7 +352,7 @@ def _joint(crease: _Crease, points: np.ndarray, bodies: Sequence[str]) -> Joint:
         allowed = f"flat (F) as well, as other edges make its faces one body, {pair[0]}"
         raise GeometryError(f"crease {crease.edge.name}", "a fold", allowed)
     along = tuple(((start - end) / length).tolist())
-    middle = tuple((0.5 * (start + end)).tolist())
+    middle = tuple((0.5 * (start + end) + crease.edge.height * upwards).tolist())
     return Joint(crease.edge.name, JointKind.REVOLUTE, pair, middle, along)
 
 

@@ -16,6 +16,7 @@ from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
 from bifurc.seeds import Audit, Level
+from linkages.mechanisms.dyads.slices import RANDOM_ASSEMBLIES
 from linkages.mechanisms.structure import Structure
 
 __all__ = ["WholeTurns", "helical_unknowns"]
@@ -56,7 +57,7 @@ class WholeTurns:
             return Audit(Level.ESTIMATED, text, nowhere)
         text = (
             "beside every form listed here all that are a whole turn of a helical joint "
-            "away, within the limits, are listed as well"
+            f"away, within the limits, are listed as well; {RANDOM_ASSEMBLIES}"
         )
         starts = [self._beside(branch) for branch in branches]
         return Audit(Level.ESTIMATED, text, np.concatenate([nowhere, *starts]))

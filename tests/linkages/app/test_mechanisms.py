@@ -19,6 +19,7 @@ from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
 from linkages.mechanisms.toml_text import mechanism_toml
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.test_poses import platform
 
 SLIDER_CRANK = """
 name = "slider-crank"
@@ -121,6 +122,14 @@ def test_a_route_over_slides_is_not_in_degrees(folder):
     assert "deg in joint space" not in output
     # the slide stands still on the second leg: no 3.6e-15
     assert "e-1" not in output
+
+
+def test_forms_without_a_certificate_are_named(folder):
+    one_free = platform((None, *(0.0,) * 5))
+    Path("platform.toml").write_text(mechanism_toml(one_free), encoding="utf-8")
+    output = run("map", "platform.toml").stdout
+    assert "Without a certificate: Form 1, Form 2" in output
+    assert "Without a certificate" not in run("map", "slider_crank.toml").stdout
 
 
 def test_counts_on_a_sphere_stand_beside_those_in_space(folder):

@@ -156,6 +156,65 @@ def test_fold_angles_that_are_rounded_are_moved_with_a_warning(tmp_path, caplog)
     assert "fold angles are moved by up to 0.0" in caplog.text
 
 
+# --- thick panels ---------------------------------------------------------------------
+
+
+FIRST, SECOND = np.radians(60), np.radians(100)
+RATIO = np.sin(FIRST) / np.sin(SECOND)  # of the steps of a Bennett linkage
+SECTORS = FIRST, SECOND, np.pi - FIRST, np.pi - SECOND
+
+
+def vertex(**values):
+    """Four creases that meet at one vertex, at angles with which it folds flat."""
+    angles = np.cumsum([0.0, *SECTORS[:3]])
+    ends = [[np.cos(angle), np.sin(angle)] for angle in angles]
+    return {
+        "vertices_coords": [[0.0, 0.0], *ends],
+        "faces_vertices": [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]],
+        "edges_vertices": [[0, 1], [0, 2], [0, 3], [0, 4]],
+        "edges_assignment": ["M", "M", "M", "V"],
+        **values,
+    }
+
+
+def heights(signs, ratio=RATIO):
+    """Heights of four hinges, with steps a, b, a, b of these signs between them."""
+    steps = 0.1 * np.array([ratio, 1.0, ratio, 1.0]) * signs
+    return [0.0, *np.cumsum(steps[:3]).tolist()]
+
+
+# Chen, Peng and You 2015: a thick vertex of four creases is a Bennett linkage
+@pytest.mark.parametrize("signs", [(1, 1, -1, -1), (1, -1, -1, 1)])
+def test_a_thick_vertex_moves_as_a_bennett_linkage(signs, tmp_path):
+    content = vertex(**{"bifurc:edges_height": heights(signs)})
+    atlas = linkages.map_linkage(read(tmp_path, content))
+    assert len(atlas.forms) == 1
+    assert atlas.forms[0].branch.closed
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"bifurc:thickness": 0.1},
+        {"bifurc:edges_height": heights((1, 1, -1, -1), ratio=1.1)},
+    ],
+)
+def test_another_thick_vertex_does_not_move(values, tmp_path):
+    atlas = linkages.map_linkage(read(tmp_path, vertex(**values)))
+    assert not atlas.forms
+
+
+def test_hinges_are_on_the_faces_that_come_together(tmp_path):
+    given = {"bifurc:thickness": 0.2, "bifurc:edges_height": [None, 0.3, None, None]}
+    mechanism = read(tmp_path, vertex(**given))
+    places = {joint.name: joint.place[2] for joint in mechanism.joints}
+    assert places == {"0-1": -0.1, "0-2": 0.3, "0-3": -0.1, "0-4": 0.1}
+    # seen from below: what was a valley is on the other side of the paper
+    faces = [face[::-1] for face in vertex()["faces_vertices"]]
+    below = read(tmp_path, vertex(**given, faces_vertices=faces))
+    assert {joint.name: -joint.place[2] for joint in below.joints} == places
+
+
 def changed(**values):
     content = {**miura(3, 3, 0.8), **values}
     return {key: value for key, value in content.items() if value is not None}
@@ -215,6 +274,26 @@ MALFORMED = {
     "angles of a sheet that is folded already": (
         changed(vertices_coords=[[*POINTS[0], 1.0], *POINTS[1:]]),
         r"vertices_coords: heights 1 apart",
+    ),
+    "a thickness below 0": (
+        changed(**{"bifurc:thickness": -1}),
+        r"bifurc:thickness: -1 .* 0 or more",
+    ),
+    "a thickness that is a text": (
+        changed(**{"bifurc:thickness": "thin"}),
+        r'bifurc:thickness: "thin"',
+    ),
+    "heights too few": (
+        changed(**{"bifurc:edges_height": [0.1]}),
+        rf"number of bifurc:edges_height: 1 .* {COUNT}",
+    ),
+    "a height that is a text": (
+        changed(**{"bifurc:edges_height": ["x", *[0] * (COUNT - 1)]}),
+        r'bifurc:edges_height\[0\]: "x"',
+    ),
+    "thick panels, folded": (
+        changed(frame_classes=["foldedForm"], **{"bifurc:thickness": 0.1}),
+        r"bifurc:thickness: .* flat crease pattern",
     ),
     "a parent that comes later": (
         changed(file_frames=[{"frame_inherit": True, "frame_parent": 3}]),
