@@ -218,18 +218,25 @@ def test_names_of_joints_in_one_place_stand_beside_each_other(show_shared):
 
 
 @pytest.mark.parametrize("name", ["platform", "Kempe"])
-def test_names_cover_neither_each_other_nor_their_joints(show_shared, name):
+def test_names_do_not_cover_each_other(show_shared, name):
     shown = show_shared(name)
     picture_of(shown)
     boxes = np.array(shown.page.evaluate(NAMES))
-    joints = np.array(shown.bifurc("canvas()")["joints"])
     is_shown = boxes[:, 2] > boxes[:, 0]
     assert np.count_nonzero(is_shown) > 0.5 * len(boxes)
-    for box, joint in zip(boxes[is_shown], joints[is_shown], strict=True):
-        middle = (box[:2] + box[2:]) / 2
-        assert np.linalg.norm(middle - joint) > 8
     for k, one in enumerate(boxes[is_shown]):
         for other in boxes[is_shown][:k]:
             low = np.maximum(one[:2], other[:2])
             high = np.minimum(one[2:], other[2:])
             assert not np.all(high - low > 3)
+
+
+def test_names_stand_beside_joints_that_are_seen_end_on(show_shared):
+    shown = show_shared("Kempe")
+    picture_of(shown)
+    boxes = np.array(shown.page.evaluate(NAMES))
+    joints = np.array(shown.bifurc("canvas()")["joints"])
+    middles = (boxes[:, :2] + boxes[:, 2:]) / 2
+    is_shown = boxes[:, 2] > boxes[:, 0]
+    gaps = np.linalg.norm(middles - joints, axis=1)[is_shown]
+    assert gaps.min() > 8
