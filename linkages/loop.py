@@ -21,8 +21,10 @@ from linkages.kinematics import LinkTable, Number
 from linkages.values import GeometryError, check_angle, check_number, quoted
 
 __all__ = [
+    "LARGEST",
     "MAX_JOINTS",
     "MIN_JOINTS",
+    "SMALLEST",
     "GeometryError",
     "Loop",
     "check_number",
@@ -31,6 +33,8 @@ __all__ = [
 
 MIN_JOINTS = 4
 MAX_JOINTS = 12
+# Characteristic lengths beyond which squares of lengths leave the range of doubles.
+SMALLEST, LARGEST = 1e-100, 1e100
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,8 @@ class Loop:
         extent = np.abs(self.arrays.lengths) + np.abs(self.arrays.offsets)
         if not np.any(extent > 0):
             return 1.0
-        return float(extent[extent > 0].mean())
+        with np.errstate(over="ignore"):  # infinite lengths are refused by whoever maps
+            return float(extent[extent > 0].mean())
 
     @cached_property
     def link_geometry(self) -> np.ndarray:

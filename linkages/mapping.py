@@ -14,7 +14,7 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.forms import FormIdentity, name_forms
 from linkages.labels import largest_residual, subject_of
 from linkages.linkage import Linkage
-from linkages.loop import GeometryError, Loop
+from linkages.loop import LARGEST, SMALLEST, GeometryError, Loop
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -41,16 +41,25 @@ def map_linkage(
     `linkages.labels.loop_of` the loop that an atlas is of, and
     `linkages.mechanisms.readout.Readout` the joint variables of a mechanism. Every form
     has its ``certificate``, unless the settings say otherwise. Raises `GeometryError`
-    for anything but a linkage or a mechanism.
+    for anything but a linkage or a mechanism, and for a loop with lengths whose squares
+    leave the range of doubles.
     """
     if isinstance(linkage, Loop):
         linkage = Linkage(linkage)
     if not isinstance(linkage, Linkage):
         mechanism = _as_mechanism(linkage)
         return _map_mechanism(mechanism, settings, seed, progress)
+    _require_size(linkage.loop)
     problem = LoopClosure(linkage.loop)
     atlas = explore(problem, settings=settings, seed=seed, progress=progress)
     return name_atlas(atlas, linkage)
+
+
+def _require_size(loop: Loop) -> None:
+    size = loop.characteristic_length
+    if not SMALLEST < size < LARGEST:
+        allowed = f"between {SMALLEST:g} and {LARGEST:g}; choose another unit"
+        raise GeometryError("characteristic length", f"{size:.1g}", allowed)
 
 
 def _map_mechanism(

@@ -14,7 +14,7 @@ from linkages.catalogue import entry
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
-from linkages.loop import GeometryError, Loop
+from linkages.loop import LARGEST, SMALLEST, GeometryError, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
 from linkages.values import check_angle
 
@@ -30,8 +30,6 @@ __all__ = [
     "require_loop",
     "split_parameter",
 ]
-
-SMALLEST, LARGEST = 1e-100, 1e100  # characteristic lengths of a linkage
 
 
 def choose_loop(text: str, parameters: Sequence[str] = ()) -> Linkage:

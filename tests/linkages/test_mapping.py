@@ -108,3 +108,10 @@ def test_where_a_loop_nearly_moves_more_assemblies_are_not_ruled_out():
     assert len(atlas.near_motions) == 1
     assert atlas.completeness.level == "estimated"
     assert "there may be more isolated solutions" in atlas.completeness.statement
+
+
+@pytest.mark.parametrize("size", [1e308, 1e150, 1e-150, 1e-320])
+def test_lengths_whose_squares_are_no_doubles_are_refused(size):
+    loop = Loop((size,) * 4, (0.0,) * 4, (0.0,) * 4)
+    with pytest.raises(GeometryError, match="choose another unit"):
+        map_linkage(loop)
