@@ -258,6 +258,15 @@ is_on_the_way = Decision(
     "beside a small curve with a crossing F is so flat that starts stop at 1e-11",
     Role.LOOK,
 )
+stops_short = Decision(
+    "start that stops short",
+    "where a start ends, about nothing that is known, there may be a solution",
+    "residual",
+    1e-9,
+    "where F loses digits, or is flat, solutions leave 1e-11; elsewhere starts end at "
+    "minima of |F|, of any size",
+    third_answer="the statement on completeness says so",
+)
 is_flat_equation = Decision(
     "power of an equation",
     "the gradient of an equation vanishes at all solutions, as that of a square does, "

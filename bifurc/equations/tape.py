@@ -254,8 +254,25 @@ class Tape:
             first = left if is_leaf else slots[left]
             second = slots[right] if operation in _BINARY else right
             constant = float(self.constants[slot])
-            slots[slot] = writer.copy(Node(operation, first, second, constant))
+            node = Node(operation, first, second, constant)
+            slots[slot] = writer.copy(_with_one_shift(node, writer))
         return slots
+
+
+def _with_one_shift(node: Node, writer: TapeWriter) -> Node:
+    """A node, or if it shifts what was shifted before, one shift by the sum, where that
+    is exact: about an origin of its own a function then keeps its digits."""
+    if node.operation is not Operation.SHIFT:
+        return node
+    before = writer.node(node.left)
+    if before.operation is not Operation.SHIFT:
+        return node
+    total = before.constant + node.constant
+    virtual = total - before.constant
+    lost = (before.constant - (total - virtual)) + (node.constant - virtual)  # Knuth
+    if lost != 0.0:
+        return node
+    return Node(Operation.SHIFT, before.left, before.right, total)
 
 
 _BINARY = {

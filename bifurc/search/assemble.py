@@ -77,6 +77,8 @@ def assemble_atlas(
     if near_motions:
         doubts = (*doubts, *_doubts_of_near_motions(findings), NEAR_ASSEMBLIES)
     doubts = (*doubts, *_doubts_of_assemblies(problem, findings))
+    if findings.gaps_of_stops:
+        doubts = (*doubts, _doubt_of_stops(findings.gaps_of_stops))
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
@@ -213,6 +215,14 @@ def _near_motions(
             NearMotion(trace.misclosure, trace.length, trace.is_closed, sample)
         )
     return tuple(near_motions)
+
+
+def _doubt_of_stops(gaps: Sequence[float]) -> str:
+    """What may be where starts end short of a solution with these ``gaps``."""
+    return (
+        f"starts end where the equations are solved to {min(gaps):.1e}, about nothing "
+        "that is listed, and there may be more solutions"
+    )
 
 
 def _doubts_of_near_motions(findings: Findings) -> list[str]:

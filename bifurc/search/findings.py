@@ -99,7 +99,8 @@ class Findings:
     ``seed_values`` (k, n) are the singular values at the seeds, ``seed_reach`` (k,) is
     how far from their curves they may have been found, ``fates`` what is known
     of each by its number. ``gaps`` are the residuals of starts that only nearly solve
-    the system. ``audit`` is the last word on what the branches leave out.
+    the system, ``gaps_of_stops`` those of starts that end short of one about nothing that
+    is known. ``audit`` is the last word on what the branches leave out.
     """
 
     def __init__(self, problem: Problem):
@@ -118,6 +119,7 @@ class Findings:
         self.near_surfaces: list[NearSurface] = []
         self.components = Components()
         self.gaps: list[float] = []
+        self.gaps_of_stops: list[float] = []
         self.audit: Audit | None = None
         self.awaits_audit = True
 
@@ -364,6 +366,11 @@ class Findings:
             if is_hidden or is_same_point(distance, unit):
                 return number
         return None
+
+    def rigid_within(self, u: np.ndarray, within: float) -> bool:
+        """Whether a rigid assembly is at less than ``within`` scales from ``u`` (n,)."""
+        reach = within * self.problem.scale
+        return any(self._distance(known, u) < reach for known in self.rigid)
 
     def rigid_assembly(
         self, u: np.ndarray, stiffness: float = np.inf, hidden: float = 0.0

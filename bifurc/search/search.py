@@ -22,6 +22,7 @@ from bifurc.decisions import (
     is_beside_singular,
     is_deep_place,
     is_hidden_by,
+    is_on_the_way,
     is_passed,
     is_plainly_closed_curve,
     is_precise_enough,
@@ -36,6 +37,7 @@ from bifurc.decisions import (
     may_be_singular,
     may_nearly_move,
     nearly_closes,
+    stops_short,
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.blur import blur_along, distance_to_singular
@@ -78,6 +80,7 @@ TINY = 1e-300  # keeps a singular value of zero from being divided by
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
 BESIDE = 16  # nodes before and after a deep place that are higher
+LOOKS_WHERE_STOPPED = 6  # at ends of starts that reached no solution
 LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
 CUSP_REACH = 0.2  # how far from there the cusp may lie
@@ -650,6 +653,35 @@ class Search:
                 break
             sighting = self._sight(located)
             self._branch_off(_half_branch_starts(sighting.point))
+
+    # --- where starts stop ------------------------------------------------------------
+
+    def look_where_starts_stop(self) -> None:
+        """Look for singular points where starts end short of a solution, about nothing
+        that is known: beside an isolated point of high order F is so flat that they do."""
+        findings = self.findings
+        if not self.problem.is_exact or self.problem.n < 2:
+            return
+        near = is_on_the_way(findings.seeds.gaps)
+        gaps = findings.seeds.gaps[near]
+        ends = findings.seeds.missed[near]
+        for k in np.argsort(gaps)[:LOOKS_WHERE_STOPPED]:
+            if self.is_over or self._is_about_known(ends[k]):
+                continue
+            sighting = self._examine(ends[k], 2, BRANCH_REACH)
+            if sighting is not None:
+                self._branch_off(_half_branch_starts(sighting.point))
+            elif stops_short(float(gaps[k])):
+                findings.gaps_of_stops.append(float(gaps[k]))
+
+    def _is_about_known(self, point: np.ndarray) -> bool:
+        """Whether a branch, a singular point or an assembly is next to a point (n,)."""
+        findings = self.findings
+        if findings.point_near(point, BRANCH_REACH) is not None:
+            return True
+        if findings.branch_through(point, SEED_REACH) is not None:
+            return True
+        return findings.rigid_within(point, BRANCH_REACH)
 
     # --- points next to each other ----------------------------------------------------
 

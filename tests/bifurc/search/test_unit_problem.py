@@ -340,3 +340,43 @@ def test_a_curve_on_whose_flat_end_all_starts_stop_is_followed_whole():
     assert form.branch.outcome is Outcome.LEFT_REGION
     outputs = sorted(fold.u[5] for fold in atlas.diagram.folds)
     assert outputs == pytest.approx([1.16602, 9.60900], abs=1e-5)
+
+
+def test_two_lines_are_two_though_the_function_loses_the_digits_between_them() -> None:
+    y = 0.64042265
+    problem = bifurc.FunctionProblem(
+        lambda u: [(u[1] + y) * ((u[1] + y) - 1e-5)], [(-2, 2), (-2.6, 1.4)]
+    )
+    assert len(bifurc.explore(problem).forms) == 2
+
+
+def test_one_branch_passes_that_looks_like_a_cusp_from_afar() -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [u[0] ** 3 - (10 * u[1]) ** 4], [(-1, 1.1), (-0.12, 0.1)]
+    )
+    atlas = bifurc.explore(problem)
+    (point,) = atlas.points
+    assert (point.kind, point.note) == (bifurc.Kind.RANK_DROP, "")
+    assert len(atlas.forms) == 1
+
+
+@pytest.mark.parametrize("angle", [0.1, 0.68, 3.0])
+def test_a_flat_isolated_point_is_found_where_starts_stop_short(angle) -> None:
+    c, s = np.cos(angle), np.sin(angle)
+    problem = bifurc.FunctionProblem(
+        lambda u: [(c * u[1] - s * u[0]) ** 2 + (c * u[0] + s * u[1]) ** 4],
+        [(-1.3, 1.2), (-1.1, 1.4)],
+    )
+    atlas = bifurc.explore(problem)
+    assert [point.kind for point in atlas.points] == [bifurc.Kind.ISOLATED]
+    assert not atlas.forms
+
+
+def test_flat_places_that_are_not_settled_are_in_doubt() -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [u[1] ** 2 + u[0] ** 2 + 1e-11], [(-1.3, 1.2), (-1.1, 1.4)]
+    )
+    settings = bifurc.SearchSettings(starts=40, near_motions=False)
+    atlas = bifurc.explore(problem, settings=settings)
+    assert not atlas.forms and not atlas.points
+    assert "about nothing that is listed" in atlas.completeness.statement
