@@ -493,6 +493,23 @@ is_derivative_along = Decision(
     1e-2,
     "right ones are off by 1e-6 and less; a branch is followed to 1e-6 of its size",
 )
+is_far_below_size = Decision(
+    "field far below its size",
+    "the typical size that a user gives for the field of a large problem is far too "
+    "large, and the curve is traced again with the size that was seen",
+    "largest root mean square of the field along the curve, over the size",
+    3e-2,
+    "with a tenth of the size steps are short, and the points are the same",
+    Role.LOOK,
+)
+is_trivial_field = Decision(
+    "trivial field",
+    "the field of a large problem is zero along a curve, and says nothing of its size",
+    "largest root mean square of the field along the curve, over the size",
+    1e-9,
+    "rounding leaves 1e-16",
+    Role.LOOK,
+)
 is_singular_start = Decision(
     "singular start of a large problem",
     "a large problem begins at a singular point, and F' is measured beside it",

@@ -14,6 +14,7 @@ from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
+from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
 from bifurc.numerics.collocation import march_by_collocation
 from bifurc.numerics.corrector import (
@@ -90,6 +91,16 @@ class NumericalProblem(Problem):
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Solutions reached from ``count`` random starts."""
         return random_seeds(self, rng, count)
+
+    def seeds_until(
+        self, rng: np.random.Generator, count: int, deadline: Deadline
+    ) -> Seeds:
+        """The same, from as many of the starts as there is time for before the
+        ``deadline``; all where a class has seeds in a way of its own."""
+        is_own = getattr(self.seeds, "__func__", None) is not NumericalProblem.seeds
+        if is_own:
+            return self.seeds(rng, count)
+        return random_seeds(self, rng, count, deadline=deadline)
 
 
 class FunctionProblem(NumericalProblem):

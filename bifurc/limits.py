@@ -29,6 +29,11 @@ class Deadline:
     began: float = field(default_factory=time.perf_counter)
 
     @property
+    def is_endless(self) -> bool:
+        """Whether there is time without end."""
+        return self.seconds == float("inf")
+
+    @property
     def left(self) -> float:
         """Seconds that are left, 0 once it has passed."""
         return max(0.0, self.began + self.seconds - time.perf_counter())

@@ -15,6 +15,7 @@ from bifurc import torus
 from bifurc.checks import floats_of
 from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
+from bifurc.limits import Deadline
 from bifurc.seeds import Seeds
 
 if TYPE_CHECKING:
@@ -347,6 +348,13 @@ class Problem(ABC):
     @abstractmethod
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Solutions to start from, ``count`` random starts among what they come of."""
+
+    def seeds_until(
+        self, rng: np.random.Generator, count: int, deadline: Deadline
+    ) -> Seeds:
+        """The same before a ``deadline``: all of them, unless a class knows how to stop
+        earlier."""
+        return self.seeds(rng, count)
 
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""

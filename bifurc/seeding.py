@@ -8,12 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.decisions import is_start_solved
+from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 from bifurc.torus import wrap
 
 __all__ = ["missed_probability", "random_seeds"]
 
+AT_ONCE = 10  # starts between two looks at the clock
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 
 
@@ -22,15 +24,17 @@ def random_seeds(
     rng: np.random.Generator,
     count: int,
     region: np.ndarray | None = None,
+    deadline: Deadline | None = None,
 ) -> Seeds:
-    """Solutions reached from ``count`` random starts, drawn from a ``region`` (n, 2).
+    """Solutions reached from ``count`` random starts, drawn from a ``region`` (n, 2); of
+    those that come after the ``deadline`` there are none.
 
     Unknowns are drawn from the bounds; where these are infinite, from the period, or
     from -scale to scale.
     """
     low, high = _region(problem) if region is None else region.T
     starts = rng.uniform(low, high, (count, problem.n))
-    points, gaps = problem.project(starts)
+    points, gaps = _projected(problem, starts, deadline)
     points = _next_to_bounds(problem, points)
     if region is not None:
         points = wrap(points, problem.periods)
@@ -44,6 +48,22 @@ def random_seeds(
         gaps=gaps[~is_taken],
         missed=points[~is_taken],
     )
+
+
+def _projected(
+    problem: Problem, starts: np.ndarray, deadline: Deadline | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """What `Problem.project` makes of the first of the starts (k, n), as many as there
+    is time for, a few of them in any case."""
+    if deadline is None or deadline.is_endless:
+        return problem.project(starts)
+    parts = []
+    for begin in range(0, len(starts), AT_ONCE):
+        parts.append(problem.project(starts[begin : begin + AT_ONCE]))
+        if deadline.passed:
+            break
+    points, gaps = zip(*parts, strict=True)
+    return np.concatenate(points), np.concatenate(gaps)
 
 
 def _region(problem: Problem) -> tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -129,6 +130,12 @@ class LargeProblem:
             self._refuse_length(recording.tape.m)
         self._tape = recording.tape
         self.derivatives = "recorded"
+
+    def with_size(self, size: float) -> LargeProblem:
+        """The same problem with another typical size of the unknowns."""
+        other = copy(self)
+        other.size = size
+        return other
 
     @property
     def is_recorded(self) -> bool:

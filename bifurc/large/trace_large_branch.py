@@ -11,7 +11,11 @@ from bifurc.branch import Branch, Outcome
 from bifurc.checks import check_type, check_whole, floats_of
 from bifurc.curves.continuation import TraceSettings, follow_curve, joined_branch
 from bifurc.curves.track import Place
-from bifurc.decisions import is_derivative_along
+from bifurc.decisions import (
+    is_derivative_along,
+    is_far_below_size,
+    is_trivial_field,
+)
 from bifurc.errors import ProblemError
 from bifurc.large.large_branch import LargeBranch
 from bifurc.large.large_point import LargePoint
@@ -24,6 +28,8 @@ from bifurc.numerics.null_spaces import null_vector
 __all__ = ["LargeSettings", "trace_large_branch"]
 
 NEWTON_STEPS = 12
+RESIZINGS = 4  # tracings at most, each with the size that was seen by the one before
+SAMPLES = 40  # of a curve at which the size of its field is seen
 DIFFERENCE = 1e-5  # length of the step along a tangent by which F' is checked
 SHORTER = 0.1  # a second step, over the first, which shows the error of a difference
 SETTLED = 1e-9  # a step after which the next one, its square, would be rounding
@@ -73,7 +79,8 @@ def trace_large_branch(
     It is followed to the side of ``direction`` (n,), which is that of a growing
     parameter unless given, until it closes, leaves the bounds of the parameter, or is
     as long as the settings allow. Trouble on the way is the `Outcome` of the branch. A
-    start that cannot be corrected gives a branch of no pieces. Raises `ProblemError` for
+    start that cannot be corrected gives a branch of no pieces. A typical size of the
+    field that is far too large is replaced by the one that is seen. Raises `ProblemError` for
     a start, a direction, a value, a jacobian or a solution by the solver that has
     another shape or is not finite, for a start outside of the bounds, for a jacobian that is
     not the derivative at the start or along the curve, and where
@@ -84,8 +91,7 @@ def trace_large_branch(
     checked = problem.check_start(start)
     along = _checked_direction(problem, direction)
     with np.errstate(over="ignore", invalid="ignore"):
-        scaled = ScaledProblem(problem, checked)
-        branch = _traced(scaled, checked, along, settings)
+        scaled, branch = _traced_at_its_size(problem, checked, along, settings)
         points = folds_on(scaled, branch)
         profile = singular_profile(scaled, branch, settings.places, settings.values)
         crossings = crossings_on(scaled, branch, profile)
@@ -151,6 +157,35 @@ def _checked_direction(problem: LargeProblem, direction: object) -> np.ndarray:
     if not np.all(np.isfinite(along)) or not np.any(along):
         raise ProblemError("direction", along, "a finite vector other than zero")
     return along
+
+
+def _traced_at_its_size(
+    problem: LargeProblem,
+    start: np.ndarray,
+    direction: np.ndarray,
+    settings: LargeSettings,
+) -> tuple[ScaledProblem, Branch]:
+    """The curve in the units of the problem, and these: where its field is far smaller
+    than the size that the user gives, those of the size that is seen.
+
+    In units that are far too large a fold is a sharp bend, at which tracing stalls.
+    """
+    for _ in range(RESIZINGS):
+        scaled = ScaledProblem(problem, start)
+        branch = _traced(scaled, start, direction, settings)
+        seen = _largest_field(branch)
+        if is_trivial_field(seen) or not is_far_below_size(seen):
+            break
+        problem = problem.with_size(seen * problem.size)
+    return scaled, branch
+
+
+def _largest_field(branch: Branch) -> float:
+    """The largest root mean square of the field along a curve, over its size."""
+    if not len(branch.pieces):
+        return 0.0
+    fields = branch.sample(SAMPLES)[:, :-1]
+    return float(np.linalg.norm(fields, axis=1).max())
 
 
 def _traced(

@@ -21,6 +21,7 @@ from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
 from bifurc.curves.near_miss import near_miss_value
 from bifurc.decisions import closes_to_rounding, is_faint, is_known_assembly
+from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
@@ -51,11 +52,15 @@ NEAR_ASSEMBLIES = (
 
 
 def assemble_atlas(
-    problem: Problem, findings: Findings, provenance: Provenance
+    problem: Problem,
+    findings: Findings,
+    provenance: Provenance,
+    deadline: Deadline,
 ) -> Atlas:
     """The atlas of the findings, in an order that does not depend on the seeds.
 
-    Every point in it is wrapped: see `Atlas`.
+    Every point in it is wrapped: see `Atlas`. Past the ``deadline`` of the search a
+    closure gap is measured at few points.
     """
     periods = wrapped_periods(problem)
     order = order_branches(problem, findings.branches)
@@ -83,7 +88,7 @@ def assemble_atlas(
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
     elif not is_mobile:
-        gap = closure_gap(problem, findings.seeds, findings.gaps)
+        gap = closure_gap(problem, findings.seeds, findings.gaps, deadline)
     return Atlas(
         names=problem.names,
         units=problem.units,

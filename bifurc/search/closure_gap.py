@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
@@ -15,33 +16,49 @@ STEPS = 12
 LONGEST = 0.5  # step, over the problem's scale
 # Singular value, over the largest, below which no step is taken along its direction.
 FLAT = 1e-6
+WORK_AT_ONCE = 1e6  # points between two looks at the clock, times n^3
 TINY = 1e-300  # keeps a step of length zero from being divided by its length
 
 
-def closure_gap(problem: Problem, seeds: Seeds, gaps: Sequence[float]) -> float:
+def closure_gap(
+    problem: Problem, seeds: Seeds, gaps: Sequence[float], deadline: Deadline
+) -> float:
     """Median residual, over the magnitude, along the valley in which the system is
     nearly solved; 0 where every start solves it.
 
-    It is taken over the random starts that missed and over the ``gaps`` of starts that
-    could not be corrected.
+    It is taken over the random starts that missed, as many as there is time for before
+    the ``deadline``, a few in any case, and over the ``gaps`` of starts that could not be
+    corrected.
     """
     residuals = seeds.gaps
     if len(seeds.missed):
-        in_valley = problem.gaps(valley_points(problem, seeds.missed))
-        residuals = np.maximum(in_valley, seeds.gaps)
+        lowest = valley_points(problem, seeds.missed, deadline)
+        residuals = np.maximum(problem.gaps(lowest), seeds.gaps[: len(lowest)])
     everywhere = np.concatenate([residuals, gaps])
     return float(np.median(everywhere)) if len(everywhere) else 0.0
 
 
-def valley_points(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """Points (k, n) in the valley below points (k, n) that do not solve the system.
+def valley_points(
+    problem: Problem, points: np.ndarray, deadline: Deadline
+) -> np.ndarray:
+    """Points (k, n) in the valley below the first of points (j, n) that do not solve
+    the system, as many as there is time for before the ``deadline``, a few in any case.
 
     Gauss-Newton steps of rank n - 1 run down to the valley in which the system is
     nearly solved but not along it, so that an isolated solution at its end does not
     hide the gap.
     """
-    if not len(points):
-        return points
+    at_once = max(1, int(WORK_AT_ONCE / problem.n**3))
+    lowest = []
+    for begin in range(0, len(points), at_once):
+        lowest.append(_in_valley(problem, points[begin : begin + at_once]))
+        if deadline.passed:
+            break
+    return np.concatenate(lowest) if lowest else points
+
+
+def _in_valley(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Points (k, n) in the valley below points (k, n)."""
     lowest = points.copy()
     longest = LONGEST * problem.scale
     for _ in range(STEPS):
@@ -62,5 +79,6 @@ def _steps_across(problem: Problem, points: np.ndarray) -> np.ndarray:
     is_steep[:, across:] = False
     inverse = np.zeros_like(sigma)
     inverse[is_steep] = 1.0 / sigma[is_steep]
-    steps: np.ndarray = np.einsum("kji,kj,kmj,km->ki", right, inverse, left, residuals)
+    components = np.einsum("kmj,km->kj", left, residuals)
+    steps: np.ndarray = np.einsum("kji,kj->ki", right, inverse * components)
     return steps

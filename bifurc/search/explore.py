@@ -14,6 +14,7 @@ from bifurc.checks import check_callable, check_type
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
+from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
 from bifurc.search.restated import restated
@@ -71,15 +72,16 @@ def explore(
         parameter_index(problem.names, parameter)
     events_of({} if events is None else events, problem.names)
     began = time.perf_counter()
-    own = in_own_units(problem)
+    own = in_own_units(problem, Deadline(settings.budget, began))
     if own is None:
         atlas = _explored(problem, settings, seed, seeds, progress, began)
     else:
         atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
         has_lengths = bool(atlas.surfaces or atlas.near_motions)
         if has_lengths and not own.own_units.is_uniform:
-            # areas and lengths are those of the user only where all sizes are one
-            own = in_one_size(own)
+            # areas and lengths are those of the user only where all sizes are one:
+            # the search is made again, with a budget of its own
+            own, began = in_one_size(own), time.perf_counter()
             atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
         atlas = restated(atlas, problem, own.own_units, own.multiplicity)
     if parameter is None and not events:
@@ -112,7 +114,8 @@ def _explored(
     began: float,
 ) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
-    search = Search(problem, settings, progress)
+    deadline = Deadline(settings.budget, began)
+    search = Search(problem, settings, progress, deadline)
     interrupted = False
     try:
         with search.limits.interrupt:
@@ -137,4 +140,4 @@ def _explored(
         equations=problem.equations,
         seconds=time.perf_counter() - began,
     )
-    return assemble_atlas(problem, search.findings, provenance)
+    return assemble_atlas(problem, search.findings, provenance, deadline)

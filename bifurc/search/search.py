@@ -146,11 +146,13 @@ class Search:
         problem: Problem,
         settings: SearchSettings,
         progress: Callable[[str, int], None] | None = None,
+        deadline: Deadline | None = None,
     ):
         self.problem = problem
         self.settings = settings
         self.progress = progress
-        self.limits = Limits(Deadline(settings.budget), HeldInterrupt())
+        until = Deadline(settings.budget) if deadline is None else deadline
+        self.limits = Limits(until, HeldInterrupt())
         self.findings = Findings(problem)
 
     @property
@@ -164,8 +166,10 @@ class Search:
         """Take the ``seeds`` given, or else those of the problem."""
         if seeds is None:
             rng = np.random.default_rng(random_seed)
-            drawn = self.problem.seeds(rng, self.settings.starts)
-            seeds = with_weak_solutions(self.problem, drawn)
+            deadline = self.limits.deadline
+            seeds = self.problem.seeds_until(rng, self.settings.starts, deadline)
+            if not self.is_over:
+                seeds = with_weak_solutions(self.problem, seeds)
         self._add_seeds(seeds, 0)
         self.limits.interrupt.check()
 
@@ -303,11 +307,16 @@ class Search:
         is_asked = self.settings.near_motions
         if is_mobile or not is_asked or not len(findings.seeds.missed):
             return
-        points = self._nearly_closed(findings.seeds.missed)
-        if not len(points):
+        if self.is_over:
             return
-        same = random_seeds(self.problem, np.random.default_rng(0), SAME_STARTS)
+        points = self._nearly_closed(findings.seeds.missed)
+        if not len(points) or self.is_over:
+            return
+        rng, deadline = np.random.default_rng(0), self.limits.deadline
+        same = random_seeds(self.problem, rng, SAME_STARTS, deadline=deadline)
         always = self._nearly_closed(np.concatenate([same.points, same.missed]))
+        if self.is_over:
+            return
         surfaces, is_left = near_surfaces(self.problem, always)
         findings.near_surfaces += surfaces
         if surfaces:
@@ -347,8 +356,8 @@ class Search:
 
     def _nearly_closed(self, points: np.ndarray) -> np.ndarray:
         """Points (k, n) in the valleys below points (j, n), where the system is nearly
-        solved."""
-        lowest = valley_points(self.problem, points)
+        solved, below as many as there is time for."""
+        lowest = valley_points(self.problem, points, self.limits.deadline)
         is_near = nearly_closes(self.problem.gaps(lowest))
         return lowest[is_near]
 

@@ -25,6 +25,7 @@ from bifurc.equations.recording import Recording
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
 from bifurc.function_problem import EXACT_HESSIAN, PROBES, FunctionProblem
+from bifurc.limits import Deadline
 from bifurc.problem import PreciseResidual, Problem
 from bifurc.search.restated import restated_branch
 from bifurc.seeding import random_seeds
@@ -230,12 +231,19 @@ class UnitProblem(FunctionProblem):
         """Solutions reached from ``count`` random starts, half of them from the region
         where that is smaller than the bounds; or those that the problem has in a way of
         its own."""
+        return self.seeds_until(rng, count, Deadline())
+
+    def seeds_until(
+        self, rng: np.random.Generator, count: int, deadline: Deadline
+    ) -> Seeds:
+        """The same, from as many of the starts as there is time for before the
+        ``deadline``."""
         if _has_own(self.problem, "seeds"):
-            return self.seeds_inwards(self.problem.seeds(rng, count))
+            return self.seeds_inwards(self.problem.seeds_until(rng, count, deadline))
         if np.allclose(self.own_box, self.region):
-            return random_seeds(self, rng, count, self.region)
-        near = random_seeds(self, rng, count - count // 2, self.region)
-        anywhere = random_seeds(self, rng, count // 2, self.own_box)
+            return random_seeds(self, rng, count, self.region, deadline)
+        near = random_seeds(self, rng, count - count // 2, self.region, deadline)
+        anywhere = random_seeds(self, rng, count // 2, self.own_box, deadline)
         return Seeds(
             points=np.concatenate([near.points, anywhere.points]),
             random=np.concatenate([near.random, anywhere.random]),
@@ -269,10 +277,12 @@ class UnitProblem(FunctionProblem):
         box: np.ndarray = np.where(np.isinf(self.bounds), self.region, self.bounds)
         return box
 
-    def ends(self, count: int) -> np.ndarray:
+    def ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
         """Points (k, n), in the user's units, at which ``count`` random starts in the
-        region end: solutions, or where most reach none points on the way to them."""
-        seeds = random_seeds(self, np.random.default_rng(1), count, self.region)
+        region end: solutions, or where most reach none points on the way to them; of
+        fewer starts where the ``deadline`` comes before."""
+        rng = np.random.default_rng(1)
+        seeds = random_seeds(self, rng, count, self.region, deadline)
         near = seeds.missed[is_on_the_way(seeds.gaps)]
         if len(seeds.points) > len(near):
             near = near[:0]
@@ -294,9 +304,12 @@ class UnitProblem(FunctionProblem):
         return sharp
 
 
-def in_own_units(problem: Problem) -> UnitProblem | None:
+def in_own_units(
+    problem: Problem, deadline: Deadline | None = None
+) -> UnitProblem | None:
     """The equations of a function in units of their own; None for any other problem,
-    and where they are in such units as they stand."""
+    and where they are in such units as they stand. What is not known of their solutions
+    at the ``deadline`` does not count."""
     if not isinstance(problem, FunctionProblem):
         return None
     if any(_has_own(problem, name) for name in OF_EQUATIONS):
@@ -305,7 +318,7 @@ def in_own_units(problem: Problem) -> UnitProblem | None:
     if has_own_answers or problem.n > LARGEST_DENSE:
         own = _in_unit_of_scale(problem)
     else:
-        own = _in_units_of_solutions(problem)
+        own = _in_units_of_solutions(problem, deadline or Deadline())
     return None if _is_as_it_stands(problem, own) else own
 
 
@@ -325,15 +338,16 @@ def _unit_of(problem: FunctionProblem) -> float:
     return float(2.0 ** round(math.log2(problem.scale)))
 
 
-def _in_units_of_solutions(problem: FunctionProblem) -> UnitProblem:
-    """The equations in units of the region where random starts end."""
+def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> UnitProblem:
+    """The equations in units of the region where random starts end, as far as that is
+    known at the ``deadline``."""
     whole = _first_region(problem)
     region, is_point = whole, np.zeros(problem.n, dtype=bool)
     count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
     own = _problem_on(problem, region)
     for _ in range(ROUNDS):
-        closer = _region_of(problem, own.ends(count), region, is_point)
-        if closer is None:
+        closer = _region_of(problem, own.ends(count, deadline), region, is_point)
+        if closer is None or deadline.passed:
             break
         # what shrinks without end is a point, and looked at from where it is
         is_point |= _is_a_point(closer, whole)
@@ -341,6 +355,8 @@ def _in_units_of_solutions(problem: FunctionProblem) -> UnitProblem:
         own = _problem_on(problem, region)
     else:
         own = _problem_on(problem, whole)
+    if deadline.passed:
+        return own
     if not np.array_equal(region, whole):
         region = _widened(own, region, is_point)
         own = _problem_on(problem, region)

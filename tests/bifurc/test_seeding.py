@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from bifurc import SearchSettings, explore
 from bifurc.function_problem import FunctionProblem
+from bifurc.limits import Deadline
 from bifurc.seeding import missed_probability, random_seeds
 
 
@@ -80,3 +82,50 @@ def test_the_limit_holds_as_often_as_it_says():
     assert (
         failed / 400 < 0.1
     )  # 5 % and two standard errors, with room for Good-Turing being a mean
+
+
+class Counting(FunctionProblem):
+    """A circle that counts the starts that it projects."""
+
+    starts = 0
+
+    def project(self, starts):
+        self.starts += len(starts)
+        return super().project(starts)
+
+
+def test_no_start_is_projected_after_the_deadline_but_for_a_few():
+    problem = Counting(lambda u: np.array([u @ u - 1.0]), [(-2.0, 2.0)] * 2)
+    rng = np.random.default_rng(0)
+    late = problem.seeds_until(rng, 500, Deadline(1e-9))
+    assert 0 < problem.starts < 50
+    assert len(late.points) + len(late.missed) == problem.starts
+
+
+def test_seeds_before_a_deadline_are_those_without_one():
+    problem = Counting(lambda u: np.array([u @ u - 1.0]), [(-2.0, 2.0)] * 2)
+    limited = problem.seeds_until(np.random.default_rng(0), 100, Deadline(1e3))
+    free = problem.seeds(np.random.default_rng(0), 100)
+    assert np.array_equal(limited.points, free.points)
+    assert np.array_equal(limited.missed, free.missed)
+
+
+def test_seeds_that_a_class_has_in_a_way_of_its_own_are_asked_for_as_they_are():
+    class Own(Counting):
+        def seeds(self, rng, count):
+            return "its own"
+
+    problem = Own(lambda u: np.array([u @ u - 1.0]), [(-2.0, 2.0)] * 2)
+    rng = np.random.default_rng(0)
+    assert problem.seeds_until(rng, 10, Deadline()) == "its own"
+
+
+def test_a_search_whose_budget_is_over_projects_few_starts():
+    problem = Counting(
+        lambda u: np.array([u @ u + 1.0]), [(-2.0, 2.0)] * 2, is_recorded=False
+    )
+    before = problem.starts
+    atlas = explore(problem, settings=SearchSettings(budget=1e-9, starts=500))
+    assert atlas.provenance.out_of_time
+    assert problem.starts - before < 50
+    assert atlas.closure_gap > 0.1

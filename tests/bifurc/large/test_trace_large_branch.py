@@ -280,6 +280,14 @@ def test_neither_the_size_of_the_field_nor_of_the_equations_counts(
     assert branch.folds[0].bend == pytest.approx(fold.bend, rel=1e-5)
 
 
+@pytest.mark.parametrize("size", [1e3, 1e6])
+def test_a_size_that_is_far_too_large_does_not_count(size: float) -> None:
+    case = bratu_field(15, 1)
+    branch, fold = fold_of(case, size=size)
+    assert branch.outcome is Outcome.STEP_LIMIT
+    assert fold.parameter == pytest.approx(fold_of(case)[1].parameter, abs=1e-10)
+
+
 def test_singular_values_by_a_solver_are_those_of_the_factors() -> None:
     case = bratu_field(15, 2)
     tracing = replace(AROUND_THE_FOLD.tracing, longest=0.4, max_length=0.5)
