@@ -460,7 +460,9 @@ class Search:
         corrected to half the digits only; None where it has not."""
         if self.problem.n < 2:
             return None
-        points = branch.sample(LOOKS_ALONG)
+        # not at its ends: what is traced from a bound may leave there at once
+        inner = np.linspace(0.0, branch.length, LOOKS_ALONG + 2)[1:-1]
+        points = branch(inner)
         values = singular_values(self.problem, points)
         if not np.all(may_be_shaky(values[:, self.problem.n - 2])):
             return None
