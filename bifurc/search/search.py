@@ -673,9 +673,12 @@ class Search:
         findings = self.findings
         if not self.problem.is_exact or self.problem.n < 2:
             return
-        near = is_on_the_way(findings.seeds.gaps)
+        low, high = self.problem.bounds.T
+        missed = findings.seeds.missed
+        is_inside = np.all((missed >= low) & (missed <= high), axis=1)
+        near = is_inside & is_on_the_way(findings.seeds.gaps)
         gaps = findings.seeds.gaps[near]
-        ends = findings.seeds.missed[near]
+        ends = missed[near]
         for k in np.argsort(gaps)[:LOOKS_WHERE_STOPPED]:
             if self.is_over or self._is_about_known(ends[k]):
                 continue

@@ -31,6 +31,7 @@ from bifurc.singular.puiseux import (
 __all__ = ["Germ", "germ_at", "placed_at"]
 
 DEGREE = 13  # of the Taylor polynomial
+MOST_UNKNOWNS = 4  # curves in the plane and in space; with eight it takes seven seconds
 # Digits of the spacing of the grid, over the scale, in the rounds in which the place is
 # found, and of that on which it is judged.
 ROUNDS, LAST = (12, 24, 48), 60
@@ -64,9 +65,12 @@ class Germ:
 
 
 def germ_at(problem: Problem, located: LocatedPoint) -> Germ | None:
-    """The germ at a located point; None where the equations are not known exactly, leave
-    more than one equation on the null space or have no singular point there, or where
-    the terms of degree `DEGREE` and less do not separate the branches."""
+    """The germ at a located point; None where the equations are not known exactly, have
+    more than `MOST_UNKNOWNS`, leave more than one equation on the null space or have no
+    singular point there, or where the terms of degree `DEGREE` and less do not separate
+    the branches."""
+    if problem.n > MOST_UNKNOWNS:
+        return None
     residual = problem.precise_residual()
     if residual is None or located.null_space.shape[1] != 2:
         return None
