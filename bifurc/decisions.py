@@ -337,7 +337,9 @@ is_shaky = Decision(
     "the rank is lower at what a small sphere shows of the curve through a seed, too",
     "smallest regular singular value there",
     1e-5,
-    "the sphere is a hundredth of the scale: on another curve the value grows with it",
+    "the sphere is a hundredth of the scale: on another curve the value grows with it; "
+    "beside a surface it need not, but there the deflated system has no solution",
+    Role.LOOK,
 )
 may_be_scaled_down = Decision(
     "weak equation",
@@ -424,6 +426,16 @@ is_deep_place = Decision(
     "beside a surface the slope is lost in rounding, by which minima are found; "
     "location decides",
     Role.LOOK,
+)
+is_singular_to_rounding = Decision(
+    "deep place at a singular point",
+    "at a deep place of a form without a certificate there is a singular point, located "
+    "or not",
+    "singular value",
+    1e-11,
+    "F is known to 1e-15 of its size, and its derivatives leave their zeros with their "
+    "distance",
+    third_answer="where none is located the form is in doubt",
 )
 
 # --- surfaces -------------------------------------------------------------------------

@@ -109,6 +109,11 @@ def _doubts_of_form(
             f"on form {index + 1} rounding hides whether these unknowns stand still: "
             f"{numbers}"
         )
+    if traced.missing and traced.certificate is None:
+        doubts.append(
+            f"form {index + 1} is singular to within rounding about s = "
+            f"{traced.missing[0]:.6g}, where no singular point was located"
+        )
     names = _ended_at_assumed_bounds(problem, branch)
     if names:
         doubts.append(

@@ -54,10 +54,11 @@ class TracedBranch:
 
     ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
     regular singular value. ``located`` are the arclengths of minima that led to a
-    singular point, ``passes`` those at which the branch passes it. ``misclosure`` is
-    the largest along the branch, ``blur`` the distance, over the scale, to which its
-    points are known. ``certificate`` says what is certified of it, None
-    where that was not asked for or the problem has no bounds.
+    singular point, ``passes`` those at which the branch passes it, ``missing`` those
+    where one must be and none was located. ``misclosure`` is the largest along the
+    branch, ``blur`` the distance, over the scale, to which its points are known.
+    ``certificate`` says what is certified of it, None where that was not asked for or
+    the problem has no bounds.
     """
 
     branch: Branch
@@ -67,6 +68,7 @@ class TracedBranch:
     misclosure: float = 0.0
     blur: float = 0.0
     passes: tuple[float, ...] = ()
+    missing: tuple[float, ...] = ()
     certificate: Certificate | None = None
 
     @property

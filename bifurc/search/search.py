@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
@@ -27,6 +28,7 @@ from bifurc.decisions import (
     is_plainly_closed_curve,
     is_precise_enough,
     is_same_point,
+    is_singular_to_rounding,
     is_solution,
     is_start_solved,
     is_stub,
@@ -79,7 +81,8 @@ BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits, at 
 TINY = 1e-300  # keeps a singular value of zero from being divided by
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
-BESIDE = 16  # nodes before and after a deep place that are higher
+ABOUT = 16  # nodes before and after a deep place that are not lower: those of a piece
+BESIDE = 3 * ABOUT  # and among which some are far higher, as a whole piece may be flat
 LOOKS_WHERE_STOPPED = 6  # at ends of starts that reached no solution
 LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
@@ -115,12 +118,14 @@ class _Candidate(NamedTuple):
 
     ``looks`` are the arclengths (k,) of the starts, of which the first one that leads
     to a singular point counts. Singular values below ``zero`` count as zero. ``reach``
-    is how far away the point may lie, in units of the problem's scale.
+    is how far away the point may lie, in units of the problem's scale. Where there
+    ``must_be`` one, none that is located is said to be missing.
     """
 
     looks: np.ndarray
     zero: float
     reach: float = BRANCH_REACH
+    must_be: bool = False
 
 
 @dataclass(frozen=True)
@@ -375,7 +380,9 @@ class Search:
             return SeedFate(Fate.ON_FORM, branch)
         direction = lower_rank_direction(self.problem, point)
         if direction is not None:
-            return self._trace_lower_rank(point, direction)
+            fate = self._trace_lower_rank(point, direction)
+            if fate.fate is Fate.ON_FORM:
+                return fate
         nullity = int(np.count_nonzero(may_be_singular(values)))
         sighting = self._examine(point, nullity, SEED_REACH)
         if sighting is None:
@@ -514,14 +521,17 @@ class Search:
             candidates += self._candidate_ends(branch, profile)
         located: list[float] = []
         passes: list[float] = []
+        missing: list[float] = []
         starts: list[Start] = []
         for candidate in candidates:
             if self.is_over:
                 break
+            place = float(candidate.looks[0])
             sighting = self._examine_candidate(branch, candidate, misclosure)
             if sighting is None:
+                if candidate.must_be:
+                    missing.append(place)
                 continue
-            place = float(candidate.looks[0])
             located.append(place)
             if self._is_at(branch, place, sighting.point):
                 passes.append(place)
@@ -538,6 +548,7 @@ class Search:
             misclosure=misclosure,
             blur=blur_along(self.problem, branch),
             passes=tuple(passes),
+            missing=tuple(missing),
             certificate=certificate,
         )
         return _ExaminedBranch(traced, starts)
@@ -781,19 +792,32 @@ def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
     """
     values = profile.smallest.ravel()
     arclengths = profile.arclength.ravel()
-    walled = np.concatenate([[np.inf], values, [np.inf]])
-    is_lowest = (values <= walled[:-2]) & (values < walled[2:])
     candidates = []
-    for k in np.flatnonzero(is_lowest & may_be_crossed(values)):
+    for k in np.flatnonzero(_are_lowest(values) & may_be_crossed(values)):
         before = values[max(k - BESIDE, 0) : k].max(initial=0.0)
         after = values[k + 1 : k + 1 + BESIDE].max(initial=0.0)
         beside = arclengths[max(k - 1, 0) : k + 2]
         is_found = (minima >= beside[0]) & (minima <= beside[-1])
         is_deep = is_deep_place(float(values[k]), float(min(before, after)))
         if is_deep and not np.any(is_found):
-            look = arclengths[k : k + 1]
-            candidates.append(_Candidate(look, may_be_crossed.threshold))
+            candidate = _Candidate(
+                looks=arclengths[k : k + 1],
+                zero=may_be_crossed.threshold,
+                must_be=bool(is_singular_to_rounding(values[k])),
+            )
+            candidates.append(candidate)
     return candidates
+
+
+def _are_lowest(values: np.ndarray) -> np.ndarray:
+    """Which of a row of values (k,) are the lowest of those about them; of equal ones
+    the last."""
+    walls = np.full(ABOUT, np.inf)
+    windows = sliding_window_view(np.concatenate([walls, values, walls]), 2 * ABOUT + 1)
+    is_lowest = np.all(values[:, None] <= windows, axis=1)
+    next_values = np.append(values[1:], np.inf)
+    lowest: np.ndarray = is_lowest & (values < next_values)
+    return lowest
 
 
 def _small_minima(arclengths: np.ndarray, values: np.ndarray) -> list[_Candidate]:
