@@ -433,8 +433,8 @@ is_singular_to_rounding = Decision(
     "or not",
     "singular value",
     1e-11,
-    "F is known to 1e-15 of its size, and its derivatives leave their zeros with their "
-    "distance",
+    "a function is known to 1e-15 of its size, and its derivatives leave their zeros "
+    "with their distance",
     third_answer="where none is located the form is in doubt",
 )
 

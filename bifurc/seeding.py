@@ -55,7 +55,7 @@ def _projected(
 ) -> tuple[np.ndarray, np.ndarray]:
     """What `Problem.project` makes of the first of the starts (k, n), as many as there
     is time for, a few of them in any case."""
-    if deadline is None or deadline.is_endless:
+    if deadline is None or deadline.is_endless or not len(starts):
         return problem.project(starts)
     parts = []
     for begin in range(0, len(starts), AT_ONCE):

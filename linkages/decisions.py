@@ -187,7 +187,8 @@ is_one_direction = Decision(
 is_degenerate_dyad = Decision(
     "degenerate dyad",
     "a dyad closes in a whole curve of configurations: two equal circles are one, or a "
-    "circle of no radius is on a line, or two lines are one direction",
+    "circle of no radius is on a line, or two lines are one direction, or a body has both "
+    "joints on one axis",
     "distance over the characteristic length, or sine",
     1e-7,
     "lengths of a file that are meant to be equal agree to 1e-12; beside it a motion "

@@ -26,8 +26,8 @@ inline Chebyshev chebyshev_of(const MatrixIn<double>& to_coefficients, const Mat
                               const MatrixIn<double>& powers, const VectorIn<double>& errors, double lebesgue,
                               double bend) {
     const std::size_t nodes = to_coefficients.shape(0);
-    const bool fits = nodes % 2 == 0 && to_coefficients.shape(1) == nodes && to_edges.shape(0) == nodes && powers.shape(0) == nodes &&
-                      powers.shape(1) == errors.size();
+    const bool fits = nodes % 2 == 0 && to_coefficients.shape(1) == nodes && to_edges.shape(0) == nodes &&
+                      powers.shape(0) == nodes && powers.shape(1) == errors.size();
     if (!fits) throw nb::value_error("the tables of Chebyshev nodes do not fit each other");
     return Chebyshev(copied(to_coefficients), copied(to_edges), copied(powers),
                      {errors.data(), errors.data() + errors.size()}, lebesgue, bend);
@@ -35,7 +35,7 @@ inline Chebyshev chebyshev_of(const MatrixIn<double>& to_coefficients, const Mat
 
 inline void check_length(const char* name, const VectorIn<double>& array, Index most) {
     if (static_cast<Index>(array.size()) <= most) return;
-    throw nb::value_error((std::string(name) + ": there are more than nodes").c_str());
+    throw nb::value_error((std::string(name) + ": there must be no more entries than nodes").c_str());
 }
 
 // (N, q) of values (N, q).
@@ -75,7 +75,8 @@ struct ArcArrays {
     Index unknowns() const { return static_cast<Index>(slopes.shape(2)); }
     Index equations() const { return static_cast<Index>(residuals.shape(2)); }
 
-    void check(const Chebyshev& chebyshev) const {
+    // The values of polynomials of a ``degree`` have to fit the nodes.
+    void check(const Chebyshev& chebyshev, Index degree) const {
         const auto has = [](const auto& array, std::initializer_list<Index> shape) {
             std::size_t axis = 0;
             for (Index extent : shape) {
@@ -84,7 +85,7 @@ struct ArcArrays {
             return true;
         };
         const Index a = count(), n = unknowns(), m = equations(), nodes = chebyshev.nodes(), e = chebyshev.ellipses();
-        const bool fits = n > 0 && has(slopes, {a, nodes, n}) && has(residuals, {a, nodes, m}) &&
+        const bool fits = n > 0 && degree >= 0 && degree < nodes && has(slopes, {a, nodes, n}) && has(residuals, {a, nodes, m}) &&
                           has(jacobians, {a, nodes, m, n}) && has(left, {a, m, n - 1}) && has(images, {a, 2, m}) &&
                           has(travel, {a, e}) && has(curvature, {a, e});
         if (!fits) throw nb::value_error("the arrays of arcs do not fit each other");
@@ -106,7 +107,7 @@ struct ArcArrays {
 // (a, e) from points (a, N, n): `bound_travel`.
 inline nb::object travel_of_arcs(const Chebyshev& chebyshev, const CubeIn<double>& points, Index degree) {
     const auto count = static_cast<Index>(points.shape(0)), n = static_cast<Index>(points.shape(2));
-    const bool fits = static_cast<Index>(points.shape(1)) == chebyshev.nodes() && degree < chebyshev.nodes();
+    const bool fits = static_cast<Index>(points.shape(1)) == chebyshev.nodes() && degree >= 0 && degree < chebyshev.nodes();
     if (!fits) throw nb::value_error("the points do not fit the nodes");
     Array<double> travel({count, chebyshev.ellipses()});
     for (Index arc = 0; arc < count; ++arc) {
@@ -120,12 +121,12 @@ inline nb::object travel_of_arcs(const Chebyshev& chebyshev, const CubeIn<double
 // by F'' itself at the nodes, ``hessians`` (a * N, m * n, n), where they are given.
 inline nb::tuple doubts_of_arcs(const Chebyshev& chebyshev, const SecondDerivative& second, const ArcArrays& arcs,
                                 Index degree, const std::optional<CubeIn<double>>& hessians) {
-    arcs.check(chebyshev);
+    arcs.check(chebyshev, degree);
     const Index n = arcs.unknowns(), m = arcs.equations(), nodes = chebyshev.nodes();
     const bool fits = !hessians || (static_cast<Index>(hessians->shape(0)) == arcs.count() * nodes &&
                                     static_cast<Index>(hessians->shape(1)) == m * n &&
                                     static_cast<Index>(hessians->shape(2)) == n);
-    if (!fits || degree >= nodes) throw nb::value_error("the arrays of arcs do not fit each other");
+    if (!fits) throw nb::value_error("the arrays of arcs do not fit each other");
     Array<double> in_cells({arcs.count(), chebyshev.edges() - 1}), least({arcs.count()});
     Array<bool> is_uneven({arcs.count()});
     {
@@ -147,7 +148,7 @@ inline nb::tuple doubts_of_arcs(const Chebyshev& chebyshev, const SecondDerivati
 
 // (bounds on |H^-1| in the cells (a, c), bounds on |G| (a)), which the doubts are made of.
 inline nb::tuple sizes_on_arcs(const Chebyshev& chebyshev, const ArcArrays& arcs, Index degree) {
-    arcs.check(chebyshev);
+    arcs.check(chebyshev, degree);
     Array<double> sizes({arcs.count(), chebyshev.edges() - 1}), gaps({arcs.count()});
     ArcBounds bounds(chebyshev, {}, arcs.unknowns(), arcs.equations(), degree);
     for (Index number = 0; number < arcs.count(); ++number) {

@@ -25,6 +25,7 @@ inline double invert(View<double> matrix, std::vector<Index>& pivots) {
             std::swap_ranges(matrix.row(k).begin(), matrix.row(k).end(), matrix.row(best).begin());
             determinant = -determinant;
         }
+        if (matrix(k, k) == 0.0) return 0.0;
         determinant *= matrix(k, k);
         const double share = 1.0 / matrix(k, k);
         matrix(k, k) = 1.0;

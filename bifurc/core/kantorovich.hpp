@@ -36,6 +36,9 @@ struct Arc {
     Vector<const double> travel, curvature;
 };
 
+// The larger of two numbers; none where one of them is none.
+inline double larger(double one, double other) { return one > other || one != one ? one : other; }
+
 // A bound on the strong components of G and on the weakest, or the half-widths of a box of them.
 struct Box {
     double strong, weak;
@@ -80,7 +83,7 @@ struct Blocks {
             strong[0] * box.strong + 2.0 * strong[1] * box.weak + strong[2] * box.weak * (box.weak / box.strong);
         const double of_weak =
             weak[0] * box.strong * (box.strong / box.weak) + 2.0 * weak[1] * box.strong + weak[2] * box.weak;
-        return 0.5 * std::max(of_strong, of_weak);
+        return 0.5 * larger(of_strong, of_weak);
     }
 };
 
@@ -106,9 +109,6 @@ inline void bound_travel(const Chebyshev& chebyshev, View<const double> points, 
     const double from_mean_to_middle = bound_polynomial(chebyshev, points, degree, 1, travel);
     for (double& bound : travel) bound += from_mean_to_middle;
 }
-
-// The larger of two numbers; none where one of them is none.
-inline double larger(double one, double other) { return one > other || one != one ? one : other; }
 
 // Bounds on one arc after the other.
 class ArcBounds {

@@ -65,6 +65,7 @@ nb::object ends_of_pieces(const Curve& curve, int derivative) {
 }
 
 Height height_of(const Curve& curve, const MatrixIn<double>& coefficients) {
+    if (curve.count() == 0) throw nb::value_error("a curve of no pieces has no points");
     check_width("the coefficients of a height", coefficients.shape(1), curve.unknowns());
     if (coefficients.shape(0) != 4) throw nb::value_error("the coefficients of a height must be four rows");
     const View<const double> rows = numpy::view(coefficients);

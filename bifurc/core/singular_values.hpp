@@ -16,7 +16,7 @@ namespace bifurc {
 // then: two or three sweeps are enough. Small singular values come out to high relative accuracy,
 // and the same on every processor (Drmac and Veselic 2008; Golub and Van Loan 2013, 8.6.3).
 //
-// Abreast matrices are taken abreast, which changes no bit: a rotation waits for its square roots and
+// Four matrices are taken abreast, which changes no bit: a rotation waits for its square roots and
 // quotients.
 class SingularValues {
 public:

@@ -81,8 +81,11 @@ def explore(
         if has_lengths and not own.own_units.is_uniform:
             # areas and lengths are those of the user only where all sizes are one:
             # the search is made again, with a budget of its own
+            first = time.perf_counter() - began
             own, began = in_one_size(own), time.perf_counter()
             atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
+            whole = first + atlas.provenance.seconds
+            atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
         atlas = restated(atlas, problem, own.own_units, own.multiplicity)
     if parameter is None and not events:
         return atlas

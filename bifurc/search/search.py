@@ -647,7 +647,7 @@ class Search:
         from bifurc.singular.precise_location import precisely_located
 
         germ = germ_at(self.problem, located)
-        if germ is None:
+        if germ is None and not self.is_over:
             located = precisely_located(self.problem, located)
             germ = germ_at(self.problem, located)
         return (located if germ is None else placed_at(located, germ)), germ
@@ -690,10 +690,16 @@ class Search:
         near = is_inside & is_on_the_way(findings.seeds.gaps)
         gaps = findings.seeds.gaps[near]
         ends = missed[near]
-        for k in np.argsort(gaps)[:LOOKS_WHERE_STOPPED]:
-            if self.is_over or self._is_about_known(ends[k]):
+        looks = 0
+        for k in np.argsort(gaps, kind="stable"):
+            if self.is_over:
+                break
+            if self._is_about_known(ends[k]):
                 continue
-            sighting = self._examine(ends[k], 2, BRANCH_REACH)
+            sighting = None
+            if looks < LOOKS_WHERE_STOPPED:
+                looks += 1
+                sighting = self._examine(ends[k], 2, BRANCH_REACH)
             if sighting is not None:
                 self._branch_off(_half_branch_starts(sighting.point))
             elif stops_short(float(gaps[k])):

@@ -100,8 +100,10 @@ def classify_from_nearby(
 class _Sections(NamedTuple):
     """The sections with a sphere of ``radius`` and with one half as large.
 
-    They ``agree`` where both show the same dimension and as many half-branches, which
-    settle, and the exact point lies inside both spheres; they ``are_clear`` where neither is in doubt.
+    They ``agree`` where both show the same dimension and as many half-branches, and the
+    exact point lies inside both spheres. They ``are_clear`` where neither is in doubt;
+    where the number of half-branches is known, where they agree and show it. Where it
+    is not, two half-branches have to settle for the sections to agree.
     """
 
     radius: float

@@ -31,7 +31,7 @@ from bifurc.singular.puiseux import (
 __all__ = ["Germ", "germ_at", "placed_at"]
 
 DEGREE = 13  # of the Taylor polynomial
-MOST_UNKNOWNS = 4  # curves in the plane and in space; with eight it takes seven seconds
+MOST_UNKNOWNS = 4  # with two a germ takes 0.6 s, with four 3.4 s, with eight 7 s
 # Digits of the spacing of the grid, over the scale, in the rounds in which the place is
 # found, and of that on which it is judged.
 ROUNDS, LAST = (12, 24, 48), 60
@@ -78,7 +78,7 @@ def germ_at(problem: Problem, located: LocatedPoint) -> Germ | None:
         return None
     try:
         return _germ(problem, located, residual)
-    except (ZeroDivisionError, ValueError, OverflowError, TypeError):
+    except (ZeroDivisionError, ValueError, OverflowError):
         return None  # the grid leaves where the function is defined
 
 

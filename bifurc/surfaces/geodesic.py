@@ -151,7 +151,7 @@ def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.nda
     if len(entries):
         return entries
     joined = charts.charts_next_to(point)
-    for share in SHARES:  # next to the point, most of those that are not are found out
+    for share in SHARES:  # most charts that are not joined drop out next to the point
         if not len(joined):
             break
         steps = share * charts.difference(charts.centers[joined], point)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from bifurc.atlas import Atlas
 from linkages.app.clearance import FormClearance
-from linkages.app.configurations import heading, readout_of, show_configuration
+from linkages.app.configurations import (
+    arclength_unit,
+    heading,
+    readout_of,
+    show_configuration,
+)
 from linkages.app.texts import table
 from linkages.labels import loop_of
 
@@ -18,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["describe_clearance"]
 
 SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
-HEADS = ("clearance", "at most less by", "arclength (deg)")
+HEADS = ("clearance", "at most less by")
 
 
 def describe_clearance(atlas: Atlas, clearances: list[FormClearance]) -> str:
@@ -38,6 +41,7 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
     if not clearance.approaches:
         return f"{clearance.form.name}: every two bodies share a joint"
     smallest = SHOWN * _size(atlas)
+    unit = arclength_unit(atlas)
     rows = []
     for approach in clearance.approaches:
         rows.append(
@@ -45,14 +49,14 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
                 " and ".join(clearance.links(approach)),
                 _length(clearance.gap(approach), smallest),
                 f"{approach.error:.1g}",
-                f"{np.degrees(approach.s):.3f}",
+                f"{unit.factor * approach.s:.3f}",
                 show_configuration(atlas, approach.theta),
             )
         )
     links, least, *_ = rows[0]
     word = _word(atlas)
     title = f"{clearance.form.name}: the least clearance is {least} ({word} {links})"
-    heads = (word, *HEADS, heading(atlas))
+    heads = (word, *HEADS, f"arclength ({unit.name})", heading(atlas))
     return f"{title}\n{table(heads, rows)}"
 
 

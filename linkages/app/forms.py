@@ -10,13 +10,25 @@ from bifurc.errors import RouteError
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.verdict import judge
 
-__all__ = ["choose_form", "choose_forms", "listed_forms", "require_forms"]
+__all__ = [
+    "choose_form",
+    "choose_forms",
+    "listed_forms",
+    "listed_numbers",
+    "require_forms",
+]
+
+
+def listed_numbers(atlas: Atlas) -> list[int]:
+    """The numbers of the forms in the order in which the summary lists them: by their
+    names, Form 2 before Form 10."""
+    names = [_words_and_numbers(form.name) for form in atlas.forms]
+    return sorted(range(len(names)), key=lambda number: names[number])
 
 
 def listed_forms(atlas: Atlas) -> list[Form]:
-    """The forms in the order in which the summary lists them: by their names, Form 2
-    before Form 10."""
-    return sorted(atlas.forms, key=lambda form: _words_and_numbers(form.name))
+    """The forms in the order in which the summary lists them."""
+    return [atlas.forms[number] for number in listed_numbers(atlas)]
 
 
 def _words_and_numbers(name: str) -> list[str | int]:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from bifurc.atlas import Atlas
+from linkages.app.forms import listed_numbers
 from linkages.app.mechanism_document import describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.texts import in_degrees, in_lengths, section
@@ -126,8 +125,8 @@ def describe_motions(atlas: Atlas, readout: Readout) -> str:
     """What joints and bodies do along each form."""
     rows = []
     is_turn = [v.motion.is_turn for v in readout.mechanism.variables]
-    for index in np.argsort([form.name for form in atlas.forms]):
-        facts = form_facts(atlas, int(index), readout)
+    for index in listed_numbers(atlas):
+        facts = form_facts(atlas, index, readout)
         ranges = [
             _range(one, turn, readout.structure.unit)
             for one, turn in zip(facts.ranges, is_turn, strict=True)

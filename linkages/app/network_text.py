@@ -8,6 +8,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from linkages.app.entry_text import list_below, parameter_table
+from linkages.app.forms import listed_numbers
 from linkages.app.texts import in_degrees, section, table
 from linkages.mechanisms.facts import VariableRange, form_facts
 from linkages.mechanisms.readout import Readout
@@ -69,7 +70,7 @@ def describe_ring(atlas: Atlas, readout: Readout, network: NetworkMechanism) -> 
     placed = network.placed
     ring = placed.network.plan.ring
     rows = []
-    for index in np.argsort([form.name for form in atlas.forms]):
+    for index in listed_numbers(atlas):
         ranges = {one.label: one for one in form_facts(atlas, index, readout).ranges}
         texts = [
             _range(ranges[placed.label(axis)], placed.turns[axis]) for axis in ring

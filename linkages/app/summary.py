@@ -251,7 +251,7 @@ def _certificates(atlas: Atlas) -> str:
 
 def _without_certificate(atlas: Atlas) -> str:
     """Which forms have no certificate though one was asked for, and why."""
-    names = sorted(form.name for form in atlas.forms if form.certificate is None)
+    names = [form.name for form in listed_forms(atlas) if form.certificate is None]
     if not names or not atlas.provenance.settings.certify:
         return ""
     return (

@@ -29,7 +29,7 @@ from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
-from linkages.mechanisms.whole_turns import WholeTurns, helical_unknowns
+from linkages.mechanisms.whole_turns import WholeTurns, turns_that_advance
 
 if TYPE_CHECKING:
     import mpmath
@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MechanismClosure"]
 
-# unknowns up to which the compiled methods, with dense matrices, take no longer than
-# collocation: redundant equations leave that to dense factorisations as well
+# unknowns up to which compiled methods with dense matrices take no longer than those in
+# Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 
@@ -215,7 +215,7 @@ class MechanismClosure(NumericalProblem):
         points, gaps = self.project(starts)
         is_inside = self.excess(points) <= 0.0
         seeds = drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
-        helical = helical_unknowns(self.structure)
-        if slices is None and helical:
-            return replace(seeds, audit=WholeTurns(self, helical))
+        turns = turns_that_advance(self.structure)
+        if slices is None and turns:
+            return replace(seeds, audit=WholeTurns(self, turns))
         return replace(seeds, audit=slices)

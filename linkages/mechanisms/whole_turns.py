@@ -1,7 +1,8 @@
-"""Motions of helical joints that are a whole turn of one of them apart.
+"""Motions that are a whole turn of a joint apart, of which something advances: a helical
+joint, or a slide that follows.
 
-A helical joint that makes a whole turn more has advanced, and what closes the loop then
-is another form, or none. Random starts reach such forms one by one; beside a known one
+After a whole turn more it has advanced, and what closes the loop then is another form,
+or none. Random starts reach such forms one by one; beside a known one
 the others are found by turning each joint.
 """
 
@@ -16,34 +17,42 @@ from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
 from bifurc.seeds import Audit, Level
+from linkages.closure.coupled import common_period
 from linkages.mechanisms.dyads.slices import RANDOM_ASSEMBLIES
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["WholeTurns", "helical_unknowns"]
+__all__ = ["WholeTurns", "turns_that_advance"]
 
 MOST_FORMS = 120  # beyond, forms beside them are not looked for
 PLACES = np.array([0.05, 0.35, 0.65, 0.95])  # on a form, of its length
-FULL_TURN = 2 * np.pi
 
 
-def helical_unknowns(structure: Structure) -> tuple[int, ...]:
-    """The numbers of the unknowns that are turns with an advance."""
-    variables = structure.mechanism.variables
-    return tuple(
-        number
-        for number, unknown in enumerate(structure.unknowns)
-        if unknown.variable >= 0 and variables[unknown.variable].motion.advance
-        if unknown.is_angle
-    )
+def turns_that_advance(structure: Structure) -> dict[int, float]:
+    """The unknowns, by number, whose turning advances something, and after what angle
+    (rad) all that turns with one is back."""
+    advancing: set[int] = set()
+    ratios: dict[int, list[float]] = {}
+    for number, variable in enumerate(structure.mechanism.variables):
+        share = structure.share(number)
+        if share is None:
+            continue
+        motion = variable.motion
+        if motion.advance or not motion.is_turn:
+            advancing.add(share.column)
+        if motion.is_turn:
+            ratios.setdefault(share.column, []).append(share.rate)
+    angles = [number for number in advancing if structure.unknowns[number].is_angle]
+    periods = {number: common_period(ratios[number]) for number in sorted(angles)}
+    return {n: period for n, period in periods.items() if np.isfinite(period)}
 
 
 @dataclass(frozen=True, eq=False)
 class WholeTurns:
-    """The forms of a ``problem`` whose ``helical`` unknowns, by number, turn and
-    advance."""
+    """The forms of a ``problem`` with ``turns`` that advance, as `turns_that_advance`
+    has them."""
 
     problem: Problem
-    helical: tuple[int, ...]
+    turns: dict[int, float]
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """Configurations a whole turn of a joint beside ``branches``, as starts; or, of
@@ -51,13 +60,13 @@ class WholeTurns:
         nowhere = np.empty((0, self.problem.n))
         if len(branches) > MOST_FORMS or seconds <= 0.0:
             text = (
-                f"there are at least {len(branches)} forms: helical joints may stand "
+                f"there are at least {len(branches)} forms: joints that advance may stand "
                 "whole turns away within their limits, and not all of that was tried"
             )
             return Audit(Level.ESTIMATED, text, nowhere)
         text = (
-            "beside every form listed here all that are a whole turn of a helical joint "
-            f"away, within the limits, are listed as well; {RANDOM_ASSEMBLIES}"
+            "beside every form listed here others a whole turn of a joint away, which "
+            f"advances, were looked for within the limits; {RANDOM_ASSEMBLIES}"
         )
         starts = [self._beside(branch) for branch in branches]
         return Audit(Level.ESTIMATED, text, np.concatenate([nowhere, *starts]))
@@ -67,8 +76,8 @@ class WholeTurns:
         branch."""
         places = branch(PLACES * branch.length)
         turned = []
-        for number in self.helical:
-            for turn in (FULL_TURN, -FULL_TURN):
+        for number, period in self.turns.items():
+            for turn in (period, -period):
                 beside = places.copy()
                 beside[:, number] += turn
                 turned.append(beside)

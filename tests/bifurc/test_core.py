@@ -492,3 +492,44 @@ def test_a_matrix_has_the_same_singular_values_alone_and_among_others():
     alone = [_core.singular_values(matrix[None])[0] for matrix in matrices]
     assert np.array_equal(together, alone, equal_nan=True)
     assert np.isnan(together[6]).all() and np.isfinite(together[5]).all()
+
+
+@pytest.mark.parametrize("degree", [-1, NODE_COUNT])
+def test_a_degree_that_does_not_fit_the_nodes_is_refused(arcs, degree):
+    with pytest.raises(ValueError, match="do not fit"):
+        _core.sizes_on_arcs(CHEBYSHEV, _core.Arcs(**arcs), degree)
+
+
+def test_a_frame_that_is_singular_at_one_node_is_bounded_elsewhere(arcs):
+    arcs["jacobians"][:] = arcs["jacobians"][:, :1]
+    arcs["slopes"][:] = arcs["slopes"][:, :1]
+    along = np.cos(np.pi * (np.arange(NODE_COUNT)[::-1] + 0.5) / NODE_COUNT)
+    arcs["jacobians"][1] *= (along - along[10])[:, None, None]
+    sizes, _ = _core.sizes_on_arcs(CHEBYSHEV, _core.Arcs(**arcs), 16)
+    assert np.isfinite(sizes[1]).mean() > 0.8
+
+
+def test_no_number_of_a_second_derivative_proves_nothing():
+    """With two unknowns there are no strong components to see it."""
+    slopes = np.zeros((1, NODE_COUNT, 2))
+    slopes[..., 1] = 1.0
+    jacobians = np.zeros((1, NODE_COUNT, 1, 2))
+    jacobians[..., 0] = 1.0
+    arcs = _core.Arcs(
+        slopes=slopes,
+        residuals=np.zeros((1, NODE_COUNT, 1)),
+        jacobians=jacobians,
+        left=np.ones((1, 1, 1)),
+        images=np.zeros((1, 2, 1)),
+        travel=np.zeros((1, len(RHOS))),
+        curvature=np.zeros((1, len(RHOS))),
+    )
+    second = _core.SecondDerivative(
+        bound=1.0, residual=1.0, growth=0.0, reach=1.0, error=0.0
+    )
+    hessians = np.zeros((NODE_COUNT, 2, 2))
+    doubts, _, _ = _core.doubts_of_arcs(CHEBYSHEV, second, arcs, 1, hessians)
+    assert np.all(np.isfinite(doubts))
+    hessians[5] = np.nan
+    doubts, _, _ = _core.doubts_of_arcs(CHEBYSHEV, second, arcs, 1, hessians)
+    assert np.all(np.isinf(doubts))

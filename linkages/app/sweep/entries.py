@@ -38,6 +38,9 @@ class WrittenBlock:
 
 Entry: TypeAlias = FinishedMember | WrittenBlock
 
+# a value that is no number is left out of a line, others are not
+_ALWAYS = {name for name, field in FIELDS.items() if np.dtype(field.dtype).kind != "f"}
+
 
 def read_entries(journal: Journal, plan: Plan) -> Iterator[Entry]:
     """All entries below the header, one at a time; raises `JournalError` for a line
@@ -62,6 +65,8 @@ def _entry(line: Line, plan: Plan, joints: int) -> Entry | None:
     if not _is_number_below(index, plan.size):
         return None
     if line.get("status") not in (Status.MAPPED, Status.REFUSED, Status.FAILED):
+        return None
+    if line["status"] == Status.MAPPED and not line.keys() >= _ALWAYS:
         return None
     is_whole = all(_fits(name, value, joints) for name, value in line.items())
     return FinishedMember(cast(int, index), line) if is_whole else None

@@ -85,7 +85,8 @@ def _text(plan: Plan) -> str:
 
 class SweepStore:
     """Zarr arrays for the summaries of all members of a plan; values not yet written
-    are missing. It ``is_new`` where nothing was there."""
+    are missing. It ``is_new`` where arrays were missing, and all
+    were made anew."""
 
     def __init__(self, path: Path, plan: Plan):
         import zarr

@@ -81,7 +81,10 @@ class Builder:
 
     def is_never_degenerate(self, values: Sequence[float]) -> bool:
         """Whether no dyad can close in a curve of configurations, wherever the parts
-        are that it stands on. The known ``values`` within parts are of no account."""
+        are that it stands on, and whatever the driver's value is; other known
+        ``values`` are locks."""
+        if any(self._part_of(pair) != self.plan.start for pair in self._driven()):
+            return False  # lengths within a part that is placed change with the driver
         inner = self._inner_poses(values)
         standing = dict.fromkeys(self.plan.part, self.geometry.rest)
         for step in self.plan.steps:
@@ -101,17 +104,33 @@ class Builder:
         poses = dict.fromkeys(self.plan.part, self.geometry.rest)
         left = [self.mechanism.pairs[number] for number in self.plan.known]
         while left:
-            for pair in left:
-                base, moved = self.numbers[pair.base], self.numbers[pair.moved]
-                if base in poses or moved in poses:
-                    break
+            pair = next(pair for pair in left if self._is_reached(pair, poses))
             left.remove(pair)
+            base, moved = self.numbers[pair.base], self.numbers[pair.moved]
             motion = self._pair_motion(pair, values)
-            if base in poses and moved not in poses:
+            if moved not in poses:
                 poses[moved] = poses[base].after(motion)
-            elif moved in poses and base not in poses:
+            elif base not in poses:
                 poses[base] = poses[moved].after(motion.inverse())
         return poses
+
+    def _is_reached(self, pair: Pair, poses: dict[int, Any]) -> bool:
+        """Whether one of the bodies of a pair has its pose."""
+        return self.numbers[pair.base] in poses or self.numbers[pair.moved] in poses
+
+    def _driven(self) -> list[Pair]:
+        """The pairs that move with the driver."""
+        variables = self.mechanism.variables
+        known = [self.mechanism.pairs[number] for number in self.plan.known]
+        return [
+            pair
+            for pair in known
+            if any(variables[number].locked is None for number in pair.variables)
+        ]
+
+    def _part_of(self, pair: Pair) -> int:
+        """The number of the part in which a known pair is."""
+        return self.plan.part[self.numbers[pair.base]]
 
     def _pair_motion(self, pair: Pair, values: Sequence[float]) -> Any:
         pose = self.geometry.rest

@@ -154,10 +154,10 @@ def close_monad(one: End, other: End, size: float) -> list[PlanePose]:
     fit. ``size`` is a length of the mechanism. Raises `DegenerateDyadError`."""
     if isinstance(one, Pivot) and isinstance(other, Pivot):
         gap, own = other.place - one.place, other.local - one.local
-        if abs(abs(gap) - abs(own)) > MISFIT * size:
-            return []
         if is_degenerate_dyad(abs(own) / size):
             raise DegenerateDyadError
+        if abs(abs(gap) - abs(own)) > MISFIT * size:
+            return []
         return [_placed(gap / own / abs(gap / own), one)]
     if isinstance(one, Rail) and isinstance(other, Rail):
         if abs(one.pose.turn - other.pose.turn) > MISFIT:
@@ -203,6 +203,8 @@ def _reversed(middle: Middle) -> Middle:
 def _pinned(one: End, pin: Pin, other: End, size: float) -> Poses:
     if isinstance(one, Pivot) and isinstance(other, Pivot):
         arms = pin.first - one.local, pin.second - other.local
+        if is_degenerate_dyad(min(abs(arms[0]), abs(arms[1])) / size):
+            raise DegenerateDyadError  # a body on one axis turns freely
         places = _circles(one.place, abs(arms[0]), other.place, abs(arms[1]), size)
         return [
             (
@@ -252,12 +254,15 @@ def may_be_degenerate(one: End, middle: Middle, other: End, size: float) -> bool
     if isinstance(one, Rail) and isinstance(other, Pivot):
         return may_be_degenerate(other, _reversed(middle), one, size)
     if isinstance(other, Rail):
-        # a circle and a line never are; two lines may be one
-        return isinstance(one, Rail) or isinstance(middle, Slider)
+        if isinstance(one, Rail) or isinstance(middle, Slider):
+            return True  # two lines may be one
+        # a circle and a line never are, if there is a circle
+        return is_degenerate_dyad(abs(middle.first - one.local) / size)
     assert isinstance(one, Pivot)
     if isinstance(middle, Pin):
         arms = abs(middle.first - one.local), abs(middle.second - other.local)
-        return is_degenerate_dyad(abs(arms[0] - arms[1]) / size)
+        least = min(*arms, abs(arms[0] - arms[1]))
+        return is_degenerate_dyad(least / size)
     beside = ((middle.pose(other.local) - one.local) / middle.along).imag
     return is_degenerate_dyad(abs(beside) / size)
 

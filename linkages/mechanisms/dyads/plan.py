@@ -74,7 +74,9 @@ def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
         pair = mechanism.pairs[number]
         parts.union(numbers[pair.base], numbers[pair.moved])
     part = tuple(parts[body] for body in range(len(numbers)))
-    contacts = [c for c in _contacts(mechanism, numbers, known) if _parts(c, part)]
+    contacts = [
+        c for c in _contacts(mechanism, numbers, known) if _joins_two_parts(c, part)
+    ]
     sizes = Counter(part)
     for start in sorted(sizes, key=lambda one: (-sizes[one], one))[:MOST_BEGUN]:
         steps = _steps(start, part, contacts)
@@ -112,7 +114,7 @@ def _contacts(
                 yield Contact(joint.name, first, second, variable, is_turn)
 
 
-def _parts(contact: Contact, part: tuple[int, ...]) -> bool:
+def _joins_two_parts(contact: Contact, part: tuple[int, ...]) -> bool:
     """Whether a joint joins two parts."""
     return part[contact.first] != part[contact.second]
 

@@ -26,9 +26,5 @@ class PlanePose(NamedTuple):
         """The displacement back."""
         return PlanePose(1 / self.turn, -self.shift / self.turn)
 
-    def slid(self, way: complex) -> PlanePose:
-        """The displacement with a ``way`` besides, counted in the moved frame."""
-        return PlanePose(self.turn, self(way))
-
 
 AT_REST = PlanePose(1 + 0j, 0j)

@@ -110,10 +110,11 @@ def _slice_by_dyads(
             return None
         return DyadSlices(structure, points, (), (), misses_none=True)
     slices: dict[int, _Slice] = {}
+    always_moves = False
     for number, one in _slices(structure, geometry, rng):
         slices[number] = one
-        moved = any(one.always_moves for one in slices.values())
-        if moved and len(slices) >= MOST_DRIVERS:
+        always_moves = any(known.always_moves for known in slices.values())
+        if always_moves and len(slices) >= MOST_DRIVERS:
             break
     if not slices:
         return None
@@ -122,7 +123,7 @@ def _slice_by_dyads(
         np.concatenate([one.points for one in slices.values()]),
         tuple(slices),
         tuple(one.step for one in slices.values()),
-        misses_none=moved or len(slices) == len(structure.unknowns),
+        misses_none=always_moves or len(slices) == len(structure.unknowns),
     )
 
 

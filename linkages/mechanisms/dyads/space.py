@@ -76,8 +76,11 @@ class SpaceGeometry:
         """The displacement that a joint variable makes."""
         from scipy.spatial.transform import Rotation
 
+        if not motion.is_turn:
+            return SpacePose(np.eye(3), value * motion.direction)
         turn = Rotation.from_rotvec(value * motion.direction).as_matrix()
-        return SpacePose(turn, motion.point - turn @ motion.point)
+        advance = value * motion.advance * motion.direction
+        return SpacePose(turn, motion.point - turn @ motion.point + advance)
 
     def value(self, relative: SpacePose, motion: Motion) -> float:
         """The variable, between -pi and pi, that makes a displacement."""
@@ -161,7 +164,10 @@ class SpaceGeometry:
     def may_be_degenerate(self, one: Axis, pin: SpacePin, other: Axis) -> bool:
         """Whether a dyad may close in a whole curve of configurations somewhere."""
         first, second = _cosines(one, pin, other)
-        return is_degenerate_dyad(abs(abs(first) - abs(second)))
+        first, second = abs(first), abs(second)
+        most = min(max(first, second), 1.0)
+        sine = math.sqrt(1.0 - most * most)
+        return is_degenerate_dyad(min(abs(first - second), sine))
 
 
 def _cosines(one: Axis, pin: SpacePin, other: Axis) -> tuple[float, float]:

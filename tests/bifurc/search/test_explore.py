@@ -389,3 +389,24 @@ def test_where_near_motions_are_not_asked_for_their_points_are_isolated():
     assert with_them.near_motions and not without.near_motions
     assert not with_them.forms and not without.forms
     assert len(without.rigid) >= len(with_them.rigid)
+
+
+def test_one_start_within_a_budget_is_enough_to_answer():
+    def small_circle(u):
+        return [u[0] ** 2 + u[1] ** 2 - 1e-4]
+
+    problem = FunctionProblem(small_circle, [(-2, 2)] * 2)
+    settings = SearchSettings(starts=1, budget=50.0, near_motions=False)
+    assert len(explore(problem, settings=settings).forms) == 1
+
+
+def test_two_flat_points_are_both_found_or_one_is_said_to_be_open():
+    def both(u):
+        x, y = u
+        return [((x - 1) ** 4 + y**4) * ((x + 1) ** 4 + y**4)]
+
+    atlas = explore(FunctionProblem(both, [(-2.1, 2), (-1.2, 1)]), seed=1)
+    found = {round(float(point.point.u[0])) for point in atlas.points}
+    assert found == {-1, 1} or "there may be more solutions" in (
+        atlas.completeness.statement
+    )

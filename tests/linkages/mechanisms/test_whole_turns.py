@@ -39,7 +39,7 @@ def test_all_whole_turns_are_listed_whatever_the_seed(seed):
     assert all(form.branch.closed for form in atlas.forms)
     assert len({round(form.branch.length, 6) for form in atlas.forms}) == 1
     assert atlas.completeness.level is Level.ESTIMATED
-    assert "a whole turn of a helical joint away" in atlas.completeness.statement
+    assert "a whole turn of a joint away" in atlas.completeness.statement
 
 
 def test_of_many_forms_it_is_said_that_there_are_more(monkeypatch):

@@ -20,7 +20,14 @@ from linkages.app.sweep.store import StoreError, count_status
 from linkages.app.sweep.workers import Pool
 
 PLAN = Plan("bennett", random=3, ranges={"alpha": (0.5, 1.0)}, starts=10)
-RECORD = {"status": 0, "forms": 1, "inactive_joints": [0, 0, 0, 0], "closure": 1e-15}
+COUNTS = ("closed_forms", "bifurcations", "components", "rank_drops", "surfaces")
+RECORD = {
+    "status": 0,
+    "forms": 1,
+    **dict.fromkeys((*COUNTS, "one_cycle", "rigid", "complete"), 0),
+    "inactive_joints": [0, 0, 0, 0],
+    "closure": 1e-15,
+}
 DAMAGED = {
     "a member that is a word": '{"member": "x", "status": 0}',
     "a member beyond the last": '{"member": 3, "status": 0}',
@@ -28,6 +35,7 @@ DAMAGED = {
     "half a member": '{"member": 0.5, "status": 0}',
     "a member without status": '{"member": 0}',
     "a status that there is not": '{"member": 0, "status": 77}',
+    "a mapped member without its counts": '{"member": 0, "status": 0, "forms": 1}',
     "a word for a number": '{"member": 0, "status": 0, "forms": "many"}',
     "a number beyond its range": '{"member": 0, "status": 0, "forms": 1000000}',
     "too few joints": '{"member": 0, "status": 0, "inactive_joints": [1]}',

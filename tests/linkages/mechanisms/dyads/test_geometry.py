@@ -123,3 +123,15 @@ def test_equal_circles_about_one_point_meet_all_along():
     unequal = Pin(1 + 0j, -1.2 + 0j)
     assert not may_be_degenerate(one, unequal, other, SIZE)
     assert close_dyad(one, unequal, other, SIZE) == []
+
+
+def test_a_body_with_both_joints_on_one_axis_turns_freely():
+    """In a dyad, on a slide, and alone, wherever the axis is."""
+    one, other = Pivot(0j, 0j), Pivot(0.7 + 0.1j, 0j)
+    coaxial = Pin(1e-17 + 0j, 0.5 + 0j)
+    assert may_be_degenerate(one, coaxial, other, SIZE)
+    assert may_be_degenerate(one, coaxial, Rail(PlanePose(1j, 0.3 + 0j), 1j), SIZE)
+    with pytest.raises(DegenerateDyadError):
+        close_dyad(one, coaxial, other, SIZE)
+    with pytest.raises(DegenerateDyadError):
+        close_monad(one, Pivot(2.0 + 0j, 0j), SIZE)

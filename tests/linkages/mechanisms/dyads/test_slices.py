@@ -176,3 +176,40 @@ def test_what_is_geared_to_the_driver_is_known_with_it():
     labels = [slices.structure.unknowns[driver].label for driver in slices.drivers]
     assert labels == ["A"]
     assert MechanismClosure(mechanism).gaps(slices.points).max() < 1e-12
+
+
+def test_slides_that_are_locked_stay_slides():
+    """Four turns that meet in a point, the chain between them shifted there and back."""
+    turns = [(0, 0, 1), (0, 0.6, 0.8), (0.6, 0.6, 0.53), (0.8, 0, 0.6)]
+    slides = [(1, 0, 0), (0, 1, 0), (1, 1, 0)]
+    values = (0.5, 0.5, -np.sqrt(0.5))
+    bodies = ["ground", "a", "b", "c", "d", "e", "f", "ground"]
+    joints = []
+    for k, value in enumerate(values):
+        pair = (bodies[k], bodies[k + 1])
+        along = slides[k]
+        joints.append(
+            Joint(f"P{k}", "prismatic", pair, direction=along, locked=(value,))
+        )
+    for k, axis in enumerate(turns):
+        pair = (bodies[k + 3], bodies[k + 4])
+        joints.append(Joint(f"R{k}", "revolute", pair, (0, 0, 0), axis))
+    mechanism = Mechanism(tuple(joints))
+    structure = Structure(mechanism)
+    slices = slice_by_dyads(structure, np.random.default_rng(0))
+    assert slices is not None
+    closure = MechanismClosure(mechanism)
+    assert len(slices.points)
+    assert closure.gaps(slices.points).max() < 1e-11
+
+
+def test_a_body_that_turns_freely_is_not_certified_away():
+    """Two pins of a link in one line: it turns while the driver stands still."""
+    joints = (
+        Joint("A", "revolute", ("ground", "link"), (0, 0, 0), Z),
+        Joint("B", "revolute", ("link", "arm"), (0, 0, 0.1), Z),
+        Joint("C", "revolute", ("arm", "ground"), (1, 0, 0), Z),
+    )
+    atlas = linkages.map_linkage(Mechanism(joints), settings=FEW)
+    assert len(atlas.forms) == 1
+    assert atlas.completeness.level is Level.ESTIMATED
