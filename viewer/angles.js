@@ -17,6 +17,12 @@ export function inDegrees(angle, digits = 2) {
   return shown === (-180).toFixed(digits) ? (180).toFixed(digits) : shown;
 }
 
+/** An arclength as text: in degrees where all unknowns of a scene are angles. */
+export function arclengthText(length, scene) {
+  const isAngular = !scene.mechanism || scene.mechanism.unknowns.every((unknown) => unknown.is_angle);
+  return isAngular ? `${(length * DEGREES).toFixed(1)}°` : length.toPrecision(4);
+}
+
 const SUBSCRIPTS = "₀₁₂₃₄₅₆₇₈₉";
 
 /** The name of the angle of a joint, counted from 1. */

@@ -1,6 +1,6 @@
 // The numbers of a configuration: joint variables, singular values, and how far the next singular points are.
 
-import { angleName, DEGREES } from "./angles.js";
+import { angleName, arclengthText } from "./angles.js";
 import { element } from "./elements.js";
 import { nextPass } from "./crossings.js";
 import { isCurve } from "./tracks.js";
@@ -65,7 +65,8 @@ function inWords(value) {
 
 /** The bar between the singular points before and after the linkage. */
 export class DistanceBar {
-  constructor(passes, goToPoint) {
+  constructor(scene, passes, goToPoint) {
+    this.scene = scene;
     this.passes = passes;
     this.before = element("button", { class: "bv-before", title: "previous singular point (↓)" });
     this.after = element("button", { class: "bv-after", title: "next singular point (↑)" });
@@ -80,14 +81,10 @@ export class DistanceBar {
     this.previous = nextPass(passes, track, s, -1);
     this.next = nextPass(passes, track, s, 1);
     this.node.classList.toggle("bv-hidden", !this.previous && !this.next);
-    this.before.textContent = this.previous ? `${this.previous.point.name} ◂ ${degrees(this.previous.ahead)}` : "";
-    this.after.textContent = this.next ? `${degrees(this.next.ahead)} ▸ ${this.next.point.name}` : "";
+    this.before.textContent = this.previous ? `${this.previous.point.name} ◂ ${arclengthText(this.previous.ahead, this.scene)}` : "";
+    this.after.textContent = this.next ? `${arclengthText(this.next.ahead, this.scene)} ▸ ${this.next.point.name}` : "";
     const back = this.previous?.ahead ?? s;
     const ahead = this.next?.ahead ?? track.length - s;
     this.mark.style.left = `${(100 * back) / Math.max(back + ahead, 1e-12)}%`;
   }
-}
-
-function degrees(length) {
-  return `${(length * DEGREES).toFixed(1)}°`;
 }

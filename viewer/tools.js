@@ -1,6 +1,6 @@
 // The buttons and lists around the pictures.
 
-import { DEGREES } from "./angles.js";
+import { arclengthText } from "./angles.js";
 import { element } from "./elements.js";
 import { KEYS_IN_WORDS } from "./keyboard.js";
 import { isCurve } from "./tracks.js";
@@ -62,6 +62,7 @@ export class MotionTools {
   /** `actions` are togglePlay(), playBackwards() and the `player`. */
   constructor(scene, actions) {
     const { player } = actions;
+    this.scene = scene;
     this.play = element("button", { class: "bv-play", title: "play and pause (Space)", onclick: () => actions.togglePlay() }, "▶");
     this.back = element("button", { class: "bv-back", title: "play backwards", onclick: () => actions.playBackwards() }, "◀");
     const speed = element("select", { "aria-label": "speed", onchange: () => (player.speed = Number(speed.value)) });
@@ -80,9 +81,9 @@ export class MotionTools {
   }
 
   show({ track, s }) {
-    const degrees = (length) => `${(length * DEGREES).toFixed(1)}°`;
+    const shown = (length) => arclengthText(length, this.scene);
     this.place.textContent = isCurve(track)
-      ? `${degrees(s)} of ${degrees(track.length)} along ${track.name}`
+      ? `${shown(s)} of ${shown(track.length)} along ${track.name}`
       : `${track.name}: ${s + 1} of ${track.samples.length}`;
   }
 }

@@ -1,5 +1,6 @@
 // The viewer: the linkage beside its map, kept together by one position.
 
+import { arclengthText } from "./angles.js";
 import { BranchChoice, FormList, RouteBar } from "./choices.js";
 import { leavingBranches, nextPass, passAt, passesOf } from "./crossings.js";
 import { element } from "./elements.js";
@@ -69,7 +70,7 @@ export class Viewer {
     this.choice = new BranchChoice(tracks, this.unknowns, (branch) => this.leave(branch));
     this.routeBar = new RouteBar(this.listed, (name) => this.playRoute(name));
     this.numbers = new Numbers(this.unknowns, this.figure);
-    this.distanceBar = new DistanceBar(this.passes, (_, s) => this.goTo(this.position.track, s));
+    this.distanceBar = new DistanceBar(scene, this.passes, (_, s) => this.goTo(this.position.track, s));
     this.strip = new Strip(this.passes, (track) => this.smallestAlong(track), (track) => this.missesOn(track), {
       moved: (s) => this.goTo(this.position.track, s),
       goToPoint: (_, s) => this.goTo(this.position.track, s),
@@ -325,8 +326,8 @@ export class Viewer {
       return;
     }
     const through = legs.slice(0, -1).map((leg) => leg.at);
-    const degrees = ((lengthOf(legs) * 180) / Math.PI).toFixed(1);
-    this.routeBar.say(`${degrees}°${through.length ? ` through ${through.join(", ")}` : ""}`);
+    const length = arclengthText(lengthOf(legs), this.scene);
+    this.routeBar.say(`${length}${through.length ? ` through ${through.join(", ")}` : ""}`);
     const { leg, s, direction } = placeAlong(legs, 0);
     this.position.go(leg.track, s, direction);
     this.player.playRoute(legs, seconds);

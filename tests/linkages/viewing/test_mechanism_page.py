@@ -240,3 +240,11 @@ def test_names_stand_beside_joints_that_are_seen_end_on(show_shared):
     is_shown = boxes[:, 2] > boxes[:, 0]
     gaps = np.linalg.norm(middles - joints, axis=1)[is_shown]
     assert gaps.min() > 8
+
+
+@pytest.mark.parametrize("name, is_angular", [("slider-crank", False), ("Watt", True)])
+def test_a_length_of_slides_and_turns_is_not_in_degrees(show_shared, name, is_angular):
+    shown = show_shared(name)
+    place = shown.page.inner_text(".bv-place")
+    assert " of " in place
+    assert ("°" in place) is is_angular
