@@ -70,5 +70,5 @@ def test_the_largest_value_between_the_nodes_is_bounded():
 def test_what_does_not_fit_the_nodes_is_refused():
     with pytest.raises(ValueError, match="a row for each node"):
         CHEBYSHEV.coefficients(np.ones((3, 2)))
-    with pytest.raises(ValueError, match="more than nodes"):
+    with pytest.raises(ValueError, match="no more entries than nodes"):
         CHEBYSHEV.on_edges(np.ones(len(NODES) + 1))
