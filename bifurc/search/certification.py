@@ -81,14 +81,18 @@ def _jumps(
 
 def may_be_mended(problem: Problem, traced: TracedBranch) -> bool:
     """Whether a branch that is refused may be traced better: not where its points are
-    known so poorly that doubles do not follow one arc."""
+    known so poorly that doubles do not follow one arc, but for a kink at a located
+    singular point, which one march has and another has not."""
     certificate = traced.certificate
     if certificate is None or not is_certifiable(problem):
         return False
-    middles = certificate.gaps.mean(axis=1)
-    if not len(middles):
+    gaps = certificate.gaps
+    if not len(gaps):
         return True
-    return bool(np.any(known_to(problem, traced.branch(middles)) < BLURRED))
+    passes = np.array(traced.passes)
+    are_inside = (gaps[:, :1] <= passes) & (passes <= gaps[:, 1:])
+    is_known = known_to(problem, traced.branch(gaps.mean(axis=1))) < BLURRED
+    return bool(np.any(are_inside) or np.any(is_known))
 
 
 def finer_settings(settings: TraceSettings) -> Iterator[TraceSettings]:
