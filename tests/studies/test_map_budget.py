@@ -8,7 +8,7 @@ from studies.map_budget import STEPS, budget, series_operations
 
 
 def test_the_steps_and_the_rest_make_up_the_map():
-    shares = budget(load("special-double-subtractive-goldberg"), maps=1)
+    shares = budget(load("special-double-subtractive-goldberg"), maps=3)
     assert sum(share.share for share in shares) == pytest.approx(1.0)
     assert len(shares) == len(STEPS) + 1
     assert shares[-1].step == "the rest"
