@@ -63,3 +63,12 @@ def test_an_exception_is_wrong():
     run = run_curve(broken, next(changes_of(broken)), seed=0, budget=1.0)
     assert run.verdict is Verdict.WRONG
     assert "'f' is not defined" in run.answer
+
+
+@pytest.mark.parametrize("name", ["unknowns 1e-06", "first equation 1000"])
+def test_a_flat_rank_drop_is_found_or_said_to_be_missing(name):
+    curve = CURVES["E12"]
+    (change,) = [change for change in changes_of(curve) if change.name == name]
+    atlas = explore(change.problem(curve), seed=0)
+    is_missed = "no singular point was located" in atlas.completeness.statement
+    assert len(atlas.rank_drops) == 1 or is_missed

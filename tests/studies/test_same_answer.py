@@ -81,3 +81,9 @@ def test_another_processor_gives_the_same_document(tmp_path):
     comparisons = list(compare(reference, ["bennett"], batch))
     assert [comparison.lines for comparison in comparisons] == [[], []]
     assert "rounding noise, 1 draws" in describe([(batch, comparisons)])
+
+
+def test_a_form_that_one_march_leaves_with_a_kink_is_certified_all_the_same():
+    """With this noise the march comes to a stop next to a rank drop."""
+    name = "double-subtractive-goldberg-type-iv"
+    assert differences(map_document(name, 0), noisy_document(name, 1)) == []

@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from linkages.mechanisms.bars import read_bars
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -24,3 +25,22 @@ def mechanism_of_case(case):
     if "bars" in case:
         return read_bars(case, case["name"])
     return Mechanism(tuple(Joint(**joint) for joint in case["joints"]), case["name"])
+
+
+def geared_five_bar(ratio=-2.0, offset=0.0):
+    """Two cranks with gears on a frame, and two rods between them."""
+    joints = (
+        Joint("A", "revolute", ("frame", "a"), (0, 0, 0), (0, 0, 1)),
+        Joint("B", "revolute", ("a", "b"), (0.3, 1.1, 0), (0, 0, 1)),
+        Joint("C", "revolute", ("b", "c"), (1.4, 1.9, 0), (0, 0, 1)),
+        Joint("D", "revolute", ("c", "d"), (2.6, 1.0, 0), (0, 0, 1)),
+        Joint(
+            "E",
+            "revolute",
+            ("d", "frame"),
+            (2.2, 0, 0),
+            (0, 0, 1),
+            coupled=(Coupling("A", ratio, offset),),
+        ),
+    )
+    return Mechanism(joints, "geared five-bar")

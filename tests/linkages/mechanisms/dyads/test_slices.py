@@ -8,12 +8,15 @@ from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
 from linkages.mechanisms.arcs import read_arcs
 from linkages.mechanisms.closure import MechanismClosure
-from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.dyads.slices import SLICES, slice_by_dyads
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
-from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.known_mechanisms import (
+    cases,
+    geared_five_bar,
+    mechanism_of_case,
+)
 from tests.linkages.mechanisms.test_maps import slider_crank
 
 
@@ -157,21 +160,7 @@ def test_limits_hold_in_slices():
 
 def test_what_is_geared_to_the_driver_is_known_with_it():
     """A five-bar, its cranks on gears."""
-    joints = (
-        Joint("A", "revolute", ("frame", "a"), (0, 0, 0), Z),
-        Joint("B", "revolute", ("a", "b"), (0.3, 1.1, 0), Z),
-        Joint("C", "revolute", ("b", "c"), (1.4, 1.9, 0), Z),
-        Joint("D", "revolute", ("c", "d"), (2.6, 1.0, 0), Z),
-        Joint(
-            "E",
-            "revolute",
-            ("d", "frame"),
-            (2.2, 0, 0),
-            Z,
-            coupled=(Coupling("A", -2.0, 0.1),),
-        ),
-    )
-    mechanism = Mechanism(joints)
+    mechanism = geared_five_bar(-2.0, 0.1)
     slices = sliced(mechanism)
     labels = [slices.structure.unknowns[driver].label for driver in slices.drivers]
     assert labels == ["A"]

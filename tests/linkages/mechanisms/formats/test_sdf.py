@@ -9,9 +9,8 @@ from linkages.file import LinkageFileError
 from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
-from linkages.mechanisms.joint import Joint
-from linkages.mechanisms.mechanism import Mechanism
-from tests.linkages.mechanisms.formats.examples import EXAMPLES, Z, assert_same_geometry
+from tests.linkages.mechanisms.formats.examples import EXAMPLES, assert_same_geometry
+from tests.linkages.mechanisms.known_mechanisms import geared_five_bar
 
 
 def read(tmp_path, text, name="m.sdf"):
@@ -193,25 +192,6 @@ def test_a_malformed_model_is_refused_with_its_place(what, tmp_path):
 
 
 # --- joints that follow others --------------------------------------------------------
-
-
-def geared_five_bar(ratio=-2.0, offset=0.0):
-    """Two cranks with gears on a frame, and two rods between them."""
-    joints = (
-        Joint("A", "revolute", ("frame", "a"), (0, 0, 0), Z),
-        Joint("B", "revolute", ("a", "b"), (0.3, 1.1, 0), Z),
-        Joint("C", "revolute", ("b", "c"), (1.4, 1.9, 0), Z),
-        Joint("D", "revolute", ("c", "d"), (2.6, 1.0, 0), Z),
-        Joint(
-            "E",
-            "revolute",
-            ("d", "frame"),
-            (2.2, 0, 0),
-            Z,
-            coupled=(Coupling("A", ratio, offset),),
-        ),
-    )
-    return Mechanism(joints, "geared five-bar")
 
 
 COUPLED = {
