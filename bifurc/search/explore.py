@@ -121,7 +121,7 @@ def _explored(
     search = Search(problem, settings, progress, deadline)
     interrupted = False
     try:
-        with search.limits.interrupt:
+        with search.run.interrupt:
             search.gather_seeds(seeds, seed)
             search.sort_seeds()
             search.trace_seeds()
@@ -130,7 +130,7 @@ def _explored(
             search.separate_points()
             search.join_branches()
             search.audit_branches()
-            search.look_for_near_motions()
+            search.near_motions.look()
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
@@ -138,7 +138,7 @@ def _explored(
         seed=int(seed),
         settings=settings,
         interrupted=interrupted,
-        out_of_time=search.is_over,
+        out_of_time=search.run.is_over,
         derivatives=problem.derivatives,
         equations=problem.equations,
         seconds=time.perf_counter() - began,

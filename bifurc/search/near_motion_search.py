@@ -1,0 +1,111 @@
+"""The search for near motions: curves along which a system is nearly solved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from bifurc.curves.near_motion import trace_near_motion
+from bifurc.curves.near_surface import near_surfaces
+from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
+from bifurc.numerics.singular_values import singular_values
+from bifurc.search.canonical_course import canonical_course
+from bifurc.search.closure_gap import valley_points
+from bifurc.search.run import Run
+from bifurc.seeding import random_seeds
+
+__all__ = ["NearMotionSearch"]
+
+SAME_STARTS = 200  # from which every search looks for near motions
+FRUITLESS = 4  # of those on no known near motion that in a row led to nothing new
+
+
+class NearMotionSearch:
+    """The search for near motions in a ``run``: `look` has starts of its own, `through`
+    has that of a caller."""
+
+    def __init__(self, run: Run):
+        self.run = run
+        self.problem = run.problem
+        self.findings = run.findings
+
+    def through(self, point: np.ndarray) -> int | None:
+        """The number of the near motion through a point (n,), which is traced if it is
+        new; None where there is none."""
+        number = self.findings.near_motion_through(point)
+        if number is not None:
+            return number
+        if self.findings.is_on_short_stretch(point):
+            return None
+        near = trace_near_motion(self.problem, point, self.run.settings.tracing)
+        if near is None or closes_to_rounding(near.misclosure):
+            return None  # nothing, or a form runs there
+        near = replace(near, branch=canonical_course(self.problem, near.branch))
+        return self.findings.add_near_motion(near)
+
+    def look(self) -> None:
+        """Trace the near motions next to where starts end that miss, where nothing
+        moves.
+
+        Besides the random starts of the search there are always the same ones, so that
+        what they reach does not depend on its seed.
+        """
+        findings = self.findings
+        is_mobile = bool(findings.traced) or bool(findings.components.seeds)
+        is_asked = self.run.settings.near_motions
+        if is_mobile or not is_asked or not len(findings.seeds.missed):
+            return
+        if self.run.is_over:
+            return
+        points = self._nearly_closed(findings.seeds.missed)
+        if not len(points) or self.run.is_over:
+            return
+        rng, deadline = np.random.default_rng(0), self.run.deadline
+        same = random_seeds(self.problem, rng, SAME_STARTS, deadline=deadline)
+        always = self._nearly_closed(np.concatenate([same.points, same.missed]))
+        if self.run.is_over:
+            return
+        surfaces, is_left = near_surfaces(self.problem, always)
+        findings.near_surfaces += surfaces
+        if surfaces:
+            _, is_open = near_surfaces(self.problem, points)
+            points = points[is_open]
+        self._trace(always[is_left])
+        self._trace(points)
+
+    def _trace(self, waiting: np.ndarray) -> None:
+        """Trace the near motions through points (k, n), first those through points that
+        are far from singular."""
+        values = singular_values(self.problem, waiting)[:, max(self.problem.n - 2, 0)]
+        waiting = waiting[np.argsort(-values, kind="stable")]
+        waiting = self._not_on_known(waiting)
+        findings = self.findings
+        fruitless = 0
+        while len(waiting) and fruitless < FRUITLESS and not self.run.is_over:
+            first = waiting[0]
+            known = len(findings.near_motions) + len(findings.short_stretches)
+            self.through(first)
+            found = len(findings.near_motions) + len(findings.short_stretches)
+            fruitless = fruitless + 1 if found == known else 0
+            offsets = self.problem.difference(waiting, first)
+            apart = np.linalg.norm(offsets, axis=1)
+            waiting = waiting[~is_same_point(apart, self.problem.scale)]
+            waiting = self._not_on_known(waiting)
+            self.run.interrupt.check()
+
+    def _not_on_known(self, points: np.ndarray) -> np.ndarray:
+        """Those of the points (k, n) that lie on no known near motion or short
+        stretch."""
+        findings = self.findings
+        for near in findings.near_motions + findings.short_stretches:
+            if len(points):
+                points = points[~near.runs_through(self.problem, points)]
+        return points
+
+    def _nearly_closed(self, points: np.ndarray) -> np.ndarray:
+        """Points (k, n) in the valleys below points (j, n), where the system is nearly
+        solved, below as many as there is time for."""
+        lowest = valley_points(self.problem, points, self.run.deadline)
+        is_near = nearly_closes(self.problem.gaps(lowest))
+        return lowest[is_near]

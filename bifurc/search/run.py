@@ -1,0 +1,32 @@
+"""What the parts of a search share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from bifurc.limits import Deadline, HeldInterrupt
+from bifurc.problem import Problem
+from bifurc.search.findings import Findings
+from bifurc.search.settings import SearchSettings
+
+__all__ = ["Run"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A search under way: what is searched, how, until when, and what is known so far.
+
+    It stops at the ``deadline``, and between two steps where ``interrupt`` holds a
+    Ctrl-C.
+    """
+
+    problem: Problem
+    settings: SearchSettings
+    deadline: Deadline
+    interrupt: HeldInterrupt
+    findings: Findings
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the budget is used up."""
+        return self.deadline.passed
