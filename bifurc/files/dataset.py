@@ -61,7 +61,7 @@ if TYPE_CHECKING:
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
 FORMAT = "bifurc atlas"
-FORMAT_VERSION = 6
+FORMAT_VERSION = 7
 CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from bifurc.atlas import Event, MeetingPoint
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
+from bifurc.singular.invariants import Invariants
 from bifurc.singular.point import Kind, SingularPoint
 
 __all__ = [
@@ -51,6 +52,31 @@ POINTS: Table[MeetingPoint] = Table(
             dtype=int,
         ),
         Column("point_radius", lambda p: p.point.radius, "radius of the section", UNIT),
+        Column(
+            "point_multiplicity",
+            lambda p: _invariant(p, "multiplicity"),
+            "multiplicity of the plane curve at the point; -1: not known",
+            dtype=int,
+        ),
+        Column(
+            "point_branches",
+            lambda p: _invariant(p, "branches"),
+            "branches through the point, complex ones counted; -1: not known",
+            dtype=int,
+        ),
+        Column(
+            "point_delta",
+            lambda p: _invariant(p, "delta"),
+            "delta invariant of the point; -1: not known",
+            dtype=int,
+        ),
+        Column(
+            "contact",
+            lambda p: () if p.point.invariants is None else p.point.invariants.contacts,
+            "order of contact of two of the real branches through the point",
+            dtype=int,
+            entries="contact_pair",
+        ),
         Column(
             "met_surface",
             lambda p: p.surfaces,
@@ -110,6 +136,22 @@ POINTS: Table[MeetingPoint] = Table(
 )
 
 
+def _invariant(point: MeetingPoint, name: str) -> int:
+    """An invariant of a point by its name, -1 where it is not known."""
+    return int(getattr(point.point.invariants, name, -1))
+
+
+def _read_invariants(row: Row) -> Invariants | None:
+    if row["point_delta"] < 0:
+        return None
+    return Invariants(
+        multiplicity=int(row["point_multiplicity"]),
+        branches=int(row["point_branches"]),
+        delta=int(row["point_delta"]),
+        contacts=tuple(row["contact"].tolist()),
+    )
+
+
 def read_point(row: Row) -> MeetingPoint:
     """The singular point of a row of `POINTS`."""
     point = SingularPoint(
@@ -122,6 +164,7 @@ def read_point(row: Row) -> MeetingPoint:
         dimension=int(row["point_dimension"]),
         order=int(row["point_order"]),
         radius=float(row["point_radius"]),
+        invariants=_read_invariants(row),
     )
     forms = row["pass_form"].tolist()
     arclengths = row["pass_arclength"].tolist()

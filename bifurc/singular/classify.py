@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.decisions import settles
 from bifurc.problem import Problem
+from bifurc.singular.invariants import CROSSING, LONE_POINT, Invariants
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import SingularPoint
 from bifurc.singular.second_order import second_order_tangents
@@ -58,7 +59,7 @@ def classify_singular_point(
         order, tangents = 0, no_directions
     else:
         order = 2
-    return SingularPoint(
+    point = SingularPoint(
         u=located.u,
         rank=problem.n - located.null_space.shape[1],
         null_space=located.null_space,
@@ -72,6 +73,21 @@ def classify_singular_point(
         is_confirmed=located.is_confirmed,
         is_through=None if germ is None else germ.is_through,
     )
+    if germ is not None:
+        return replace(point, invariants=germ.invariants)
+    return replace(point, invariants=_second_order_invariants(problem, point))
+
+
+def _second_order_invariants(
+    problem: Problem, point: SingularPoint
+) -> Invariants | None:
+    """The invariants of a point on curves to which one equation on a plane leads, where
+    its second order tells all."""
+    equations = len(problem.residuals(point.u[None])[0])
+    is_plane = point.null_space.shape[1] == 2 and equations == problem.n - 1
+    if point.order != 2 or not is_plane or not 0 <= point.dimension <= 1:
+        return None
+    return CROSSING if len(point.tangents) else LONE_POINT
 
 
 def classify_from_nearby(
@@ -83,11 +99,11 @@ def classify_from_nearby(
     located = LocatedPoint(*place)
     closer = classify_singular_point(problem, located, within)
     if closer.is_clear and closer.dimension <= 1:
-        return closer
+        return replace(closer, invariants=closer.invariants or point.invariants)
     tangents = second_order_tangents(problem, point.u, point.null_space)
     if tangents is None or not len(tangents) or within < point.error:
         return None
-    return replace(
+    crossing = replace(
         point,
         half_branches=np.concatenate([tangents, -tangents]),
         tangents=tangents,
@@ -95,6 +111,7 @@ def classify_from_nearby(
         order=2,
         radius=within,
     )
+    return replace(crossing, invariants=_second_order_invariants(problem, crossing))
 
 
 class _Sections(NamedTuple):

@@ -19,6 +19,8 @@ import numpy as np
 
 from bifurc.problem import PreciseResidual, Problem
 from bifurc.singular.confirm import Differences
+from bifurc.singular.discriminant import invariants_of
+from bifurc.singular.invariants import Invariants
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.puiseux import (
     HalfBranch,
@@ -48,11 +50,13 @@ AMISS = 2.0  # times the distance from the place in doubles is its error
 @dataclass(frozen=True, eq=False)
 class Germ:
     """The exact point ``u`` (n,), the tangents ``directions`` (h, n) of its
-    half-branches, and the numbers of the two halves of each of its ``branches``."""
+    half-branches, the numbers of the two halves of each of its ``branches``, and its
+    ``invariants``, None where the terms known do not tell its complex branches apart."""
 
     u: np.ndarray
     directions: np.ndarray
     branches: tuple[tuple[int, int], ...]
+    invariants: Invariants | None = None
 
     @property
     def is_through(self) -> bool | None:
@@ -106,7 +110,14 @@ def _germ(
         if halves is None or pairs is None:
             return None
         slope = float(straight.bend[1])
-        return Germ(reduction.place(), _directions(reduction, halves, slope), pairs)
+        return Germ(
+            u=reduction.place(),
+            directions=_directions(reduction, halves, slope),
+            branches=pairs,
+            invariants=invariants_of(
+                straight.terms, DEGREE, [halves[one].series() for one, _ in pairs]
+            ),
+        )
 
 
 def _directions(

@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 
 from bifurc.decisions import leaves_to_other_side, leaves_to_same_side
+from bifurc.singular.invariants import Invariants
 
 __all__ = ["Kind", "SingularPoint"]
 
@@ -45,7 +46,8 @@ class SingularPoint:
     the equations are known exactly and more digits did not show the point.
     ``is_through`` says whether two half-branches leave to opposite sides, where exact
     equations tell: seen from a sphere they may still turn. Else they do so, or not,
-    where the sections leave no doubt.
+    where the sections leave no doubt. The ``invariants`` are those of the plane curve to
+    which the equations reduce, None where that is not known.
     """
 
     u: np.ndarray
@@ -60,6 +62,7 @@ class SingularPoint:
     is_clear: bool = True
     is_confirmed: bool = True
     is_through: bool | None = None
+    invariants: Invariants | None = None
 
     @property
     def kind(self) -> Kind:

@@ -1,7 +1,7 @@
-"""The real branches of a plane curve through the origin, by the Newton polygon.
+"""The branches of a plane curve through the origin, by the Newton polygon.
 
 Every branch of f(x, y) = 0 there is x = +-s^q, y = a power series in s (Puiseux 1850;
-Walker 1950, Algebraic Curves, chapter IV). The lower edges of the Newton polygon give
+Walker 1950, Algebraic Curves, chapter IV), real or complex. The lower edges of the Newton polygon give
 the first exponents, the real roots of the polynomial on an edge the coefficients; a
 root that is not simple is taken off, and the rest looked at again.
 
@@ -11,7 +11,7 @@ others by tens of decades, or nothing is said where they decide.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import comb
@@ -21,10 +21,21 @@ import mpmath
 
 from bifurc.decisions import is_same_coefficient, is_zero_coefficient
 
-__all__ = ["HalfBranch", "Terms", "half_branches", "pairs_of", "without_zeros"]
+__all__ = [
+    "HalfBranch",
+    "Series",
+    "Terms",
+    "branches",
+    "half_branches",
+    "order_of",
+    "pairs_of",
+    "without_zeros",
+]
 
 Terms: TypeAlias = Mapping[tuple[int, int], mpmath.mpf]
 """The coefficients of a polynomial, by the exponents of x and y."""
+_RootsOf: TypeAlias = Callable[[Sequence[mpmath.mpf], int], list[mpmath.mpf] | None]
+# of a polynomial on an edge, of which the denominator of the slope is given
 
 ROOT_STEPS = 80  # of the iteration for the roots on an edge
 IN_DOUBT = 1e25  # times larger than what is zero, and not plainly none
@@ -61,6 +72,17 @@ class HalfBranch:
         coefficients = tuple(sign * value for sign, value in pairs)
         return HalfBranch(side, self.ramification, self.exponents, coefficients)
 
+    def series(self) -> Series:
+        """The branch of which it is a half, as a series in x."""
+        coefficients = self.coefficients
+        if self.side < 0:
+            turn = mpmath.expjpi(mpmath.mpf(1) / self.ramification)  # s over |x|^(1/q)
+            coefficients = tuple(
+                value * turn**exponent
+                for exponent, value in zip(self.exponents, coefficients, strict=True)
+            )
+        return Series(self.ramification, self.exponents, coefficients)
+
     def is_same_as(self, other: HalfBranch) -> bool:
         """Whether two half-branches have the same terms."""
         mine = (self.side, self.ramification, self.exponents)
@@ -72,22 +94,65 @@ class HalfBranch:
         )
 
 
+@dataclass(frozen=True)
+class Series:
+    """A branch, real or complex: y = the sum of ``coefficients`` (k,) times x to the
+    ``exponents`` (k,) over the ``ramification``, as many terms as tell it from the
+    others. Every value of x to the power 1 / ``ramification`` gives one of its roots
+    y."""
+
+    ramification: int
+    exponents: tuple[int, ...]
+    coefficients: tuple[mpmath.mpc, ...]
+
+    def roots(self) -> Iterator[dict[Fraction, mpmath.mpc]]:
+        """The coefficients of each root y, by the exponents of x."""
+        for k in range(self.ramification):
+            turn = mpmath.expjpi(mpmath.mpf(2 * k) / self.ramification)
+            yield {
+                Fraction(exponent, self.ramification): value * turn**exponent
+                for exponent, value in zip(
+                    self.exponents, self.coefficients, strict=True
+                )
+            }
+
+
+def order_of(terms: Terms) -> int:
+    """The degree of the lowest terms that plainly do not vanish, 0 where none is: the
+    multiplicity of the origin."""
+    return min((i + j for i, j in _plain(terms)), default=0)
+
+
 def half_branches(terms: Terms, degree: int) -> tuple[HalfBranch, ...] | None:
     """The real half-branches of f = 0 at the origin, of which the ``terms`` up to a total
     ``degree`` are known and none but those that vanish are left out; None where they do
     not separate the branches. No branch may be tangent to x = 0."""
-    plain = _plain(terms)
-    order = min((i + j for i, j in plain), default=0)
-    if (0, order) not in plain:
+    if (0, order_of(terms)) not in _plain(terms):
         return None
     halves: list[HalfBranch] = []
     for side in (1, -1):
         mirrored = {(i, j): side**i * value for (i, j), value in terms.items()}
-        own = _separated(_Remainder(mirrored, degree + 1, side))
+        own = _separated(_Remainder(mirrored, degree + 1), _real_roots)
         if own is None:
             return None
-        halves += own
+        halves += [
+            HalfBranch(side, one.ramification, one.exponents, one.coefficients)
+            for one in own
+        ]
     return tuple(halves)
+
+
+def branches(terms: Terms, degree: int) -> tuple[Series, ...] | None:
+    """All branches of f = 0 at the origin, real and complex, each once, of ``terms`` as
+    for `half_branches`; None where these do not separate them."""
+    if (0, order_of(terms)) not in _plain(terms):
+        return None
+    own = _separated(_Remainder(terms, degree + 1), _roots_of_branches)
+    if own is None:
+        return None
+    return tuple(
+        Series(one.ramification, one.exponents, one.coefficients) for one in own
+    )
 
 
 def pairs_of(halves: Sequence[HalfBranch]) -> tuple[tuple[int, int], ...] | None:
@@ -110,20 +175,14 @@ class _Remainder(NamedTuple):
     """What is left of f in s and y once the first terms of a branch are taken off.
 
     Coefficients ``terms`` by the exponents of s and y, of which those of s from
-    ``known`` on are not known; x = ``side`` s^``ramification``, and the ``exponents``
-    and ``coefficients`` of y so far."""
+    ``known`` on are not known; x = +-s^``ramification``, and the ``exponents`` and
+    ``coefficients`` of y so far."""
 
     terms: Terms
     known: int
-    side: int
     ramification: int = 1
     exponents: tuple[int, ...] = ()
     coefficients: tuple[mpmath.mpf, ...] = ()
-
-    def as_half_branch(self) -> HalfBranch:
-        return HalfBranch(
-            self.side, self.ramification, self.exponents, self.coefficients
-        )
 
 
 class _Edge(NamedTuple):
@@ -144,18 +203,19 @@ class _Edge(NamedTuple):
         )
 
 
-def _separated(first: _Remainder) -> list[HalfBranch] | None:
-    """The half-branches of a remainder; None where its terms do not separate them."""
-    halves: list[HalfBranch] = []
+def _separated(first: _Remainder, roots_of: _RootsOf) -> list[_Remainder] | None:
+    """What is left along each branch of a remainder, by way of the roots on the edges
+    that are asked for; None where its terms do not separate the branches."""
+    separated: list[_Remainder] = []
     waiting = [first]
     for _ in range(DEEPEST):
         if not waiting:
-            return halves
+            return separated
         remainder = waiting.pop()
         plain = _plain(remainder.terms)
         multiplicity = min(j for i, j in plain if i == 0)
         if multiplicity == 1:
-            halves.append(remainder.as_half_branch())
+            separated.append(remainder)
             continue
         edges = _edges(plain, remainder.known, multiplicity)
         lowest = edges[-1].low if edges else multiplicity
@@ -164,9 +224,9 @@ def _separated(first: _Remainder) -> list[HalfBranch] | None:
             return None  # two branches agree in all that is known
         if lowest == 1:
             # y is smaller on it than on any other
-            halves.append(remainder.as_half_branch())
+            separated.append(remainder)
         for edge in edges:
-            following = _beyond(remainder, edge)
+            following = _beyond(remainder, edge, roots_of)
             if following is None:
                 return None
             waiting += following
@@ -195,14 +255,15 @@ def _edges(terms: Terms, known: int, multiplicity: int) -> list[_Edge]:
     return edges
 
 
-def _beyond(remainder: _Remainder, edge: _Edge) -> list[_Remainder] | None:
-    """What is left along each real root on an edge; None where the roots do not
-    tell."""
+def _beyond(
+    remainder: _Remainder, edge: _Edge, roots_of: _RootsOf
+) -> list[_Remainder] | None:
+    """What is left along each root on an edge; None where the roots do not tell."""
     polynomial = [mpmath.mpf(0)] * (edge.high - edge.low + 1)
     for (i, j), value in remainder.terms.items():
         if i + edge.slope * j == edge.weight and edge.low <= j <= edge.high:
             polynomial[j - edge.low] = value
-    roots = _real_roots(polynomial)
+    roots = roots_of(polynomial, edge.slope.denominator)
     if roots is None:
         return None
     return [_substituted(remainder, edge, root) for root in roots]
@@ -225,7 +286,6 @@ def _substituted(remainder: _Remainder, edge: _Edge, root: mpmath.mpf) -> _Remai
     return _Remainder(
         without_zeros(terms),
         known,
-        remainder.side,
         remainder.ramification * b,
         (*(b * e for e in remainder.exponents), _exponent(remainder, edge)),
         (*remainder.coefficients, root),
@@ -261,15 +321,43 @@ def _terms_above(terms: Terms, unit: float) -> dict[tuple[int, int], mpmath.mpf]
 # --- roots ----------------------------------------------------------------------------
 
 
-def _real_roots(polynomial: Sequence[mpmath.mpf]) -> list[mpmath.mpf] | None:
-    """The distinct real roots of a polynomial, lowest coefficient first; None where it
-    is open which they are."""
+def _distinct_roots(polynomial: Sequence[mpmath.mpf]) -> list[mpmath.mpc] | None:
+    """The distinct roots of a polynomial, lowest coefficient first; None where it is
+    open which they are."""
     simple = _with_simple_roots(list(polynomial))
     if simple is None:
         return None
     try:
         roots = mpmath.polyroots(simple[::-1], maxsteps=ROOT_STEPS, extraprec=200)
     except mpmath.libmp.NoConvergence:
+        return None
+    return list(roots)
+
+
+def _roots_of_branches(
+    polynomial: Sequence[mpmath.mpf], denominator: int
+) -> list[mpmath.mpc] | None:
+    """Of the distinct roots of which the powers to a ``denominator`` agree one: all of
+    them lead along the same branch."""
+    roots = _distinct_roots(polynomial)
+    if roots is None:
+        return None
+    kept: list[mpmath.mpc] = []
+    for root in roots:
+        power = root**denominator
+        gaps = [float(abs(power - one**denominator)) for one in kept]
+        if not any(is_same_coefficient(gap, float(abs(power))) for gap in gaps):
+            kept.append(root)
+    return kept
+
+
+def _real_roots(
+    polynomial: Sequence[mpmath.mpf], _denominator: int
+) -> list[mpmath.mpf] | None:
+    """The distinct real roots of a polynomial, lowest coefficient first; None where it
+    is open which they are."""
+    roots = _distinct_roots(polynomial)
+    if roots is None:
         return None
     real = []
     for root in roots:

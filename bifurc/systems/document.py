@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.diagrams.diagram import Diagram, DiagramPoint
+from bifurc.singular.invariants import Invariants
 from bifurc.systems.verdict import verdict_of
 
 __all__ = ["make_document"]
@@ -122,8 +123,21 @@ def _point(atlas: Atlas, point: MeetingPoint) -> dict[str, Json]:
         "rank": point.point.rank,
         "error": point.point.error,
         "half_branches": len(point.point.half_branches),
+        "invariants": _invariants(point.point.invariants),
         "passes": passes,
         "note": point.note,
+    }
+
+
+def _invariants(invariants: Invariants | None) -> dict[str, Json] | None:
+    if invariants is None:
+        return None
+    return {
+        "multiplicity": invariants.multiplicity,
+        "branches": invariants.branches,
+        "delta": invariants.delta,
+        "milnor_number": invariants.milnor_number,
+        "contacts": list(invariants.contacts),
     }
 
 

@@ -72,3 +72,10 @@ def test_a_flat_rank_drop_is_found_or_said_to_be_missing(name):
     atlas = explore(change.problem(curve), seed=0)
     is_missed = "no singular point was located" in atlas.completeness.statement
     assert len(atlas.rank_drops) == 1 or is_missed
+
+
+@pytest.mark.parametrize("name", ["A4", "A3, isolated", "D6", "E7"])
+def test_the_milnor_number_is_the_index_of_the_type(name):
+    curve = CURVES[name]
+    (point,) = explore(next(changes_of(curve)).problem(curve)).points
+    assert point.point.invariants.milnor_number == int(name[1])
