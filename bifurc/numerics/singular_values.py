@@ -17,6 +17,8 @@ FEW = 100
 def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
     """Singular values (..., n) of F' at points (..., n), over the problem's magnitude,
     padded with zeros."""
+    if not points.size:
+        return np.empty(points.shape)
     flat = points.reshape(-1, points.shape[-1])
     jacobians = problem.jacobians(flat) / problem.magnitude
     is_few = problem.n <= FEW
