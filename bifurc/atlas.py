@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.checks import check_type
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
 from bifurc.diagrams.diagram import Diagram
@@ -288,7 +289,9 @@ class Atlas:
 
 def _find(name: str, names: Sequence[str]) -> int:
     """Index of the one of the ``names`` that is ``name``, or begins with it, or
-    contains it; raises `RouteError`, also for a blank name."""
+    contains it; raises `RouteError`, also for a blank name, and `ProblemError` for what
+    is no text."""
+    check_type("name", name, str)
     lowered = name.lower()
     equal: list[int] = []
     beginning: list[int] = []

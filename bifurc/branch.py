@@ -108,11 +108,19 @@ class Branch:
 
     def __call__(self, s: np.ndarray | float, derivative: int = 0) -> np.ndarray:
         """u(s), or its derivative in s, shape (..., n); s is taken modulo the length of
-        a closed curve."""
+        a closed curve.
+
+        Raises `ProblemError` for an arclength that is no number, or beyond an end of an
+        open curve.
+        """
         if derivative != 0:
             check_whole("derivative", derivative, 0)
-        s = np.asarray(s, dtype=float)
-        points = self._curve.evaluate(s.ravel(), derivative)
+        try:
+            s = np.asarray(s, dtype=float)
+            points = self._curve.evaluate(s.ravel(), derivative)
+        except (TypeError, ValueError) as error:
+            allowed = "a number" if self.closed else f"from 0 to {self.length:.6g}"
+            raise ProblemError("arclength", s, allowed) from error
         return points if s.ndim == 1 else points.reshape(*s.shape, self.n)
 
     def arclengths(self, count: int) -> np.ndarray:

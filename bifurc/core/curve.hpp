@@ -13,6 +13,8 @@
 
 namespace bifurc {
 
+constexpr double arclength_rounding = 1e-9;  // of the length of a curve, by which an arclength may lie beyond its ends
+
 struct Foot {
     double distance;
     double s;
@@ -45,6 +47,12 @@ public:
     View<const double> piece(Index number) const {
         const Index powers = order() + 1;
         return {&pieces(number * powers, 0), powers, pieces.columns()};
+    }
+
+    // Whether all arclengths (k) are numbers and on the curve, but for rounding; on a closed one any number is.
+    bool has_all(Vector<const double> s) const {
+        const double beyond = is_closed() ? std::numeric_limits<double>::max() : arclength_rounding * total();
+        return std::all_of(s.begin(), s.end(), [&](double at) { return at >= -beyond && at - total() <= beyond; });
     }
 
     // u(s), or its derivative of the given order in s, (k, n) at arclengths (k).

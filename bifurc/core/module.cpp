@@ -52,6 +52,7 @@ void check_count(const VectorIn<double>& numbers, Index count) {
 
 nb::object values_on(const Curve& curve, const VectorIn<double>& s, int derivative) {
     if (curve.count() == 0 && s.size() > 0) throw nb::value_error("a curve of no pieces has no points");
+    if (!curve.has_all(numpy::view(s))) throw nb::value_error("an arclength is beyond the curve");
     Array<double> out({static_cast<Index>(s.shape(0)), curve.unknowns()});
     curve.evaluate(numpy::view(s), derivative, out.matrix());
     return out.release();

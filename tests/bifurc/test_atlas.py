@@ -26,6 +26,8 @@ def test_a_form_is_found_by_its_name_or_an_unambiguous_part() -> None:
     atlas = draw(branches, {})
     names = ("Form I", "form ii", "bennett", "4R")
     assert [atlas.form(name) for name in names] == [0, 1, 2, 2]
+    with pytest.raises(ProblemError, match="name: 3 is not allowed"):
+        atlas.form(3)
     with pytest.raises(RouteError):
         atlas.form("Form")
 

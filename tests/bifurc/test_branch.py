@@ -284,3 +284,22 @@ def test_whole_periods_move_a_curve_of_angles(traced):
     s = np.linspace(0.0, branch.length, 31)
     assert moved(s) - branch(s) == pytest.approx(np.tile(2 * np.pi * turns, (31, 1)))
     assert np.abs(moved(s, 1) - branch(s, 1)).max() == 0.0
+
+
+@pytest.mark.parametrize("beyond", [-1e-6, 1.000001, np.nan, np.inf, None, "one"])
+def test_beyond_its_ends_an_open_curve_has_no_points(parabola, beyond):
+    is_share = isinstance(beyond, float)
+    s = beyond * parabola.length if is_share else beyond
+    with pytest.raises(ProblemError, match=r"^arclength: .* from 0 to "):
+        parabola(s)
+
+
+def test_rounding_does_not_lead_beyond_the_ends(parabola):
+    end = parabola.length * (1 + 4e-16)
+    assert np.allclose(parabola(end), parabola(parabola.length), rtol=0, atol=1e-14)
+
+
+def test_a_closed_curve_has_points_at_all_numbers(circle):
+    assert np.all(np.isfinite(circle(-1e3 * circle.length)))
+    with pytest.raises(ProblemError, match=r"^arclength: .* must be a number"):
+        circle(np.nan)
