@@ -125,6 +125,11 @@ def singular_values(matrices: np.ndarray) -> np.ndarray: ...
 def singular_value_rates(
     matrices: np.ndarray, changes: np.ndarray, number: int
 ) -> tuple[np.ndarray, np.ndarray]: ...
+def solve_by_rank(matrix: np.ndarray, right: np.ndarray) -> np.ndarray: ...
+def valley_residuals(residuals: np.ndarray, jacobians: np.ndarray) -> np.ndarray: ...
+def valley_jacobians(
+    residuals: np.ndarray, jacobians: np.ndarray, hessians: np.ndarray
+) -> np.ndarray: ...
 def eigenvalues(matrix: np.ndarray) -> np.ndarray: ...
 
 class FactoredTape:
@@ -206,3 +211,14 @@ class Tape:
         radius: float,
         iterations: int,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+    def valley_points_at_nodes(
+        self,
+        units: np.ndarray,
+        weights: np.ndarray,
+        start: np.ndarray,
+        heading: np.ndarray,
+        offsets: np.ndarray,
+        predictors: np.ndarray,
+        enough: float,
+        most: float,
+    ) -> np.ndarray | None: ...

@@ -24,6 +24,7 @@ from bifurc.numerics.corrector import (
 from bifurc.problem import (
     March,
     MarchSettings,
+    NodeCorrector,
     PreciseResidual,
     Problem,
     SphereProjection,
@@ -327,6 +328,11 @@ class FunctionProblem(NumericalProblem):
         if self._scaled is not None and self._scaled.is_marched:
             return self._scaled.march(start, tangent, settings)
         return super().march(start, tangent, settings)
+
+    def valley_corrector(self) -> NodeCorrector | None:
+        """What corrects points at the nodes of a piece of the valley along which the
+        equations are nearly solved, where they are recorded."""
+        return None if self._compiled is None else self._compiled.valley_corrector()
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is

@@ -15,7 +15,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc.function_problem import NumericalProblem
-from bifurc.problem import March, MarchSettings, Problem, SphereProjection
+from bifurc.problem import (
+    CurveNodes,
+    March,
+    MarchSettings,
+    NodeCorrector,
+    Problem,
+    SphereProjection,
+)
 from bifurc.seeds import Seeds
 
 if TYPE_CHECKING:
@@ -81,6 +88,19 @@ class NoisyMethods(NumericalProblem):
         tangent = self.noise(tangent, 1.0)
         march = super().march(start, tangent, settings)
         return replace(march, pieces=self.noise(march.pieces, self.scale))
+
+    def valley_corrector(self) -> NodeCorrector | None:
+        """What corrects points at the nodes of a piece of the valley, with errors."""
+        correct = super().valley_corrector()
+        if correct is None:
+            return None
+
+        def correct_with_errors(nodes: CurveNodes) -> np.ndarray | None:
+            start = self.noise(nodes.start, self.scale)
+            points = correct(nodes._replace(start=start))
+            return None if points is None else self.noise(points, self.scale)
+
+        return correct_with_errors
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) with errors, and the residuals (k,)."""

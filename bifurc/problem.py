@@ -25,9 +25,11 @@ if TYPE_CHECKING:
     from scipy.sparse import sparray
 
 __all__ = [
+    "CurveNodes",
     "March",
     "MarchSettings",
     "MarchStatus",
+    "NodeCorrector",
     "Piece",
     "Problem",
     "Solver",
@@ -37,6 +39,27 @@ __all__ = [
 
 # Maps a right-hand side to the solution (n,) of one linear system.
 Solver: TypeAlias = Callable[[np.ndarray], np.ndarray]
+
+
+class CurveNodes(NamedTuple):
+    """Where points of a curve are wanted: at ``offsets`` (k,), from 0 on, along a unit
+    ``heading`` (n,) from the point ``start`` (n,).
+
+    Row i of ``predictors`` (k, k) has the weights by which the points before number i
+    predict it. A correction of a length of at most ``enough`` is the last one, and no
+    point may miss by more than ``most``, relative to the magnitude.
+    """
+
+    start: np.ndarray
+    heading: np.ndarray
+    offsets: np.ndarray
+    predictors: np.ndarray
+    enough: float
+    most: float
+
+
+# Gives the points (k, n) at nodes; None where one of them cannot be corrected.
+NodeCorrector: TypeAlias = Callable[[CurveNodes], np.ndarray | None]
 
 PreciseResidual: TypeAlias = "Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]"
 
@@ -70,7 +93,8 @@ class MarchSettings:
     pieces in one march. ``closing``: there is no curve where the least relative residual
     across it is larger; ``misclosure``: how large it is known to be elsewhere on the
     curve. With an ``anchor`` the march may end early: where the curve is there again,
-    leaves the bounds, or is longer than ``length``.
+    leaves the bounds, or is longer than ``length``. ``first``: width of the first piece
+    that is tried, where pieces are made by trial.
     """
 
     order: int
@@ -82,6 +106,7 @@ class MarchSettings:
     misclosure: float = 0.0
     anchor: Anchor | None = None
     length: float = np.inf
+    first: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -239,6 +264,16 @@ class Problem(ABC):
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
         """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
         under it the row ``tangent`` (n,); None where that matrix is to be factored."""
+        return None
+
+    def node_corrector(self) -> NodeCorrector | None:
+        """What corrects all points at the nodes of a piece in one call; None where they
+        are corrected one by one."""
+        return None
+
+    def valley_corrector(self) -> NodeCorrector | None:
+        """The same for the valley along which the system is nearly solved:
+        `bifurc.curves.valley_problem`."""
         return None
 
     def largest_entry(self, vectors: np.ndarray) -> float:

@@ -33,6 +33,15 @@ def project_to_sphere(
     geometry: np.ndarray,
     iterations: int,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+def valley_points_at_nodes(
+    geometry: np.ndarray,
+    start: np.ndarray,
+    heading: np.ndarray,
+    offsets: np.ndarray,
+    predictors: np.ndarray,
+    enough: float,
+    most: float,
+) -> np.ndarray | None: ...
 def slice_configurations(
     geometry: np.ndarray, joint: int, angles: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...

@@ -11,6 +11,7 @@
 #include "bifurc/core/returns.hpp"
 #include "bifurc/core/singular_values.hpp"
 #include "bifurc/core/tape_bindings.hpp"
+#include "bifurc/core/valley_bindings.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -253,6 +254,17 @@ nb::object null_vector(const MatrixIn<double>& matrix, const VectorIn<double>& a
 }
 
 // (n) of a complex matrix (n, n).
+// The least-squares solution (n) of matrix x = right, (m, n) and (m), of any rank.
+nb::object solution_by_rank(const MatrixIn<double>& matrix, const VectorIn<double>& right) {
+    if (matrix.shape(0) != right.shape(0)) throw nb::value_error("right: there must be an entry for each row");
+    Matrix<double> work(static_cast<Index>(matrix.shape(0)), static_cast<Index>(matrix.shape(1)));
+    std::copy_n(matrix.data(), matrix.size(), work.view().data);
+    std::vector<double> sides(right.data(), right.data() + right.shape(0));
+    Array<double> solution({work.columns()});
+    solve_by_rank(work, sides, solution.vector());
+    return solution.release();
+}
+
 nb::object eigenvalues(const MatrixIn<std::complex<double>>& matrix) {
     const auto n = static_cast<Index>(matrix.shape(0));
     if (matrix.shape(1) != matrix.shape(0)) throw nb::value_error("matrix: it must be square");
@@ -313,6 +325,9 @@ NB_MODULE(_core, module) {
     module.def("singular_values", &singular_values, "matrices"_a);
     module.def("singular_value_rates", &singular_value_rates, "matrices"_a, "changes"_a, "number"_a);
     module.def("eigenvalues", &eigenvalues, "matrix"_a);
+    module.def("solve_by_rank", &solution_by_rank, "matrix"_a, "right"_a);
+    module.def("valley_residuals", &bifurc::python::valley_residuals, "residuals"_a, "jacobians"_a);
+    module.def("valley_jacobians", &bifurc::python::valley_jacobians, "residuals"_a, "jacobians"_a, "hessians"_a);
     bifurc::python::bind_arcs(module);
     bifurc::python::bind_tape(module);
 }

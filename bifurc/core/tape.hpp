@@ -604,6 +604,18 @@ public:
         }
     }
 
+    // Second derivative (m * n, n).
+    void hessian(Vector<const double> point, View<double> hessian) const {
+        const Index n = unknowns();
+        sweep_.linearize(in_units(point));
+        sweep_.hessian(hessian);
+        for (Index row = 0; row < equations(); ++row) {
+            for (Index i = 0; i < n; ++i) {
+                for (Index j = 0; j < n; ++j) hessian(row * n + i, j) *= weights_[row] * units_[i] * units_[j];
+            }
+        }
+    }
+
     // The solution curve: coefficient k of F along it with nothing for coefficient k of the
     // unknowns is the right-hand side for that coefficient. |dv/ds| = 1 gives the last row.
     template <class Factored>

@@ -12,6 +12,7 @@
 
 #include "bifurc/core/bindings.hpp"
 #include "bifurc/core/tape.hpp"
+#include "bifurc/core/valley_bindings.hpp"
 
 namespace bifurc::python {
 
@@ -177,6 +178,13 @@ inline nb::tuple tape_project_to_sphere(const Tape& tape, const Doubles& units, 
     return project_to_sphere(system_of<TapeSystem>(tape, units, weights), starts, center, radius, iterations);
 }
 
+inline nb::object tape_valley_points(const Tape& tape, const Doubles& units, const Doubles& weights,
+                                     const Doubles& start, const Doubles& heading, const Doubles& offsets,
+                                     const Table& predictors, double enough, double most) {
+    const auto system = system_of<TapeSystem>(tape, units, weights);
+    return valley_points_at_nodes(system, start, heading, offsets, predictors, enough, most);
+}
+
 // [F'; t] at one point, factored.
 class FactoredTape {
 public:
@@ -235,7 +243,9 @@ inline void bind_tape(nb::module_& module) {
         .def("project", &tape_project, arg("units"), arg("weights"), arg("starts"), arg("noise"), arg("iterations"),
              arg("is_sparse"))
         .def("project_to_sphere", &tape_project_to_sphere, arg("units"), arg("weights"), arg("starts"),
-             arg("center"), arg("radius"), arg("iterations"));
+             arg("center"), arg("radius"), arg("iterations"))
+        .def("valley_points_at_nodes", &tape_valley_points, arg("units"), arg("weights"), arg("start"), arg("heading"),
+             arg("offsets"), arg("predictors"), arg("enough"), arg("most"));
 }
 
 }  // namespace bifurc::python

@@ -26,6 +26,8 @@ __all__ = [
 
 # Pieces made before the end of the curve is looked for: beside a bend, and at least.
 AT_A_BEND, AT_ONCE = 14, 40
+# Times the width of the last piece: that of the first one that is tried after it.
+GROWTH = 1.5
 CLEAR = 10.0  # times the radius of least caution: from there on a bend is passed
 
 
@@ -154,6 +156,7 @@ def _march(
         count=AT_A_BEND if track.is_at_a_bend else max(AT_ONCE, len(track)),
         closing=closing,
         length=settings.max_length * problem.reach - track.reached,
+        first=GROWTH * track.last_width,
         anchor=Anchor(*track.begin, same_place(settings.tolerance) * problem.scale),
     )
     if closing > is_solution.threshold and len(

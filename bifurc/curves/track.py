@@ -104,6 +104,11 @@ class Track:
         return float(self.centers[-1] + self.radii[-1])
 
     @property
+    def last_width(self) -> float:
+        """Arclength of the last piece; infinite where there is none."""
+        return float(2 * self.radii[-1]) if len(self) else np.inf
+
+    @property
     def front(self) -> Place:
         """Where the next piece begins."""
         return self.at(-1, self.reached) if len(self) else self._start

@@ -13,8 +13,8 @@ other: known to rounding, closed or not, the same from every start. P changes al
     b_ij = (sigma_j u_i . F''(w, v_j) + sigma_i u_j . F''(w, v_i))
            / (sigma_i^2 - sigma_j^2)
 
-(first-order perturbation of F' F'^T). On the valley all that is left of F is
-misclosure.
+(first-order perturbation of F' F'^T; compiled, in `bifurc/core/valley.hpp`). On the
+valley all that is left of F is misclosure.
 
 Where forms crossed, the valley is smooth and turns: the crossing has opened. Where the
 rank of F' dropped on a single form there are two equations of second order on the null
@@ -31,13 +31,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from bifurc import _core
 from bifurc.decisions import has_one_form, has_valley, is_beside_drop, nearly_closes
-from bifurc.function_problem import NumericalProblem
-from bifurc.numerics.collocation import reparametrised
+from bifurc.function_problem import AT_ONCE, NumericalProblem
+from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import Decomposition, decompose
 from bifurc.pieces import points_on_piece
-from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
+from bifurc.problem import March, MarchSettings, NodeCorrector, Piece, Problem
 
 __all__ = ["ValleyProblem"]
 
@@ -68,50 +69,25 @@ class ValleyProblem(NumericalProblem):
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """G (k, m) at points (k, n)."""
-        at = decompose(self.of, points)
-        regular = at.left[:, :, : self.rank]
-        visible = np.swapaxes(regular, 1, 2) @ at.residuals[:, :, None]
-        projected: np.ndarray = (regular @ visible)[:, :, 0]
+        residuals = self.of.relative_residuals(points)
+        jacobians = self.of.relative_jacobians(points)
+        projected: np.ndarray = _core.valley_residuals(residuals, jacobians)
         return projected * self.magnitude
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """G' (k, m, n) at points (k, n): P F' + P' F."""
-        at = decompose(self.of, points)
-        jacobians = [self._jacobian(i, point, at) for i, point in enumerate(points)]
-        return np.array(jacobians) * self.magnitude
+        residuals = self.of.relative_residuals(points)
+        jacobians = self.of.relative_jacobians(points)
+        hessians = self.of.relative_hessians(points)
+        count, m, n = jacobians.shape
+        rows = hessians.reshape(count, m * n, n)
+        derivatives: np.ndarray = _core.valley_jacobians(residuals, jacobians, rows)
+        return derivatives * self.magnitude
 
-    def _jacobian(self, i: int, point: np.ndarray, at: Decomposition) -> np.ndarray:
-        """G' (m, n), over the magnitude, at a point (n,), number ``i`` of a
-        decomposition."""
-        rank = self.rank
-        left, sigma, right = at.left[i], at.sigma[i], at.right[i]
-        regular, other = left[:, :rank], left[:, rank:]
-        moving = (regular * sigma[:rank]) @ right[:rank]
-        turning = self._turning(point, left, sigma, right)
-        components = left.T @ at.residuals[i]
-        missed = np.tensordot(components[rank:], turning, axes=1)  # (n - 1, n)
-        visible = np.tensordot(turning, components[:rank], axes=(1, 0))
-        jacobian: np.ndarray = moving + regular @ missed + other @ visible
-        return jacobian
-
-    def _turning(
-        self, point: np.ndarray, left: np.ndarray, sigma: np.ndarray, right: np.ndarray
-    ) -> np.ndarray:
-        """b_ij for w along every unknown, (m - n + 1, n - 1, n): by j, i and w."""
-        rank = self.rank
-        hessian = self.of.hessian(point) / self.magnitude
-        bend = np.tensordot(left.T, right @ hessian, axes=(1, 0))  # (m, n, n)
-        size = sigma[:rank]
-        turning: np.ndarray = bend[rank:, :rank] * size[:, None]
-        weak = sigma[rank:]
-        count = len(weak)
-        mixed = np.swapaxes(bend[:rank, rank : rank + count], 0, 1)
-        turning[:count] += mixed * weak[:, None, None]
-        squares = np.zeros(len(turning))
-        squares[:count] = weak**2
-        gaps = np.maximum(size**2 - squares[:, None], TINY)
-        turning /= gaps[:, :, None]
-        return turning
+    def node_corrector(self) -> NodeCorrector | None:
+        """What corrects all points at the nodes of a piece in one call, where the
+        problem has that."""
+        return self.of.valley_corrector()
 
     # --- the region -------------------------------------------------------------------
 
@@ -179,30 +155,13 @@ class ValleyProblem(NumericalProblem):
     ) -> March:
         """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
         collocation, up to where the valley is not single."""
-        first = super().march(start, tangent, replace(settings, count=1))
-        if settings.count == 1 or first.status is not MarchStatus.RAN:
-            return self._single(first)
-        if not len(self._single(first).pieces):
-            return self._single(first)
-        return self._single(super().march(start, tangent, settings))
+        few = replace(settings, count=min(settings.count, AT_ONCE))
+        return march_by_collocation(self, start, tangent, few, self._is_single_on)
 
-    def _single(self, march: March) -> March:
-        """A march up to where the valley is not single."""
-        if not len(march.pieces):
-            return march
-        points = np.array([points_on_piece(piece, LOOKS) for piece in march.pieces])
-        missed = self.missed(points.reshape(-1, self.n)).reshape(len(points), -1)
-        blurred = np.flatnonzero(missed.max(axis=1) > 0)
-        if not len(blurred):
-            return march
-        kept = slice(blurred[0])
-        return March(
-            status=MarchStatus.STALLED,
-            pieces=march.pieces[kept],
-            steps=march.steps[kept],
-            radii=march.radii[kept],
-            residuals=march.residuals[kept],
-        )
+    def _is_single_on(self, piece: Piece) -> bool:
+        """Whether the valley is single all along a piece."""
+        points = points_on_piece(piece.coefficients, LOOKS)
+        return not np.any(self.missed(points) > 0)
 
     def bridge(
         self, start: np.ndarray, heading: np.ndarray, width: float, order: int

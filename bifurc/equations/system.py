@@ -16,9 +16,11 @@ import numpy as np
 from bifurc import _core
 from bifurc.equations.tape import Tape
 from bifurc.problem import (
+    CurveNodes,
     March,
     MarchSettings,
     MarchStatus,
+    NodeCorrector,
     Solver,
     SphereProjection,
 )
@@ -188,6 +190,18 @@ class ScaledTape:
             radii=unit * radii,
             residuals=share * unit * residuals,
         )
+
+    def valley_corrector(self) -> NodeCorrector:
+        """What corrects points at the nodes of a piece of the valley along which the
+        equations are nearly solved."""
+        units = np.ones(self.tape.n)
+        weights = np.full(self.tape.m, 1.0 / self._magnitude)
+        compiled = self.tape.compiled
+
+        def correct(nodes: CurveNodes) -> np.ndarray | None:
+            return compiled.valley_points_at_nodes(units, weights, *nodes)
+
+        return correct
 
     def _share_of_magnitude(self, start: np.ndarray) -> float:
         """The magnitude of F' over which rounding is what a march takes it to be, over

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.numerics.sparse_factors import sparse_factors
 from bifurc.problem import Problem, Solver
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Bordered", "as_dense", "bordered_at", "bordered_matrix", "sparse_bordered"]
 
+FEW = 16  # unknowns of a small matrix
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
 # largest entry of the border of a sparse matrix, over the median one of the matrix
 BORDER = 1e-3
@@ -154,7 +157,13 @@ def _lu_solver(matrix: np.ndarray) -> Solver | None:
 
 
 def _qr_solver(matrix: np.ndarray) -> Solver:
-    """The solver of a system in the least-squares sense, by QR with column pivoting."""
+    """The solver of a system in the least-squares sense, by QR with column pivoting.
+
+    A small matrix is factored anew for every right-hand side, in compiled code: that
+    takes less time than one call of SciPy.
+    """
+    if matrix.shape[1] <= FEW:
+        return partial(_core.solve_by_rank, matrix)
     from scipy.linalg import qr, solve_triangular
 
     q, r, order = qr(matrix, mode="economic", pivoting=True, check_finite=False)

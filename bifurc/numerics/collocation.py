@@ -9,6 +9,7 @@ the nodes from nothing but F and F'.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -17,10 +18,17 @@ from numpy.polynomial import chebyshev
 
 from bifurc.numerics.blur import ROUNDING, known_to
 from bifurc.numerics.bordered import Bordered, bordered_at
-from bifurc.numerics.corrector import correct_across
+from bifurc.numerics.corrector import correct_across, last_step
 from bifurc.numerics.null_spaces import LARGE
 from bifurc.pieces import points_on_piece
-from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
+from bifurc.problem import (
+    CurveNodes,
+    March,
+    MarchSettings,
+    MarchStatus,
+    Piece,
+    Problem,
+)
 
 __all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
 
@@ -33,6 +41,7 @@ MISSED = 4.0
 # corrected. A hundredth of that is left, and more corrections are rounding.
 SETTLED = 1.0
 FAILED = 0.4  # factor of the width where no correction converges
+FAR = 4.0  # times the distance of neighbouring nodes: so far apart no points may be
 NEWTON_STEPS = 8  # from a share of the arclength to the parameter
 
 
@@ -69,9 +78,14 @@ class _Rejected:
 
 
 def march_by_collocation(
-    problem: Problem, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    problem: Problem,
+    start: np.ndarray,
+    tangent: np.ndarray,
+    settings: MarchSettings,
+    is_allowed: Callable[[Piece], bool] | None = None,
 ) -> March:
-    """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,)."""
+    """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), up to the first
+    that is not allowed."""
     order, tolerance = settings.order, settings.tolerance
     corrected = correct_across(problem, start, tangent, tolerance)
     closing = 100 * tolerance + settings.closing
@@ -79,7 +93,7 @@ def march_by_collocation(
         return March.without_solution(corrected.gap, order, problem.n)
     point = corrected.point
     heading = bordered_at(problem, point, tangent).null_vector()
-    width = settings.longest / 4
+    width = min(settings.longest / 4, max(settings.first, settings.shortest))
     pieces: list[Piece] = []
     # before a cusp a residual is left that is no misclosure
     may_miss = settings.closing > closing / 2
@@ -94,6 +108,8 @@ def march_by_collocation(
         aim = _Aim(point, heading, order, tolerance, known_to, misclosure)
         accepted = _next_piece(problem, aim, width, settings.shortest)
         if accepted is None or misclosure > closing:
+            return March.of_pieces(MarchStatus.STALLED, pieces, order, problem.n)
+        if is_allowed is not None and not is_allowed(accepted.piece):
             return March.of_pieces(MarchStatus.STALLED, pieces, order, problem.n)
         pieces.append(accepted.piece)
         point, heading = _end(accepted.piece)
@@ -208,14 +224,20 @@ def _points_at_nodes(
     """
     start, heading = aim.start, aim.heading
     offsets = 0.5 * width * (basis.nodes + 1.0)
-    points = np.empty((len(offsets), len(start)))
-    points[0] = start
-    factored: Bordered | None = bordered_at(problem, start, heading)
     # Nearer than rounding lets a point be known no correction leads. Where curves cross
     # the corrections are to go on: what is left of them is what the certificate sees.
     enough = aim.tolerance
     if not problem.has_crossings:
         enough = max(enough, SETTLED * aim.known_to)
+    most = 100 * aim.tolerance + MISSED * aim.misclosure
+    correct_nodes = problem.node_corrector()
+    if correct_nodes is not None:
+        step = last_step(enough, problem.scale)
+        nodes = CurveNodes(start, heading, offsets, basis.all_predictors, step, most)
+        return correct_nodes(nodes)
+    points = np.empty((len(offsets), len(start)))
+    points[0] = start
+    factored: Bordered | None = bordered_at(problem, start, heading)
     for k in range(1, len(offsets)):
         guess = basis.predictors[k] @ points[:k] if k > 1 else start
         covered = (guess - start) @ heading
@@ -225,8 +247,7 @@ def _points_at_nodes(
         factored = corrected.factored
         step = points[k] - points[k - 1]
         expected = offsets[k] - offsets[k - 1]
-        is_far = np.linalg.norm(step) > 4 * expected
-        most = 100 * aim.tolerance + MISSED * aim.misclosure
+        is_far = np.linalg.norm(step) > FAR * expected
         if is_far or corrected.gap > most:
             return None
     return points
@@ -240,7 +261,7 @@ class _Basis:
     """Chebyshev polynomials up to an order: ``nodes`` from -1 to 1, the matrices that
     make coefficients ``from_values`` at the nodes and monomials ``to_powers``, the
     matrices that differentiate and integrate, and the weights (k,) for each k by which
-    the first k nodes predict the next."""
+    the first k nodes predict the next, also as rows of one matrix."""
 
     nodes: np.ndarray
     from_values: np.ndarray
@@ -248,6 +269,7 @@ class _Basis:
     derivative: np.ndarray
     integral: np.ndarray
     predictors: tuple[np.ndarray, ...]
+    all_predictors: np.ndarray
 
 
 @lru_cache(maxsize=64)
@@ -260,6 +282,9 @@ def _basis(order: int) -> _Basis:
         powers = chebyshev.cheb2poly(unit[k])
         to_powers[: len(powers), k] = powers
     predictors = [_predictor(nodes, k) for k in range(order + 1)]
+    all_predictors = np.zeros((order + 1, order + 1))
+    for k, weights in enumerate(predictors):
+        all_predictors[k, :k] = weights
     return _Basis(
         nodes=nodes,
         from_values=np.linalg.inv(chebyshev.chebvander(nodes, order)),
@@ -267,6 +292,7 @@ def _basis(order: int) -> _Basis:
         derivative=chebyshev.chebder(unit, axis=0),
         integral=chebyshev.chebint(unit, lbnd=-1, axis=0),
         predictors=tuple(predictors),
+        all_predictors=all_predictors,
     )
 
 

@@ -15,6 +15,7 @@ __all__ = [
     "Correction",
     "correct_across",
     "correct_normal",
+    "last_step",
     "limited",
     "project_by_least_squares",
     "project_to_sphere_by_newton",
@@ -73,7 +74,7 @@ def correct_across(
     residual, by the bend of the other equations, before the next one lowers it: that is
     let pass once.
     """
-    enough = 0.01 * tolerance * problem.scale
+    enough = last_step(tolerance, problem.scale)
     best = _Iterate(point, np.empty(0), np.inf)
     gap_before = math.inf
     is_fresh = False
@@ -101,6 +102,12 @@ def correct_across(
             # the next step would be too small to matter: F is not evaluated again
             return Correction(point, iterate.gap, factored)
     return Correction(best.point, best.gap, factored)
+
+
+def last_step(tolerance: float, scale: float) -> float:
+    """The length of a correction, with what the next one is expected to be, after which
+    a point is known to the ``tolerance`` over the ``scale``."""
+    return 0.01 * tolerance * scale
 
 
 def correct_normal(

@@ -13,9 +13,11 @@ from bifurc.decisions import is_start_solved
 from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import (
+    CurveNodes,
     March,
     MarchSettings,
     MarchStatus,
+    NodeCorrector,
     Problem,
     SphereProjection,
 )
@@ -144,6 +146,15 @@ class LoopClosure(NumericalProblem):
     ) -> March:
         """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
         return march(self, self._geometry, start, tangent, settings)
+
+    def valley_corrector(self) -> NodeCorrector | None:
+        """What corrects points at the nodes of a piece of the valley along which the
+        loop nearly closes."""
+
+        def correct(nodes: CurveNodes) -> np.ndarray | None:
+            return _core.valley_points_at_nodes(self._geometry, *nodes)
+
+        return correct
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """Closed configurations to start from: complete slices of every joint of a 4R,

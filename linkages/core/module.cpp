@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bifurc/core/bindings.hpp"
+#include "bifurc/core/valley_bindings.hpp"
 #include "linkages/core/closure.hpp"
 #include "linkages/core/slices_module.hpp"
 
@@ -53,6 +54,11 @@ nb::tuple project_to_sphere(const Table& starts, const Doubles& center, double r
     return python::project_to_sphere(Closure(view(geometry)), starts, center, radius, iterations);
 }
 
+nb::object valley_points_at_nodes(const Table& geometry, const Doubles& start, const Doubles& heading,
+                                  const Doubles& offsets, const Table& predictors, double enough, double most) {
+    return python::valley_points_at_nodes(Closure(view(geometry)), start, heading, offsets, predictors, enough, most);
+}
+
 }  // namespace
 
 NB_MODULE(_core, module) {
@@ -69,5 +75,7 @@ NB_MODULE(_core, module) {
                nb::arg("iterations"));
     module.def("project_to_sphere", &project_to_sphere, nb::arg("starts"), nb::arg("center"), nb::arg("radius"),
                nb::arg("geometry"), nb::arg("iterations"));
+    module.def("valley_points_at_nodes", &valley_points_at_nodes, nb::arg("geometry"), nb::arg("start"),
+               nb::arg("heading"), nb::arg("offsets"), nb::arg("predictors"), nb::arg("enough"), nb::arg("most"));
     linkages::define_slices(module);
 }

@@ -18,6 +18,7 @@ from bifurc.function_problem import NumericalProblem
 from bifurc.problem import (
     March,
     MarchSettings,
+    NodeCorrector,
     PreciseResidual,
     Solver,
     SphereProjection,
@@ -174,6 +175,13 @@ class MechanismClosure(NumericalProblem):
         if self._is_compiled:
             return self._tape.march(start, tangent, settings)
         return super().march(start, tangent, settings)
+
+    def valley_corrector(self) -> NodeCorrector | None:
+        """What corrects points at the nodes of a piece of the valley along which the
+        mechanism nearly closes."""
+        if self.n > LARGEST_COMPILED:
+            return None
+        return self._tape.valley_corrector()
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
