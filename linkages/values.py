@@ -43,6 +43,8 @@ def check_number(name: str, value: object) -> None:
 
     Mpmath numbers, sympy expressions and exact numbers are real numbers, too.
     """
+    if type(value) is float and math.isfinite(value):
+        return  # as a rule
     if isinstance(value, FLOATS) and not isinstance(value, bool):
         if not _is_finite(value):
             raise GeometryError(name, value, "a finite number")

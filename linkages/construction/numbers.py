@@ -53,6 +53,8 @@ class Number(Protocol):
 def _library(*values: Number) -> ModuleType:
     """The module whose functions fit the widest type among ``values``: sympy, mpmath,
     exact numbers, math."""
+    if all(type(v) is float for v in values):
+        return math  # as a rule, and thousands of times when a linkage is identified
     roots = {type(v).__module__.split(".")[0] for v in values}
     for name in ("sympy", "mpmath"):
         if name in roots:
