@@ -6,13 +6,19 @@ LINKAGE ?= special-double-subtractive-goldberg
 STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg wohlhart_double_goldberg \
   zero_offset_line_symmetric_bricard first_reconfigurable_bricard wohlhart_translator
 
+# Processes keep the byte code that they compile: tests start many, each of which would compile all modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: map test test-fragile test-processors lint studies gallery bench docs pages dist viewer chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
 
+# Neighbours in a file stay in one process, which makes what they share once.
+PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
+
 test: .venv/ready-to-test  ## all tests, the examples of README and docs among them
-	$(BIN)/python -m pytest -n auto
+	$(PYTEST)
 
 # OpenBLAS picks its kernels by the processor; other kernels give other last bits.
 PROCESSORS := Prescott Nehalem Haswell Zen SkylakeX
@@ -22,12 +28,12 @@ FRAGILE := tests/test_literature.py tests/bifurc/curves/test_monitor.py tests/bi
 test-processors: .venv/ready-to-test  ## all tests with the last bits of five processors, with one thread and with two
 	for kernel in $(PROCESSORS); do for threads in 1 2; do \
 	  echo "$$kernel, $$threads threads"; \
-	  OPENBLAS_CORETYPE=$$kernel OPENBLAS_NUM_THREADS=$$threads $(BIN)/python -m pytest -n auto || exit 1; \
+	  OPENBLAS_CORETYPE=$$kernel OPENBLAS_NUM_THREADS=$$threads $(PYTEST) || exit 1; \
 	done; done
 
 test-fragile: .venv/ready-to-test  ## what once hung on the last bits, and a sample of studies.same_answer, under three processors
 	for kernel in Nehalem Haswell SkylakeX; do \
-	  echo "$$kernel"; OPENBLAS_CORETYPE=$$kernel $(BIN)/python -m pytest -n auto $(FRAGILE) || exit 1; \
+	  echo "$$kernel"; OPENBLAS_CORETYPE=$$kernel $(PYTEST) $(FRAGILE) || exit 1; \
 	done
 
 lint: .venv/ready-to-test  ## ruff and mypy
