@@ -276,6 +276,24 @@ is_flat_equation = Decision(
     "at a k-fold solution starts stop at 1e-11, where it is 1e-11 to the power of "
     "1 - 1 / k: 3e-6 for a square",
 )
+may_repeat_factors = Decision(
+    "repeated factors",
+    "an equation may have a factor more than once, and as a polynomial is factored",
+    "length of the gradient where a start ends, over that elsewhere",
+    is_flat_equation.threshold,
+    "as for the power of an equation, but two ends are enough: other factors may be "
+    "there once",
+    Role.LOOK,
+)
+is_factor_of_form = Decision(
+    "factor of a form",
+    "a factor of an equation vanishes all along a form, and its power counts for the "
+    "multiplicity",
+    "value over gradient, in the median of places along the form, over the scale",
+    1e-6,
+    "rounding, some 1e-15, or 1e-8 where the factor is a square that was not seen to be "
+    "one; else the typical distance of two curves",
+)
 is_far_smaller = Decision(
     "far smaller",
     "solutions fill so little of where they are looked for that they are looked at in "

@@ -7,6 +7,7 @@ again, short enough for the new arclength.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -42,14 +43,16 @@ POWERS = np.array(
 
 
 def restated(
-    atlas: Atlas, problem: Problem, units: Units, multiplicity: int = 1
+    atlas: Atlas, problem: Problem, units: Units, multiplicities: Sequence[int]
 ) -> Atlas:
-    """An atlas in ``units`` as one of the ``problem``, which is the user's, with forms
-    of a ``multiplicity``."""
+    """An atlas in ``units`` as one of the ``problem``, which is the user's, with the
+    forms of these ``multiplicities``."""
     courses = [restated_branch(f.branch, units, problem.periods) for f in atlas.forms]
     forms = [
         _form(form, course, units, multiplicity)
-        for form, course in zip(atlas.forms, courses, strict=True)
+        for form, course, multiplicity in zip(
+            atlas.forms, courses, multiplicities, strict=True
+        )
     ]
     return replace(
         atlas,

@@ -14,13 +14,20 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from bifurc.curves.continuation import TraceSettings, trace_branch
-from bifurc.decisions import is_far_smaller, is_flat_equation, is_on_the_way
+from bifurc.decisions import (
+    is_factor_of_form,
+    is_far_smaller,
+    is_flat_equation,
+    is_on_the_way,
+    may_repeat_factors,
+)
 from bifurc.equations.differentiation import with_gradients
+from bifurc.equations.factors import Factors, polynomial_factors, written_factors
 from bifurc.equations.recording import Recording
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
@@ -52,6 +59,9 @@ POINT = 1e-10
 OFF_CENTER = 4.0  # widths from zero from which on an unknown is counted from its middle
 HIGHEST, MOST_EQUATIONS = 6, 60  # multiplicity that is looked for, and equations
 FEWEST = 5  # ends of starts by which a multiplicity is told
+FEWEST_FLAT = 2  # of them, where F' is flat, for which factors are looked for
+PLACES = np.linspace(0.05, 0.95, 9)  # shares of a form at which factors are evaluated
+TINY = 1e-300  # keeps a gradient of zero from being divided by
 REGULAR = 1e-6  # smallest regular singular value at an end that is where it belongs
 OF_CURVES = 1e-4  # the same: at points of higher order where starts stop it is 2e-6
 # What a class may answer in its own way: in its own units only, or in any one unit.
@@ -74,14 +84,24 @@ BEYOND = 0.5  # widths of the region by which it then leaves it
 OUTER = 0.1  # share of the ends of starts that may lie elsewhere than the rest
 
 
+class Simplified(NamedTuple):
+    """Equations with the solutions of those of a user and a smaller multiplicity: on the
+    ``tape`` in place of F stand its different ``factors``, each once, and after them the
+    derivatives that vanish with all of them, up to an ``order`` of derivation less
+    one."""
+
+    tape: Tape
+    factors: Factors
+    order: int = 1
+
+
 class UnitProblem(FunctionProblem):
     """The equations of a function in ``units``, with solutions looked for in the
     ``region`` (n, 2) besides the bounds of the ``problem``; both in the user's units.
     Without a region the scale and the magnitude are those of the problem, whose units
     then have one size.
 
-    Where every solution is a ``multiplicity``-fold one, the equations are those of
-    ``tape``: F and the derivatives that vanish with it.
+    Where solutions are multiple ones, the equations are the ``simplified`` ones.
     """
 
     def __init__(
@@ -89,11 +109,10 @@ class UnitProblem(FunctionProblem):
         problem: FunctionProblem,
         units: Units,
         region: np.ndarray | None = None,
-        tape: Tape | None = None,
-        multiplicity: int = 1,
+        simplified: Simplified | None = None,
     ):
         self.problem = problem
-        self.multiplicity = multiplicity
+        self.simplified = simplified
         self.own_units = units
         self.names, self.units = problem.names, problem.units
         self.derivatives, self.equations = problem.derivatives, problem.equations
@@ -104,7 +123,7 @@ class UnitProblem(FunctionProblem):
         self._function = self._restated_function
         self._jacobian = None if problem._jacobian is None else self._restated_jacobian
         self._rows = len(units.weights)
-        self.tape = problem.recording.tape if tape is None else tape
+        self.tape = problem.recording.tape if simplified is None else simplified.tape
         if region is None:
             size = float(units.sizes[0])
             self.scale = problem.scale / size
@@ -135,6 +154,24 @@ class UnitProblem(FunctionProblem):
     def has_assumed_bounds(self) -> np.ndarray:
         """Which ends of the bounds (n, 2) were chosen, as none were given."""
         return self.problem.has_assumed_bounds
+
+    def multiplicity_along(self, branch: Branch) -> int:
+        """How often the user's equations are solved all along a ``branch`` in these
+        units: the product over them of the powers of the factors that vanish there."""
+        if self.simplified is None:
+            return 1
+        factors = self.simplified.factors
+        places = branch(branch.length * PLACES)
+        points = np.ascontiguousarray(self.own_units.outwards(places))
+        values = np.abs(factors.tape.compiled.residuals(points))
+        slopes = factors.tape.compiled.jacobians(points) * self.own_units.sizes
+        lengths = np.linalg.norm(slopes, axis=2)
+        distances = np.median(values / (lengths + TINY), axis=0)  # (k,)
+        powers: dict[int, int] = {}
+        for number, row in enumerate(factors.rows):
+            if is_factor_of_form(float(distances[number]), self.scale):
+                powers[row] = powers.get(row, 0) + factors.powers[number]
+        return self.simplified.order * math.prod(powers.values())
 
     @property
     def reach(self) -> float:
@@ -187,7 +224,7 @@ class UnitProblem(FunctionProblem):
 
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, from that of the user's problem."""
-        if self.multiplicity > 1:
+        if self.simplified is not None:
             return super().precise_residual()
         precise = self.problem.precise_residual()
         if precise is None:
@@ -281,16 +318,21 @@ class UnitProblem(FunctionProblem):
         """Points (k, n), in the user's units, at which ``count`` random starts in the
         region end: solutions, or where most reach none points on the way to them; of
         fewer starts where the ``deadline`` comes before."""
+        ends = self.all_ends(count, deadline)
+        sharp = self._is_sharp(ends)
+        if 2 * np.count_nonzero(sharp) > len(ends):
+            ends = ends[sharp]
+        return self.own_units.outwards(ends)
+
+    def all_ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
+        """The same in these units, also those beside others that are far from
+        singular."""
         rng = np.random.default_rng(1)
         seeds = random_seeds(self, rng, count, self.region, deadline)
         near = seeds.missed[is_on_the_way(seeds.gaps)]
         if len(seeds.points) > len(near):
             near = near[:0]
-        ends = np.concatenate([seeds.points, near])
-        sharp = self._is_sharp(ends)
-        if 2 * np.count_nonzero(sharp) > len(ends):
-            ends = ends[sharp]
-        return self.own_units.outwards(ends)
+        return np.concatenate([seeds.points, near])
 
     def _is_sharp(self, points: np.ndarray) -> np.ndarray:
         """Which of the ends (k, n) of starts are far from singular, and so where they
@@ -344,7 +386,8 @@ def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> Unit
     whole = _first_region(problem)
     region, is_point = whole, np.zeros(problem.n, dtype=bool)
     count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
-    own = _problem_on(problem, region)
+    simplified = _with_written_factors(problem)
+    own = _problem_on(problem, region, simplified)
     for _ in range(ROUNDS):
         closer = _region_of(problem, own.ends(count, deadline), region, is_point)
         if closer is None or deadline.passed:
@@ -352,17 +395,17 @@ def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> Unit
         # what shrinks without end is a point, and looked at from where it is
         is_point |= _is_a_point(closer, whole)
         region = np.where(is_point[:, None], whole, closer)
-        own = _problem_on(problem, region)
+        own = _problem_on(problem, region, simplified)
     else:
-        own = _problem_on(problem, whole)
+        own = _problem_on(problem, whole, simplified)
     if deadline.passed:
         return own
     if not np.array_equal(region, whole):
         region = _widened(own, region, is_point)
-        own = _problem_on(problem, region)
+        own = _problem_on(problem, region, simplified)
     own = _deflated(own)
     if not np.array_equal(region, whole) and not _has_curves(own):
-        own = _deflated(_problem_on(problem, whole))
+        own = _deflated(_problem_on(problem, whole, simplified))
     return own
 
 
@@ -380,7 +423,7 @@ def in_one_size(own: UnitProblem) -> UnitProblem:
     sizes = np.full(own.n, size)
     units = replace(own.own_units, sizes=sizes)
     region = own.own_units.outwards(own.region.T).T
-    return UnitProblem(own.problem, units, region, own.tape, own.multiplicity)
+    return UnitProblem(own.problem, units, region, own.simplified)
 
 
 # --- where solutions are --------------------------------------------------------------
@@ -446,39 +489,80 @@ def _widened(own: UnitProblem, region: np.ndarray, is_point: np.ndarray) -> np.n
 # --- multiplicity ---------------------------------------------------------------------
 
 
+def _with_written_factors(problem: FunctionProblem) -> Simplified | None:
+    """The equations with every factor once; None where they are written so, and where
+    they are not recorded."""
+    tape = problem.recording.tape
+    if tape is None or problem.n < 2:
+        return None
+    factors = written_factors(tape)
+    return Simplified(factors.radical(), factors) if factors.are_repeated else None
+
+
 def _deflated(own: UnitProblem) -> UnitProblem:
-    """The same with the derivatives of the equations whose gradients vanish at all
-    solutions, as those of a square do, where that leaves curves of full rank."""
-    tape, deflated = own.tape, own
-    if tape is None or own.n < 2:
+    """The same without what is left of multiplicity: polynomials whose gradients vanish
+    at some solutions by their different factors, and with the derivatives of the
+    equations whose gradients still vanish at all solutions, where that leaves curves of
+    full rank."""
+    if own.tape is None or own.n < 2:
         return own
     region = own.own_units.outwards(own.region.T).T
-    latest = range(tape.m)
-    multiplicity = 1
-    while multiplicity < HIGHEST and tape.m <= MOST_EQUATIONS:
-        flat = _flat_equations(deflated, latest)
+    flatness = _flatness(own)
+    is_flat = may_repeat_factors(flatness)
+    rows = np.flatnonzero(np.count_nonzero(is_flat, axis=0) >= FEWEST_FLAT)
+    if not len(rows):
+        return own
+    factors = polynomial_factors(own.problem.recording.tape, rows.tolist())
+    if factors.are_repeated:
+        simplified = Simplified(factors.radical(), factors)
+        own = _problem_on(own.problem, region, simplified)
+        flatness = _flatness(own)
+    return _with_derivatives(own, factors, flatness)
+
+
+def _with_derivatives(
+    own: UnitProblem, factors: Factors, flatness: np.ndarray
+) -> UnitProblem:
+    """The same with the derivatives of the equations whose gradients vanish at all
+    solutions, where that leaves curves of full rank; the ``flatness`` (k, m) is that of
+    its equations, and the ``factors`` are those that they are made of."""
+    assert own.tape is not None
+    region = own.own_units.outwards(own.region.T).T
+    tape, deflated = own.tape, own
+    begin, order = 0, 1
+    while order < HIGHEST and tape.m <= MOST_EQUATIONS:
+        flat = [begin + row for row in _flat_everywhere(flatness[:, begin:])]
         if not flat:
             break
         begin = tape.m
         tape = with_gradients(tape, flat)
-        latest = range(begin, tape.m)
-        multiplicity += 1
-        deflated = _problem_on(own.problem, region, tape, multiplicity)
-    return deflated if multiplicity > 1 and _has_curves(deflated) else own
+        order += 1
+        simplified = Simplified(tape, factors, order)
+        deflated = _problem_on(own.problem, region, simplified)
+        flatness = _flatness(deflated)
+    return deflated if order > 1 and _has_curves(deflated) else own
 
 
-def _flat_equations(own: UnitProblem, rows: Sequence[int]) -> list[int]:
-    """Which of the equations ``rows`` have no gradient where random starts end."""
-    ends = own.own_units.inwards(own.ends(STARTS))
+def _flatness(own: UnitProblem) -> np.ndarray:
+    """Lengths (k, m) of the gradients of the equations where random starts end, over
+    those elsewhere; k is 0 where too few end anywhere."""
+    ends = own.all_ends(STARTS)
     typical = own._matrices()
     if len(ends) < FEWEST or not typical:
-        return []
+        return np.empty((0, own._rows))
     usual = np.median(np.linalg.norm(typical, axis=2), axis=0)
-    there = np.linalg.norm(own.jacobians(ends), axis=2)
-    there = np.quantile(there, 1.0 - OUTER, axis=0)
-    return [
-        row for row in rows if is_flat_equation(float(there[row]), float(usual[row]))
-    ]
+    lengths = np.linalg.norm(own.jacobians(ends), axis=2)
+    flatness: np.ndarray = lengths / (usual + TINY)
+    return flatness
+
+
+def _flat_everywhere(flatness: np.ndarray) -> list[int]:
+    """Which of the equations of a ``flatness`` (k, m) have no gradient at solutions, as
+    a rule."""
+    if not len(flatness):
+        return []
+    rule = np.quantile(flatness, 1.0 - OUTER, axis=0)
+    return np.flatnonzero(is_flat_equation(rule)).tolist()
 
 
 def _has_curves(own: UnitProblem) -> bool:
@@ -497,10 +581,9 @@ def _has_curves(own: UnitProblem) -> bool:
 def _problem_on(
     problem: FunctionProblem,
     region: np.ndarray,
-    tape: Tape | None = None,
-    multiplicity: int = 1,
+    simplified: Simplified | None = None,
 ) -> UnitProblem:
-    """The problem, with the equations of a ``tape`` where one is given, in the units
+    """The problem, or its ``simplified`` equations where they are given, in the units
     that a ``region`` (n, 2) gives."""
     sizes = np.diff(region, axis=1)[:, 0] / 4.0
     if sizes.max() <= WIDEST_MIX * sizes.min():
@@ -510,14 +593,14 @@ def _problem_on(
     is_off = np.abs(middles) > OFF_CENTER * np.diff(region, axis=1)[:, 0]
     is_arc = np.isfinite(problem.periods) & np.isfinite(problem.bounds).all(axis=1)
     origin = np.where(is_off | is_arc, middles, 0.0)
-    rows = problem._rows if tape is None else tape.m
+    rows = problem._rows if simplified is None else simplified.tape.m
     units = Units(origin, sizes, np.ones(rows))
-    own = UnitProblem(problem, units, region, tape, multiplicity)
+    own = UnitProblem(problem, units, region, simplified)
     weights = _weights(own)
     if np.all(weights == 1.0):
         return own
     weighted = replace(units, weights=weights)
-    return UnitProblem(problem, weighted, region, tape, multiplicity)
+    return UnitProblem(problem, weighted, region, simplified)
 
 
 def _weights(own: UnitProblem) -> np.ndarray:
@@ -541,7 +624,7 @@ def _weights(own: UnitProblem) -> np.ndarray:
 def _is_as_it_stands(problem: FunctionProblem, own: UnitProblem) -> bool:
     """Whether nothing is gained by other units."""
     units = own.own_units
-    is_same = not np.any(units.origin) and own.multiplicity == 1
+    is_same = not np.any(units.origin) and own.simplified is None
     has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
     is_near_scale = _unit_of(problem) == 1.0
     return is_same and not has_sizes and is_near_scale

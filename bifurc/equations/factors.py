@@ -1,0 +1,244 @@
+"""The different factors of recorded equations, with the power of each.
+
+The solutions of a^2 b = 0 are those of a b = 0. Where equations have repeated factors
+their solutions have a multiplicity, and F' has a lower rank all along them; the
+equations with every factor once have not. Factors are those that a tape is written as,
+and of polynomials also those that Yun's algorithm (1976) finds, over the rational
+numbers that the constants of a tape are.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from bifurc.equations.tape import Node, Operation, Tape, TapeWriter
+
+if TYPE_CHECKING:
+    from sympy.polys.rings import PolyElement  # SymPy takes longer to import than a search
+
+__all__ = ["Factors", "polynomial_factors", "written_factors"]
+
+MOST_TERMS = 400  # of a polynomial whose factors are looked for
+
+
+@dataclass(frozen=True)
+class Factors:
+    """The factors of m equations: those of equation ``rows[i]`` include number i of the
+    equations of ``tape``, to the power ``powers[i]``; both (k,), ordered by rows."""
+
+    tape: Tape
+    rows: tuple[int, ...]
+    powers: tuple[int, ...]
+
+    @property
+    def are_repeated(self) -> bool:
+        """Whether any factor has a power above one."""
+        return max(self.powers) > 1
+
+    def radical(self) -> Tape:
+        """The m equations with every factor once."""
+        writer = TapeWriter(self.tape.n)
+        slots = self.tape.write_on(writer)
+        outputs: dict[int, int] = {}
+        for row, slot in zip(self.rows, self.tape.outputs.tolist(), strict=True):
+            factor = slots[slot]
+            known = outputs.get(row)
+            outputs[row] = factor if known is None else writer.multiply(known, factor)
+        return writer.tape([outputs[row] for row in sorted(outputs)])
+
+
+def written_factors(tape: Tape) -> Factors:
+    """The factors of the products and powers that the equations are written as."""
+    writer = TapeWriter(tape.n)
+    slots = tape.write_on(writer)
+    collection = _Collection(writer)
+    for row, slot in enumerate(tape.outputs.tolist()):
+        output = slots[slot]
+        powers = _powers_of(writer, output)
+        if any(writer.node(factor).operation in _ROOTS for factor in powers):
+            powers = Counter({output: 1})  # the square of a root is smoother than it
+        for factor in sorted(powers):
+            collection.add(row, factor, powers[factor])
+    return collection.factors()
+
+
+def polynomial_factors(tape: Tape, rows: Sequence[int]) -> Factors:
+    """The same, with the square-free factors of polynomials for the equations ``rows``,
+    where they are polynomials in the unknowns and in functions of them, of not too many
+    terms."""
+    written = written_factors(tape)
+    writer = TapeWriter(tape.n)
+    slots = tape.write_on(writer)
+    of_factors = written.tape.write_on(writer)
+    collection = _Collection(writer)
+    for row, slot in enumerate(tape.outputs.tolist()):
+        found = _polynomial_powers(writer, slots[slot]) if row in rows else None
+        if found is None:
+            found = {
+                of_factors[output]: power
+                for output, number, power in zip(
+                    written.tape.outputs.tolist(),
+                    written.rows,
+                    written.powers,
+                    strict=True,
+                )
+                if number == row
+            }
+        for factor, power in found.items():
+            collection.add(row, factor, power)
+    return collection.factors()
+
+
+class _Collection:
+    """Factors on a tape while they are collected."""
+
+    def __init__(self, writer: TapeWriter):
+        self._writer = writer
+        self._outputs: list[int] = []
+        self._rows: list[int] = []
+        self._powers: list[int] = []
+
+    def add(self, row: int, slot: int, power: int) -> None:
+        """Add the factor in a ``slot``, which equation ``row`` has to a ``power``."""
+        self._outputs.append(slot)
+        self._rows.append(row)
+        self._powers.append(power)
+
+    def factors(self) -> Factors:
+        """All of them."""
+        tape = self._writer.tape(self._outputs)
+        return Factors(tape, tuple(self._rows), tuple(self._powers))
+
+
+# --- as written -----------------------------------------------------------------------
+
+_ROOTS = (Operation.SQRT, Operation.CBRT, Operation.POWER)
+
+
+def _powers_of(writer: TapeWriter, output: int) -> Counter[int]:
+    """The slots whose product is the equation in slot ``output``, but for a number, and
+    the power of each."""
+    factors: Counter[int] = Counter()
+    pending: Counter[int] = Counter({output: 1})
+    while pending:
+        slot = max(pending)  # operands stand before what is made of them
+        power = pending.pop(slot)
+        node = writer.node(slot)
+        if node.operation is Operation.MULTIPLY:
+            pending[node.left] += power
+            pending[node.right] += power
+        elif node.operation in (Operation.SCALE, Operation.OVER):
+            pending[node.left] += power
+        else:
+            factors[slot] += power
+    return factors
+
+
+# --- of polynomials -------------------------------------------------------------------
+
+_OF_POLYNOMIALS = (
+    Operation.CONSTANT,
+    Operation.ADD,
+    Operation.SUBTRACT,
+    Operation.MULTIPLY,
+    Operation.SHIFT,
+    Operation.SCALE,
+    Operation.OVER,
+)
+# A quotient may be zero where what it is divided by is, and a root has no derivative.
+_REFUSED = (Operation.DIVIDE, *_ROOTS)
+
+
+def _polynomial_powers(writer: TapeWriter, output: int) -> dict[int, int] | None:
+    """The slots of the square-free factors of the polynomial in slot ``output``, newly
+    written, and the power of each; None where there is none."""
+    inner = _polynomial_part(writer, output)
+    nodes = {slot: writer.node(slot) for slot in inner}
+    generators = [
+        slot for slot in inner if nodes[slot].operation not in _OF_POLYNOMIALS
+    ]
+    if not generators or any(nodes[k].operation in _REFUSED for k in generators):
+        return None
+    polynomial = _expanded(nodes, output, generators)
+    if polynomial is None or not polynomial:
+        return None
+    _, factors = polynomial.sqf_list()
+    return {
+        _written(writer, factor, generators): int(power) for factor, power in factors
+    }
+
+
+def _polynomial_part(writer: TapeWriter, output: int) -> list[int]:
+    """The slots between that of a polynomial and its unknowns and functions, operands
+    first."""
+    needed = {output}
+    for slot in range(output, -1, -1):
+        node = writer.node(slot)
+        is_inner = node.operation in _OF_POLYNOMIALS
+        if slot not in needed or not is_inner or node.operation is Operation.CONSTANT:
+            continue
+        needed.add(node.left)
+        if node.operation in (Operation.ADD, Operation.SUBTRACT, Operation.MULTIPLY):
+            needed.add(node.right)
+    return sorted(needed)
+
+
+def _expanded(
+    nodes: dict[int, Node], output: int, generators: Sequence[int]
+) -> PolyElement | None:
+    """The polynomial in slot ``output`` over the rational numbers; None where it has
+    more than `MOST_TERMS`."""
+    from sympy import QQ, ring
+
+    names = [f"g{slot}" for slot in generators]
+    domain, *symbols = ring(names, QQ)
+    values: dict[int, PolyElement] = dict(zip(generators, symbols, strict=True))
+    for slot, node in nodes.items():
+        if slot in values:
+            continue
+        number = domain(QQ(*node.constant.as_integer_ratio()))
+        values[slot] = _value(node, number, values)
+        if len(values[slot]) > MOST_TERMS:
+            return None
+    return values[output]
+
+
+def _value(
+    node: Node, number: PolyElement, values: dict[int, PolyElement]
+) -> PolyElement:
+    """The polynomial that an operation on polynomials gives, with its constant as a
+    ``number``."""
+    if node.operation is Operation.CONSTANT:
+        return number
+    left = values[node.left]
+    if node.operation is Operation.SHIFT:
+        return left + number
+    if node.operation is Operation.SCALE:
+        return left * number
+    if node.operation is Operation.OVER:
+        return left.quo_ground(number.LC)
+    right = values[node.right]
+    if node.operation is Operation.ADD:
+        return left + right
+    if node.operation is Operation.SUBTRACT:
+        return left - right
+    return left * right
+
+
+def _written(
+    writer: TapeWriter, polynomial: PolyElement, generators: Sequence[int]
+) -> int:
+    """The slot of a polynomial, its largest coefficient 1, in slots ``generators``."""
+    largest = max(abs(value) for value in polynomial.values())
+    total = writer.constant(0.0)
+    for exponents, value in polynomial.terms():
+        share = value / largest
+        term = writer.constant(int(share.numerator) / int(share.denominator))
+        for slot, exponent in zip(generators, exponents, strict=True):
+            power = writer.power(slot, writer.constant(float(exponent)))
+            term = writer.multiply(term, power)
+        total = writer.add(total, term)
+    return total
