@@ -17,6 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bifurc.branch import Branch
 from bifurc.decisions import is_shaky, may_be_shaky
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
@@ -25,7 +26,7 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 from bifurc.singular.sphere import section
 
-__all__ = ["Deflated", "lower_rank_direction"]
+__all__ = ["Deflated", "deflated_singular_values", "lower_rank_direction"]
 
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales
@@ -96,7 +97,7 @@ class Deflated(NumericalProblem):
     ) -> March:
         """A few pieces of the curve from ``start`` along ``tangent``, by collocation on
         the deflated system."""
-        t, a = self._tangent_and_normal(start, tangent)
+        t, a = _tangent_and_normal(self._problem, start, tangent)
         march = march_by_collocation(
             _WithNullVector(self._problem, a, t),
             np.concatenate([start, a]),
@@ -115,19 +116,38 @@ class Deflated(NumericalProblem):
             pieces.append(Piece(coefficients, length, float(residual)))
         return March.of_pieces(status, pieces, settings.order, self.n)
 
-    def _tangent_and_normal(
-        self, point: np.ndarray, tangent: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The unit vector t (n,) of the null space nearest to ``tangent``, and a (n,),
-        the one across it."""
-        jacobian = self.jacobians(point[None])[0]
-        _, _, right = np.linalg.svd(jacobian)
-        null_space = right[self.n - 2 :]
-        t = null_space.T @ (null_space @ tangent)
-        t /= np.linalg.norm(t)
-        quarter_turn = np.array([[0.0, -1.0], [1.0, 0.0]])
-        a = null_space.T @ quarter_turn @ (null_space @ t)
-        return t, a
+
+def _tangent_and_normal(
+    problem: Problem, point: np.ndarray, tangent: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The unit vector t (n,) of the null space nearest to ``tangent``, and a (n,), the
+    one across it."""
+    jacobian = problem.jacobians(point[None])[0]
+    _, _, right = np.linalg.svd(jacobian)
+    null_space = right[problem.n - 2 :]
+    t = null_space.T @ (null_space @ tangent)
+    t /= np.linalg.norm(t)
+    quarter_turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+    a = null_space.T @ quarter_turn @ (null_space @ t)
+    return t, a
+
+
+def deflated_singular_values(
+    problem: Problem, branch: Branch, s: np.ndarray
+) -> np.ndarray:
+    """The smallest singular value (k,) that the deflated system has across the tangent,
+    over the magnitude, at arclengths (k,) of a branch on which F' has rank n - 2."""
+    values = np.empty(len(s))
+    points, tangents = branch(s), branch(s, 1)
+    for k, (point, tangent) in enumerate(zip(points, tangents, strict=True)):
+        t, a = _tangent_and_normal(problem, point, tangent)
+        system = _WithNullVector(problem, a, t)
+        matrix = system.jacobians(np.concatenate([point, a])[None])[0]
+        matrix[:, : problem.n] *= problem.scale
+        matrix[: len(matrix) // 2 - 1] /= problem.scale  # F' itself
+        sigma = np.linalg.svd(matrix / problem.magnitude, compute_uv=False)
+        values[k] = sigma[2 * problem.n - 2]
+    return values
 
 
 def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | None:

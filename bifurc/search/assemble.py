@@ -127,6 +127,7 @@ def _forms(
             component=component,
             misclosure=branch.misclosure,
             certificate=_certificate(problem, branch, passes),
+            multiplicity=max(branch.multiplicity, 1),
         )
         forms.append(form)
     return tuple(forms)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from bifurc.branch import Branch, Outcome
+from bifurc.curves.lower_rank import LowerRank, lower_rank_along
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import Profile, profile_branch
 from bifurc.decisions import (
@@ -24,6 +25,7 @@ from bifurc.search.findings import PointSighting, TracedBranch
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
 from bifurc.search.run import Run
 from bifurc.search.start import Start, half_branch_starts
+from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import SingularPoint
 
 __all__ = ["BranchExaminer", "ExaminedBranch"]
@@ -32,6 +34,7 @@ ABOUT = 16  # nodes before and after a deep place that are not lower: those of a
 BESIDE = 3 * ABOUT  # and among which some are far higher, as a whole piece may be flat
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
 CUSP_REACH = 0.2  # how far from there the cusp may lie
+DEFLATED_ERROR = 1e-9  # of a point, over the scale, that deflation gives
 
 
 class ExaminedBranch(NamedTuple):
@@ -81,6 +84,14 @@ class BranchExaminer:
         passes: list[float] = []
         missing: list[float] = []
         starts: list[Start] = []
+        lower = LowerRank.none()
+        if profile.rank < branch.n - 1:
+            lower = lower_rank_along(self.problem, branch, profile)
+        for crossing in lower.crossings.tolist():
+            sighting = self._sight_crossing(branch, crossing)
+            passes.append(crossing)
+            if sighting.is_new:
+                starts += half_branch_starts(sighting.point)
         for candidate in candidates:
             if self.run.is_over:
                 break
@@ -108,8 +119,19 @@ class BranchExaminer:
             passes=tuple(passes),
             missing=tuple(missing),
             certificate=certificate,
+            multiplicity=lower.multiplicity,
         )
         return ExaminedBranch(traced, starts)
+
+    def _sight_crossing(self, branch: Branch, s: float) -> PointSighting:
+        """The singular point at arclength ``s`` of a branch of lower rank, where others
+        meet it."""
+        u = branch(s)
+        jacobian = self.problem.jacobians(u[None])[0]
+        _, _, right = np.linalg.svd(jacobian)
+        null_space = right[self.problem.n - 2 :].T
+        error = DEFLATED_ERROR * self.problem.scale
+        return self.points.sight(LocatedPoint(u, null_space, error))
 
     def _is_at(self, branch: Branch, s: float, point: SingularPoint) -> bool:
         """Whether a branch passes a singular point at arclength ``s``, and not only

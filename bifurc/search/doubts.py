@@ -102,6 +102,11 @@ def _doubts_of_form(
             f"form {index + 1} may be a curve or a part of a surface: its place is "
             f"known to {traced.blur:.1e} of the scale"
         )
+    if not traced.multiplicity:
+        doubts.append(
+            f"form {index + 1} has a multiplicity, F' having rank {profile.rank} all "
+            "along it: how large it is, and what meets it, is not known"
+        )
     hidden = _hidden_by_rounding(traced)
     if len(hidden):
         numbers = ", ".join(str(k + 1) for k in hidden)

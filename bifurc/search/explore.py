@@ -86,7 +86,10 @@ def explore(
             atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
             whole = first + atlas.provenance.seconds
             atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
-        multiplicities = [own.multiplicity_along(form.branch) for form in atlas.forms]
+        multiplicities = [
+            form.multiplicity * own.multiplicity_along(form.branch)
+            for form in atlas.forms
+        ]
         atlas = restated(atlas, problem, own.own_units, multiplicities)
     if parameter is None and not events:
         return atlas

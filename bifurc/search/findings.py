@@ -58,7 +58,8 @@ class TracedBranch:
     where one must be and none was located. ``misclosure`` is the largest along the
     branch, ``blur`` the distance, over the scale, to which its points are known.
     ``certificate`` says what is certified of it, None where that was not asked for or
-    the problem has no bounds.
+    the problem has no bounds. ``multiplicity``: 1 of an ordinary curve, 2 of one that
+    one step of deflation makes regular, 0 where it is not known.
     """
 
     branch: Branch
@@ -70,6 +71,7 @@ class TracedBranch:
     passes: tuple[float, ...] = ()
     missing: tuple[float, ...] = ()
     certificate: Certificate | None = None
+    multiplicity: int = 1
 
     @property
     def is_refused(self) -> bool:

@@ -13,7 +13,7 @@ from bifurc.singular.invariants import CROSSING, LONE_POINT, Invariants
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import SingularPoint
 from bifurc.singular.second_order import second_order_tangents
-from bifurc.singular.sphere import Section, section
+from bifurc.singular.sphere import UNSEEN, Section, section
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
@@ -148,9 +148,25 @@ def _choose_sections(
         if radius * problem.scale / 2 < located.error:
             continue  # the exact point may lie outside of the smaller sphere
         cut = _cut(problem, located, radius, count)
-        if cut.agree and (cut.are_clear or not best.agree):
+        if _is_better(cut, best):
             best = cut
     return best
+
+
+def _is_better(cut: _Sections, best: _Sections) -> bool:
+    """Whether sections say more than the ``best`` ones so far.
+
+    What fills a smaller sphere and not a larger one is rounding: a surface through the
+    point meets both.
+    """
+    if not cut.agree:
+        return False
+    if not best.agree:
+        return True
+    is_rounding = (
+        cut.radius < best.radius and cut.outer.dimension > best.outer.dimension
+    )
+    return cut.are_clear and not is_rounding
 
 
 def _cut(
@@ -164,7 +180,8 @@ def _cut(
     same_dimension = outer.dimension == inner.dimension
     same_count = len(outer.points) == len(inner.points)
     holds_point = size / 2 > located.error
-    agree = same_dimension and same_count and holds_point
+    is_seen = outer.dimension != UNSEEN
+    agree = is_seen and same_dimension and same_count and holds_point
     if count is None:
         agree = agree and _settle(located.u, outer, inner)
         are_clear = not (outer.doubtful or inner.doubtful)

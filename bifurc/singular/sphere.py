@@ -26,7 +26,9 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 
-__all__ = ["Section", "is_on_surface", "section"]
+__all__ = ["UNSEEN", "Section", "is_on_surface", "section"]
+
+UNSEEN = -1  # dimension of a section that could not be made
 
 # Samples on the circle of a null space of dimension 2, and the angle of the first.
 COUNT, FIRST = 96, 0.01
@@ -56,7 +58,8 @@ class Section:
     """Solutions on a small sphere about a point.
 
     ``points`` (h, n), one for each half-branch of a curve, and the local ``dimension``
-    of the solution set: where it is 2 or more, the sphere meets more than the curves.
+    of the solution set: where it is 2 or more, the sphere meets more than the curves, and
+    `UNSEEN` where the independent equations have no solution on the sphere.
     ``doubtful`` says whether one of the points is a zero but for rounding, which may
     stand for two half-branches or for none.
     """
@@ -158,6 +161,8 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     which the other equations hold as well."""
     no_points = np.empty((0, equations.n))
     values = equations(unit_vectors(ANGLES))
+    if not np.all(np.isfinite(values)):
+        return Section(no_points, UNSEEN, doubtful=True)  # nothing solves them there
     sizes = np.linalg.norm(values, axis=1)
     size = float(sizes.max())
     noise = MARGIN * equations.noise
