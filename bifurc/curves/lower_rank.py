@@ -17,7 +17,7 @@ from bifurc.curves.monitor import Profile
 from bifurc.decisions import is_zero_along, may_be_crossed
 from bifurc.problem import Problem
 
-__all__ = ["LowerRank", "lower_rank_along"]
+__all__ = ["ORDINARY", "LowerRank", "lower_rank_along"]
 
 DIP = 0.5  # of the typical value, below which a minimum at the nodes is looked at
 NARROWER, ROUNDS = 4.0, 16  # by which the places about a minimum close in on it
@@ -33,10 +33,8 @@ class LowerRank(NamedTuple):
     multiplicity: int
     crossings: np.ndarray
 
-    @staticmethod
-    def none() -> LowerRank:
-        """That of an ordinary curve."""
-        return LowerRank(1, np.empty(0))
+
+ORDINARY = LowerRank(1, np.empty(0))  # that of a curve of full rank
 
 
 def lower_rank_along(problem: Problem, branch: Branch, profile: Profile) -> LowerRank:
@@ -50,11 +48,9 @@ def lower_rank_along(problem: Problem, branch: Branch, profile: Profile) -> Lowe
     typical = float(np.median(values))
     if is_zero_along(typical):
         return unknown
-    crossings = [
-        _bottom(problem, branch, nodes, int(k))
-        for k in np.flatnonzero(_are_dips(values, branch.closed) & (values < DIP * typical))
-    ]
-    places = np.array(crossings)
+    are_low = _are_dips(values, branch.closed) & (values < DIP * typical)
+    dips = np.flatnonzero(are_low).tolist()
+    places = np.array([_bottom(problem, branch, nodes, k) for k in dips])
     depths = deflated_singular_values(problem, branch, places)
     return LowerRank(2, places[may_be_crossed(depths, typical)])
 
@@ -88,4 +84,4 @@ def _within(branch: Branch, s: np.ndarray) -> np.ndarray:
     """Arclengths on the branch: modulo its length, or none beyond its ends."""
     if branch.closed:
         return np.asarray(s % branch.length)
-    return np.clip(s, 0.0, branch.length)
+    return np.asarray(np.clip(s, 0.0, branch.length))

@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING
 from bifurc.equations.tape import Node, Operation, Tape, TapeWriter
 
 if TYPE_CHECKING:
-    from sympy.polys.rings import PolyElement  # SymPy takes longer to import than a search
+    from sympy.polys.rings import (
+        PolyElement,
+    )  # SymPy takes longer to import than a search
 
 __all__ = ["Factors", "polynomial_factors", "written_factors"]
 

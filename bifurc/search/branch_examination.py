@@ -8,7 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.lower_rank import LowerRank, lower_rank_along
+from bifurc.curves.lower_rank import ORDINARY, LowerRank, lower_rank_along
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import Profile, profile_branch
 from bifurc.decisions import (
@@ -60,6 +60,17 @@ class _Candidate(NamedTuple):
     must_be: bool = False
 
 
+class _Sightings(NamedTuple):
+    """What is seen along a branch, to which more is added: the arclengths ``located``
+    of minima that lead to singular points, ``passes`` of points on the branch,
+    ``missing`` where one must be, and the starts from new points."""
+
+    located: list[float]
+    passes: list[float]
+    missing: list[float]
+    starts: list[Start]
+
+
 class BranchExaminer:
     """Looks for the singular points along branches of a ``run`` with a search for
     ``points``."""
@@ -80,18 +91,38 @@ class BranchExaminer:
             candidates = _small_minima(*minima)
             candidates += _deep_places(profile, minima[0])
             candidates += self._candidate_ends(branch, profile)
-        located: list[float] = []
-        passes: list[float] = []
-        missing: list[float] = []
-        starts: list[Start] = []
-        lower = LowerRank.none()
+        lower = ORDINARY
         if profile.rank < branch.n - 1:
             lower = lower_rank_along(self.problem, branch, profile)
-        for crossing in lower.crossings.tolist():
-            sighting = self._sight_crossing(branch, crossing)
-            passes.append(crossing)
-            if sighting.is_new:
-                starts += half_branch_starts(sighting.point)
+        sightings = _Sightings([], [], [], [])
+        self._sight_crossings(branch, lower, sightings)
+        self._sight_candidates(branch, candidates, misclosure, sightings)
+        certificate = None
+        if self.run.settings.certify:
+            passes = sightings.passes
+            certificate = certificate_of(self.problem, branch, profile, passes)
+        traced = TracedBranch(
+            branch=branch,
+            profile=profile,
+            minima=minima,
+            located=tuple(sightings.located),
+            misclosure=misclosure,
+            blur=blur_along(self.problem, branch),
+            passes=tuple(sightings.passes),
+            missing=tuple(sightings.missing),
+            certificate=certificate,
+            multiplicity=lower.multiplicity,
+        )
+        return ExaminedBranch(traced, sightings.starts)
+
+    def _sight_candidates(
+        self,
+        branch: Branch,
+        candidates: list[_Candidate],
+        misclosure: float,
+        sightings: _Sightings,
+    ) -> None:
+        """Add what the candidates on a branch with a ``misclosure`` lead to."""
         for candidate in candidates:
             if self.run.is_over:
                 break
@@ -99,29 +130,25 @@ class BranchExaminer:
             sighting = self._examine_candidate(branch, candidate, misclosure)
             if sighting is None:
                 if candidate.must_be:
-                    missing.append(place)
+                    sightings.missing.append(place)
                 continue
-            located.append(place)
+            sightings.located.append(place)
             if self._is_at(branch, place, sighting.point):
-                passes.append(place)
+                sightings.passes.append(place)
             if sighting.is_new:
-                starts += half_branch_starts(sighting.point)
-        certificate = None
-        if self.run.settings.certify:
-            certificate = certificate_of(self.problem, branch, profile, passes)
-        traced = TracedBranch(
-            branch=branch,
-            profile=profile,
-            minima=minima,
-            located=tuple(located),
-            misclosure=misclosure,
-            blur=blur_along(self.problem, branch),
-            passes=tuple(passes),
-            missing=tuple(missing),
-            certificate=certificate,
-            multiplicity=lower.multiplicity,
-        )
-        return ExaminedBranch(traced, starts)
+                sightings.starts.extend(half_branch_starts(sighting.point))
+
+    def _sight_crossings(
+        self, branch: Branch, lower: LowerRank, sightings: _Sightings
+    ) -> None:
+        """Add the points at which others meet a branch of lower rank."""
+        for place in lower.crossings.tolist():
+            if self.run.is_over:
+                break
+            sighting = self._sight_crossing(branch, place)
+            sightings.passes.append(place)
+            if sighting.is_new:
+                sightings.starts.extend(half_branch_starts(sighting.point))
 
     def _sight_crossing(self, branch: Branch, s: float) -> PointSighting:
         """The singular point at arclength ``s`` of a branch of lower rank, where others

@@ -504,7 +504,8 @@ def _deflated(own: UnitProblem) -> UnitProblem:
     at some solutions by their different factors, and with the derivatives of the
     equations whose gradients still vanish at all solutions, where that leaves curves of
     full rank."""
-    if own.tape is None or own.n < 2:
+    tape = own.problem.recording.tape
+    if tape is None or own.n < 2:
         return own
     region = own.own_units.outwards(own.region.T).T
     flatness = _flatness(own)
@@ -512,7 +513,7 @@ def _deflated(own: UnitProblem) -> UnitProblem:
     rows = np.flatnonzero(np.count_nonzero(is_flat, axis=0) >= FEWEST_FLAT)
     if not len(rows):
         return own
-    factors = polynomial_factors(own.problem.recording.tape, rows.tolist())
+    factors = polynomial_factors(tape, rows.tolist())
     if factors.are_repeated:
         simplified = Simplified(factors.radical(), factors)
         own = _problem_on(own.problem, region, simplified)
