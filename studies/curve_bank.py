@@ -2,10 +2,10 @@
 
 Every curve of `data/curves.json` has a source and a known number of forms, closed and
 open, of bifurcations with their half-branches, of cusps, of points where the rank drops
-on a single branch, and of isolated points. A cusp ends a form; through a point like
-that of x^3 = y^4, with half-branches to opposite sides, a single one passes. Each is
-explored as it stands, with its unknowns or its equations in other units, turned,
-shifted, and from other random starts. An answer is right, or wrong and said to be in
+on a single branch, and of isolated points; its forms have multiplicities, 1 as a rule.
+A cusp ends a form; through a point like that of x^3 = y^4, with half-branches to
+opposite sides, a single one passes. Each is explored as it stands, with its unknowns or
+its equations in other units, turned, shifted, and from other random starts. An answer is right, or wrong and said to be in
 doubt, or wrong without a word, as an exception is. Seconds are those of the processor.
 
     python -m studies.curve_bank --changes plain --changes unknowns --seeds 2
@@ -43,7 +43,7 @@ class Answer(NamedTuple):
     """What is counted in an atlas: forms ``closed`` and ``open``, the numbers of
     half-branches of the ``bifurcations`` in order, ``cusps``, ``rank_drops``,
     ``isolated`` points, ``others`` (surfaces, points of another kind) and the
-    ``multiplicity`` of the forms."""
+    ``multiplicities`` of the forms in order."""
 
     closed: int
     open: int
@@ -52,7 +52,7 @@ class Answer(NamedTuple):
     rank_drops: int
     isolated: int
     others: int = 0
-    multiplicity: int = 1
+    multiplicities: tuple[int, ...] = ()
 
     @staticmethod
     def of(atlas: Atlas) -> Answer:
@@ -70,7 +70,7 @@ class Answer(NamedTuple):
             isolated=kinds[Kind.ISOLATED] + len(atlas.rigid),
             others=len(atlas.surfaces)
             + sum(kinds[kind] for kind in kinds if kind not in counted),
-            multiplicity=max((form.multiplicity for form in atlas.forms), default=1),
+            multiplicities=tuple(sorted(form.multiplicity for form in atlas.forms)),
         )
 
 
@@ -105,6 +105,7 @@ def load_curves() -> list[Curve]:
 
 def _curve(entry: dict[str, Any]) -> Curve:
     n = len(entry["unknowns"])
+    simple = [1] * (entry["closed"] + entry["open"])
     periods = entry.get("periods", [None] * n)
     ends = ((-np.inf, np.inf),) * n
     bounds = [
@@ -125,7 +126,7 @@ def _curve(entry: dict[str, Any]) -> Curve:
             cusps=entry["cusps"],
             rank_drops=entry["rank_drops"],
             isolated=entry["isolated"],
-            multiplicity=entry.get("multiplicity", 1),
+            multiplicities=tuple(entry.get("multiplicities", simple)),
         ),
     )
 

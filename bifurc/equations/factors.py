@@ -9,6 +9,7 @@ numbers that the constants of a tape are.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -159,6 +160,8 @@ def _polynomial_powers(writer: TapeWriter, output: int) -> dict[int, int] | None
     written, and the power of each; None where there is none."""
     inner = _polynomial_part(writer, output)
     nodes = {slot: writer.node(slot) for slot in inner}
+    if not all(math.isfinite(node.constant) for node in nodes.values()):
+        return None
     generators = [
         slot for slot in inner if nodes[slot].operation not in _OF_POLYNOMIALS
     ]

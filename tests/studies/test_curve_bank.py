@@ -31,6 +31,13 @@ SAMPLE = [
     ("three circles through a point of a torus", "plain"),
     ("three equal cylinders", "first equation 1e-06"),
     ("pendulum that just turns over", "shifted"),
+    ("double lemniscate", "last unknown 10"),
+    ("lines of multiplicity 1 to 3", "unknowns 1e-06"),
+    ("double lemniscate, expanded", "turned 1"),
+    ("a double circle and a tangent", "last unknown 1000"),
+    ("double Viviani curve", "mixed equations"),
+    ("a plane on a torus", "turned 2"),
+    ("double curves on a torus", "first equation 1e-06"),
 ]
 
 

@@ -195,6 +195,65 @@ def test_a_multiple_curve_has_the_crossings_of_the_simple_one():
     assert counts(atlas) == ([True], ["bifurcation"], 0, 0)
 
 
+@pytest.mark.parametrize("stretch", [1e-4, 1 / 12, 3.0, 12.0, 40.0, 1e4])
+@pytest.mark.parametrize("unknown", [0, 1])
+def test_a_double_lemniscate_has_its_node_whatever_the_units(stretch, unknown):
+    sizes = np.ones(2)
+    sizes[unknown] = stretch
+    bounds = sizes[:, None] * np.array(BOX)
+    atlas = explored(lambda u: [lemniscate(1.0)(u / sizes)[0] ** 2], bounds)
+    assert counts(atlas) == ([True], ["bifurcation"], 0, 0)
+    assert [form.multiplicity for form in atlas.forms] == [2]
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda u: [u[0] ** 2 * u[1]],
+        lambda u: [u[0] ** 3 - u[0] ** 2 * u[1]],  # expanded
+        lambda u: [np.sin(u[0]) ** 2 * (u[1] - u[0])],
+    ],
+)
+def test_each_form_has_a_multiplicity_of_its_own(function):
+    atlas = explored(function)
+    assert counts(atlas) == ([False, False], ["bifurcation"], 0, 0)
+    assert sorted(form.multiplicity for form in atlas.forms) == [1, 2]
+
+
+def test_multiplicities_of_several_equations_multiply():
+    box = [(-1.0, 1.0), (-1.0, 1.1), (-1.0, 1.2)]
+    atlas = explored(lambda u: [(u[0] * u[1]) ** 2, (u[2] - u[0]) ** 3], box)
+    assert counts(atlas) == ([False, False], ["bifurcation"], 0, 0)
+    assert [form.multiplicity for form in atlas.forms] == [6, 6]
+
+
+def test_a_crossing_on_double_curves_has_the_germ_of_the_simple_ones():
+    atlas = explored(lambda u: [(u[1] ** 2 - u[0] ** 5) ** 2])
+    (point,) = atlas.points
+    assert point.kind is bifurc.Kind.CUSP
+    assert point.point.is_through is False  # as exact equations tell
+
+
+def double_lines(u):
+    return np.array([u[2], u[2] - (u[0] * u[1]) ** 2])
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_double_curves_that_are_no_squares_have_their_crossings(is_recorded):
+    box = [(-1.0, 1.0), (-1.0, 1.1), (-1.0, 1.2)]
+    atlas = explored(double_lines, box, is_recorded=is_recorded)
+    assert counts(atlas) == ([False, False], ["bifurcation"], 0, 0)
+    assert [form.multiplicity for form in atlas.forms] == [2, 2]
+    assert np.linalg.norm(atlas.points[0].point.u) < 1e-8
+
+
+def test_a_multiplicity_that_is_not_computed_is_in_doubt():
+    atlas = explored(lambda u: [u[2] - u[0] ** 3, u[2]], [(-1.0, 1.0)] * 3)
+    multiplicities = [form.multiplicity for form in atlas.forms]
+    is_told = "has a multiplicity" in atlas.completeness.statement
+    assert multiplicities == [3] or is_told
+
+
 def test_a_ramphoid_cusp_is_one_point_where_the_exact_equations_have_it():
     atlas = explored(lambda u: [(u[1] - u[0] ** 2) ** 2 - u[0] ** 5])
     (point,) = atlas.points

@@ -1,0 +1,88 @@
+"""The different factors of recorded equations."""
+
+import numpy as np
+import pytest
+
+import bifurc
+from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.tape import Tape
+
+POINTS = np.random.default_rng(0).uniform(0.5, 1.5, (20, 2))
+
+
+def tape_of(function) -> Tape:
+    tape = bifurc.FunctionProblem(function, [[0.2, 2.0]] * 2).recording.tape
+    assert tape is not None
+    return tape
+
+
+def radical_of(factors: Factors) -> np.ndarray:
+    return factors.radical().compiled.residuals(POINTS)[:, 0]
+
+
+def is_multiple_of(values: np.ndarray, expected: np.ndarray) -> bool:
+    ratios = values / expected
+    return bool(np.allclose(ratios, ratios[0], rtol=1e-12))
+
+
+def test_factors_are_those_of_products_and_powers_as_written():
+    tape = tape_of(lambda u: [-3 * (u[0] - u[1] ** 3) ** 2 * (u[0] + 1) / 7, u[0]])
+    factors = written_factors(tape)
+    assert factors.rows == (0, 0, 1)
+    assert sorted(factors.powers[:2]) == [1, 2]
+    x, y = POINTS.T
+    assert is_multiple_of(radical_of(factors), (x - y**3) * (x + 1))
+
+
+def test_equations_without_repeated_factors_stay_what_they_are():
+    factors = written_factors(tape_of(lambda u: [u[0] * u[1], np.sin(u[0]) - u[1]]))
+    assert not factors.are_repeated
+
+
+def test_functions_count_as_factors():
+    factors = written_factors(tape_of(lambda u: [np.sin(u[0] - u[1]) ** 3]))
+    assert factors.powers == (3,)
+    assert np.allclose(radical_of(factors), np.sin(POINTS[:, 0] - POINTS[:, 1]))
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda u: [np.sqrt(u[0] + u[1]) ** 2 * u[0]],
+        lambda u: [u[0] ** 2 / u[1]],
+    ],
+)
+def test_squares_of_roots_and_quotients_are_left_alone(function):
+    tape = tape_of(function)
+    assert not written_factors(tape).are_repeated
+    assert not polynomial_factors(tape, [0]).are_repeated
+
+
+def test_an_expanded_polynomial_is_taken_apart_by_powers():
+    tape = tape_of(lambda u: [u[0] ** 3 - u[0] ** 2 * u[1], u[0]])
+    assert not written_factors(tape).are_repeated
+    factors = polynomial_factors(tape, [0])
+    assert factors.rows == (0, 0, 1) and sorted(factors.powers[:2]) == [1, 2]
+    x, y = POINTS.T
+    assert is_multiple_of(radical_of(factors), x * (x - y))
+
+
+def test_a_square_is_one_in_any_units_and_in_functions_of_the_unknowns():
+    def expanded(u):
+        a, b = 0.1 * u[0] + 0.7 * u[1], np.exp(u[0])
+        return [a**2 - 2 * a * b + b**2]
+
+    factors = polynomial_factors(tape_of(expanded), [0])
+    assert factors.powers == (2,)
+    x, y = POINTS.T
+    assert is_multiple_of(radical_of(factors), 0.1 * x + 0.7 * y - np.exp(x))
+
+
+def test_factors_of_a_square_that_is_none_but_for_rounding_are_not_made_up():
+    tape = tape_of(lambda u: [u[0] ** 2 - 0.2 * u[0] + 0.01])  # 0.1 ** 2 is not 0.01
+    assert not polynomial_factors(tape, [0]).are_repeated
+
+
+def test_a_polynomial_of_too_many_terms_stays_what_it_is():
+    tape = tape_of(lambda u: [(1 + u[0] + u[1]) ** 40 - 1])
+    assert not polynomial_factors(tape, [0]).are_repeated
