@@ -49,8 +49,9 @@ class Form:
     removes: rounding, some 1e-15, unless the equations contradict each other a little.
     ``certificate`` says what is certified of it. ``labels`` holds what whoever knows
     more than the equations said of it, as values that JSON can hold. ``multiplicity``:
-    the order to which all equations vanish on it, as those of a square do twice; the
-    singular values are then those of the equations with their derivatives.
+    how often the equations are solved all along it, as a square is twice; where that
+    comes from repeated factors the singular values are those of the equations with
+    every factor once.
     """
 
     name: str

@@ -276,6 +276,15 @@ is_flat_equation = Decision(
     "at a k-fold solution starts stop at 1e-11, where it is 1e-11 to the power of "
     "1 - 1 / k: 3e-6 for a square",
 )
+is_at_rest = Decision(
+    "start at rest",
+    "a start has ended at a minimum of |F|, where nothing more is looked for",
+    "slope of |F|, over the size of F'",
+    1e-2,
+    "beside an isolated point in a narrow valley of |F| starts come down so slowly that "
+    "they end on the way, where it falls as fast as it can",
+    Role.LOOK,
+)
 may_repeat_factors = Decision(
     "repeated factors",
     "an equation may have a factor more than once, and as a polynomial is factored",

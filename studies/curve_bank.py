@@ -5,8 +5,9 @@ open, of bifurcations with their half-branches, of cusps, of points where the ra
 on a single branch, and of isolated points; its forms have multiplicities, 1 as a rule.
 A cusp ends a form; through a point like that of x^3 = y^4, with half-branches to
 opposite sides, a single one passes. Each is explored as it stands, with its unknowns or
-its equations in other units, turned, shifted, and from other random starts. An answer is right, or wrong and said to be in
-doubt, or wrong without a word, as an exception is. Seconds are those of the processor.
+its equations in other units, turned, shifted, and from other random starts. An answer
+is right, or wrong and said to be in doubt, or wrong without a word, as an exception is.
+Seconds are those of the processor.
 
     python -m studies.curve_bank --changes plain --changes unknowns --seeds 2
 """

@@ -110,7 +110,7 @@ FORMS: Table[Form] = Table(
         Column(
             "multiplicity",
             lambda f: f.multiplicity,
-            "order to which the equations vanish on the form",
+            "how often the equations are solved all along the form",
             dtype=int,
         ),
         Column(

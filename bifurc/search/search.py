@@ -15,6 +15,7 @@ from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.misclosure import largest_misclosure
 from bifurc.decisions import (
     closes_to_rounding,
+    is_at_rest,
     is_beside_singular,
     is_hidden_by,
     is_on_the_way,
@@ -63,6 +64,8 @@ LENIENT = 4.0 * is_solution.threshold
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits, at worst
 TINY = 1e-300  # keeps a singular value of zero from being divided by
 LOOKS_WHERE_STOPPED = 6  # at ends of starts that reached no solution
+LOOKS_WHERE_SLOW = 4  # at ends of starts where |F| still falls
+SLOW_REACH = 0.5  # how far from these, over the scale, a singular point may lie
 LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
 
 
@@ -375,30 +378,57 @@ class Search:
 
     def look_where_starts_stop(self) -> None:
         """Look for singular points where starts end short of a solution, about nothing
-        that is known: beside an isolated point of high order F is so flat that they do."""
+        that is known: beside an isolated point of high order F is so flat that they do,
+        and beside one in a narrow valley of |F| they come down too slowly."""
         findings = self.findings
         if not self.problem.is_exact or self.problem.n < 2:
             return
         low, high = self.problem.bounds.T
         missed = findings.seeds.missed
         is_inside = np.all((missed >= low) & (missed <= high), axis=1)
-        near = is_inside & is_on_the_way(findings.seeds.gaps)
-        gaps = findings.seeds.gaps[near]
-        ends = missed[near]
+        is_near = is_inside & is_on_the_way(findings.seeds.gaps)
+        self._look_at_ends(missed[is_near], findings.seeds.gaps[is_near])
+        is_slow = is_inside & ~is_near
+        is_slow[is_slow] = ~is_at_rest(self._slopes(missed[is_slow]))
+        ends = missed[is_slow]
+        order = np.argsort(findings.seeds.gaps[is_slow], kind="stable")
+        for end in ends[order[:LOOKS_WHERE_SLOW]]:
+            if not self.run.is_over and not self._is_about_known(end):
+                self._look_at(end, SLOW_REACH)
+
+    def _look_at_ends(self, ends: np.ndarray, gaps: np.ndarray) -> None:
+        """Look at ends (k, n) of starts with small ``gaps`` (k,); those that lead to
+        nothing are noted."""
         looks = 0
         for k in np.argsort(gaps, kind="stable"):
             if self.run.is_over:
                 break
             if self._is_about_known(ends[k]):
                 continue
-            sighting = None
-            if looks < LOOKS_WHERE_STOPPED:
-                looks += 1
-                sighting = self.points.near(ends[k], 2, BRANCH_REACH)
-            if sighting is not None:
-                self._branch_off(half_branch_starts(sighting.point))
-            elif stops_short(float(gaps[k])):
-                findings.gaps_of_stops.append(float(gaps[k]))
+            looks += 1
+            is_looked_at = looks <= LOOKS_WHERE_STOPPED
+            if is_looked_at and self._look_at(ends[k], BRANCH_REACH):
+                continue
+            if stops_short(float(gaps[k])):
+                self.findings.gaps_of_stops.append(float(gaps[k]))
+
+    def _look_at(self, end: np.ndarray, reach: float) -> bool:
+        """Whether a singular point is at less than ``reach`` scales from the end (n,) of
+        a start; what leaves there is traced."""
+        sighting = self.points.near(end, 2, reach)
+        if sighting is None:
+            return False
+        self._branch_off(half_branch_starts(sighting.point))
+        return True
+
+    def _slopes(self, ends: np.ndarray) -> np.ndarray:
+        """The slopes (k,) of |F| at ends (k, n) of starts, over the size of F' there."""
+        values = self.problem.residuals(ends)
+        matrices = self.problem.jacobians(ends)
+        sizes = np.linalg.norm(values, axis=1) * np.linalg.norm(matrices, axis=(1, 2))
+        products = np.einsum("km,kmn->kn", values, matrices)
+        slopes: np.ndarray = np.linalg.norm(products, axis=1) / (sizes + TINY)
+        return slopes
 
     def _is_about_known(self, point: np.ndarray) -> bool:
         """Whether a branch, a singular point or an assembly is next to a point (n,)."""

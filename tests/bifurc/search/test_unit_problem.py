@@ -206,6 +206,18 @@ def test_a_double_lemniscate_has_its_node_whatever_the_units(stretch, unknown):
     assert [form.multiplicity for form in atlas.forms] == [2]
 
 
+@pytest.mark.parametrize("power", [1, 2])
+@pytest.mark.parametrize("stretch", [1 / 12, 1.0, 12.0])
+def test_an_isolated_point_is_found_where_starts_come_to_it_slowly(power, stretch):
+    def cubic(u):
+        x, y = u[0], u[1] / stretch
+        return [(y**2 - x**2 * (x - 1.0)) ** power]
+
+    atlas = explored(cubic, [(-1.0, 2.0), (-2.0 * stretch, 2.1 * stretch)])
+    assert counts(atlas) == ([False], ["isolated"], 0, 0)
+    assert np.linalg.norm(atlas.points[0].point.u) < 1e-7 * stretch
+
+
 @pytest.mark.parametrize(
     "function",
     [
