@@ -21,7 +21,11 @@ __all__ = ["ORDINARY", "LowerRank", "lower_rank_along"]
 
 DIP = 0.5  # of the typical value, below which a minimum at the nodes is looked at
 NARROWER, ROUNDS = 4.0, 16  # by which the places about a minimum close in on it
-STEPS = (1e-3, 1e-5)  # over the scale, to both sides of where two slopes are to meet
+STEPS = (
+    1e-3,
+    1e-5,
+    1e-7,
+)  # over the scale, to both sides of where two slopes are to meet
 UNKNOWN = 0
 TINY = 1e-300  # keeps what vanishes on both sides from being divided by
 

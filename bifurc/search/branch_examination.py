@@ -34,7 +34,8 @@ ABOUT = 16  # nodes before and after a deep place that are not lower: those of a
 BESIDE = 3 * ABOUT  # and among which some are far higher, as a whole piece may be flat
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp
 CUSP_REACH = 0.2  # how far from there the cusp may lie
-DEFLATED_ERROR = 1e-9  # of a point, over the scale, that deflation gives
+# Of a point, over the scale, that deflation gives: no germ separates double curves.
+DEFLATED_ERROR = 1e-10
 
 
 class ExaminedBranch(NamedTuple):

@@ -253,7 +253,8 @@ def double_lines(u):
 @pytest.mark.parametrize("is_recorded", [True, False])
 def test_double_curves_that_are_no_squares_have_their_crossings(is_recorded):
     box = [(-1.0, 1.0), (-1.0, 1.1), (-1.0, 1.2)]
-    atlas = explored(double_lines, box, is_recorded=is_recorded)
+    problem = bifurc.FunctionProblem(double_lines, box, is_recorded=is_recorded)
+    atlas = bifurc.explore(problem, settings=bifurc.SearchSettings(starts=16))
     assert counts(atlas) == ([False, False], ["bifurcation"], 0, 0)
     assert [form.multiplicity for form in atlas.forms] == [2, 2]
     assert np.linalg.norm(atlas.points[0].point.u) < 1e-8
