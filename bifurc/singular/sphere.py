@@ -134,11 +134,12 @@ class _ReducedEquations:
         base = self._point + self._radius * x @ self._null_space.T
         smallest = LAST_STEP * self._problem.scale
         w = np.zeros_like(base)
-        for _ in range(ROUNDS):
-            step = self._problem.relative_residuals(base + w) @ self._inverse.T
-            w -= step
-            if np.abs(step).max(initial=0.0) < smallest:
-                break
+        with np.errstate(over="ignore", invalid="ignore"):  # where it diverges
+            for _ in range(ROUNDS):
+                step = self._problem.relative_residuals(base + w) @ self._inverse.T
+                w -= step
+                if np.abs(step).max(initial=0.0) < smallest:
+                    break
         points: np.ndarray = base + w
         return points
 
