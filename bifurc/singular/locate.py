@@ -16,8 +16,9 @@ ITERATIONS = 60
 # Singular values of the augmented matrix, over its largest: what is smaller than the
 # first is rounding, what is smaller than the second is a direction of slow convergence.
 ROUNDING, WEAK = 1e-12, 1e-6
-# Share of a weak direction that moves the point itself, and not only its null space.
-MOVES_POINT = 0.1
+# Share of a weak direction that moves the point itself, and not only its null space:
+# along a bent curve the null space turns many times as far.
+MOVES_POINT = 0.01
 # Condition of the augmented matrix at which convergence is no longer quadratic.
 HIGHER_ORDER = 1e7
 # Distance, over the reach, from which the iteration has to come back to a simple point,
@@ -67,7 +68,7 @@ def locate_singular_point(
     run = _iterate(problem, start, nullity, reach)
     if run is None or not is_located(run.moves[-1], problem.scale):
         return None
-    u = _solve_regular_equations(problem, run.u, nullity)
+    u = _solved_in_regular_equations(problem, run.u[None], nullity)[0]
     gap = float(problem.gaps(u[None])[0])
     missed = SHARP * gap / _unit(SHARP * misclosure)
     largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
@@ -231,7 +232,7 @@ def _with_error(
 ) -> LocatedPoint:
     """The point ``u`` (n,) of a run, or the middle of the stretch on which rounding
     hides it, with its error."""
-    if run.condition >= HIGHER_ORDER and _is_simple(problem, run, u, reach):
+    if len(run.weak) and _is_simple(problem, run, u, reach):
         return LocatedPoint(u, run.basis, KNOWN_TO * run.condition * problem.scale)
     nullity = run.basis.shape[1]
     error = _location_error(run.moves, run.condition) * problem.scale
@@ -247,22 +248,23 @@ def _with_error(
 # --- after the iteration --------------------------------------------------------------
 
 
-def _solve_regular_equations(
-    problem: Problem, u: np.ndarray, nullity: int
+def _solved_in_regular_equations(
+    problem: Problem, points: np.ndarray, nullity: int
 ) -> np.ndarray:
-    """``u`` (n,) after two Newton steps in the equations that are regular there.
+    """Points (k, n) after two Newton steps in the equations that are regular there.
 
     At a point of higher order the last steps of the iteration are poor in these
     equations as well.
     """
     rank = problem.n - nullity
     for _ in range(2):
-        jacobian = problem.relative_jacobians(u[None])[0]
-        left, sigma, right = np.linalg.svd(jacobian, full_matrices=False)
-        residual = problem.relative_residuals(u[None])[0]
-        shares = left[:, :rank].T @ residual / sigma[:rank]
-        u = u - right[:rank].T @ shares
-    return u
+        jacobians = problem.relative_jacobians(points)
+        left, sigma, right = np.linalg.svd(jacobians, full_matrices=False)
+        residuals = problem.relative_residuals(points)
+        shares = np.einsum("kmr,km->kr", left[:, :, :rank], residuals)
+        shares /= sigma[:, :rank]
+        points = points - np.einsum("krn,kr->kn", right[:, :rank], shares)
+    return points
 
 
 def _largest_null_values(
@@ -295,7 +297,7 @@ def _location_error(moves: list[float], condition: float) -> float:
 
 
 class _Stretch(NamedTuple):
-    """A stretch of a straight line: its ``middle`` (n,) and half of its length."""
+    """A stretch along a line: its ``middle`` (n,) and half of its length."""
 
     middle: np.ndarray
     half_length: float
@@ -309,6 +311,7 @@ def _hidden_stretch(
     ahead = _hidden_length(problem, u, direction, nullity, reach)
     behind = _hidden_length(problem, u, -direction, nullity, reach)
     middle = u + 0.5 * (ahead - behind) * direction
+    middle = _solved_in_regular_equations(problem, middle[None], nullity)[0]
     return _Stretch(middle, 0.5 * (ahead + behind))
 
 
@@ -316,11 +319,17 @@ def _hidden_length(
     problem: Problem, u: np.ndarray, direction: np.ndarray, nullity: int, reach: float
 ) -> float:
     """How far from ``u`` along ``direction`` (n,) rounding hides that a point is no
-    singular point: up to ``reach``."""
+    singular point: up to ``reach``.
+
+    A curve leaves the line as the square of the distance: it is looked at where the
+    regular equations hold.
+    """
     distances = reach * np.geomspace(1e-7, 1.0, 120)
-    line = u + distances[:, None] * direction
-    gaps = problem.gaps(line)
-    misfits = _largest_null_values(problem, line, nullity) + gaps
+    curve = _solved_in_regular_equations(
+        problem, u + distances[:, None] * direction, nullity
+    )
+    gaps = problem.gaps(curve)
+    misfits = _largest_null_values(problem, curve, nullity) + gaps
     visible = np.flatnonzero(misfits > HIDDEN)
     if not len(visible):
         return reach

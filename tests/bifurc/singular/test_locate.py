@@ -1,6 +1,7 @@
 """The location of singular points whose place is known."""
 
 import numpy as np
+import pytest
 
 from bifurc.function_problem import FunctionProblem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
@@ -104,3 +105,16 @@ def test_a_crossing_beside_a_surface_is_located_as_well_as_doubles_tell():
         assert located is not None
         distance = np.linalg.norm(located.u - [0, 0, 1])
         assert distance <= located.error < 1e-12 / e
+
+
+# Doubles see singular points all along a stretch of the curve, which leaves its tangent
+# as the square of the distance.
+@pytest.mark.parametrize(("bend", "start"), [(1.0, 1e-2), (1.0, 1e-4), (10.0, 1e-4)])
+def test_the_error_at_a_cusp_of_high_order_on_a_bent_curve_holds_its_place(bend, start):
+    def function(u):
+        x, y, z = u
+        return [z - bend * x**2, y**2 - x**5]
+
+    problem = FunctionProblem(function, [(-1, 1)] * 3)
+    located = locate(problem, [start, start**2.5, bend * start**2], reach=0.05)
+    assert np.linalg.norm(located.u) <= located.error < 1e-2
