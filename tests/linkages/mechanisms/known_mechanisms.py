@@ -1,30 +1,11 @@
-"""Mechanisms whose facts are known: axes, or points and bars, in one closed
-configuration, counts and mobility, with their sources (data/mechanisms.json)."""
+"""Mechanisms whose facts are known (`studies.known_mechanisms`), and one with gears."""
 
-import json
-from functools import cache
-from pathlib import Path
-
-from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from studies.known_mechanisms import cases, mechanism_of_case
 
-DATA = Path(__file__).parents[3] / "data" / "mechanisms.json"
-
-
-@cache
-def cases():
-    """All cases, by name."""
-    content = json.loads(DATA.read_text(encoding="utf-8"))
-    return {case["name"]: case for case in content["cases"]}
-
-
-def mechanism_of_case(case):
-    """The mechanism of a case."""
-    if "bars" in case:
-        return read_bars(case, case["name"])
-    return Mechanism(tuple(Joint(**joint) for joint in case["joints"]), case["name"])
+__all__ = ["cases", "geared_five_bar", "mechanism_of_case"]
 
 
 def geared_five_bar(ratio=-2.0, offset=0.0):
