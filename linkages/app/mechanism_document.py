@@ -8,12 +8,14 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from linkages.mechanisms.facts import form_facts, loop_facts
+from linkages.mechanisms.loose_chains import loose_chains
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import joint_values
 
 __all__ = [
     "FormMotionDocument",
     "LoopDocument",
+    "LooseChainDocument",
     "MechanismDocument",
     "RangeDocument",
     "describe_mechanism",
@@ -58,10 +60,19 @@ class VariableDocument(TypedDict):
     locked: float | None
 
 
+class LooseChainDocument(TypedDict):
+    """The ``bodies`` of a chain ``between`` one body or two that has ``freedoms`` of
+    its own, whatever the rest does."""
+
+    bodies: list[str]
+    between: list[str]
+    freedoms: int
+
+
 class MechanismDocument(TypedDict):
     """The mechanism of a map: ``idle_bodies`` turn about the line between their two
     spherical joints, ``idle_turns`` are variables that turn but a body by itself; the
-    map leaves both out."""
+    map leaves both out, and counts the freedoms of ``loose_chains``."""
 
     bodies: list[str]
     frame: str
@@ -70,6 +81,7 @@ class MechanismDocument(TypedDict):
     loops: list[LoopDocument]
     idle_bodies: list[str]
     idle_turns: list[str]
+    loose_chains: list[LooseChainDocument]
     characteristic_length: float
 
 
@@ -96,6 +108,14 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
         ],
         "idle_bodies": list(readout.structure.idle_bodies),
         "idle_turns": list(readout.structure.idle_turns),
+        "loose_chains": [
+            {
+                "bodies": list(chain.bodies),
+                "between": list(chain.between),
+                "freedoms": chain.freedoms,
+            }
+            for chain in loose_chains(readout.structure)
+        ],
         "characteristic_length": readout.structure.unit,
     }
 

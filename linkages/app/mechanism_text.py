@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bifurc.atlas import Atlas
 from linkages.app.forms import listed_numbers
-from linkages.app.mechanism_document import describe_mechanism
+from linkages.app.mechanism_document import LooseChainDocument, describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.texts import in_degrees, in_lengths, section
 from linkages.mechanisms.facts import VariableRange, form_facts
@@ -106,8 +106,21 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
     heads = ("joints", "constraints", "redundant", "motion that others can make")
     count = f"Mobility {mobility_of(atlas)}; Grübler's count is {gruebler_of(atlas)}"
     count += f"{_special_count(readout.mechanism)}."
+    for chain in document["loose_chains"]:
+        count += f"\n{_of_loose_chain(chain)}"
     loops = section("Loops", heads, rows)
     return f"{loops}\n\n{count}" if loops else count
+
+
+def _of_loose_chain(chain: LooseChainDocument) -> str:
+    """A sentence on a chain that moves by itself, and what to do about it."""
+    ends = chain["between"]
+    place = f"between {' and '.join(ends)}" if len(ends) > 1 else f"on {ends[0]}"
+    return (
+        f"{chain['freedoms']} of these freedoms {place} can be had by "
+        f"{', '.join(chain['bodies'])} alone, whatever the rest does: left out, or with "
+        "joints locked, a map shows the rest."
+    )
 
 
 def _special_count(mechanism: Mechanism) -> str:

@@ -180,7 +180,7 @@ class Structure:
         return free_points(self.points, self._net)
 
     @cached_property
-    def _ends(self) -> dict[int, Ends]:
+    def ends(self) -> dict[int, Ends]:
         """The bodies and the number of unknowns of every pair that is left without the
         rods, and of spherical ones between bodies that only rods would join else."""
         in_rods = {body for rod in self.rods for body in rod.bodies}
@@ -220,7 +220,7 @@ class Structure:
     def _spherical(self) -> list[int]:
         return [
             number
-            for number in self._ends
+            for number in self.ends
             if number in self._joined_at_points
             or self.mechanism.pairs[number].center is not None
         ]
@@ -231,7 +231,7 @@ class Structure:
     def _plain(self) -> dict[int, Ends]:
         """The pairs without spherical ones and those inside rods."""
         spherical = set(self._spherical)
-        return {k: ends for k, ends in self._ends.items() if k not in spherical}
+        return {k: ends for k, ends in self.ends.items() if k not in spherical}
 
     @cached_property
     def _kept_spherical(self) -> list[int]:
@@ -241,7 +241,7 @@ class Structure:
             parts.union(ends.base, ends.moved)
         kept = []
         for number in self._spherical:
-            base, moved, _ = self._ends[number]
+            base, moved, _ = self.ends[number]
             if parts[base] != parts[moved]:
                 parts.union(base, moved)
                 kept.append(number)
@@ -260,7 +260,7 @@ class Structure:
         for ends in self._plain.values():
             parts.union(ends.base, ends.moved)
         for number in self._kept_spherical:
-            parts.union(*self._ends[number][:2])
+            parts.union(*self.ends[number][:2])
         for point in self.free_points:
             parts.union(point.base, point.body)
         first = len(self.mechanism.pairs) + len(self._joined_at_points)
@@ -301,7 +301,7 @@ class Structure:
     def tree_pairs(self) -> dict[int, Ends]:
         """The pairs that lead from body to body: all but the spherical ones that are
         cut, those of points, and the free ones."""
-        kept = {number: self._ends[number] for number in self._kept_spherical}
+        kept = {number: self.ends[number] for number in self._kept_spherical}
         points = {
             number: Ends(point.base, point.body, len(point.directions))
             for number, point in self.point_pairs.items()
@@ -322,7 +322,7 @@ class Structure:
         return tuple(self.mechanism.bodies[number] for number in numbers)
 
     def _point_closure(self, number: int) -> Closure:
-        base, moved, _ = self._ends[number]
+        base, moved, _ = self.ends[number]
         chain = chain_between(self.body_count, self.tree_pairs, base, moved)
         assert chain is not None
         center = self.center(number)
