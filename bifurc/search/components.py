@@ -27,6 +27,7 @@ __all__ = [
     "surfaces_through",
 ]
 
+SHAKY = "F' has a lower rank all over it"
 RADIUS = 0.7  # of the largest charts, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked
 # for.
@@ -52,7 +53,8 @@ APART, ERRORS = 1e-5, 10
 @dataclass
 class Components:
     """Numbers of the seeds on components of dimension 2 and more, by dimension, and
-    charts over the surfaces.
+    charts over the surfaces. The seeds ``on_shaky`` surfaces, on which F' has a lower
+    rank everywhere, are apart: charts do not fit there.
 
     Parts of the charts that do not hang together are surfaces of their own: each but
     the last was finished, as far as its singular points, before the next was begun.
@@ -61,6 +63,7 @@ class Components:
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
+    on_shaky: list[int] = field(default_factory=list)
     charts: ChartAtlas | None = None
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
     notes: dict[int, str] = field(default_factory=dict)
@@ -101,6 +104,8 @@ class Components:
         """Connected surfaces as far as there are charts, then what none of them is
         known to hold, by dimension."""
         surfaces: list[Surface] = []
+        if self.on_shaky:
+            surfaces.append(Surface(2, points[self.on_shaky], note=SHAKY))
         for dimension, numbers in sorted(self.seeds.items()):
             samples = points[numbers]
             if dimension == 2 and self.charts is not None:
@@ -167,6 +172,8 @@ def components_of_seeds(
         numbers = doubtful[(local.dimension == dimension) & is_regular]
         if len(numbers):
             components.seeds[int(dimension)] = numbers.tolist()
+    on_shaky = (local.dimension == 2) & local.shaky
+    components.on_shaky = doubtful[on_shaky].tolist()
     return components
 
 

@@ -14,6 +14,7 @@ from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
     is_known_curve,
     is_same_point,
+    may_be_null,
     misses_by_rounding,
     stands_still,
     unit_over_rounding,
@@ -22,7 +23,7 @@ from bifurc.numerics.blur import change_by_blur, rounding_unit
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
-from bifurc.singular.dimension import misclosures_beside
+from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind
 
 __all__ = ["doubts_of"]
@@ -77,16 +78,27 @@ def _is_rounding(problem: Problem, missed: float, points: np.ndarray) -> bool:
 
 
 def _misclosure(problem: Problem, surface: Surface) -> float:
-    """The largest relative residual seen on a surface, infinite where nothing is."""
+    """The largest relative residual seen on a surface, infinite where nothing is.
+
+    Where F' has a lower rank, steps towards a solution beside a sample shrink slowly,
+    and what is left tells nothing: the samples themselves count, as near to solutions
+    as they can be known. Some lie next to where another surface crosses, and are known
+    less well: of these residuals it is the median.
+    """
     seen = np.empty(0)
     if surface.charts is not None:
         seen = problem.gaps(surface.charts.centers)
     samples = surface.samples[:MOST_SAMPLES]
-    _, right = null_spaces(problem, samples)
+    sigma, right = null_spaces(problem, samples)
+    is_regular = np.count_nonzero(may_be_null(sigma), axis=1) == surface.dimension
     missed = misclosures_beside(
-        problem, samples, right[:, problem.n - surface.dimension :]
+        problem, samples[is_regular], right[is_regular, problem.n - surface.dimension :]
     )
     seen = np.concatenate([seen, missed[np.isfinite(missed)]])
+    if not np.all(is_regular):
+        shaky = samples[~is_regular]
+        _, left = project_slowly(problem, shaky, misses_by_rounding)
+        seen = np.append(seen, np.median(left))
     return float(seen.max()) if len(seen) else np.inf
 
 

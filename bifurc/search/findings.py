@@ -152,6 +152,7 @@ class Findings:
         self.components = components
         for dimension, numbers in components.seeds.items():
             self._settle(numbers, SeedFate(Fate.ON_COMPONENT, dimension))
+        self._settle(components.on_shaky, SeedFate(Fate.ON_COMPONENT, 2))
 
     def reopen_seeds(self, numbers: Iterable[int]) -> None:
         """Forget what is known of some seeds."""

@@ -52,7 +52,9 @@ class NearMotionSearch:
         what they reach does not depend on its seed.
         """
         findings = self.findings
-        is_mobile = bool(findings.traced) or bool(findings.components.seeds)
+        components = findings.components
+        is_on_component = bool(components.seeds or components.on_shaky)
+        is_mobile = bool(findings.traced) or is_on_component
         is_asked = self.run.settings.near_motions
         if is_mobile or not is_asked or not len(findings.seeds.missed):
             return

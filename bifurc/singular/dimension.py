@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import (
+    Decision,
     fills_null_space,
     is_across_span,
     is_closed_on_surface,
@@ -30,7 +31,12 @@ from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 
-__all__ = ["LocalDimensions", "local_dimensions", "misclosures_beside"]
+__all__ = [
+    "LocalDimensions",
+    "local_dimensions",
+    "misclosures_beside",
+    "project_slowly",
+]
 
 # Length of the probes, over the scale: at much less, degenerate singular points would
 # look like surfaces.
@@ -45,6 +51,9 @@ AWAY = 0.1
 # Times the root of the residual: the singular value at a solution that is known no
 # better because F is a square.
 HIDDEN = 10.0
+# Residual below which what projection leaves is on its way to a solution, and how many
+# times it is projected again at most.
+SLOW, AGAIN = 1e-6, 3
 # Points probed between two looks at the clock.
 CHUNK = 256
 
@@ -56,12 +65,13 @@ class LocalDimensions:
     ``dimension`` (k,) of the solutions nearby, the largest where several components
     meet, -1 where it was not found; ``nullity`` (k,) of F' at the point; ``regular``
     (k,) whether the solutions nearby are a manifold and F' has the rank that belongs to
-    it.
+    it; ``shaky`` (k,) whether F' has one lower rank at all solutions nearby.
     """
 
     dimension: np.ndarray
     nullity: np.ndarray
     regular: np.ndarray
+    shaky: np.ndarray
 
 
 def local_dimensions(
@@ -82,6 +92,7 @@ def local_dimensions(
     dimension = np.full(count, -1)
     nullity = np.zeros(count, dtype=int)
     regular = np.zeros(count, dtype=bool)
+    shaky = np.zeros(count, dtype=bool)
     for begin in range(0, count, CHUNK):
         if deadline.passed:
             break
@@ -92,18 +103,29 @@ def local_dimensions(
             rows = begin + np.flatnonzero(nullity[part] == k)
             basis = right[rows - begin, problem.n - k :]
             own = _dimensions_of_nullity(problem, points[rows], basis)
-            dimension[rows], regular[rows] = own
-    return LocalDimensions(dimension, nullity, regular)
+            dimension[rows] = own.dimension
+            regular[rows], shaky[rows] = own.regular, own.shaky
+    return LocalDimensions(dimension, nullity, regular, shaky)
+
+
+class _OfNullity(NamedTuple):
+    """``dimension`` (b,) about points b with null spaces of one dimension, whether they
+    are ``regular`` (b,) and whether they are ``shaky`` (b,)."""
+
+    dimension: np.ndarray
+    regular: np.ndarray
+    shaky: np.ndarray
 
 
 def _dimensions_of_nullity(
     problem: Problem, points: np.ndarray, basis: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Dimension and regularity of points (b, n) whose null spaces (b, k, n) all have
-    dimension k."""
+) -> _OfNullity:
+    """What is about points (b, n) whose null spaces (b, k, n) all have dimension k."""
     count, k = basis.shape[:2]
+    shaky = np.zeros(count, dtype=bool)
     if k == 0:
-        return np.zeros(count, dtype=int), np.ones(count, dtype=bool)
+        regular = np.ones(count, dtype=bool)
+        return _OfNullity(np.zeros(count, dtype=int), regular, shaky)
     probes = _probe(problem, points, basis, RADIUS)
     regular = may_fill_null_space(probes.loss.max(axis=1))
     dimension = np.where(regular, k, -1)
@@ -111,7 +133,8 @@ def _dimensions_of_nullity(
         arrived = np.isfinite(probes.loss[i])
         ends = probes.ends[i, arrived]
         coordinates = probes.coordinates[i, arrived]
-        dimension[i] = _dimension_from_ends(problem, ends, coordinates)
+        dimension[i], shaky[i] = _dimension_from_ends(problem, ends, coordinates)
+    shaky &= dimension < k
     full = np.flatnonzero(dimension == k) if k > 1 else np.empty(0, dtype=int)
     if len(full):
         missed = misclosures_beside(problem, points[full], basis[full])
@@ -120,7 +143,7 @@ def _dimensions_of_nullity(
         regular[full] &= is_closed
         # what does not fill all directions of the null space has fewer dimensions
         dimension[full[np.isfinite(missed) & ~is_closed]] = k - 1
-    return dimension, regular
+    return _OfNullity(dimension, regular, shaky)
 
 
 def misclosures_beside(
@@ -177,7 +200,9 @@ def _probe(
     directions = _probe_directions(k)
     length = radius * problem.scale
     starts = points[:, None] + length * (directions @ basis)
-    flat_ends, flat_gaps = problem.project(starts.reshape(-1, n))
+    flat_ends, flat_gaps = project_slowly(
+        problem, starts.reshape(-1, n), is_solution_at_probe
+    )
     ends = flat_ends.reshape(starts.shape)
     gaps = flat_gaps.reshape(count, len(directions))
     offsets = problem.difference(ends, points[:, None])
@@ -185,6 +210,25 @@ def _probe(
     loss = np.linalg.norm(coordinates - directions, axis=2)
     loss[~is_solution_at_probe(gaps)] = np.inf
     return _Probes(ends, coordinates, loss)
+
+
+def project_slowly(
+    problem: Problem, starts: np.ndarray, is_enough: Decision
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solutions (k, n) near ``starts`` and the residual (k,) left at each, also where
+    F' has a lower rank at all solutions nearby: steps shrink slowly there, and are taken
+    until a residual ``is_enough`` or gets no smaller."""
+    ends, gaps = problem.project(starts)
+    slow = np.flatnonzero(gaps < SLOW)
+    for _ in range(AGAIN):
+        slow = slow[~is_enough(gaps[slow])]
+        if not len(slow):
+            break
+        closer, left = problem.project(ends[slow])
+        is_closer = left < 0.5 * gaps[slow]
+        slow = slow[is_closer]
+        ends[slow], gaps[slow] = closer[is_closer], left[is_closer]
+    return ends, gaps
 
 
 @cache
@@ -202,12 +246,13 @@ def _probe_directions(k: int) -> np.ndarray:
 
 def _dimension_from_ends(
     problem: Problem, ends: np.ndarray, coordinates: np.ndarray
-) -> int:
+) -> tuple[int, bool]:
     """Dimension about a point that lost probes, from the ``ends`` (p, n) of the others
-    and their ``coordinates`` (p, k); -1 where the ends do not tell."""
+    and their ``coordinates`` (p, k), -1 where the ends do not tell; and whether they
+    all have the rank of the point."""
     is_away = np.linalg.norm(coordinates, axis=1) > AWAY
     if not np.any(is_away):
-        return 0
+        return 0, False
     ends, coordinates = ends[is_away], coordinates[is_away]
     sigma, right = null_spaces(problem, ends)
     hidden = HIDDEN * np.sqrt(problem.gaps(ends))  # where F is a square
@@ -215,7 +260,7 @@ def _dimension_from_ends(
     nullity = np.count_nonzero(is_null_at_probe(sigma, unit[:, None]), axis=1)
     of_higher_rank = np.flatnonzero(nullity < coordinates.shape[1])
     if not len(of_higher_rank):
-        return _dimension_of_span(coordinates)
+        return _dimension_of_span(coordinates), True
     # the point itself is singular: the solutions are a manifold about the ends
     largest = 0
     for i in of_higher_rank:
@@ -225,7 +270,7 @@ def _dimension_from_ends(
         probes = _probe(problem, ends[i][None], basis, AT_END * RADIUS)
         if fills_null_space(float(probes.loss.max())):
             largest = int(nullity[i])
-    return largest if largest else -1
+    return (largest if largest else -1), False
 
 
 def _dimension_of_span(coordinates: np.ndarray) -> int:

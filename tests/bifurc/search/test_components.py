@@ -194,3 +194,19 @@ def test_a_surface_says_at_how_many_places_singular_points_were_not_looked_for(
 def crossing_planes() -> Problem:
     """Two planes that meet in the x-axis."""
     return FunctionProblem(lambda u: np.array([u[1] * u[2]]), [(-1, 1)] * 3)
+
+
+def test_a_surface_with_a_lower_rank_everywhere_is_one_and_no_heap_of_points():
+    """A sphere counted twice, and the plane that cuts it."""
+
+    def function(u):
+        x, y, z = u
+        return np.array([(x * x + y * y + z * z - 1.0) ** 2 * (z - 0.3)])
+
+    problem = FunctionProblem(function, [(-2, 2)] * 3)
+    settings = SearchSettings(starts=60, charts=0)
+    for seed in range(2):
+        atlas = explore(problem, settings=settings, seed=seed)
+        assert not atlas.points
+        notes = [surface.note for surface in atlas.surfaces]
+        assert sorted(notes) == ["", "F' has a lower rank all over it"]

@@ -48,6 +48,7 @@ def test_a_plane_and_the_line_through_it_have_their_own_dimensions() -> None:
     local = local_dimensions(plane_and_line(), points)
     assert local.dimension.tolist() == [2, 1, 2]
     assert local.regular.tolist() == [True, True, False]
+    assert not np.any(local.shaky)
 
 
 def test_the_dimension_of_a_shaky_plane_is_not_its_corank() -> None:
@@ -56,6 +57,7 @@ def test_the_dimension_of_a_shaky_plane_is_not_its_corank() -> None:
     assert local.dimension[0] == 2
     assert local.nullity[0] == 3
     assert not local.regular[0]
+    assert local.shaky[0]
 
 
 def test_a_curve_at_a_bifurcation_keeps_dimension_one() -> None:

@@ -264,3 +264,15 @@ def test_a_form_that_ends_at_limits_makes_no_turns():
         assert not form.branch.closed
         ranges = form_facts(atlas, index, readout).ranges
         assert [one.turns for one in ranges] == [0] * len(ranges)
+
+
+# With slides at all four axes of a Bennett linkage the flat states of its turns let all
+# slides move in two ways: planes on which F' has rank 5.
+@pytest.mark.parametrize("seed", [0, 8])
+def test_pure_slides_of_four_cylindrical_joints_are_a_surface(seed):
+    mechanism = mechanism_of_case(cases()["Bennett geometry with joints CCCC"])
+    settings = SearchSettings(starts=60, charts=0)
+    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    assert counts(atlas) == (0, [], [2], 0)
+    notes = [surface.note for surface in atlas.surfaces]
+    assert sorted(notes) == ["", "F' has a lower rank all over it"]
