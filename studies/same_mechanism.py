@@ -239,15 +239,21 @@ def _named(names: Sequence[str]) -> dict[str, KnownMechanism]:
 @click.option(
     "--budget", type=click.FloatRange(min=1.0), default=60.0, show_default=True
 )
+@click.option("--starts", type=click.IntRange(1), default=200, show_default=True)
 @click.option("--charts", type=click.IntRange(0), default=0, show_default=True)
 @click.option("--out", type=FOLDER, default=Path("out/same_mechanism"))
 def main(
-    names: tuple[str, ...], seeds: int, budget: float, charts: int, out: Path
+    names: tuple[str, ...],
+    seeds: int,
+    budget: float,
+    starts: int,
+    charts: int,
+    out: Path,
 ) -> None:
     """Run the study; write maps.csv and summary.txt. The exit code is 1 where a map
     differs."""
     chosen = _named(names)
-    settings = SearchSettings(budget=budget, charts=charts)
+    settings = SearchSettings(starts=starts, budget=budget, charts=charts)
     out.mkdir(parents=True, exist_ok=True)
     misses = {name: fact_misses(known) for name, known in chosen.items()}
     maps = (
