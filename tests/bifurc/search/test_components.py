@@ -197,13 +197,13 @@ def crossing_planes() -> Problem:
 
 
 def test_a_surface_with_a_lower_rank_everywhere_is_one_and_no_heap_of_points():
-    """A sphere counted twice, and the plane that cuts it."""
+    """A sphere on which F has a minimum, and the plane that cuts it."""
 
     def function(u):
         x, y, z = u
-        return np.array([(x * x + y * y + z * z - 1.0) ** 2 * (z - 0.3)])
+        return np.array([(1.0 - np.cos(x * x + y * y + z * z - 1.0)) * (z - 0.3)])
 
-    problem = FunctionProblem(function, [(-2, 2)] * 3)
+    problem = FunctionProblem(function, [(-1.5, 1.5)] * 3)
     settings = SearchSettings(starts=60, charts=0)
     for seed in range(2):
         atlas = explore(problem, settings=settings, seed=seed)
