@@ -620,6 +620,15 @@ is_precise_enough = Decision(
     "at a simple point it is 1e-11 and less, at others 1e-8 and more",
     Role.LOOK,
 )
+is_lost_in_rounding = Decision(
+    "lost in rounding",
+    "doubles lose a branch beside a singular point of high order, and the germ has it",
+    "smallest regular singular value on the branch",
+    1e-5,
+    "there a place is known to 1e-10, and another branch is no nearer than 1e-5 or so; "
+    "branches were seen to be lost below 1e-7",
+    Role.LOOK,
+)
 is_simple = Decision(
     "simple singular point",
     "the iteration comes back to a point at once, which is known to rounding",

@@ -30,7 +30,12 @@ from bifurc.problem import (
     Problem,
 )
 
-__all__ = ["bridge_by_collocation", "march_by_collocation", "reparametrised"]
+__all__ = [
+    "bridge_by_collocation",
+    "march_by_collocation",
+    "piece_through",
+    "reparametrised",
+]
 
 PREDICT_FROM = 10  # nodes through which the next one is predicted
 LOOSE = 30  # times the tolerance: the residual that a piece may have between its nodes
@@ -322,6 +327,14 @@ def reparametrised(piece: np.ndarray) -> tuple[np.ndarray, float]:
     as parameter; and its length."""
     to_powers = _basis(len(piece) - 1).to_powers
     return _by_arclength(np.linalg.solve(to_powers, piece))
+
+
+def piece_through(curve: Callable[[np.ndarray], np.ndarray], order: int) -> Piece:
+    """The piece of an ``order`` with arclength as parameter along a ``curve`` that gives
+    points (k, n) at places (k,) in [-1, 1]; its residual is not known."""
+    basis = _basis(order)
+    coefficients, length = _by_arclength(basis.from_values @ curve(basis.nodes))
+    return Piece(coefficients, length, np.nan)
 
 
 def _by_arclength(coefficients: np.ndarray) -> tuple[np.ndarray, float]:

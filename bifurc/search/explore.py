@@ -133,6 +133,7 @@ def _explored(
             search.cover_surfaces()
             search.separate_points()
             search.join_branches()
+            search.mend_at_germs()
             search.audit_branches()
             search.near_motions.look()
     except KeyboardInterrupt:

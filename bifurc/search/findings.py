@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import compress
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from bifurc.search.components import Components
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeds import Audit, Seeds
 from bifurc.singular.point import SingularPoint
+
+if TYPE_CHECKING:
+    from bifurc.singular.germ import Germ  # mpmath takes long to import
 
 __all__ = ["NO_DOUBT", "Doubt", "Findings", "PointSighting", "TracedBranch"]
 
@@ -116,6 +119,7 @@ class Findings:
         self.fates: dict[int, SeedFate] = {}
         self.traced: list[TracedBranch] = []
         self.points: list[SingularPoint] = []
+        self.germs: list[Germ] = []  # of some of the points
         self.rigid: list[np.ndarray] = []
         self.hidden: list[float] = []  # about each of them
         self.near_motions: list[NearMotionTrace] = []
@@ -196,6 +200,23 @@ class Findings:
                 continue
             branch = one if fate.number == other else fate.number
             self.fates[number] = SeedFate(Fate.ON_FORM, branch - (branch > other))
+        self.awaits_audit = True
+
+    def supersede_branches(
+        self, numbers: Sequence[int], traced: Sequence[TracedBranch]
+    ) -> None:
+        """Put branches in the place of those with some ``numbers``, and forget which
+        seeds lie on these."""
+        kept = [k for k in range(len(self.traced)) if k not in numbers]
+        renumbered = {number: place for place, number in enumerate(kept)}
+        self.traced = [self.traced[number] for number in kept] + list(traced)
+        for seed, fate in list(self.fates.items()):
+            if fate.fate is not Fate.ON_FORM:
+                continue
+            if fate.number in renumbered:
+                self.fates[seed] = SeedFate(Fate.ON_FORM, renumbered[fate.number])
+            else:
+                del self.fates[seed]
         self.awaits_audit = True
 
     def branch_through(self, point: np.ndarray, within: float = 0.0) -> int | None:
@@ -294,6 +315,30 @@ class Findings:
         """A singular point just recorded."""
         self.points.append(point)
         return PointSighting(point, len(self.points) - 1, is_new=True)
+
+    def add_germ(self, germ: Germ) -> None:
+        """Record the germ of a known singular point, and forget those that doubles saw
+        on its branches and more digits did not."""
+        self.germs.append(germ)
+        self.points = [
+            point
+            for point in self.points
+            if point.is_confirmed or not self._is_hidden_by(germ, point.u)
+        ]
+
+    def point_hidden_at(self, u: np.ndarray) -> PointSighting | None:
+        """The known singular point on whose branches a place ``u`` (n,) lies, where
+        doubles lose them."""
+        for germ in self.germs:
+            if self._is_hidden_by(germ, u):
+                return self.point_at(germ.u, 0.0)
+        return None
+
+    def _is_hidden_by(self, germ: Germ, u: np.ndarray) -> bool:
+        """Whether doubles lose a place ``u`` (n,) on the branches of a germ."""
+        if germ.neighbourhood is None:
+            return False
+        return germ.neighbourhood.holds(self.problem.difference(u, germ.u))
 
     def point_near(self, u: np.ndarray, within: float) -> PointSighting | None:
         """The first known singular point at less than ``within`` scales from ``u``

@@ -42,6 +42,9 @@ class PointSearch:
         """The singular point of a curve at less than ``reach`` scales from a solution
         ``near`` (n,); ``nullity`` is the most likely one."""
         problem = self.problem
+        hidden = self.findings.point_hidden_at(near)
+        if hidden is not None:
+            return hidden
         nullities = {max(nullity, 2), 2, 3}
         for k in sorted(nullities, key=lambda k: abs(k - nullity)):
             if k > problem.n:
@@ -74,15 +77,25 @@ class PointSearch:
 
     def sight(self, located: LocatedPoint) -> PointSighting:
         """The known singular point that a located one is, or a new one, classified."""
-        known = self.findings.point_at(located.u, located.error)
+        known = self._known(located)
         if known is not None:
             return known
         located, germ = self._in_more_digits(located)
-        known = self.findings.point_at(located.u, located.error)
+        known = self._known(located)
         if known is not None:
             return known
         point = classify_singular_point(self.problem, located, germ=germ)
+        if germ is not None:
+            self.findings.add_germ(germ)
         return self.findings.add_point(point)
+
+    def _known(self, located: LocatedPoint) -> PointSighting | None:
+        """The known singular point that a located one is, or on whose branches it lies
+        where doubles lose them."""
+        known = self.findings.point_at(located.u, located.error)
+        if known is not None or is_precise_enough(located.error, self.problem.scale):
+            return known
+        return self.findings.point_hidden_at(located.u)
 
     def _in_more_digits(
         self, located: LocatedPoint

@@ -228,6 +228,9 @@ class Search:
         branch = self.findings.branch_through(point, within)
         if branch is not None:
             return SeedFate(Fate.ON_FORM, branch)
+        hidden = self.findings.point_hidden_at(point)
+        if hidden is not None:
+            return SeedFate(Fate.AT_SINGULAR_POINT, hidden.number)
         direction = lower_rank_direction(self.problem, point)
         if direction is not None:
             fate = self._trace_lower_rank(point, direction)
@@ -462,6 +465,17 @@ class Search:
             starts += half_branch_starts(closer)
         findings.merge_points(hidden)
         self._branch_off(starts)
+
+    def mend_at_germs(self) -> None:
+        """Trace the branches again that do not follow the germs of singular points."""
+        if not self.findings.germs or self.run.is_over:
+            return
+        # what it needs takes long to import
+        from bifurc.search.germ_mending import GermMender
+
+        starts = GermMender(self.run, self.examiner).mend()
+        self._branch_off(starts)
+        self.trace_seeds()
 
     def join_branches(self) -> None:
         """Take two branches that stall at a point which a single branch passes for one,

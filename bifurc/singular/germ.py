@@ -21,6 +21,11 @@ from bifurc.problem import PreciseResidual, Problem
 from bifurc.singular.confirm import Differences
 from bifurc.singular.discriminant import invariants_of
 from bifurc.singular.invariants import Invariants
+from bifurc.singular.local_branches import (
+    LiftedEquation,
+    Neighbourhood,
+    neighbourhood_of,
+)
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.puiseux import (
     HalfBranch,
@@ -50,13 +55,22 @@ AMISS = 2.0  # times the distance from the place in doubles is its error
 @dataclass(frozen=True, eq=False)
 class Germ:
     """The exact point ``u`` (n,), the tangents ``directions`` (h, n) of its
-    half-branches, the numbers of the two halves of each of its ``branches``, and its
-    ``invariants``, None where the terms known do not tell its complex branches apart."""
+    half-branches, the numbers of the two halves of each of its ``branches``, these
+    themselves, in the ``neighbourhood`` in which doubles lose them, None where they are
+    not known so far, and its ``invariants``, None where the terms known do not tell its
+    complex branches apart."""
 
     u: np.ndarray
     directions: np.ndarray
     branches: tuple[tuple[int, int], ...]
+    neighbourhood: Neighbourhood | None = None
     invariants: Invariants | None = None
+
+    @property
+    def radius(self) -> float:
+        """How far from the point doubles lose its branches; 0 where that is not
+        known."""
+        return 0.0 if self.neighbourhood is None else self.neighbourhood.radius
 
     @property
     def is_through(self) -> bool | None:
@@ -110,14 +124,14 @@ def _germ(
         if halves is None or pairs is None:
             return None
         slope = float(straight.bend[1])
-        return Germ(
-            u=reduction.place(),
-            directions=_directions(reduction, halves, slope),
-            branches=pairs,
-            invariants=invariants_of(
-                straight.terms, DEGREE, [halves[one].series() for one, _ in pairs]
-            ),
+        directions = _directions(reduction, halves, slope)
+        place = reduction.place()
+        invariants = invariants_of(
+            straight.terms, DEGREE, [halves[one].series() for one, _ in pairs]
         )
+        equation = reduction.lifted(straight)
+        around = neighbourhood_of(problem, place, equation, halves, pairs)
+        return Germ(place, directions, pairs, around, invariants)
 
 
 def _directions(
@@ -192,6 +206,25 @@ class _Reduction:
                 shift = mpmath.matrix([i * step, j * step])
                 values[i, j] = self._value(shift)
             return _polynomial(values, step)
+
+    def lifted(self, straight: _Straightened) -> LiftedEquation:
+        """f about the place in the coordinates in which it is ``straight``, at the digits
+        that are set."""
+        self._prepare(mpmath.mpf(10) ** -LAST)
+        center = self._point(mpmath.matrix([0, 0]))
+
+        def shift(x: mpmath.mpf, y: mpmath.mpf) -> mpmath.matrix:
+            above = mpmath.polyval(straight.bend[::-1], x) + y
+            return straight.unit * mpmath.matrix([x, above])
+
+        def value(x: mpmath.mpf, y: mpmath.mpf) -> mpmath.mpf:
+            return self._value(shift(x, y))
+
+        def offset(x: mpmath.mpf, y: mpmath.mpf) -> np.ndarray:
+            apart = self._point(shift(x, y)) - center
+            return np.array([float(component) for component in apart])
+
+        return LiftedEquation(value, offset, straight.unit)
 
     def _prepare(self, step: mpmath.mpf) -> None:
         """Invert F' of the equations that are solved across the null space."""
@@ -294,10 +327,12 @@ def _powers(shares: list[mpmath.mpf]) -> list[mpmath.mpf]:
 
 class _Straightened(NamedTuple):
     """The ``terms`` of f(x, y + bend(x)), in which there is none with y to the power of
-    the order of f less one; ``bend`` is a power series."""
+    the order of f less one; ``bend`` is a power series. x and y count in a ``unit``,
+    in scales."""
 
     terms: dict[tuple[int, int], mpmath.mpf]
     bend: list[mpmath.mpf]
+    unit: mpmath.mpf
 
 
 class _Multiplicity(NamedTuple):
@@ -334,7 +369,7 @@ def _settled_as(
     for digits in (*ROUNDS[1:], LAST):
         with mpmath.workdps(LAST + SPARE):
             unit = _own_unit(terms, multiplicity.order)
-            straight = _straightened(_in_unit(terms, unit), multiplicity.order)
+            straight = _straightened(terms, unit, multiplicity.order)
             x = _root(straight.terms, multiplicity)
             shift = mpmath.matrix([x, mpmath.polyval(straight.bend[::-1], x)])
             if mpmath.norm(shift) > 1:
@@ -344,7 +379,7 @@ def _settled_as(
         terms = reduction.taylor(digits)
     with mpmath.workdps(LAST + SPARE):
         unit = _own_unit(terms, multiplicity.order)
-        straight = _straightened(_in_unit(terms, unit), multiplicity.order)
+        straight = _straightened(terms, unit, multiplicity.order)
         clean = without_zeros(straight.terms)
         if min(i + j for i, j in clean) < multiplicity.order:
             return None
@@ -375,7 +410,7 @@ def _multiplicities(terms: Terms) -> list[_Multiplicity]:
         if order < 2:
             continue
         unit = _own_unit(terms, order)
-        straight = _straightened(_in_unit(terms, unit), order)
+        straight = _straightened(terms, unit, order)
         for row in range(order - 1):
             series = [straight.terms[i, row] for i in range(DEGREE + 1 - row)]
             powers = _roots_together(series)
@@ -416,9 +451,11 @@ def _root(terms: Terms, multiplicity: _Multiplicity) -> mpmath.mpf:
     return root
 
 
-def _straightened(terms: Terms, order: int) -> _Straightened:
-    """The terms of f, of an ``order``, over the curve on which one derivative of f by y
-    vanishes, so that all branches lie about it (Tschirnhausen's substitution)."""
+def _straightened(terms: Terms, unit: mpmath.mpf, order: int) -> _Straightened:
+    """The terms of f, of an ``order``, in a ``unit``, over the curve on which one
+    derivative of f by y vanishes, so that all branches lie about it (Tschirnhausen's
+    substitution)."""
+    terms = _in_unit(terms, unit)
     bend = _bend(terms, order)
     rows = [[terms[i, j] for i in range(DEGREE + 1 - j)] for j in range(DEGREE + 1)]
     rows = [row + [mpmath.mpf(0)] * (DEGREE + 1 - len(row)) for row in rows]
@@ -426,7 +463,8 @@ def _straightened(terms: Terms, order: int) -> _Straightened:
         for j in range(DEGREE - 1, level - 1, -1):
             product = _product(rows[j + 1], bend)
             rows[j] = [a + b for a, b in zip(rows[j], product, strict=True)]
-    return _Straightened({(i, j): rows[j][i] for i, j in _up_to(DEGREE)}, bend)
+    straight = {(i, j): rows[j][i] for i, j in _up_to(DEGREE)}
+    return _Straightened(straight, bend, unit)
 
 
 def _bend(terms: Terms, order: int) -> list[mpmath.mpf]:
