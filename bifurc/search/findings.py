@@ -16,6 +16,7 @@ from bifurc.curves.near_motion import NearMotionTrace
 from bifurc.curves.near_surface import NearSurface
 from bifurc.decisions import (
     Decision,
+    is_lost_in_rounding,
     is_same_point,
     is_weakly_isolated,
     may_be_known,
@@ -317,28 +318,45 @@ class Findings:
         return PointSighting(point, len(self.points) - 1, is_new=True)
 
     def add_germ(self, germ: Germ) -> None:
-        """Record the germ of a known singular point, and forget those that doubles saw
-        on its branches and more digits did not."""
+        """Record the germ of a singular point that is recorded next, and forget what
+        doubles saw where they lose its branches: points that more digits did not show,
+        and assemblies."""
         self.germs.append(germ)
         self.points = [
             point
             for point in self.points
             if point.is_confirmed or not self._is_hidden_by(germ, point.u)
         ]
+        ghosts = [k for k, u in enumerate(self.rigid) if self._is_hidden_by(germ, u)]
+        for number in reversed(ghosts):
+            self._forget_assembly(number, len(self.points))
+
+    def _forget_assembly(self, number: int, point: int) -> None:
+        """Forget a rigid assembly; the seeds there are at a singular ``point``, given by
+        its number."""
+        del self.rigid[number]
+        del self.hidden[number]
+        for seed, fate in list(self.fates.items()):
+            if fate == SeedFate(Fate.RIGID, number):
+                self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, point)
+            elif fate.fate is Fate.RIGID and fate.number > number:
+                self.fates[seed] = SeedFate(Fate.RIGID, fate.number - 1)
 
     def point_hidden_at(self, u: np.ndarray) -> PointSighting | None:
-        """The known singular point on whose branches a place ``u`` (n,) lies, where
-        doubles lose them."""
+        """The known singular point whose branches doubles lose at a place ``u`` (n,):
+        what they see there is the point, or a branch of it, or nothing at all."""
         for germ in self.germs:
             if self._is_hidden_by(germ, u):
                 return self.point_at(germ.u, 0.0)
         return None
 
     def _is_hidden_by(self, germ: Germ, u: np.ndarray) -> bool:
-        """Whether doubles lose a place ``u`` (n,) on the branches of a germ."""
-        if germ.neighbourhood is None:
+        """Whether doubles lose the branches of a germ at a place ``u`` (n,)."""
+        distance = self._distance(u, germ.u)
+        if distance >= germ.radius:
             return False
-        return germ.neighbourhood.holds(self.problem.difference(u, germ.u))
+        values = singular_values(self.problem, u[None])[0]
+        return is_lost_in_rounding(float(values[self.problem.n - 2]))
 
     def point_near(self, u: np.ndarray, within: float) -> PointSighting | None:
         """The first known singular point at less than ``within`` scales from ``u``

@@ -6,7 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bifurc.decisions import closes_to_rounding, is_precise_enough
+from bifurc.decisions import (
+    closes_to_rounding,
+    is_lost_in_rounding,
+    is_precise_enough,
+)
+from bifurc.numerics.singular_values import singular_values
 from bifurc.search.findings import PointSighting
 from bifurc.search.run import Run
 from bifurc.singular.classify import classify_singular_point
@@ -22,6 +27,7 @@ __all__ = ["BRANCH_REACH", "SEED_REACH", "PointSearch"]
 # Over the problem's scale.
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
+MOST_MISSED = 6  # places at which a germ is looked for, and is not there
 
 
 class PointSearch:
@@ -35,6 +41,7 @@ class PointSearch:
         self.run = run
         self.problem = run.problem
         self.findings = run.findings
+        self._germs_missed = 0
 
     def near(
         self, near: np.ndarray, nullity: int, reach: float, misclosure: float = 0.0
@@ -59,7 +66,33 @@ class PointSearch:
                 return known
             if not is_on_surface(problem, located.u):
                 return self.sight(located)
-        return None
+        return self._by_germ(near, reach)
+
+    def _by_germ(self, near: np.ndarray, reach: float) -> PointSighting | None:
+        """The singular point at less than ``reach`` scales from a place ``near`` (n,) at
+        which rounding hides that F' is regular, if the exact equations have its germ:
+        at a point of high order the iteration in doubles does not settle."""
+        problem = self.problem
+        if not problem.is_exact or self._germs_missed >= MOST_MISSED or problem.n < 2:
+            return None
+        values = singular_values(problem, near[None])[0]
+        if not is_lost_in_rounding(float(values[problem.n - 2])):
+            return None
+        # mpmath takes longer to import than an ordinary search
+        from bifurc.singular.germ import germ_at, placed_at
+
+        _, _, right = np.linalg.svd(problem.relative_jacobians(near[None])[0])
+        null_space = right[problem.n - 2 :].T
+        place = LocatedPoint(near, null_space, reach * problem.scale)
+        germ = germ_at(problem, place)
+        moved = np.inf if germ is None else problem.difference(germ.u, near)
+        if germ is None or np.linalg.norm(moved) > reach * problem.scale:
+            self._germs_missed += 1
+            return None
+        error = float(np.linalg.norm(moved))
+        return self._record(
+            placed_at(LocatedPoint(near, null_space, error), germ), germ
+        )
 
     def at_assembly(self, point: np.ndarray) -> int | None:
         """The number of the isolated singular point at which solutions next to
@@ -81,6 +114,11 @@ class PointSearch:
         if known is not None:
             return known
         located, germ = self._in_more_digits(located)
+        return self._record(located, germ)
+
+    def _record(self, located: LocatedPoint, germ: Germ | None) -> PointSighting:
+        """The known singular point that a located one is, or a new one, classified; its
+        ``germ`` may be known."""
         known = self._known(located)
         if known is not None:
             return known

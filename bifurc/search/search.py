@@ -200,6 +200,9 @@ class Search:
         assembly of its own, besides those where the misclosure passes zero.
         """
         findings = self.findings
+        blurred = findings.point_hidden_at(point)
+        if blurred is not None:
+            return SeedFate(Fate.AT_SINGULAR_POINT, blurred.number)
         solution = polished(self.problem, point)
         place = (solution.point, solution.stiffness, solution.hidden)
         known = findings.rigid_at(*place)

@@ -33,8 +33,6 @@ NEGLIGIBLE = 1e-13  # beside its size
 NEWTON_STEPS, SETTLED = 40, 1e-40
 STEP = 1e-45  # of the difference for a derivative
 PREDICT_FROM = 4  # values before
-ALONG = 1e-2  # distance of a place from a branch, over that from the point: it is on it
-LOOKS = np.geomspace(1e-4, 1.0, 100)  # s of places on either half of a branch
 
 Reduced: TypeAlias = Callable[[mpmath.mpf, mpmath.mpf], mpmath.mpf]
 
@@ -88,17 +86,6 @@ class Neighbourhood:
     radius: float
     branches: tuple[LocalBranch, ...]
 
-    def holds(self, offset: np.ndarray) -> bool:
-        """Whether a place at an ``offset`` (n,) from the point is one of the branches,
-        as far as doubles tell."""
-        distance = float(np.linalg.norm(offset))
-        if distance >= self.radius:
-            return False
-        if not self.branches:
-            return True
-        gaps = [_distance_from_line(branch, offset) for branch in self.branches]
-        return min(gaps) <= ALONG * distance
-
     def ends(self) -> np.ndarray:
         """Where each half-branch ends (h, n), less the point, in their order."""
         count = 2 * len(self.branches)
@@ -134,17 +121,6 @@ def neighbourhood_of(
     ends = Neighbourhood(0.0, tuple(branches)).ends()
     radius = float(np.linalg.norm(ends, axis=1).min())
     return Neighbourhood(radius, tuple(branches))
-
-
-def _distance_from_line(branch: LocalBranch, offset: np.ndarray) -> float:
-    """How far an ``offset`` (n,) is from the line through places of a branch."""
-    places = np.concatenate([-LOOKS[::-1], [0.0], LOOKS])
-    points = branch(places)
-    steps = np.diff(points, axis=0)
-    squares = np.maximum(np.sum(steps**2, axis=1), np.finfo(float).tiny)
-    shares = np.sum((offset - points[:-1]) * steps, axis=1) / squares
-    feet = points[:-1] + np.clip(shares, 0.0, 1.0)[:, None] * steps
-    return float(np.linalg.norm(offset - feet, axis=1).min())
 
 
 # --- how far ---------------------------------------------------------------------------
