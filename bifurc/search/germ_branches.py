@@ -21,7 +21,7 @@ from bifurc.curves.track import Place
 from bifurc.decisions import is_same_point
 from bifurc.problem import Problem
 from bifurc.search.branch_parts import followed_by, joined_outcome, part_of
-from bifurc.search.local_curves import branch_of, curve_through, half_curve
+from bifurc.search.local_curves import curve_through, half_curve
 from bifurc.singular.germ import Germ
 
 __all__ = ["branches_of_germs", "ends_of", "passes_inside"]
@@ -63,8 +63,9 @@ class _Arc(NamedTuple):
 
 def ends_of(germ: Germ) -> np.ndarray:
     """Where the half-branches (h, n) of a germ are handed over."""
-    assert germ.neighbourhood is not None
-    return germ.u + germ.neighbourhood.ends().reshape(-1, len(germ.u))
+    offsets = germ.neighbourhood.ends()
+    ends: np.ndarray = germ.u + offsets.reshape(-1, len(germ.u))
+    return ends
 
 
 def passes_inside(branch: Branch, germ: Germ) -> np.ndarray:
@@ -166,7 +167,7 @@ class _Tracer:
     def branches(self) -> list[Branch] | None:
         """The branches that the arcs are together with those inside; None where a part
         of one is no solution."""
-        branches: list[Branch] = []
+        branches: list[Branch | None] = []
         waiting = set(self._arcs)
         ends = sorted(waiting)
         loose = [end for end in ends if self._arcs[end].end is None]
@@ -177,7 +178,8 @@ class _Tracer:
                     branches.append(self._walked(begin, kind, waiting))
         while waiting:
             branches.append(self._walked(min(waiting), _Begin.BETWEEN, waiting))
-        return None if None in branches else branches
+        whole = [branch for branch in branches if branch is not None]
+        return whole if len(whole) == len(branches) else None
 
     def _walked(
         self, begin: HalfEnd, kind: _Begin, waiting: set[HalfEnd]
@@ -228,7 +230,7 @@ class _Tracer:
 
     def _partner(self, end: HalfEnd) -> HalfEnd | None:
         """The end of the other half of a branch; None where it is a cusp."""
-        branch = branch_of(self.germs[end.germ], end.half)
+        branch = self.germs[end.germ].neighbourhood.branch_of(end.half)
         if branch.returns:
             return None
         one, other = branch.halves

@@ -78,12 +78,14 @@ class GermMender:
     def _is_followed(self, germ: Germ) -> bool:
         """Whether one branch passes each end of the half-branches of a germ, and goes on
         from there as the germ does."""
-        assert germ.neighbourhood is not None
         passing = [self._passes(end) for end in ends_of(germ)]
         if not passing:
             branches = self.findings.branches
             return not any(len(passes_inside(branch, germ)) for branch in branches)
         if any(len(passes) != 1 for passes in passing):
+            return False
+        passed = {passes[0].branch for passes in passing}
+        if any(self.findings.traced[number].is_refused for number in passed):
             return False
         return all(
             self._follows(branch, *(passing[half][0] for half in branch.halves))

@@ -14,7 +14,7 @@ from bifurc.search.branch_parts import with_piece_between
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import LocalBranch
 
-__all__ = ["branch_of", "curve_through", "half_curve"]
+__all__ = ["curve_through", "half_curve"]
 
 PARTS = 8  # of a branch that is smooth at the point, each a piece
 # Towards a point at which it is not every piece is shorter by this factor, down to a
@@ -25,7 +25,7 @@ CHECKS = np.linspace(-1.0, 1.0, 9)  # of a piece, where its residual is seen
 
 def half_curve(problem: Problem, germ: Germ, half: int, order: int) -> Branch:
     """The half-branch of a number, from where it ends into the point."""
-    branch = branch_of(germ, half)
+    branch = germ.neighbourhood.branch_of(half)
     side = branch.side(half)
     edges = [*_shrinking(branch.ramification), 0.0]
     return _curve(problem, germ, branch, side * np.array(edges), order)
@@ -34,7 +34,7 @@ def half_curve(problem: Problem, germ: Germ, half: int, order: int) -> Branch:
 def curve_through(problem: Problem, germ: Germ, half: int, order: int) -> Branch | None:
     """The branch that a half-branch of a number belongs to, from where that ends through
     the point; None where no polynomial leads across the point."""
-    branch = branch_of(germ, half)
+    branch = germ.neighbourhood.branch_of(half)
     side = branch.side(half)
     if branch.ramification == 1:
         edges = np.linspace(side, -side, PARTS + 1)
@@ -43,12 +43,6 @@ def curve_through(problem: Problem, germ: Germ, half: int, order: int) -> Branch
     before = _curve(problem, germ, branch, side * shrinking, order)
     after = _curve(problem, germ, branch, -side * shrinking[::-1], order)
     return with_piece_between(problem, germ.u, before, after, Outcome.STALLED)
-
-
-def branch_of(germ: Germ, half: int) -> LocalBranch:
-    """The branch to which the half-branch of a number belongs."""
-    assert germ.neighbourhood is not None
-    return next(b for b in germ.neighbourhood.branches if half in b.halves)
 
 
 def _shrinking(ramification: int) -> list[float]:

@@ -49,9 +49,6 @@ class PointSearch:
         """The singular point of a curve at less than ``reach`` scales from a solution
         ``near`` (n,); ``nullity`` is the most likely one."""
         problem = self.problem
-        hidden = self.findings.point_hidden_at(near)
-        if hidden is not None:
-            return hidden
         nullities = {max(nullity, 2), 2, 3}
         for k in sorted(nullities, key=lambda k: abs(k - nullity)):
             if k > problem.n:
@@ -66,7 +63,8 @@ class PointSearch:
                 return known
             if not is_on_surface(problem, located.u):
                 return self.sight(located)
-        return self._by_germ(near, reach)
+        hidden = self.findings.point_hidden_at(near)
+        return self._by_germ(near, reach) if hidden is None else hidden
 
     def _by_germ(self, near: np.ndarray, reach: float) -> PointSighting | None:
         """The singular point at less than ``reach`` scales from a place ``near`` (n,) at

@@ -56,21 +56,20 @@ AMISS = 2.0  # times the distance from the place in doubles is its error
 class Germ:
     """The exact point ``u`` (n,), the tangents ``directions`` (h, n) of its
     half-branches, the numbers of the two halves of each of its ``branches``, these
-    themselves, in the ``neighbourhood`` in which doubles lose them, None where they are
-    not known so far, and its ``invariants``, None where the terms known do not tell its
-    complex branches apart."""
+    themselves, in the ``neighbourhood`` in which doubles lose them, and its
+    ``invariants``, None where the terms known do not tell its complex branches apart."""
 
     u: np.ndarray
     directions: np.ndarray
     branches: tuple[tuple[int, int], ...]
-    neighbourhood: Neighbourhood | None = None
+    neighbourhood: Neighbourhood
     invariants: Invariants | None = None
 
     @property
     def radius(self) -> float:
         """How far from the point doubles lose its branches; 0 where that is not
         known."""
-        return 0.0 if self.neighbourhood is None else self.neighbourhood.radius
+        return self.neighbourhood.radius
 
     @property
     def is_through(self) -> bool | None:

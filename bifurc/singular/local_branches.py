@@ -21,7 +21,13 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.singular.puiseux import HalfBranch
 
-__all__ = ["LocalBranch", "Neighbourhood", "Reduced", "neighbourhood_of"]
+__all__ = [
+    "UNKNOWN",
+    "LiftedEquation",
+    "LocalBranch",
+    "Neighbourhood",
+    "neighbourhood_of",
+]
 
 # Places on the half-branches at which F' is looked at, in the unit of the germ and in
 # scales: from the first on every next one twice as far away, up to the last.
@@ -81,10 +87,15 @@ class LocalBranch:
 @dataclass(frozen=True, eq=False)
 class Neighbourhood:
     """The ``branches`` within a ``radius`` of a singular point, all of which end there
-    or beyond, where doubles do not lose them any more."""
+    or beyond, where doubles do not lose them any more; a radius of 0 where they are not
+    known so far."""
 
     radius: float
     branches: tuple[LocalBranch, ...]
+
+    def branch_of(self, half: int) -> LocalBranch:
+        """The branch to which the half-branch of a number belongs."""
+        return next(branch for branch in self.branches if half in branch.halves)
 
     def ends(self) -> np.ndarray:
         """Where each half-branch ends (h, n), less the point, in their order."""
@@ -96,27 +107,29 @@ class Neighbourhood:
         return ends
 
 
+UNKNOWN = Neighbourhood(0.0, ())
+
+
 def neighbourhood_of(
     problem: Problem,
     point: np.ndarray,
     equation: LiftedEquation,
     halves: Sequence[HalfBranch],
     pairs: Sequence[tuple[int, int]],
-) -> Neighbourhood | None:
+) -> Neighbourhood:
     """The branches at a singular ``point`` (n,) that are made of ``pairs`` of
-    ``halves``; None where F' is nowhere regular on them, or they are not smooth so
+    ``halves``; `UNKNOWN` where F' is nowhere regular on them, or they are not smooth so
     far. Works at the digits that are set."""
     if not halves:
-        radius = _radius_of_isolated(equation)
-        return None if radius is None else Neighbourhood(radius, ())
+        return Neighbourhood(_radius_of_isolated(equation), ())
     width = _regular_width(problem, point, equation, halves)
     if width is None:
-        return None
+        return UNKNOWN
     branches: list[LocalBranch] = []
     for pair in pairs:
         branch = _local_branch(equation, halves, pair, width)
         if branch is None:
-            return None
+            return UNKNOWN
         branches.append(branch)
     ends = Neighbourhood(0.0, tuple(branches)).ends()
     radius = float(np.linalg.norm(ends, axis=1).min())
@@ -145,9 +158,9 @@ def _regular_width(
     return None
 
 
-def _radius_of_isolated(equation: LiftedEquation) -> float | None:
+def _radius_of_isolated(equation: LiftedEquation) -> float:
     """How far from an isolated point the equation is solved but for rounding, at most;
-    None where that is too far.
+    0 where that is too far.
 
     The coordinates are such that f is about smallest where y = 0.
     """
@@ -159,7 +172,7 @@ def _radius_of_isolated(equation: LiftedEquation) -> float | None:
             offset = equation.offset(x, mpmath.mpf(0))
             return float(np.linalg.norm(offset))
         x *= 2
-    return None
+    return 0.0
 
 
 # --- along a branch --------------------------------------------------------------------
