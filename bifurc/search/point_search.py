@@ -15,7 +15,11 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.search.findings import PointSighting
 from bifurc.search.run import Run
 from bifurc.singular.classify import classify_singular_point
-from bifurc.singular.locate import LocatedPoint, locate_singular_point
+from bifurc.singular.locate import (
+    MOST_FOR_GERM,
+    LocatedPoint,
+    locate_singular_point,
+)
 from bifurc.singular.point import Kind
 from bifurc.singular.sphere import is_on_surface
 
@@ -71,7 +75,8 @@ class PointSearch:
         which rounding hides that F' is regular, if the exact equations have its germ:
         at a point of high order the iteration in doubles does not settle."""
         problem = self.problem
-        if not problem.is_exact or self._germs_missed >= MOST_MISSED or problem.n < 2:
+        is_possible = problem.is_exact and 2 <= problem.n <= MOST_FOR_GERM
+        if not is_possible or self._germs_missed >= MOST_MISSED or self.run.is_over:
             return None
         values = singular_values(problem, near[None])[0]
         if not is_lost_in_rounding(float(values[problem.n - 2])):

@@ -26,7 +26,7 @@ from bifurc.singular.local_branches import (
     Neighbourhood,
     neighbourhood_of,
 )
-from bifurc.singular.locate import LocatedPoint
+from bifurc.singular.locate import MOST_FOR_GERM, LocatedPoint
 from bifurc.singular.puiseux import (
     HalfBranch,
     Terms,
@@ -38,7 +38,6 @@ from bifurc.singular.puiseux import (
 __all__ = ["Germ", "germ_at", "placed_at"]
 
 DEGREE = 13  # of the Taylor polynomial
-MOST_UNKNOWNS = 4  # with two a germ takes 0.6 s, with four 3.4 s, with eight 7 s
 # Digits of the spacing of the grid, over the scale, in the rounds in which the place is
 # found, and of that on which it is judged.
 ROUNDS, LAST = (12, 24, 48), 60
@@ -83,10 +82,10 @@ class Germ:
 
 def germ_at(problem: Problem, located: LocatedPoint) -> Germ | None:
     """The germ at a located point; None where the equations are not known exactly, have
-    more than `MOST_UNKNOWNS`, leave more than one equation on the null space or have no
+    more than `MOST_FOR_GERM`, leave more than one equation on the null space or have no
     singular point there, or where the terms of degree `DEGREE` and less do not separate
     the branches."""
-    if problem.n > MOST_UNKNOWNS:
+    if problem.n > MOST_FOR_GERM:
         return None
     residual = problem.precise_residual()
     if residual is None or located.null_space.shape[1] != 2:
