@@ -145,6 +145,8 @@ class _Tracer:
         its neighbourhood, and the number of the germ."""
         entries = []
         for number, germ in enumerate(self.germs):
+            if not germ.branches:
+                continue  # an isolated point is beside the curve
             entries += [(float(s), number) for s in passes_inside(curve, germ)]
         return min(entries, default=None)
 

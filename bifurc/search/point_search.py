@@ -88,14 +88,14 @@ class PointSearch:
         null_space = right[problem.n - 2 :].T
         place = LocatedPoint(near, null_space, reach * problem.scale)
         germ = germ_at(problem, place)
-        moved = np.inf if germ is None else problem.difference(germ.u, near)
-        if germ is None or np.linalg.norm(moved) > reach * problem.scale:
+        moved = np.inf
+        if germ is not None:
+            moved = float(np.linalg.norm(problem.difference(germ.u, near)))
+        if germ is None or moved > reach * problem.scale:
             self._germs_missed += 1
             return None
-        error = float(np.linalg.norm(moved))
-        return self._record(
-            placed_at(LocatedPoint(near, null_space, error), germ), germ
-        )
+        located = placed_at(LocatedPoint(near, null_space, moved), germ)
+        return self._record(located, germ)
 
     def at_assembly(self, point: np.ndarray) -> int | None:
         """The number of the isolated singular point at which solutions next to

@@ -86,3 +86,11 @@ def test_a_curve_beside_a_contact_is_kept():
         if np.abs(form.branch.sample(50)[:, 1] - 0.05).max() < 1e-12
     ]
     assert len(line) == 1
+
+
+def test_a_curve_beside_an_isolated_point_is_kept():
+    atlas = explored(lambda x, y: (y**2 + x**6) * (y - 0.02))
+    (form,) = atlas.forms
+    assert np.abs(form.branch.sample(50)[:, 1] - 0.02).max() < 1e-12
+    (point,) = atlas.points
+    assert point.kind is Kind.ISOLATED
