@@ -35,7 +35,7 @@ FIRST, LAST = 1e-4, 0.3
 STARTS = (1e-3, 1e-2)  # shares of the way to the end, from which nodes are reached
 NODES = (32, 64, 128)  # on a branch, the first number that is enough
 TAIL = 6  # coefficients of a series that has converged, which are
-NEGLIGIBLE = 1e-13  # beside its size
+NEGLIGIBLE, HOPELESS = 1e-13, 1e-2  # beside its size; and those of one that will not
 NEWTON_STEPS, SETTLED = 40, 1e-40
 STEP = 1e-45  # of the difference for a derivative
 PREDICT_FROM = 4  # values before
@@ -240,8 +240,11 @@ def _local_branch(
         values = np.concatenate([behind[::-1], ahead])
         series = _chebyshev_series(nodes, values)
         size = float(np.abs(series).max())
-        if np.abs(series[-TAIL:]).max() < NEGLIGIBLE * size:
+        tail = float(np.abs(series[-TAIL:]).max())
+        if tail < NEGLIGIBLE * size:
             return LocalBranch(pair, power, series)
+        if tail > HOPELESS * size:
+            break  # it is not smooth so far, and more nodes are of no use
     return None
 
 
