@@ -795,6 +795,15 @@ is_same_point = Decision(
     third_answer="such points have no half-branches that were traced, and are "
     "undecided",
 )
+is_in_bounds = Decision(
+    "in the bounds",
+    "a point of a curve lies within the bounds, or in one of them",
+    "how far it lies outside, over the scale",
+    1e-9,
+    "points of a curve that runs in a bound lie outside by rounding, 1e-13 and beside "
+    "singular points 1e-10; a curve that leaves is farther outside soon after, and its "
+    "exit is where it crosses the bound",
+)
 is_back = Decision(
     "closed",
     "a curve has come back to its start",

@@ -13,7 +13,7 @@ import numpy as np
 
 from bifurc import torus
 from bifurc.checks import floats_of
-from bifurc.decisions import is_solution
+from bifurc.decisions import is_in_bounds, is_solution
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.seeds import Seeds
@@ -328,6 +328,18 @@ class Problem(ABC):
         excess = np.maximum(low - points, points - high)
         farthest: np.ndarray = excess.max(axis=1)
         return farthest
+
+    def are_inside(self, points: np.ndarray) -> np.ndarray:
+        """Which points (k, n) lie within the bounds (k,), or outside by rounding: a
+        curve may run in a bound."""
+        outside: np.ndarray = np.maximum(self.excess(points), 0.0)
+        are_inside: np.ndarray = is_in_bounds(outside, self.scale)
+        return are_inside
+
+    @property
+    def slack(self) -> float:
+        """How far outside the bounds a point still counts as inside."""
+        return is_in_bounds.threshold * self.scale
 
     def missed(self, points: np.ndarray) -> np.ndarray:
         """What points (k, n) of a curve may miss (k,), over the magnitude, where its

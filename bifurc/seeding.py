@@ -38,9 +38,7 @@ def random_seeds(
     points = _next_to_bounds(problem, points)
     if region is not None:
         points = wrap(points, problem.periods)
-    lowest, highest = problem.bounds.T
-    is_inside = np.all((points >= lowest) & (points <= highest), axis=1)
-    is_taken = is_start_solved(gaps) & is_inside
+    is_taken = is_start_solved(gaps) & problem.are_inside(points)
     solutions = points[is_taken]
     return Seeds(
         points=solutions,

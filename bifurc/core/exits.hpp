@@ -36,39 +36,56 @@ public:
     bool empty() const { return ends_.empty(); }
 
     // The coordinate between two at which the piece leaves them, if it is outside by more than
-    // ``slack`` at some place there.
+    // ``slack`` at some place there. A piece that runs in one bound leaves where it crosses another.
     std::optional<double> exit_between(double begin, double end, double slack) const {
-        const auto outside = [this](double x) { return excess(x); };
         double before = begin;
         for (Index place = 0; place <= exits::places; ++place) {
             const double x = begin + (end - begin) * static_cast<double>(place) / exits::places;
-            if (!(excess(x) > slack)) {
-                before = x;
-                continue;
+            std::optional<double> first;
+            for (const End& one : ends_) {
+                if (!(excess(one, x) > slack)) continue;
+                const double exit = crossing(one, before, x, slack);
+                first = first ? std::min(*first, exit) : exit;
             }
-            if (excess(before) >= 0.0) return before;
-            return root_between(outside, before, x, exits::tolerance, exits::steps);
+            if (first) return first;
+            before = x;
         }
         return {};
     }
 
 private:
-    // How far the piece lies outside at a coordinate, at the end that is left farthest; negative inside.
-    double excess(double x) const {
-        double farthest = -std::numeric_limits<double>::infinity();
-        for (const End& end : ends_) {
-            double value = 0.0;
-            for (Index k = piece_.rows - 1; k >= 0; --k) value = value * x + piece_(k, end.unknown);
-            farthest = std::max(farthest, end.side * (value - end.bound));
-        }
-        return farthest;
-    }
-
     struct End {
         Index unknown;
         double side;  // -1 for the lower one, 1 for the upper
         double bound;
     };
+
+    // How far the piece lies outside one end at a coordinate; negative inside.
+    double excess(const End& end, double x) const {
+        double value = 0.0;
+        for (Index k = piece_.rows - 1; k >= 0; --k) value = value * x + piece_(k, end.unknown);
+        return end.side * (value - end.bound);
+    }
+
+    // How fast that grows.
+    double growth(const End& end, double x) const {
+        double slope = 0.0;
+        for (Index k = piece_.rows - 1; k >= 1; --k) slope = slope * x + static_cast<double>(k) * piece_(k, end.unknown);
+        return end.side * slope;
+    }
+
+    // Where the piece crosses one end, ``before`` a coordinate at which it is outside by more than the
+    // ``slack``. From a place on the end, give or take rounding, it may run along it for a while: then
+    // it is left where the tangent crosses it at the first place outside by the slack.
+    double crossing(const End& end, double before, double after, double slack) const {
+        const double already = excess(end, before);
+        if (already > slack) return before;
+        const double level = already < 0.0 ? 0.0 : slack;
+        const auto outside = [&](double x) { return excess(end, x) - level; };
+        const double x = root_between(outside, before, after, exits::tolerance, exits::steps);
+        const double rate = growth(end, x);
+        return rate > 0.0 ? std::max(before, x - level / rate) : x;
+    }
 
     View<const double> piece_;
     std::vector<End> ends_;

@@ -18,10 +18,7 @@ from bifurc.problem import Problem
 
 __all__ = ["end_of_curve", "same_place"]
 
-# Shares of a piece at which it is held against its region, and the slack that this has
-# there, over the scale.
-GRID = np.linspace(0.0, 1.0, 33)
-SLACK = 1e-12
+GRID = np.linspace(0.0, 1.0, 33)  # of a piece, where it is held against its region
 LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
 NEAR = 1e-9  # distance, over the scale, within which a curve is back in any case
 PLAIN = 1e-3  # share of that: nothing else is asked
@@ -140,7 +137,7 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
         periods=problem.periods,
         first=first,
         bounds=problem.bounds,
-        slack=SLACK * problem.scale,
+        slack=problem.slack,
     )
 
 
@@ -155,7 +152,7 @@ def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | N
     grids = (breaks[:-1, None] + lengths * GRID - centers) / radii
     points = points_on_pieces(track.pieces[first:], grids)
     excess = problem.excess(points.reshape(-1, problem.n)).reshape(grids.shape)
-    outside = np.argwhere(excess > SLACK * problem.scale)
+    outside = np.argwhere(excess > problem.slack)
     if not len(outside):
         return None
     number, place = outside[0].tolist()
@@ -166,12 +163,16 @@ def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | N
 
 def _exit(problem: Problem, piece: np.ndarray, low: float, high: float) -> float:
     """Coordinate at which a piece (order + 1, n) leaves the region, between one of a
-    point on or inside it, ``low``, and one of a point outside, ``high``."""
-
-    def excess(x: np.ndarray) -> np.ndarray:
-        return problem.excess(points_on_piece(piece, x))
-
+    point on or inside it, ``low``, and one of a point outside, ``high``: from a place on
+    its rim, along which it may run, where it is plainly outside."""
     begin = np.array([low])
-    if excess(begin)[0] >= 0.0:
+    already = problem.excess(points_on_piece(piece, begin))[0]
+    if already > problem.slack:
         return low
-    return float(bracketed_roots(excess, begin, np.array([high]))[0])
+    level = 0.0 if already < 0.0 else problem.slack
+
+    def outside(x: np.ndarray) -> np.ndarray:
+        excess: np.ndarray = problem.excess(points_on_piece(piece, x)) - level
+        return excess
+
+    return float(bracketed_roots(outside, begin, np.array([high]))[0])

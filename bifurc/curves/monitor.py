@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bifurc.branch import Branch
+from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_zero_along, stands_still, unit_over_rounding
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
@@ -94,12 +94,34 @@ def largest_rates(branch: Branch) -> np.ndarray:
     return largest
 
 
-def dead_points(branch: Branch, by_rounding: float = 0.0) -> list[np.ndarray]:
+def dead_points(
+    branch: Branch, by_rounding: float = 0.0, slack: float = 0.0
+) -> list[np.ndarray]:
     """For each unknown the arclengths of its dead points: du_i/ds changes sign. None
-    for one that stays constant, as far as rates ``by_rounding`` tell."""
+    for one that stays constant, as far as rates ``by_rounding`` tell.
+
+    A branch may leave its bounds at a dead point: one no farther beyond the end than
+    ``slack`` is at the end.
+    """
     unit = unit_over_rounding(stands_still, by_rounding)
     is_constant = stands_still(largest_rates(branch), unit)
-    return [
+    turnings = [
         np.empty(0) if is_constant[i] else branch.turning_points(i)
         for i in range(branch.n)
     ]
+    if branch.outcome is not Outcome.LEFT_REGION:
+        return turnings
+    for end in (0.0, branch.length):
+        at_end = _turn_at(branch, end, slack) & ~is_constant
+        for i in np.flatnonzero(at_end):
+            is_inner = np.abs(turnings[i] - end) > slack
+            turnings[i] = np.sort(np.append(turnings[i][is_inner], end))
+    return turnings
+
+
+def _turn_at(branch: Branch, end: float, slack: float) -> np.ndarray:
+    """Which unknowns (n,) turn back within ``slack`` of an end of a branch, as their
+    first two derivatives there tell."""
+    rates, bends = np.abs(branch(end, 1)), np.abs(branch(end, 2))
+    turn: np.ndarray = (rates <= slack * bends) & ~stands_still(bends * branch.length)
+    return turn

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bifurc import _core
+from bifurc.decisions import is_in_bounds
 from bifurc.equations.tape import Tape
 from bifurc.problem import (
     CurveNodes,
@@ -179,7 +180,7 @@ class ScaledTape:
             anchor=anchor,
             within=within / unit,
             periods=self._periods / unit,
-            bounds=self._bounds / unit,
+            bounds=self._outer_bounds / unit,
             length=settings.length / unit,
             is_sparse=self.is_factored_sparse,
         )
@@ -202,6 +203,13 @@ class ScaledTape:
             return compiled.valley_points_at_nodes(units, weights, *nodes)
 
         return correct
+
+    @property
+    def _outer_bounds(self) -> np.ndarray:
+        """The bounds (n, 2), wider by what counts as inside: a march along one of them
+        need not end after every piece."""
+        slack = is_in_bounds.threshold * self._scale
+        return self._bounds + slack * np.array([-1.0, 1.0])
 
     def _share_of_magnitude(self, start: np.ndarray) -> float:
         """The magnitude of F' over which rounding is what a march takes it to be, over

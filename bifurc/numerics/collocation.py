@@ -103,9 +103,8 @@ def march_by_collocation(
     # before a cusp a residual is left that is no misclosure
     may_miss = settings.closing > closing / 2
     misclosure = max(settings.misclosure, corrected.gap) if may_miss else 0.0
-    low, high = problem.bounds.T
     while len(pieces) < settings.count:
-        is_inside = np.all((low <= point) & (point <= high))
+        is_inside = problem.are_inside(point[None])[0]
         covered = sum(piece.length for piece in pieces)
         if pieces and (not is_inside or covered > settings.length):
             break

@@ -324,7 +324,8 @@ def _dead_points(
     """The dead points, form by form and unknown by unknown."""
     events = []
     for form, branch in enumerate(traced):
-        roots = dead_points(branch.branch, change_by_blur(branch.blur))
+        by_rounding = change_by_blur(branch.blur)
+        roots = dead_points(branch.branch, by_rounding, problem.slack)
         unknowns = np.repeat(np.arange(problem.n), [len(each) for each in roots])
         arclengths = np.concatenate(roots)
         places = wrap(branch.branch(arclengths), periods)

@@ -389,9 +389,8 @@ class Search:
         findings = self.findings
         if not self.problem.is_exact or self.problem.n < 2:
             return
-        low, high = self.problem.bounds.T
         missed = findings.seeds.missed
-        is_inside = np.all((missed >= low) & (missed <= high), axis=1)
+        is_inside = self.problem.are_inside(missed)
         is_near = is_inside & is_on_the_way(findings.seeds.gaps)
         self._look_at_ends(missed[is_near], findings.seeds.gaps[is_near])
         is_slow = is_inside & ~is_near

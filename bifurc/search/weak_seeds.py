@@ -72,9 +72,8 @@ def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
         return seeds
     longest = LONGEST * problem.scale
     points = _after_newton_steps(problem, seeds.missed[weak], LONG_STEPS, longest)
-    low, high = problem.bounds.T
-    is_inside = np.all((points >= low) & (points <= high), axis=1)
-    is_reached = is_inside & is_start_solved(problem.gaps(points))
+    is_solved = is_start_solved(problem.gaps(points))
+    is_reached = is_solved & problem.are_inside(points)
     reached = points[is_reached]
     is_left = np.ones(len(seeds.missed), dtype=bool)
     is_left[weak[is_reached]] = False

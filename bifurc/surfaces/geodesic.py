@@ -302,12 +302,10 @@ class _PulledPath:
     def _path_through(self, points: np.ndarray) -> np.ndarray:
         """The path with the inner points above ``points`` (k - 2, n), where these are
         solutions inside the bounds."""
-        low, high = self._problem.bounds.T
         feet, are_solutions = _correct(
             self._problem, self._charts, points, self._planes
         )
-        is_inside = np.all((feet >= low) & (feet <= high), axis=1)
-        is_movable = are_solutions & is_inside
+        is_movable = are_solutions & self._problem.are_inside(feet)
         path = self.path.copy()
         path[1:-1][is_movable] = feet[is_movable]
         return path

@@ -118,20 +118,14 @@ class _Walk:
         new_planes = tangent_planes(self.problem, ends, planes)
         is_flat = cosines_between_planes(planes, new_planes)[:, -1] > SMOOTH
         is_near = _is_near(ends - at - step, step)
-        is_taken = (gaps < SOLVED) & self._is_inside(ends) & is_flat & is_near
+        is_inside = self.problem.are_inside(ends)
+        is_taken = (gaps < SOLVED) & is_inside & is_flat & is_near
         self.at[walkers[is_taken]] = ends[is_taken]
         self.planes[walkers[is_taken]] = new_planes[is_taken]
         longer = np.minimum(LONGER * self.length[walkers], self.longest)
         self.length[walkers] = np.where(is_taken, longer, SHORTER * longest)
         is_above_goal = distance < ABOVE_GOAL * self.charts.radii[goal]
         self.length[walkers[is_above_goal]] = 0.0
-
-    def _is_inside(self, points: np.ndarray) -> np.ndarray:
-        """Which points (k, n) lie inside the bounds (k,)."""
-        low, high = self.problem.bounds.T
-        is_between = (points >= low) & (points <= high)
-        is_inside: np.ndarray = np.all(is_between, axis=1)
-        return is_inside
 
 
 def _is_near(heights: np.ndarray, steps: np.ndarray) -> np.ndarray:

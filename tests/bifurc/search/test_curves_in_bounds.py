@@ -1,0 +1,127 @@
+"""Curves that run in a bound: concentrations and populations are not negative, and the
+branch along which one of them is zero lies in its bound."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bifurc import FunctionProblem, explore
+from bifurc.curves.continuation import trace_branch
+from bifurc.diagrams.diagram import BranchingKind
+
+SEEDS = range(4)
+
+
+def lengths(atlas):
+    return sorted(form.branch.length for form in atlas.forms)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_extinction_is_a_form_beside_an_allee_effect(seed: int) -> None:
+    def growth(u):
+        x, harvest = u
+        return [x * (x - 0.2) * (1 - x) - harvest * x]
+
+    problem = FunctionProblem(growth, [(0, 1.5), (0, 1)])
+    atlas = explore(problem, seed=seed)
+    assert len(atlas.forms) == 2
+    extinct = max(atlas.forms, key=lambda form: form.branch.length).branch
+    assert extinct.length == pytest.approx(1.0, abs=1e-12)
+    assert np.abs(extinct(np.linspace(0.0, 1.0, 9))[:, 0]).max() < 1e-12
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_all_three_forms_of_a_predator_and_its_prey(seed: int) -> None:
+    def growth(u):
+        x, y, capacity = u
+        eaten = x / (1 + x)
+        return [x * (1 - x / capacity) - y * eaten, y * (eaten - 0.5)]
+
+    problem = FunctionProblem(growth, [(0, 5), (0, 5), (0.1, 5)])
+    atlas = explore(problem, seed=seed)
+    assert len(atlas.forms) == 3
+    assert len(atlas.bifurcations) == 1
+    assert lengths(atlas)[1:] == pytest.approx([4.9, 4.9 * math.sqrt(2)], abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_competitors_of_which_either_may_be_missing(seed: int) -> None:
+    def growth(u):
+        x, y, rate = u
+        return [x * (1 - x - 0.5 * y), y * (rate - y - 0.7 * x)]
+
+    atlas = explore(FunctionProblem(growth, [(0, 3)] * 3), seed=seed)
+    assert len(atlas.forms) == 4
+    assert len(atlas.bifurcations) == 3
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_four_species_of_which_any_may_be_missing(seed: int) -> None:
+    coupling = np.array(
+        [[1, 0.3, 0.2, 0.1], [0.4, 1, 0.1, 0.2], [0.3, 0.2, 1, 0.3], [0.2, 0.3, 0.1, 1]]
+    )
+
+    def growth(u):
+        rates = [1.0, u[4], 1.2, 0.9]
+        return [
+            u[i] * (rates[i] - sum(coupling[i, j] * u[j] for j in range(4)))
+            for i in range(4)
+        ]
+
+    atlas = explore(FunctionProblem(growth, [(0, 3)] * 5), seed=seed)
+    assert len(atlas.forms) == 16  # one for each set of species
+    assert len(atlas.bifurcations) == 13
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize(
+    ("power", "kind"),
+    [(1, BranchingKind.TRANSCRITICAL), (2, BranchingKind.SUPERCRITICAL)],
+)
+def test_a_branch_that_ends_in_the_other_one(seed: int, power: int, kind) -> None:
+    problem = FunctionProblem(
+        lambda u: [u[0] * (u[1] - u[0] ** power)], [(0, 2), (-1, 2)], names=["x", "p"]
+    )
+    atlas = explore(problem, seed=seed, parameter="p")
+    trivial = max(form.branch.length for form in atlas.forms)
+    assert trivial == pytest.approx(3.0, abs=1e-12)
+    assert [one.kind for one in atlas.diagram.branchings] == [kind]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_parameter_that_turns_at_a_bound_turns(seed: int) -> None:
+    parabola = FunctionProblem(
+        lambda u: [u[1] - u[0] ** 2], [(0, 2), (-1, 2)], names=["x", "p"]
+    )
+    atlas = explore(parabola, seed=seed, parameter="p")
+    assert [one.u.tolist() for one in atlas.diagram.folds] == [
+        pytest.approx([0.0, 0.0], abs=1e-12)
+    ]
+
+
+def test_a_closed_curve_that_touches_its_bounds_is_closed() -> None:
+    circle = FunctionProblem(lambda u: [u[0] ** 2 + u[1] ** 2 - 1], [(-1, 1)] * 2)
+    [form] = explore(circle).forms
+    assert form.branch.closed
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+@pytest.mark.parametrize("beside", [0.0, 1e-14, -1e-14])
+def test_a_curve_in_a_bound_leaves_where_it_crosses_another(
+    is_recorded: bool, beside: float
+) -> None:
+    line = FunctionProblem(
+        lambda u: [u[0] - beside], [(0, 1), (-1, 2)], is_recorded=is_recorded
+    )
+    branch = trace_branch(line, np.array([0.0, 0.3]))
+    assert branch.length == pytest.approx(3.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("slope", [1.0, 0.01])
+def test_a_curve_from_a_bound_outwards_ends_there(slope: float) -> None:
+    line = FunctionProblem(lambda u: [u[0] - slope * u[1]], [(0, 1), (-1, 2)])
+    branch = trace_branch(line, np.zeros(2), np.array([-slope, -1.0]))
+    ends = branch(np.array([0.0, branch.length]))
+    assert np.abs(ends).min(axis=1)[0] < 1e-14 or np.abs(ends).min(axis=1)[1] < 1e-14
+    assert ends[:, 0].min() > -1e-14
