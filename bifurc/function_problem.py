@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -41,6 +42,9 @@ if TYPE_CHECKING:
 __all__ = ["FunctionProblem", "NumericalProblem"]
 
 PROBES = 7  # points at which a function is tried out and its derivatives are measured
+MOST_TRIALS = (
+    2000  # points at which it is tried where it is defined on little of the box
+)
 CHECKS = 20  # more points at which a recording is compared with the function
 LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
@@ -104,6 +108,14 @@ class NumericalProblem(Problem):
         return random_seeds(self, rng, count, deadline=deadline)
 
 
+class _FirstPoints(NamedTuple):
+    """Random ``points`` (k, n) within the bounds, and ``probes`` (j, n) where a function
+    has finite values."""
+
+    points: np.ndarray
+    probes: np.ndarray
+
+
 class FunctionProblem(NumericalProblem):
     """A problem from a plain Python callable ``function``: (n,) -> (m,).
 
@@ -144,9 +156,8 @@ class FunctionProblem(NumericalProblem):
         self._function = function
         self._jacobian = jacobian
 
-        points = self._random_points()
-        probes = self._probes_with_value(points[:PROBES])
-        self._rows = len(np.atleast_1d(function(probes[0])))
+        points, probes = self._first_points()
+        self._rows = len(self._value(probes[0]))
         self.recording = Recording(None, "not asked for")
         if is_recorded:
             self.recording = record(function, points)
@@ -193,11 +204,26 @@ class FunctionProblem(NumericalProblem):
         from_low = np.where(np.isfinite(low), np.maximum(half, 2 * low + 1), half)
         return low, np.where(np.isfinite(high), high, from_low)
 
-    def _random_points(self) -> np.ndarray:
+    def _first_points(self) -> _FirstPoints:
+        """Points at which the equations are looked at; many are tried where a function
+        is defined on a small part of the bounds only.
+
+        Raises `ProblemError` as `_probes_with_value` does.
+        """
+        points = self._random_points()
+        probes = points[:PROBES]
+        with np.errstate(all="ignore"):
+            values = [self._value(probe) for probe in probes]
+        if any(np.all(np.isfinite(value)) for value in values):
+            return _FirstPoints(points, self._probes_with_value(probes))
+        trials = self._probes_with_value(self._random_points(MOST_TRIALS))
+        return _FirstPoints(trials[: PROBES + CHECKS], trials[:PROBES])
+
+    def _random_points(self, count: int = PROBES + CHECKS) -> np.ndarray:
         """Points (k, n) within the bounds at which the equations are looked at."""
         rng = np.random.default_rng(0)
         low, high = self._finite_bounds
-        return rng.uniform(low, high, (PROBES + CHECKS, self.n))
+        return rng.uniform(low, high, (count, self.n))
 
     def _settle_open_bounds(self) -> None:
         """Take the scale of unknowns without bounds or a period, and bounds for them,
@@ -242,11 +268,17 @@ class FunctionProblem(NumericalProblem):
         if tape is not None:
             self._scaled = self._scaled_tape(tape, 1.0)
         self.equations = str(self.recording)
-        self.derivatives = self._choose_derivatives(probes[0])
-        for probe in probes:
-            self._check_jacobian(probe)
-        sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
-        self.magnitude = float(np.median(sizes)) or 1.0
+        with np.errstate(all="ignore"):
+            self.derivatives = self._choose_derivatives(probes[0])
+        with np.errstate(all="ignore"):
+            for probe in probes:
+                self._check_jacobian(probe)
+            sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
+        known = [size for size in sizes if math.isfinite(size)]
+        if not known:
+            allowed = "finite somewhere inside the bounds"
+            raise ProblemError("derivative of the function", np.nan, allowed)
+        self.magnitude = float(np.median(known)) or 1.0
         if tape is not None:
             self.hessian_error = EXACT_HESSIAN
             self.is_exact = True
@@ -261,7 +293,8 @@ class FunctionProblem(NumericalProblem):
         if self._scaled is not None:
             return self._scaled.residuals(points)
         function = self._function  # called thousands of times a curve
-        values = [function(point) for point in points]
+        with np.errstate(all="ignore"):  # beyond the rim of where it is defined
+            values = [function(point) for point in points]
         return np.array(values, dtype=float).reshape(len(points), self._rows)
 
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
@@ -273,9 +306,10 @@ class FunctionProblem(NumericalProblem):
             return self._scaled.jacobians(point[None])[0]
         if self._jacobian is not None:
             return self._given_jacobian(point)
-        if self.derivatives == "complex step":
-            return self._complex_step(point)
-        return self._central_difference(point)
+        with np.errstate(all="ignore"):
+            if self.derivatives == "complex step":
+                return self._complex_step(point)
+            return self._central_difference(point)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n), dense."""
@@ -292,9 +326,21 @@ class FunctionProblem(NumericalProblem):
             return self._compiled.hessian(point)
         return super().hessian(point)
 
+    def is_smooth_within(self, point: np.ndarray, reach: float) -> bool:
+        """Whether F' is known to be finite up to ``reach`` from ``point`` (n,) in every
+        unknown: by intervals where the equations are recorded."""
+        tape = self.recording.tape
+        if tape is None:
+            return super().is_smooth_within(point, reach)
+        bounds = tape.compiled.jacobian_bounds(
+            (point - reach)[None], (point + reach)[None]
+        )
+        return bool(np.isfinite(bounds).all())
+
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers where the equations are recorded; their constants are
-        the doubles that the function computes with."""
+        the doubles that the function computes with. Raises `ValueError` where F is not
+        real."""
         tape = self.recording.tape
         if tape is None:
             return None
@@ -303,6 +349,8 @@ class FunctionProblem(NumericalProblem):
             import mpmath  # it takes long to import
 
             values: list[mpmath.mpf] = tape.over(unknowns, mpmath)
+            if any(isinstance(value, mpmath.mpc) for value in values):
+                raise ValueError("F is not real there")
             return values
 
         return residual
@@ -426,7 +474,7 @@ class FunctionProblem(NumericalProblem):
         Raises `ProblemError` where it gives no vector, vectors of several lengths, or
         none that is finite.
         """
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        with np.errstate(all="ignore"):
             values = [self._value(probe) for probe in probes]
         for value in values:
             if value.ndim != 1 or not len(value):
@@ -438,7 +486,10 @@ class FunctionProblem(NumericalProblem):
             raise ProblemError("number of equations", lengths, allowed)
         is_finite = np.isfinite(values).all(axis=1)
         if not np.any(is_finite):
-            allowed = "a vector of finite numbers somewhere inside the bounds"
+            allowed = (
+                "a vector of finite numbers somewhere inside the bounds; it is at none "
+                f"of {len(probes)} random points"
+            )
             raise ProblemError("value of the function", values[0], allowed)
         finite: np.ndarray = probes[is_finite]
         return finite
@@ -452,7 +503,7 @@ class FunctionProblem(NumericalProblem):
             jacobian = as_dense(self._given_jacobian(probe))
         if jacobian.shape != shape:
             raise ProblemError("shape of the jacobian", jacobian.shape, str(shape))
-        if not np.all(np.isfinite(jacobian)):
+        if self._jacobian is not None and not np.all(np.isfinite(jacobian)):
             raise ProblemError("jacobian", jacobian, "finite")
         if self._jacobian is None or self.n > LARGEST_COMPARED:
             return

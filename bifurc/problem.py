@@ -341,6 +341,15 @@ class Problem(ABC):
         """How far outside the bounds a point still counts as inside."""
         return is_in_bounds.threshold * self.scale
 
+    def is_smooth_within(self, point: np.ndarray, reach: float) -> bool:
+        """Whether F and F' are finite up to ``reach`` from ``point`` (n,) in every
+        unknown, as far as is seen at the point and beside it."""
+        shifts = reach * np.eye(self.n)
+        with np.errstate(all="ignore"):
+            points = np.vstack([point, point + shifts, point - shifts])
+            values, slopes = self.residuals(points), self.jacobians(points)
+        return bool(np.isfinite(values).all() and np.isfinite(slopes).all())
+
     def missed(self, points: np.ndarray) -> np.ndarray:
         """What points (k, n) of a curve may miss (k,), over the magnitude, where its
         place is not defined: nothing, as a rule."""

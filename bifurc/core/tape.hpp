@@ -125,6 +125,9 @@ inline Complex cbrt(const Complex& z) {
     constexpr double third = 1.0 / 3.0;
     return z.real() < 0.0 ? -std::pow(-z, third) : std::pow(z, third);
 }
+inline bool is_infinite(double x) { return std::isinf(x); }
+inline bool is_infinite(const Complex& z) { return std::isinf(z.real()) || std::isinf(z.imag()); }
+inline bool is_infinite(const Interval&) { return false; }
 // The angle of the vector (x, z), analytic in both; by the larger of them, so that small
 // imaginary parts are kept.
 inline Complex atan2(const Complex& z, const Complex& x) {
@@ -234,10 +237,28 @@ public:
         for (Index slot = 0; slot < slots(); ++slot) set_value(slot, point, values);
     }
 
+    // Whether the ``value`` of a slot is infinite because doubles end there, and not because it has a
+    // pole. What is finite and made of it, as 1 / (1 + exp(1000)) is, does not depend on it any more: its
+    // derivatives count as zero.
+    template <class T>
+    bool is_overflow(Index slot, const T& value) const {
+        if (!functions::is_infinite(value)) return false;
+        switch (instructions_[slot].operation) {
+            case Operation::multiply:
+            case Operation::exp:
+            case Operation::expm1:
+            case Operation::sinh:
+            case Operation::cosh: return true;
+            case Operation::power: return instructions_[slot].constant > 0.0;
+            default: return false;
+        }
+    }
+
     // The partial derivatives of the operation of a slot, from the values of all.
     template <class T>
     Partials<T> partials(Index slot, Vector<const T> values) const {
         const Instruction& instruction = instructions_[slot];
+        if (is_overflow(slot, values[slot])) return {};
         const T& rule = values[instruction.rule];
         switch (rule_of(instruction.operation)) {
             case Rule::product: return {values[instruction.right], values[instruction.left]};
@@ -495,7 +516,11 @@ template <class T>
 class SeriesSweep {
 public:
     SeriesSweep(const Tape& tape, Index order)
-        : tape_(tape), coefficients_(tape.slots(), order + 1), partials_(tape.slots()), steps_(tape.slots()) {}
+        : tape_(tape),
+          coefficients_(tape.slots(), order + 1),
+          partials_(tape.slots()),
+          steps_(tape.slots()),
+          is_overflow_(tape.slots()) {}
 
     const T& coefficient(Index equation, Index k) const { return coefficients_(tape_.output(equation), k); }
 
@@ -504,6 +529,7 @@ public:
         tape_.evaluate_all<T>(point, values);
         for (Index slot = 0; slot < tape_.slots(); ++slot) {
             coefficients_(slot, 0) = values[slot];
+            is_overflow_[slot] = tape_.is_overflow(slot, values[slot]);
             partials_[slot] = tape_.partials<T>(slot, values);
         }
     }
@@ -529,6 +555,7 @@ public:
 
 private:
     T next(Index slot, Index k) const {
+        if (is_overflow_[slot]) return T(0.0);
         const Instruction& instruction = tape_[slot];
         const T* const left = row(instruction.left);
         const T* const right = row(instruction.right);
@@ -558,6 +585,7 @@ private:
     Matrix<T> coefficients_;
     std::vector<Partials<T>> partials_;
     std::vector<T> steps_;
+    std::vector<bool> is_overflow_;
 };
 
 // Taylor coefficients (order + 1, m) of F along u(s) with coefficients ``curve`` (order + 1, n).

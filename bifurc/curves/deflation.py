@@ -22,7 +22,7 @@ from bifurc.decisions import is_shaky, may_be_shaky
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.numerics.singular_values import singular_values
+from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 from bifurc.singular.sphere import section
 
@@ -123,7 +123,7 @@ def _tangent_and_normal(
     """The unit vector t (n,) of the null space nearest to ``tangent``, and a (n,), the
     one across it."""
     jacobian = problem.jacobians(point[None])[0]
-    _, _, right = np.linalg.svd(jacobian)
+    _, _, right = factors_of(jacobian)
     null_space = right[problem.n - 2 :]
     t = null_space.T @ (null_space @ tangent)
     t /= np.linalg.norm(t)
@@ -145,7 +145,7 @@ def deflated_singular_values(
         matrix = system.jacobians(np.concatenate([point, a])[None])[0]
         matrix[:, : problem.n] *= problem.scale
         matrix[: len(matrix) // 2 - 1] /= problem.scale  # F' itself
-        sigma = np.linalg.svd(matrix / problem.magnitude, compute_uv=False)
+        sigma = factors_of(matrix / problem.magnitude).sigma
         values[k] = sigma[2 * problem.n - 2]
     return values
 

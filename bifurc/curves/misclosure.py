@@ -113,13 +113,26 @@ def _precise_misclosures(
     measured = []
     with mpmath.workdps(DIGITS):
         for point, inverse in zip(points, inverses, strict=True):
-            u = [mpmath.mpf(float(x)) for x in point]
-            for _ in range(ROUNDS):
-                step = inverse @ _as_floats(residual(u), problem.magnitude)
-                u = [x - mpmath.mpf(float(d)) for x, d in zip(u, step, strict=True)]
-            value = _as_floats(residual(u), problem.magnitude)
+            try:
+                value = _after_steps(problem, residual, point, inverse)
+            except (ZeroDivisionError, ValueError, OverflowError):
+                value = problem.relative_residuals(point[None])[0]  # at a rim of F
             measured.append(float(np.linalg.norm(value)))
     return measured
+
+
+def _after_steps(
+    problem: Problem, residual: PreciseResidual, point: np.ndarray, inverse: np.ndarray
+) -> np.ndarray:
+    """F (m,), over the magnitude, after Gauss-Newton steps from a point (n,) by an
+    ``inverse`` (n, m) of F'."""
+    import mpmath
+
+    u = [mpmath.mpf(float(x)) for x in point]
+    for _ in range(ROUNDS):
+        step = inverse @ _as_floats(residual(u), problem.magnitude)
+        u = [x - mpmath.mpf(float(d)) for x, d in zip(u, step, strict=True)]
+    return _as_floats(residual(u), problem.magnitude)
 
 
 def _inverses(decomposition: Decomposition, rank: int) -> np.ndarray:

@@ -26,6 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.numerics.null_spaces import decompose
+from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
 __all__ = [
@@ -245,7 +246,7 @@ def _rate(problem: Problem, point: np.ndarray, tangent: np.ndarray) -> float:
     changes along ``tangent``."""
     rank = problem.n - 2
     jacobian = problem.jacobians(point[None])[0]
-    left, _, right = np.linalg.svd(jacobian)
+    left, _, right = factors_of(jacobian)
     change = problem.hessian(point) @ tangent / problem.magnitude
     block = left[:, rank:].T @ change @ right[rank:].T
     return float(np.linalg.norm(block)) + 1e-3 / problem.scale

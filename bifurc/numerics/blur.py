@@ -14,7 +14,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_without_equation, may_be_scaled_down
 from bifurc.numerics.null_spaces import decompose
-from bifurc.numerics.singular_values import singular_values
+from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 
 __all__ = [
@@ -71,7 +71,7 @@ def known_to(
 
 def _rounding_of_weakest(problem: Problem, points: np.ndarray) -> np.ndarray:
     """The rounding (k,) of the weakest regular equation at points (k, n)."""
-    left, _, _ = np.linalg.svd(problem.relative_jacobians(points))
+    left, _, _ = factors_of(problem.relative_jacobians(points))
     weakest = left[:, :, problem.n - 2]
     parts = np.einsum("pkm,km->pk", _rounding(problem, points), weakest)
     rounding: np.ndarray = np.abs(parts).max(axis=0)

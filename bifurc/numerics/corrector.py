@@ -237,6 +237,8 @@ def _newton_on_sphere(
         jacobian = problem.relative_jacobians(point[None])[0]
         residual = problem.relative_residuals(point[None])[0]
         matrix = bordered_matrix(jacobian, offset)
+        if not (np.isfinite(matrix).all() and np.isfinite(residual).all()):
+            break
         outwards = 0.5 * radius * (1.0 - offset @ offset)
         right = np.append(-residual, outwards)
         step, *_ = np.linalg.lstsq(matrix, right, rcond=1e-14)

@@ -13,6 +13,7 @@ import numpy as np
 from bifurc._core import null_vector as null_vector_of
 from bifurc.decisions import is_null
 from bifurc.numerics.bordered import bordered_at
+from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
 __all__ = [
@@ -71,7 +72,7 @@ def _null_vector_by_borders(
 def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Singular values (k, n) of F' at points (k, n), padded with zeros, and right
     singular vectors (k, n, n), one a row."""
-    _, sigma, right = np.linalg.svd(problem.relative_jacobians(points))
+    _, sigma, right = factors_of(problem.relative_jacobians(points))
     return _padded(sigma, problem.n), right
 
 
@@ -157,5 +158,5 @@ class Decomposition:
 def decompose(problem: Problem, points: np.ndarray) -> Decomposition:
     """F and the singular value decomposition of F' at points (k, n)."""
     residuals = problem.relative_residuals(points)
-    left, sigma, right = np.linalg.svd(problem.relative_jacobians(points))
+    left, sigma, right = factors_of(problem.relative_jacobians(points))
     return Decomposition(residuals, left, sigma, right)

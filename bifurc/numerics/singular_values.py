@@ -1,13 +1,19 @@
-"""Singular values of F'."""
+"""Singular values of F', and the decompositions that they come from.
+
+Where F' is not finite, as at the rim of where F is defined, it says nothing: the
+singular values count as infinite, so that nothing is taken for singular there.
+"""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc import _core
 from bifurc.problem import Problem
 
-__all__ = ["singular_values"]
+__all__ = ["Factors", "factors_of", "singular_values"]
 
 # Unknowns up to which compiled code takes them by Jacobi's method, which knows small ones
 # to more digits than LAPACK: of more unknowns that takes twenty times as long.
@@ -23,7 +29,31 @@ def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
     jacobians = problem.jacobians(flat) / problem.magnitude
     is_few = problem.n <= FEW
     values_of = _core.singular_values if is_few else np.linalg.svdvals
+    is_finite: np.ndarray = np.isfinite(jacobians).all(axis=(1, 2))
+    if not np.all(is_finite):
+        jacobians = np.where(is_finite[:, None, None], jacobians, 0.0)
     values = values_of(jacobians)
     out = np.zeros((len(flat), problem.n))
     out[:, : values.shape[1]] = values[:, : problem.n]
+    out[~is_finite] = np.inf
     return out.reshape(points.shape)
+
+
+class Factors(NamedTuple):
+    """U diag(sigma) V^T: ``left`` with the columns u_i, ``sigma`` in decreasing order,
+    ``right`` with the rows v_i."""
+
+    left: np.ndarray
+    sigma: np.ndarray
+    right: np.ndarray
+
+
+def factors_of(matrices: np.ndarray, full_matrices: bool = True) -> Factors:
+    """The singular value decomposition of matrices (..., m, n); infinite singular
+    values of one that is not finite."""
+    is_finite = np.isfinite(matrices).all(axis=(-2, -1))
+    if np.all(is_finite):
+        return Factors(*np.linalg.svd(matrices, full_matrices=full_matrices))
+    sound = np.where(is_finite[..., None, None], matrices, 0.0)
+    left, sigma, right = np.linalg.svd(sound, full_matrices=full_matrices)
+    return Factors(left, np.where(is_finite[..., None], sigma, np.inf), right)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.limits import Deadline
+from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
@@ -74,7 +75,7 @@ def _steps_across(problem: Problem, points: np.ndarray) -> np.ndarray:
     across = problem.n - 1
     residuals = problem.relative_residuals(points)
     jacobians = problem.relative_jacobians(points)
-    left, sigma, right = np.linalg.svd(jacobians, full_matrices=False)
+    left, sigma, right = factors_of(jacobians, full_matrices=False)
     is_steep = sigma > FLAT * sigma[:, :1]
     is_steep[:, across:] = False
     inverse = np.zeros_like(sigma)

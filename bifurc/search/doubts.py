@@ -14,7 +14,11 @@ from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
     is_known_curve,
     is_same_point,
+<<<<<<< HEAD
     may_be_null,
+=======
+    is_stub,
+>>>>>>> 0e74908 (Claim nothing where F' is not finite, and follow curves up to there)
     misses_by_rounding,
     stands_still,
     unit_over_rounding,
@@ -141,16 +145,27 @@ def _doubts_of_form(
         doubts.append(f"form {index + 1} is longer than it was traced")
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}
-        loose = sum(
-            s not in ends and not _is_at_bounds(problem, branch(s))
+        loose = [
+            branch(s)
             for s in (0.0, branch.length)
-        )
+            if s not in ends and not _is_at_bounds(problem, branch(s))
+        ]
         if loose:
             doubts.append(
-                f"form {index + 1} stalls at {loose} of its 2 ends, where it may end "
-                "or go on"
+                f"form {index + 1} stalls at {len(loose)} of its 2 ends, where it may "
+                f"end or go on{_rim(problem, loose)}"
             )
     return doubts
+
+
+def _rim(problem: Problem, ends: Sequence[np.ndarray]) -> str:
+    """What is said of F' next to the ends (n,) of a form that stalled, empty where it is
+    finite."""
+    reach = is_stub.threshold * problem.scale
+    rough = sum(not problem.is_smooth_within(end, reach) for end in ends)
+    if not rough:
+        return ""
+    return f"; F' is not finite beside {rough} of them"
 
 
 def _hidden_by_rounding(traced: TracedBranch) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import is_located, is_simple, is_singular_point
+from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
 __all__ = ["MOST_FOR_GERM", "LocatedPoint", "block_slice", "locate_singular_point"]
@@ -78,6 +79,8 @@ def locate_singular_point(
     located = None
     if missed < is_singular_point.threshold:  # or else it is none, wherever it lies
         located = _with_error(problem, run, u, reach)
+        if not np.isfinite(problem.gaps(located.u[None])[0]):
+            return None
         doubt = min(misclosure + located.error / problem.scale, MOST_DOUBT)
         largest_null /= _unit(doubt)
     return located if is_singular_point(max(missed, largest_null)) else None
@@ -119,10 +122,10 @@ def _iterate(
     problem: Problem, start: np.ndarray, nullity: int, reach: float
 ) -> _Run | None:
     """Gauss-Newton on the augmented system until its steps are rounding or stagnate;
-    None where it leaves the ``reach``."""
+    None where it leaves the ``reach``, or comes to where F'' is not finite."""
     u = start.copy()
     jacobian = problem.jacobians(u[None])[0]
-    _, _, right = np.linalg.svd(jacobian)
+    _, _, right = factors_of(jacobian)
     basis = right[problem.n - nullity :].T
     moves: list[float] = []
     rank = 0
@@ -130,6 +133,8 @@ def _iterate(
     weak = np.empty((0, problem.n))
     for _ in range(ITERATIONS):
         step = _augmented_step(problem, u, basis)
+        if step is None:
+            return None
         weak = step.weak
         if step.rank < rank:
             break  # of higher order, and so near that the next step would be rounding
@@ -152,10 +157,13 @@ def _is_stagnant(moves: list[float], scale: float) -> bool:
     return moves[-1] < 1e-7 * scale
 
 
-def _augmented_step(problem: Problem, u: np.ndarray, basis: np.ndarray) -> _Step:
-    """The shortest step that solves the augmented system in the least-squares sense."""
+def _augmented_step(problem: Problem, u: np.ndarray, basis: np.ndarray) -> _Step | None:
+    """The shortest step that solves the augmented system in the least-squares sense;
+    None where that is not finite."""
     n, k = basis.shape
     matrix, right_side = _augmented_system(problem, u, basis)
+    if not (np.isfinite(matrix).all() and np.isfinite(right_side).all()):
+        return None
     left, sigma, right = np.linalg.svd(matrix, full_matrices=False)
     regular = sigma > ROUNDING * sigma[0]
     shares = (left[:, regular].T @ right_side) / sigma[regular]
@@ -261,6 +269,7 @@ def _solved_in_regular_equations(
     """
     rank = problem.n - nullity
     for _ in range(2):
+<<<<<<< HEAD
         jacobians = problem.relative_jacobians(points)
         left, sigma, right = np.linalg.svd(jacobians, full_matrices=False)
         residuals = problem.relative_residuals(points)
@@ -268,6 +277,14 @@ def _solved_in_regular_equations(
         shares /= sigma[:, :rank]
         points = points - np.einsum("krn,kr->kn", right[:, :rank], shares)
     return points
+=======
+        jacobian = problem.relative_jacobians(u[None])[0]
+        left, sigma, right = factors_of(jacobian, full_matrices=False)
+        residual = problem.relative_residuals(u[None])[0]
+        shares = left[:, :rank].T @ residual / sigma[:rank]
+        u = u - right[:rank].T @ shares
+    return u
+>>>>>>> 0e74908 (Claim nothing where F' is not finite, and follow curves up to there)
 
 
 def _largest_null_values(
@@ -276,7 +293,7 @@ def _largest_null_values(
     """The largest (k,) of the ``nullity`` smallest singular values of F' at points
     (k, n), over the magnitude."""
     jacobians = problem.relative_jacobians(points)
-    sigma = np.linalg.svd(jacobians, compute_uv=False)
+    sigma = factors_of(jacobians).sigma
     rank = problem.n - nullity
     if sigma.shape[1] <= rank:
         return np.zeros(len(points))

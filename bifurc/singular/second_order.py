@@ -12,6 +12,7 @@ import numpy as np
 
 from bifurc.decisions import has_no_form, is_zero_form
 from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
 __all__ = ["lines_of_form", "second_order_tangents"]
@@ -33,7 +34,10 @@ def second_order_tangents(
     """
     if null_space.shape[1] != 2:
         return None
-    forms = _independent_forms(_reduced_forms(problem, point, null_space))
+    reduced = _reduced_forms(problem, point, null_space)
+    if not np.all(np.isfinite(reduced)):
+        return None
+    forms = _independent_forms(reduced)
     if not len(forms):
         return None
     a, b, c = forms[0]
@@ -68,9 +72,10 @@ def lines_of_form(form: np.ndarray) -> np.ndarray:
 def _reduced_forms(
     problem: Problem, point: np.ndarray, null_space: np.ndarray
 ) -> np.ndarray:
-    """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x)."""
+    """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x); not finite where
+    F'' is not."""
     jacobian = problem.relative_jacobians(point[None])[0]
-    left, _, _ = np.linalg.svd(jacobian)
+    left = factors_of(jacobian).left
     left_null_space = left[:, problem.n - 2 :]
     hessian = problem.hessian(point) / problem.magnitude
     forms = np.einsum(

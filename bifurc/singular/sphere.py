@@ -22,7 +22,7 @@ from bifurc.decisions import (
     is_same_half_branch,
 )
 from bifurc.numerics.directions import unit_vectors
-from bifurc.numerics.singular_values import singular_values
+from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 
@@ -91,7 +91,7 @@ def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
     if not local.dimension[0] == nullity > 1:
         return False
     jacobian = problem.jacobians(point[None])[0]
-    _, _, right = np.linalg.svd(jacobian)
+    _, _, right = factors_of(jacobian)
     null_space = right[problem.n - nullity :].T
     cut = section(problem, point, null_space, SURFACE_RADIUS * problem.scale)
     return cut.dimension > 1
@@ -115,7 +115,7 @@ class _ReducedEquations:
         self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
     ):
         jacobian = problem.relative_jacobians(point[None])[0]
-        left, sigma, right = np.linalg.svd(jacobian)
+        left, sigma, right = factors_of(jacobian)
         rank = problem.n - null_space.shape[1]
         self._problem = problem
         self._point = point

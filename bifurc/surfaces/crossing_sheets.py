@@ -14,6 +14,7 @@ import numpy as np
 
 from bifurc.decisions import is_null
 from bifurc.numerics.directions import cosines_between_planes
+from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
@@ -89,7 +90,7 @@ def _sign_changes(problem: Problem, charts: ChartAtlas) -> list[_SignChange]:
     """
     rank = problem.n - 2
     jacobians = problem.jacobians(charts.centers)
-    left, sigma, right = np.linalg.svd(jacobians, full_matrices=False)
+    left, sigma, right = factors_of(jacobians, full_matrices=False)
     if rank < 1 or sigma.shape[1] < rank:
         return []
     left, right = left[:, :, :rank], right[:, :rank]
