@@ -22,7 +22,7 @@ from bifurc.decisions import is_shaky, may_be_shaky
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.numerics.singular_values import factors_of, singular_values
+from bifurc.numerics.singular_values import factors_of, singular_values, values_of
 from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 from bifurc.singular.sphere import section
 
@@ -145,7 +145,7 @@ def deflated_singular_values(
         matrix = system.jacobians(np.concatenate([point, a])[None])[0]
         matrix[:, : problem.n] *= problem.scale
         matrix[: len(matrix) // 2 - 1] /= problem.scale  # F' itself
-        sigma = factors_of(matrix / problem.magnitude).sigma
+        sigma = values_of(matrix / problem.magnitude)
         values[k] = sigma[2 * problem.n - 2]
     return values
 

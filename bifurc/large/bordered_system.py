@@ -34,6 +34,9 @@ BORDER = 1e-3
 EXACT, ROUGH = 1e-10, 1e-5
 UNSOLVED = 1e-3  # the same: from here on a system is not solved
 ROUNDING = 1e-13  # of entries, over the typical one
+# Solutions that are so large come of a matrix that counts as exactly singular: the
+# square of what comes out must still be a double.
+OVERFLOW = 1e100
 KRYLOV_DIMENSION, CYCLES = 40, 6
 
 Map: TypeAlias = Callable[[np.ndarray], np.ndarray]
@@ -95,7 +98,9 @@ class _Factored:
         from scipy.sparse import csr_array, hstack, vstack
 
         k = columns.shape[1]
-        typical = float(np.median(np.abs(jacobian.data))) or 1.0
+        # not of all entries: those of the parameter may vanish along a whole branch
+        largest = abs(jacobian).max(axis=1).toarray()
+        typical = float(np.median(largest)) or 1.0
         self._below = _border_weights(rows, typical, axis=1)
         self._beside = _border_weights(columns, typical, axis=0)
         under = csr_array(self._below[:, None] * rows)
@@ -123,14 +128,21 @@ class _Factored:
 
 def _factors_of(matrix: csc_array, typical: float) -> SuperLU:
     """The factors of a matrix; of one that is exactly singular, as at a crossing whose
-    numbers are round, those of what rounding may have made of it."""
+    numbers are round, or so nearly that solutions overflow, those of what rounding may
+    have made of it."""
     from scipy.sparse import eye_array
 
+    count = matrix.shape[0]
     try:
-        return sparse_factors(matrix)
+        factors = sparse_factors(matrix)
     except RuntimeError:
-        shift = ROUNDING * typical * eye_array(matrix.shape[0])
-        return sparse_factors((matrix + shift).tocsc())
+        factors = None
+    if factors is not None:
+        solution = typical * factors.solve(np.ones(count))
+        if np.abs(solution).max() < OVERFLOW:
+            return factors
+    shift = ROUNDING * typical * eye_array(count)
+    return sparse_factors((matrix + shift).tocsc())
 
 
 def _border_weights(border: np.ndarray, typical: float, axis: int) -> np.ndarray:

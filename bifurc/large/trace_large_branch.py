@@ -14,6 +14,7 @@ from bifurc.curves.track import Place
 from bifurc.decisions import (
     is_derivative_along,
     is_far_below_size,
+    is_solution,
     is_trivial_field,
 )
 from bifurc.errors import ProblemError
@@ -79,10 +80,10 @@ def trace_large_branch(
     It is followed to the side of ``direction`` (n,), which is that of a growing
     parameter unless given, until it closes, leaves the bounds of the parameter, or is
     as long as the settings allow. Trouble on the way is the `Outcome` of the branch. A
-    start that cannot be corrected gives a branch of no pieces. A typical size of the
-    field that is far too large is replaced by the one that is seen. Raises `ProblemError` for
+    typical size of the field that is far too large is replaced by the one that is seen. Raises `ProblemError` for
     a start, a direction, a value, a jacobian or a solution by the solver that has
-    another shape or is not finite, for a start outside of the bounds, for a jacobian that is
+    another shape or is not finite, for a start outside of the bounds, for one that cannot
+    be corrected to a solution, for a jacobian that is
     not the derivative at the start or along the curve, and where
     the solver is so poor that the first systems are not solved.
     """
@@ -92,6 +93,7 @@ def trace_large_branch(
     along = _checked_direction(problem, direction)
     with np.errstate(over="ignore", invalid="ignore"):
         scaled, branch = _traced_at_its_size(problem, checked, along, settings)
+        _check_is_solved(scaled, checked, branch)
         points = folds_on(scaled, branch)
         profile = singular_profile(scaled, branch, settings.places, settings.values)
         crossings = crossings_on(scaled, branch, profile)
@@ -102,6 +104,25 @@ def trace_large_branch(
     return LargeBranch(
         branch, scaled.own_units, tuple(points), profile.places, profile.values
     )
+
+
+def _check_is_solved(scaled: ScaledProblem, start: np.ndarray, branch: Branch) -> None:
+    """Raises `ProblemError` where no correction of the ``start`` (n,) of a curve led to
+    a solution."""
+    if len(branch.pieces):
+        return
+    point = scaled.own_units.inwards(start)
+    gap = float(scaled.gaps(point[None])[0])
+    if is_solution(gap):
+        return
+    allowed = (
+        f"{is_solution.threshold:g} at most after its correction: give a start nearer "
+        "to a solution"
+    )
+    left = min(gap, branch.gap) if branch.outcome is Outcome.OPEN else gap
+    largest = np.abs(scaled.problem.value(start)).max()
+    value = f"{left:.2g}, with equations of up to {largest:.2g} at the start"
+    raise ProblemError("relative residual of the start", value, allowed)
 
 
 def _check_jacobian_along(

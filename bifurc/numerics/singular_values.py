@@ -13,7 +13,7 @@ import numpy as np
 from bifurc import _core
 from bifurc.problem import Problem
 
-__all__ = ["Factors", "factors_of", "singular_values"]
+__all__ = ["Factors", "factors_of", "singular_values", "values_of"]
 
 # Unknowns up to which compiled code takes them by Jacobi's method, which knows small ones
 # to more digits than LAPACK: of more unknowns that takes twenty times as long.
@@ -27,12 +27,12 @@ def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
         return np.empty(points.shape)
     flat = points.reshape(-1, points.shape[-1])
     jacobians = problem.jacobians(flat) / problem.magnitude
-    is_few = problem.n <= FEW
-    values_of = _core.singular_values if is_few else np.linalg.svdvals
-    is_finite: np.ndarray = np.isfinite(jacobians).all(axis=(1, 2))
+    is_finite = np.asarray(np.isfinite(jacobians).all(axis=(1, 2)))
     if not np.all(is_finite):
         jacobians = np.where(is_finite[:, None, None], jacobians, 0.0)
-    values = values_of(jacobians)
+    is_few = problem.n <= FEW
+    decomposed = _core.singular_values if is_few else np.linalg.svdvals
+    values = decomposed(jacobians)
     out = np.zeros((len(flat), problem.n))
     out[:, : values.shape[1]] = values[:, : problem.n]
     out[~is_finite] = np.inf
@@ -57,3 +57,15 @@ def factors_of(matrices: np.ndarray, full_matrices: bool = True) -> Factors:
     sound = np.where(is_finite[..., None, None], matrices, 0.0)
     left, sigma, right = np.linalg.svd(sound, full_matrices=full_matrices)
     return Factors(left, np.where(is_finite[..., None], sigma, np.inf), right)
+
+
+def values_of(matrices: np.ndarray) -> np.ndarray:
+    """The singular values (..., min(m, n)) of matrices (..., m, n) alone, in decreasing
+    order; infinite ones of a matrix that is not finite."""
+    is_finite = np.isfinite(matrices).all(axis=(-2, -1))
+    if np.all(is_finite):
+        values: np.ndarray = np.linalg.svd(matrices, compute_uv=False)
+        return values
+    sound = np.where(is_finite[..., None, None], matrices, 0.0)
+    values = np.linalg.svd(sound, compute_uv=False)
+    return np.where(is_finite[..., None], values, np.inf)

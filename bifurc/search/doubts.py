@@ -14,11 +14,8 @@ from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
     is_known_curve,
     is_same_point,
-<<<<<<< HEAD
-    may_be_null,
-=======
     is_stub,
->>>>>>> 0e74908 (Claim nothing where F' is not finite, and follow curves up to there)
+    may_be_null,
     misses_by_rounding,
     stands_still,
     unit_over_rounding,

@@ -33,7 +33,7 @@ from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
 from bifurc.function_problem import EXACT_HESSIAN, PROBES, FunctionProblem
 from bifurc.limits import Deadline
-from bifurc.numerics.singular_values import factors_of
+from bifurc.numerics.singular_values import values_of
 from bifurc.problem import PreciseResidual, Problem
 from bifurc.search.restated import restated_branch
 from bifurc.seeding import random_seeds
@@ -340,7 +340,7 @@ class UnitProblem(FunctionProblem):
         belong; others are spread by what a residual leaves open."""
         if not len(points) or self.n < 2:
             return np.ones(len(points), dtype=bool)
-        values = factors_of(self.jacobians(points)).sigma
+        values = values_of(self.jacobians(points))
         if values.shape[1] < self.n - 1:
             return np.zeros(len(points), dtype=bool)
         sharp: np.ndarray = values[:, self.n - 2] > REGULAR * self.magnitude
@@ -574,7 +574,7 @@ def _has_curves(own: UnitProblem) -> bool:
     if len(seeds.points) < FEWEST:
         return False
     matrices = own.jacobians(seeds.points) / own.magnitude
-    values = factors_of(matrices).sigma
+    values = values_of(matrices)
     regular = np.median(values[:, own.n - 2])
     left = np.median(values[:, own.n - 1]) if values.shape[1] >= own.n else 0.0
     return bool(regular > OF_CURVES and left < OF_CURVES * regular)

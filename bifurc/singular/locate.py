@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import is_located, is_simple, is_singular_point
-from bifurc.numerics.singular_values import factors_of
+from bifurc.numerics.singular_values import factors_of, values_of
 from bifurc.problem import Problem
 
 __all__ = ["MOST_FOR_GERM", "LocatedPoint", "block_slice", "locate_singular_point"]
@@ -269,22 +269,13 @@ def _solved_in_regular_equations(
     """
     rank = problem.n - nullity
     for _ in range(2):
-<<<<<<< HEAD
         jacobians = problem.relative_jacobians(points)
-        left, sigma, right = np.linalg.svd(jacobians, full_matrices=False)
+        left, sigma, right = factors_of(jacobians, full_matrices=False)
         residuals = problem.relative_residuals(points)
         shares = np.einsum("kmr,km->kr", left[:, :, :rank], residuals)
         shares /= sigma[:, :rank]
         points = points - np.einsum("krn,kr->kn", right[:, :rank], shares)
     return points
-=======
-        jacobian = problem.relative_jacobians(u[None])[0]
-        left, sigma, right = factors_of(jacobian, full_matrices=False)
-        residual = problem.relative_residuals(u[None])[0]
-        shares = left[:, :rank].T @ residual / sigma[:rank]
-        u = u - right[:rank].T @ shares
-    return u
->>>>>>> 0e74908 (Claim nothing where F' is not finite, and follow curves up to there)
 
 
 def _largest_null_values(
@@ -293,7 +284,7 @@ def _largest_null_values(
     """The largest (k,) of the ``nullity`` smallest singular values of F' at points
     (k, n), over the magnitude."""
     jacobians = problem.relative_jacobians(points)
-    sigma = factors_of(jacobians).sigma
+    sigma = values_of(jacobians)
     rank = problem.n - nullity
     if sigma.shape[1] <= rank:
         return np.zeros(len(points))

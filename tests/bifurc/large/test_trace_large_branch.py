@@ -244,7 +244,7 @@ def test_a_start_and_a_direction_are_checked() -> None:
         LargeSettings(values=-1)
 
 
-def test_a_start_far_from_all_solutions_gives_no_branch() -> None:
+def test_a_start_far_from_all_solutions_is_refused_with_how_far_it_is() -> None:
     case = bratu_field(10, 1)
     problem = LargeProblem(
         lambda x: case.residual(x) + 1e3 * (1.0 + x[:-1] ** 2),
@@ -252,10 +252,35 @@ def test_a_start_far_from_all_solutions_gives_no_branch() -> None:
         (0.0, 8.0),
         pattern=case.jacobian(np.zeros(11)),
     )
-    branch = trace_large_branch(problem, np.zeros(11))
-    assert branch.outcome in (Outcome.OPEN, Outcome.STALLED)
-    assert not branch.points
-    assert LargeKind.FOLD.value in repr(branch)
+    with pytest.raises(bifurc.ProblemError, match=r"residual of the start: \d.* 1e-12"):
+        trace_large_branch(problem, np.zeros(11))
+
+
+def test_a_start_at_which_the_derivative_vanishes_is_refused() -> None:
+    n = 300
+    no_solution = LargeProblem(
+        lambda x: x[:-1] ** 2 + 1 + x[-1] ** 2, n, (0.0, 1.0), pattern=eye_array(n - 1)
+    )
+    with pytest.raises(bifurc.ProblemError, match="residual of the start"):
+        trace_large_branch(no_solution, np.zeros(n))
+
+
+def test_singular_values_that_vanish_to_the_last_bit_are_no_overflow(capfd) -> None:
+    n = 60
+    zeros = np.arange(1, n) * 1.0
+    touching = LargeProblem(
+        lambda x: (x[-1] - zeros) ** 2 * x[:-1] - x[:-1] ** 3,
+        n,
+        (0.0, 4.5),
+        pattern=eye_array(n - 1),
+    )
+    start = np.zeros(n)
+    start[-1] = 0.5
+    branch = trace_large_branch(touching, start, settings=LargeSettings(values=4))
+    assert branch.outcome is Outcome.LEFT_REGION
+    places = sorted(point.u[-1] for point in branch.points)
+    assert places == pytest.approx([1.0, 2.0, 3.0, 4.0], abs=1e-3)
+    assert not any(capfd.readouterr())
 
 
 # --- units ----------------------------------------------------------------------------
