@@ -963,6 +963,15 @@ is_whole_circle = Decision(
     Role.CONVENTION,
 )
 
+is_period = Decision(
+    "period of the equations",
+    "the equations are the same one period on, but for their signs or a constant",
+    "by how much they differ, over their size and F' times the period",
+    1e-4,
+    "a period is written with 7 digits or more; equations of another period differ by "
+    "as much as they are large at some of the points",
+)
+
 # --- diagrams -------------------------------------------------------------------------
 
 is_on_axis = Decision(

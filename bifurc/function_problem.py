@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
@@ -10,7 +11,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bifurc.checks import check_callable, floats_of
-from bifurc.decisions import is_derivative, is_solved_from_afar, is_whole_circle
+from bifurc.decisions import (
+    is_derivative,
+    is_period,
+    is_solved_from_afar,
+    is_whole_circle,
+)
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Tape
@@ -53,6 +59,7 @@ AT_ONCE = 14  # pieces by collocation in one march
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
 HESSIAN_STEP = 1e-5  # the same for F'
+TINY = 1e-300  # keeps what is zero from being divided by
 EXACT_HESSIAN = 1e-14  # how far off, over a bound on it, rounding leaves an exact F''
 
 
@@ -135,7 +142,8 @@ class FunctionProblem(NumericalProblem):
     are limits on the circle. An unknown without bounds or a period is followed as far
     as a hundred times the size of the solutions that are reached from starts about 0;
     `bounds` holds what was taken. Raises `ProblemError` for bounds out of order, for a function
-    that gives no finite vector, and for a ``jacobian`` that is not its derivative.
+    that gives no finite vector, for a ``jacobian`` that is not its derivative, and for
+    a period that is none of the function.
     """
 
     def __init__(
@@ -162,6 +170,7 @@ class FunctionProblem(NumericalProblem):
         if is_recorded:
             self.recording = record(function, points)
         self._measure(probes)
+        self._check_periods(probes)
         self._settle_open_bounds()
 
     def _set_unknowns(
@@ -494,6 +503,38 @@ class FunctionProblem(NumericalProblem):
         finite: np.ndarray = probes[is_finite]
         return finite
 
+    def _check_periods(self, probes: np.ndarray) -> None:
+        """Raise `ProblemError` unless the equations are the same one period on from the
+        probes (k, n), but for their signs, or a constant more: that of an equation
+        between angles, as u_1 = 2 u_2 is."""
+        for i in np.flatnonzero(np.isfinite(self.periods)):
+            period = float(self.periods[i])
+            shift = np.zeros(self.n)
+            shift[i] = period
+            with np.errstate(all="ignore"):
+                here, there = self.residuals(probes), self.residuals(probes + shift)
+                slopes = np.abs(self.jacobians(probes)[:, :, i])
+            sizes = np.maximum(np.abs(here), np.abs(there)) + slopes * period + TINY
+            change = there - here
+            known = np.where(np.isfinite(change), change, np.nan)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # columns without a number
+                constant = np.nanmedian(known, axis=0)
+            gaps = np.minimum(
+                _largest_known(np.abs(change - constant) / sizes),
+                _largest_known(np.abs(here + there) / sizes),
+            )
+            row = int(np.argmax(gaps))
+            if is_period(float(gaps[row])):
+                continue
+            at = int(np.nanargmax(np.abs(known[:, row])))
+            allowed = (
+                f"a period of the function: equation {row + 1} is "
+                f"{here[at, row]:.6g} at {probes[at]} and {there[at, row]:.6g} one "
+                "period on"
+            )
+            raise ProblemError(f"period of {self.names[i]}", period, allowed)
+
     def _check_jacobian(self, probe: np.ndarray) -> None:
         """Raise `ProblemError` unless F' has its shape and is finite at a probe (n,),
         and agrees with the recording or with differences where it is given."""
@@ -523,6 +564,14 @@ class FunctionProblem(NumericalProblem):
             )
             name = f"jacobian[{row}, {column}]"
             raise ProblemError(name, jacobian[row, column], allowed)
+
+
+def _largest_known(values: np.ndarray) -> np.ndarray:
+    """The largest finite number of every column of values (k, m), 0 where there is
+    none."""
+    known = np.where(np.isfinite(values), values, 0.0)
+    largest: np.ndarray = known.max(axis=0)
+    return largest
 
 
 def _checked_bounds(bounds: Sequence[Sequence[float]]) -> np.ndarray:

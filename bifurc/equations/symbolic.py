@@ -12,7 +12,7 @@ import sympy
 from bifurc.equations.recording import Recording
 from bifurc.equations.tape import FUNCTIONS, Operation, Tape, TapeWriter, TooLong
 from bifurc.errors import ProblemError
-from bifurc.function_problem import PROBES, FunctionProblem
+from bifurc.function_problem import FunctionProblem
 
 if TYPE_CHECKING:
     from bifurc.problem import PreciseResidual
@@ -59,7 +59,9 @@ class SymbolicProblem(FunctionProblem):
         self._rows = tape.m
         self._function = _TapeFunction(tape)
         self._jacobian = None
-        self._measure(self._probes_with_value(self._random_points()[:PROBES]))
+        probes = self._first_points().probes
+        self._measure(probes)
+        self._check_periods(probes)
         self._settle_open_bounds()
 
     def precise_residual(self) -> PreciseResidual:

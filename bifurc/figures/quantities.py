@@ -17,6 +17,7 @@ __all__ = ["AxisRequest", "Quantity", "quantity_of"]
 
 AxisRequest: TypeAlias = "str | Callable[[np.ndarray], float]"
 NORM = "|u|"
+SAMPLES = 64  # of a form at which it is seen what an axis shows
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,9 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
     """
     if callable(request):
         label = getattr(request, "__name__", "function")
-        return Quantity(label, _each(request))
+        quantity = Quantity(label, _each(request, label))
+        _check_is_seen(atlas, quantity)
+        return quantity
     names = list(atlas.names)
     if request in names:
         index = names.index(request)
@@ -74,10 +77,32 @@ def _norms(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
 
 
 def _each(
-    function: Callable[[np.ndarray], float],
+    function: Callable[[np.ndarray], float], label: str
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """The function of many points (k, n) that one of a point (n,) makes."""
-    return lambda points: np.array([float(function(point)) for point in points])
+    """The function of many points (k, n) that one of a point (n,) makes; it raises
+    `ProblemError` for a value that is no number."""
+
+    def number(point: np.ndarray) -> float:
+        value = function(point)
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            name = f"value of the axis function {label}"
+            raise ProblemError(name, repr(value), "a number") from None
+
+    return lambda points: np.array([number(point) for point in points])
+
+
+def _check_is_seen(atlas: Atlas, quantity: Quantity) -> None:
+    """Raises `ProblemError` for an axis that shows nothing of any form."""
+    samples = [form.branch.sample(SAMPLES) for form in atlas.forms]
+    if not samples:
+        return
+    values = quantity.values(np.concatenate(samples))
+    if not np.isfinite(values).any():
+        allowed = "a finite number somewhere on the forms"
+        name = f"value of the axis function {quantity.label}"
+        raise ProblemError(name, values[0], allowed)
 
 
 def _with_unit(atlas: Atlas, index: int) -> str:
@@ -90,7 +115,7 @@ def _period(atlas: Atlas, index: int) -> float:
     period = float(atlas.periods[index])
     if not np.isfinite(period):
         return period
-    ends = [form.branch.sample(64)[:, index] for form in atlas.forms]
+    ends = [form.branch.sample(SAMPLES)[:, index] for form in atlas.forms]
     if not ends:
         return np.inf
     values = np.concatenate(ends)

@@ -54,7 +54,8 @@ REQUIRED = ("unknowns", "equations")
 KEYS = ("name", "parameter", *REQUIRED, "parameters", "definitions", "events")
 UNKNOWN_KEYS = ("bounds", "period", "unit")
 NAME = re.compile(r"[^\W\d]\w*")
-RATE = re.compile(r"\s*([^\W\d]\w*)\s*'\s*")
+EQUALS = re.compile(r"==?")
+RATE = re.compile(r"\s*([^\W\d]\w*)\s*'\s*==?")
 INFINITE = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
 
 
@@ -164,6 +165,9 @@ class _Reading:
         for name, given in table.items():
             label = f"parameters.{name}"
             self._check_name(label, name)
+            if not math.isfinite(self.overrides.get(name, 0.0)):
+                refused = self.overrides[name]
+                raise _Refusal(f"{label}: {refused} is not a finite number")
             value = repr(self.overrides[name]) if name in self.overrides else given
             part = self._constant(label, value)
             self.symbols[name] = part
@@ -244,15 +248,14 @@ class _Reading:
         label = f"equations.{name}"
         if not isinstance(text, str):
             raise _Refusal(f"{label}: {text!r} is no text in quotes")
-        left, equals, right = text.replace("==", "=").partition("=")
-        rate = RATE.fullmatch(left)
-        if rate is None or not equals:
+        rate = RATE.match(text)
+        if rate is None:
             part = self._part(label, text)
             rate_of = ""
         else:
-            if "=" in right:
+            if EQUALS.search(text, rate.end()):
                 raise _Refusal(f"{label}: {text!r} has more than one sign =")
-            part = self._part(label, right)
+            part = self._side(label, text, rate.end(), len(text))
             rate_of = rate[1]
             if rate_of not in unknowns:
                 hint = _nearest(rate_of, unknowns)
@@ -318,18 +321,23 @@ class _Reading:
             text = str(text)
         if not isinstance(text, str):
             raise _Refusal(f"{label}: {text!r} is no text in quotes")
-        sides = text.replace("==", "=").split("=")
-        if len(sides) > 2:
+        signs = list(EQUALS.finditer(text))
+        if len(signs) > 1:
             raise _Refusal(f"{label}: {text!r} has more than one sign =")
-        try:
-            left = parse_expression(sides[0], self.symbols)
-            if len(sides) == 1:
-                return left
-            right = parse_expression(sides[1], self.symbols)
-        except ExpressionError as error:
-            raise _Refusal(f"{label}: {text!r}: {error}") from None
+        if not signs:
+            return self._side(label, text, 0, len(text))
+        left = self._side(label, text, 0, signs[0].start())
+        right = self._side(label, text, signs[0].end(), len(text))
         size = left.size + right.size
         return Part(left.expression - right.expression, None, size)
+
+    def _side(self, label: str, text: str, begin: int, end: int) -> Part:
+        """The expression from ``begin`` to ``end`` of a text, in the columns of which an
+        error counts."""
+        try:
+            return parse_expression(" " * begin + text[begin:end], self.symbols)
+        except ExpressionError as error:
+            raise _Refusal(f"{label}: {text!r}: {error}") from None
 
     def _constant(self, label: str, given: object) -> Part:
         if isinstance(given, bool) or not isinstance(given, int | str):

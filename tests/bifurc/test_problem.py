@@ -14,8 +14,12 @@ def circle(u):
     return np.array([u[0] ** 2 + u[1] ** 2 - 1.0])
 
 
+def wave(u):
+    return np.array([np.sin(u[0]) - u[1]])
+
+
 def test_differences_are_taken_modulo_the_periods_and_only_of_periodic_unknowns():
-    problem = FunctionProblem(circle, BOX, periods=[2 * np.pi, np.inf])
+    problem = FunctionProblem(wave, BOX, periods=[2 * np.pi, np.inf])
     gap = problem.difference(np.array([3.0, 3.0]), np.array([-3.0, -3.0]))
     assert gap == pytest.approx([6.0 - 2 * np.pi, 6.0])
 

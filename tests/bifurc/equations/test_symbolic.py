@@ -67,7 +67,8 @@ def test_at_high_precision_a_third_is_a_third():
 
 
 def test_a_symbolic_problem_is_copied_and_pickled():
-    problem = SymbolicProblem([X**2 + Y**2 - 1], [X, Y], BOX, periods=[np.inf, 7.0])
+    wave = X - sympy.sin(2 * sympy.pi * Y / 7)
+    problem = SymbolicProblem([wave], [X, Y], BOX, periods=[np.inf, 7.0])
     points = np.array([[0.1, 0.2]])
     for twin in (pickle.loads(pickle.dumps(problem)), copy.deepcopy(problem)):
         assert np.array_equal(twin.residuals(points), problem.residuals(points))

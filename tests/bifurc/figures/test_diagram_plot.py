@@ -107,3 +107,20 @@ def test_rounding_is_not_drawn_as_large_as_the_frame() -> None:
 def test_an_axis_that_is_nothing_is_refused(pitchfork, axis) -> None:
     with pytest.raises(ProblemError, match=r"axis: .* unknowns x, p"):
         plot_diagram(pitchfork, axis, "x")
+
+
+@pytest.mark.parametrize("value", ["text", None, [1.0, 2.0]])
+def test_an_axis_function_must_give_numbers(pitchfork, value) -> None:
+    def height(u):
+        return value
+
+    with pytest.raises(ProblemError, match=r"axis function height: .* a number"):
+        plot_diagram(pitchfork, "p", height)
+
+
+def test_an_axis_function_must_be_finite_somewhere(pitchfork) -> None:
+    def height(u):
+        return float("nan")
+
+    with pytest.raises(ProblemError, match=r"axis function height: nan .* finite"):
+        plot_diagram(pitchfork, "p", height)

@@ -193,3 +193,43 @@ def test_code_in_a_file_is_not_run(tmp_path) -> None:
         message = refused(path, text)
         assert f"{key}.bad" in message
     assert not witness.exists()
+
+
+@pytest.mark.parametrize(
+    "equation, message",
+    [
+        ("y = 2x", r"missing at column 6"),
+        ("y == 2x", r"missing at column 7"),
+        ("y = x(x - 1)", r"column 5"),
+        ("y = foo(x)", r"'foo' at column 5"),
+        ("x' = y + $1", r"column 10"),
+        ("2x = y", r"missing at column 2"),
+    ],
+)
+def test_columns_count_from_the_begin_of_an_equation(tmp_path, equation, message):
+    path = tmp_path / "one.toml"
+    path.write_text(
+        f'parameter = "y"\nequations = ["{equation}"]\n'
+        "[unknowns]\nx = [-1, 1]\ny = [-1, 1]\n",
+        encoding="utf-8",
+    )
+    with pytest.raises(bifurc.EquationFileError, match=message) as caught:
+        read_equations(path)
+    assert repr(equation) in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [float("inf"), float("nan")])
+def test_a_parameter_that_is_not_finite_is_refused(path, value) -> None:
+    with pytest.raises(
+        bifurc.EquationFileError, match=r"parameters\.B: .* not a finite"
+    ):
+        read_equations(path, {"B": value})
+
+
+def test_a_period_that_is_none_of_the_equations_is_refused(tmp_path) -> None:
+    path = tmp_path / "parabola.toml"
+    path.write_text(
+        'equations = ["y = a^2"]\n[unknowns]\na = { period = "2*pi" }\ny = [-9, 9]\n'
+    )
+    with pytest.raises(bifurc.EquationFileError, match=r"period of a: 6\.28"):
+        read_equations(path)
