@@ -484,6 +484,15 @@ misses_by_rounding = Decision(
     "rounding of F is 1e-15 or less",
     third_answer="what is more, up to the closing tolerance, is in doubt",
 )
+hangs_on_data = Decision(
+    "near miss by rounding of the data",
+    "a near miss may be a bifurcation of the numbers that are meant",
+    "change of F that would make it one, over the rounding of the numbers that F is made "
+    "of",
+    16.0,
+    "so many numbers at most add up, each off by half a unit in the last place",
+    third_answer="the near miss is listed, and in doubt",
+)
 is_known_curve = Decision(
     "curve without doubt",
     "a form is a curve, and not a part of a surface",

@@ -199,7 +199,9 @@ class Problem(ABC):
     singular values are divided, ``scale`` the typical size of the unknowns, and
     ``derivatives`` says how F' was made, ``equations`` whether a function was recorded,
     and why not. ``is_exact``: its equations are what is meant, and not made of numbers that
-    are rounded. ``hessian_error`` is how far off `hessian` may be, over a bound on F''.
+    are rounded. ``data_rounding``: how far off F may be, over the magnitude and the
+    scale, as those numbers are rounded; 0 where that is not known. ``hessian_error`` is
+    how far off `hessian` may be, over a bound on F''.
     """
 
     names: tuple[str, ...]
@@ -213,6 +215,7 @@ class Problem(ABC):
     derivatives: str = "exact"
     equations: str = ""
     is_exact: bool = False
+    data_rounding: float = 0.0
 
     @property
     def has_assumed_bounds(self) -> np.ndarray:

@@ -27,9 +27,12 @@ def section(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> 
 
 
 def count_of(number: int, noun: str) -> str:
-    """``number`` and the noun in its number: "1 form", "2 assemblies"."""
+    """``number`` and the noun in its number: "1 form", "2 assemblies",
+    "3 near misses"."""
     if number == 1:
         return f"{number} {noun}"
     if noun.endswith("y"):
         return f"{number} {noun[:-1]}ies"
+    if noun.endswith("s"):
+        return f"{number} {noun}es"
     return f"{number} {noun}s"

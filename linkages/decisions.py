@@ -227,4 +227,21 @@ is_same_network_place = Decision(
     "roots are exact to 1e-15 times the slope, double ones to 1e-8",
 )
 
+is_near_origin = Decision(
+    "near the origin",
+    "coordinates are no larger than the mechanism, but for a few times",
+    "largest coordinate of a point over the largest difference of two",
+    8.0,
+    "rounding of a coordinate is then 1e-15 of the mechanism at most, as that of F; beyond, "
+    "coordinates of a file are counted from its first point, and those of a mechanism "
+    "that is made otherwise are said to be rounded",
+)
+passes_reference = Decision(
+    "reference configuration of a form",
+    "a form passes through the reference configuration, and its angles are 0 there",
+    "distance of the form from it, rad or characteristic lengths",
+    1e-3,
+    "a file of four digits closes 1e-4 beside its reference; whole turns alone hang on it",
+)
+
 TABLE = decisions_in(globals())

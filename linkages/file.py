@@ -43,6 +43,7 @@ from linkages.loop import (
     check_number,
     quoted,
 )
+from linkages.mechanisms.origin import WrittenNumber, counted_from_near
 from linkages.values import check_angle
 
 if TYPE_CHECKING:
@@ -95,7 +96,7 @@ def read_file(path: Path | str) -> Loop | Mechanism:
         return _read_fold_file(path)
     if ending in FOREIGN_ENDINGS:
         return _read_foreign(path)
-    content = _parse(path)
+    content = _parse(path, WrittenNumber)
     if not _is_of_mechanism(content):
         loop, _ = read_linkage(path)
         return loop
@@ -146,7 +147,7 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
     """
     path = Path(path)
     is_foreign = path.suffix.lower() in FOREIGN_ENDINGS
-    content: Content = {} if is_foreign else _parse(path)
+    content: Content = {} if is_foreign else _parse(path, WrittenNumber)
     if is_foreign or _is_of_mechanism(content):
         message = (
             "describes a mechanism, and this takes a single loop of revolute joints"
@@ -252,7 +253,8 @@ def _read_table(content: Content, name: str) -> Loop:
 
 
 def _read_axes(content: Content, name: str) -> tuple[Loop, np.ndarray]:
-    points, directions = (_list(content, key, "vectors [x, y, z]") for key in AXES)
+    given, directions = (_list(content, key, "vectors [x, y, z]") for key in AXES)
+    points = counted_from_near(given).rows
     # `loop_from_axes` checks every vector
     return loop_from_axes(cast(Vectors, points), cast(Vectors, directions), name)
 

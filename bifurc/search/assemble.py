@@ -35,7 +35,7 @@ from bifurc.search.canonical_order import (
 from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
-from bifurc.search.doubts import doubts_of
+from bifurc.search.doubts import doubts_of, doubts_of_near_misses
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
 from bifurc.singular.point import Kind, SingularPoint
@@ -77,7 +77,9 @@ def assemble_atlas(
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)
+    near_misses = _near_misses(problem, traced, periods)
     doubts = doubts_of(problem, traced, forms, points, surfaces)
+    doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
     near_motions = _near_motions(problem, findings, periods)
     if near_motions:
         doubts = (*doubts, *_doubts_of_near_motions(findings), NEAR_ASSEMBLIES)
@@ -95,7 +97,7 @@ def assemble_atlas(
         periods=problem.periods,
         forms=forms,
         points=points,
-        near_misses=_near_misses(problem, traced, periods),
+        near_misses=near_misses,
         dead_points=_dead_points(problem, traced, periods),
         rigid=rigid[order_points(rigid, periods, problem.scale)],
         surfaces=surfaces,

@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bifurc.atlas import Form, MeetingPoint, Surface
+from bifurc.atlas import Event, Form, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.misclosure import misclosure_at
 from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
+    hangs_on_data,
     is_known_curve,
     is_same_point,
     is_stub,
@@ -20,14 +21,19 @@ from bifurc.decisions import (
     stands_still,
     unit_over_rounding,
 )
-from bifurc.numerics.blur import change_by_blur, rounding_unit
+from bifurc.numerics.blur import (
+    change_by_blur,
+    distance_to_singular,
+    rounding_unit,
+)
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind
+from bifurc.text_tables import count_of
 
-__all__ = ["doubts_of"]
+__all__ = ["doubts_of", "doubts_of_near_misses"]
 
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
@@ -57,6 +63,30 @@ def doubts_of(
         doubts += _doubts_of_point(problem, point)
     doubts += _doubts_of_double_solutions(problem, points)
     return tuple(doubts)
+
+
+def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> list[str]:
+    """Whether the numbers that the equations are made of tell near misses from
+    bifurcations.
+
+    At the distance of a singular point the singular value vanishes; F changes on the
+    way by half of their product.
+    """
+    if problem.data_rounding == 0.0:
+        return []
+    hanging = []
+    for miss in misses:
+        change = miss.value * distance_to_singular(problem, miss.u) / 2
+        if hangs_on_data(change, problem.data_rounding):
+            hanging.append(miss)
+    if not hanging:
+        return []
+    smallest = min(miss.value for miss in hanging)
+    return [
+        f"{count_of(len(hanging), 'near miss')} may be at bifurcations: the numbers of "
+        f"the geometry are known to {problem.data_rounding:.1e} only, which explains a "
+        f"singular value of {smallest:.1e}"
+    ]
 
 
 def _doubts_of_surface(problem: Problem, surface: Surface) -> list[str]:

@@ -72,7 +72,9 @@ class LooseChainDocument(TypedDict):
 class MechanismDocument(TypedDict):
     """The mechanism of a map: ``idle_bodies`` turn about the line between their two
     spherical joints, ``idle_turns`` are variables that turn but a body by itself; the
-    map leaves both out, and counts the freedoms of ``loose_chains``."""
+    map leaves both out, and counts the freedoms of ``loose_chains``. Points are counted
+    from the ``origin``, in the coordinates of the file, and off by
+    ``coordinate_rounding`` at most."""
 
     bodies: list[str]
     frame: str
@@ -83,6 +85,8 @@ class MechanismDocument(TypedDict):
     idle_turns: list[str]
     loose_chains: list[LooseChainDocument]
     characteristic_length: float
+    origin: list[float]
+    coordinate_rounding: float
 
 
 def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
@@ -117,6 +121,8 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
             for chain in loose_chains(readout.structure)
         ],
         "characteristic_length": readout.structure.unit,
+        "origin": list(mechanism.origin),
+        "coordinate_rounding": mechanism.coordinate_rounding,
     }
 
 

@@ -20,7 +20,7 @@ def describe_joints(readout: Readout) -> str:
     """The joints of a mechanism, and the limits within which it is followed."""
     rows = [_joint_row(joint) for joint in readout.mechanism.joints]
     heads = ("name", "kind", "bodies", "point", "direction", "locked")
-    text = section("Joints", heads, rows)
+    text = section("Joints", heads, rows) + _coordinates(readout)
     is_turn = {
         variable.label: variable.motion.is_turn
         for variable in readout.mechanism.variables
@@ -43,6 +43,24 @@ def describe_joints(readout: Readout) -> str:
     turns = readout.structure.idle_turns
     if turns:
         text += f"\n\nLeft out: {', '.join(turns)}, which turns but a body by itself."
+    return text
+
+
+def _coordinates(readout: Readout) -> str:
+    """From where the points are counted, and how well they are known, where that is
+    not plain."""
+    mechanism = readout.mechanism
+    text = ""
+    if any(mechanism.origin):
+        place = " ".join(f"{coordinate:.10g}" for coordinate in mechanism.origin)
+        text += f"\n\nPoints are counted from {place} of the file."
+    if not mechanism.is_near_origin:
+        rounding = mechanism.coordinate_rounding
+        share = rounding / readout.structure.unit
+        text += (
+            f"\n\nThe points are far from the origin: their coordinates are known to "
+            f"{rounding:.2g} only, {share:.2g} of the characteristic length."
+        )
     return text
 
 

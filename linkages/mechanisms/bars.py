@@ -22,6 +22,7 @@ from linkages.mechanisms.figure_bodies import (
 )
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.origin import Place, counted_from_near, origin_of
 
 __all__ = ["read_bars"]
 
@@ -76,7 +77,7 @@ def read_bars(content: Content, name: str) -> Mechanism:
     do (least squares). Raises `GeometryError` for anything wrong, and where bars of
     these lengths cannot be assembled next to the points.
     """
-    points = _read_points(content)
+    points, origin = _read_points(content)
     on_bars = _read_points_on_bars(content, points)
     known = [*points, *on_bars]
     fixed = read_fixed(content, known)
@@ -84,17 +85,22 @@ def read_bars(content: Content, name: str) -> Mechanism:
     system = _Bars(points, fixed, bars, on_bars)
     places = _assembled(system)
     joints = _joints(system, places)
-    return Mechanism(tuple(joints), name, is_planar=True)
+    origin_in_file = origin_of(content, origin)
+    return Mechanism(tuple(joints), name, is_planar=True, origin=origin_in_file)
 
 
 # --- keys -----------------------------------------------------------------------------
 
 
-def _read_points(content: Content) -> dict[str, complex]:
+def _read_points(content: Content) -> tuple[dict[str, complex], Place | None]:
+    """The points, and from where they are counted where that is not the origin."""
     table = content.get("points")
     if not isinstance(table, Mapping) or not table:
         raise GeometryError("points", quoted(table), "a table of points [x, y]")
-    return {name: _complex(f"point {name}", row) for name, row in table.items()}
+    rows, origin = counted_from_near(list(table.values()))
+    places = dict(zip(table, rows, strict=True))
+    points = {name: _complex(f"point {name}", row) for name, row in places.items()}
+    return points, origin
 
 
 def _complex(what: str, row: object) -> complex:

@@ -64,6 +64,7 @@ class MechanismClosure(NumericalProblem):
         self.units = tuple("rad" if one.is_angle else "size" for one in unknowns)
         self.periods = np.array([unknown.period for unknown in unknowns])
         self.bounds = np.array([[one.low, one.high] for one in unknowns])
+        self.data_rounding = mechanism.coordinate_rounding / self.structure.unit
         self._equations: Equations = write_equations(self.structure)
         tape = self._equations.tape
         self.equations = f"recorded ({tape.size} operations)"

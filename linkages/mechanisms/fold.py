@@ -23,6 +23,7 @@ from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.origin import Place, WrittenNumber, counted_from_near
 from linkages.mechanisms.poses import Poses
 
 __all__ = ["read_fold"]
@@ -78,7 +79,7 @@ def read_fold(text: str, name: str) -> Mechanism:
     Raises `GeometryError` for anything wrong.
     """
     try:
-        content = json.loads(text)
+        content = json.loads(text, parse_float=WrittenNumber)
     except (json.JSONDecodeError, RecursionError) as error:
         raise GeometryError("content", f"no JSON, {error},", "a FOLD file") from None
     if not isinstance(content, Mapping):
@@ -87,7 +88,7 @@ def read_fold(text: str, name: str) -> Mechanism:
     title = content.get("file_title", content.get("frame_title", name))
     if not isinstance(title, str):
         raise GeometryError("file_title", quoted(title), "a text in quotes")
-    points = _points(frame)
+    points, origin = _points(frame)
     faces = _faces(frame, len(points))
     edges = _edges(frame, len(points))
     creases = _creases(faces, edges)
@@ -103,7 +104,7 @@ def read_fold(text: str, name: str) -> Mechanism:
             if not any(_is_same_hinge(joint, other) for other in joints):
                 joints.append(joint)
                 angles[joint.name] = np.radians(crease.edge.angle)
-    mechanism = Mechanism(tuple(joints), title or name)
+    mechanism = Mechanism(tuple(joints), title or name, origin=origin)
     if FOLDED in frame.get("frame_classes", []) or not any(angles.values()):
         return mechanism
     _check_flat(points)
@@ -197,9 +198,9 @@ def _list(frame: Frame, key: str) -> list[Any]:
     return given
 
 
-def _points(frame: Frame) -> np.ndarray:
-    """The vertices (v, 3)."""
-    rows = _list(frame, "vertices_coords")
+def _points(frame: Frame) -> tuple[np.ndarray, Place]:
+    """The vertices (v, 3), and from where they are counted."""
+    rows, origin = counted_from_near(_list(frame, "vertices_coords"))
     points = np.zeros((len(rows), 3))
     for number, row in enumerate(rows):
         what = f"vertices_coords[{number}]"
@@ -208,7 +209,7 @@ def _points(frame: Frame) -> np.ndarray:
         for k, coordinate in enumerate(row):
             check_number(what, coordinate)
             points[number, k] = coordinate
-    return points
+    return points, origin or (0.0, 0.0, 0.0)
 
 
 def _faces(frame: Frame, vertices: int) -> list[list[int]]:

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from linkages.decisions import is_near_origin
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling, Leader, leaders
 from linkages.mechanisms.joint import Joint, JointKind, Limits, Motion, Vector
+from linkages.mechanisms.origin import spread_of
 
 if TYPE_CHECKING:
     # networkx takes long to import
@@ -53,7 +55,8 @@ class Mechanism:
     """Bodies, joined by ``joints`` that are given in one closed configuration.
 
     ``is_planar``: it was given in a plane, so that a body has three freedoms for
-    Grübler's count.
+    Grübler's count. ``origin`` is where a file that counts them from elsewhere has the
+    origin of the points; nothing that is computed hangs on it.
     Raises `GeometryError` where a joint is named twice, a body hangs on one joint only,
     the bodies do not hang together, or joints are coupled in a circle.
     """
@@ -61,6 +64,7 @@ class Mechanism:
     joints: tuple[Joint, ...]
     name: str = field(default="", compare=False)
     is_planar: bool = False
+    origin: Vector = field(default=(0.0, 0.0, 0.0), compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
@@ -184,8 +188,25 @@ class Mechanism:
     def extent(self) -> float:
         """The largest distance of coordinates of joints; 1 where all are at one
         point."""
-        places = np.array([joint.place for joint in self.joints])
-        return float(np.ptp(places, axis=0).max()) or 1.0
+        return float(np.ptp(self._points, axis=0).max()) or 1.0
+
+    @property
+    def coordinate_rounding(self) -> float:
+        """How far off coordinates of points may be as they are doubles, in the unit of
+        length."""
+        return float(np.spacing(np.abs(self._points).max())) / 2
+
+    @property
+    def is_near_origin(self) -> bool:
+        """Whether coordinates of points are not large beside the mechanism."""
+        farthest = float(np.abs(self._points).max())
+        return is_near_origin(farthest, spread_of(self._points))
+
+    @cached_property
+    def _points(self) -> np.ndarray:
+        """The points (k, 3) that are given; the origin where there are none."""
+        points = [joint.point for joint in self.joints if joint.point is not None]
+        return np.array(points or [(0.0, 0.0, 0.0)])
 
     # --- other mechanisms -------------------------------------------------------------
 
@@ -227,7 +248,9 @@ class Mechanism:
             variable.label: 1.0 if variable.motion.is_turn else factor
             for variable in self.variables
         }
-        return self._with_values_times(joints, factors)
+        x, y, z = self.origin
+        origin = (factor * x, factor * y, factor * z)
+        return replace(self._with_values_times(joints, factors), origin=origin)
 
     def mirrored(self) -> Mechanism:
         """The mirror image in the plane z = 0; turns change their sign."""
@@ -235,7 +258,8 @@ class Mechanism:
         signs: dict[str, float] = {}
         for joint, image in zip(self.joints, joints, strict=True):
             signs |= zip(joint.labels, _signs_in_mirror(joint, image), strict=True)
-        return self._with_values_times(joints, signs)
+        x, y, z = self.origin
+        return replace(self._with_values_times(joints, signs), origin=(x, y, -z))
 
     def _with_values_times(
         self, joints: Iterable[Joint], factors: Mapping[str, float]

@@ -11,6 +11,7 @@ from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.origin import origin_of
 
 __all__ = ["joint_values", "mechanism_from", "mechanism_of", "mechanism_subject"]
 
@@ -18,7 +19,9 @@ __all__ = ["joint_values", "mechanism_from", "mechanism_of", "mechanism_subject"
 def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
     """The ``subject`` of an atlas of a mechanism."""
     joints = [joint_values(joint) for joint in mechanism.joints]
-    values = {"joints": joints, "is_planar": mechanism.is_planar}
+    values: dict[str, Any] = {"joints": joints, "is_planar": mechanism.is_planar}
+    if any(mechanism.origin):
+        values["origin"] = list(mechanism.origin)
     return {"name": mechanism.name, "mechanism": values}
 
 
@@ -80,4 +83,6 @@ def mechanism_from(given: object, name: str) -> Mechanism:
         except TypeError as error:
             raise GeometryError("joint", repr(value), f"a joint: {error}") from None
     assert isinstance(given, dict)
-    return Mechanism(tuple(joints), name, bool(given.get("is_planar", False)))
+    is_planar = bool(given.get("is_planar", False))
+    origin = origin_of(given, None)
+    return Mechanism(tuple(joints), name, is_planar, origin)

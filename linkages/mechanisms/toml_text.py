@@ -20,6 +20,8 @@ def mechanism_toml(mechanism: Mechanism) -> str:
     lines = [f"name = {_quoted(mechanism.name)}", 'angles = "rad"']
     if mechanism.is_planar:
         lines.append("planar = true")
+    if any(mechanism.origin):
+        lines.append(f"origin = {json.dumps(mechanism.origin)}")
     for joint in mechanism.joints:
         lines += ["", "[[joints]]", *_joint_lines(joint)]
     return "\n".join(lines) + "\n"

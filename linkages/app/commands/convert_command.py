@@ -46,6 +46,9 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
         replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
     bodies, joints = len(mechanism.bodies), len(mechanism.joints)
     say(f"{out}: {mechanism.name}, {bodies} bodies, {joints} joints")
+    if any(mechanism.origin):
+        place = " ".join(f"{coordinate:.10g}" for coordinate in mechanism.origin)
+        say(f"Points are counted from {place} of {source}.")
 
 
 def _mechanism(source: str, hold: HoldOptions) -> Mechanism:

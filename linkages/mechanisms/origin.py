@@ -1,0 +1,125 @@
+"""From where the coordinates of a mechanism are counted.
+
+A coordinate such as 30000.6 cannot be stored better than to 3.6e-12, and a bifurcation
+misses a mechanism of size 1 by the root of that. So the coordinates of a file are
+counted from a point of the mechanism where they are large beside it, and the
+differences are taken of the decimals as they are written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from linkages.decisions import is_near_origin
+from linkages.loop import GeometryError, check_number, quoted
+
+__all__ = [
+    "Coordinates",
+    "Place",
+    "WrittenNumber",
+    "counted_from_near",
+    "origin_of",
+    "spread_of",
+]
+
+Place: TypeAlias = tuple[float, float, float]
+
+LARGEST_EXPONENT = 150  # of ten: beyond, a number is left to the checks of its reader
+
+
+class WrittenNumber(float):
+    """A number that knows the decimal ``text`` it was read from."""
+
+    text: str
+
+    def __new__(cls, text: str) -> WrittenNumber:
+        number = super().__new__(cls, text)
+        number.text = text
+        return number
+
+
+class Coordinates(NamedTuple):
+    """The ``rows`` of coordinates, None where one was None, counted from ``origin`` in
+    the rows that were given; None where they are as they were."""
+
+    rows: list[Any]
+    origin: Place | None
+
+
+def counted_from_near(rows: Sequence[object]) -> Coordinates:
+    """The rows, lists of two or three coordinates, counted from the first one where
+    they are far from the origin beside their own spread.
+
+    Differences of `WrittenNumber`s and integers are exact but for one rounding. Where a
+    row is no list of such numbers all are left as they are: their reader refuses them.
+    """
+    unchanged = Coordinates(list(rows), None)
+    given = [row for row in rows if row is not None]
+    if not given or not all(_is_row(row, given[0]) for row in given):
+        return unchanged
+    places = np.array(given, dtype=float)
+    if is_near_origin(float(np.abs(places).max()), spread_of(places)):
+        return unchanged
+    first = [_exact(number) for number in given[0]]  # type: ignore[attr-defined]
+    shifted = [None if row is None else _minus(row, first) for row in rows]
+    x, y, z = [float(number) for number in first] + [0.0] * (3 - len(first))
+    return Coordinates(shifted, (x, y, z))
+
+
+def origin_of(content: Mapping[str, Any], near: Place | None) -> Place:
+    """The point from which the points of a file are counted: its ``origin``, and
+    besides it the one that is ``near`` them. Raises `GeometryError`."""
+    given = content.get("origin", [0.0, 0.0, 0.0])
+    if not isinstance(given, list) or len(given) != 3:
+        raise GeometryError("origin", quoted(given), "a vector [x, y, z]")
+    for k, coordinate in enumerate(given, start=1):
+        check_number(f"origin[{k}]", coordinate)
+    x, y, z = (float(coordinate) for coordinate in given)
+    if near is None:
+        return (x, y, z)
+    return (x + near[0], y + near[1], z + near[2])
+
+
+def spread_of(places: np.ndarray) -> float:
+    """The largest difference of a coordinate of places (k, d); their distance from the
+    origin where all are one, 1 where that is 0."""
+    spread = float(np.ptp(places, axis=0).max())
+    return spread or float(np.abs(places).max()) or 1.0
+
+
+def _is_row(row: object, like: object) -> bool:
+    """Whether a row is a list of finite numbers, as many as ``like`` has."""
+    if not isinstance(row, list) or not isinstance(like, list):
+        return False
+    if len(row) != len(like) or len(row) not in (2, 3):
+        return False
+    return all(_is_number(value) for value in row)
+
+
+def _is_number(value: object) -> bool:
+    """Whether a value is a finite number of ordinary size, 0 among them."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    if not -(10**LARGEST_EXPONENT) < value < 10**LARGEST_EXPONENT:
+        return False
+    is_tiny = 0 < abs(value) < 10.0**-LARGEST_EXPONENT
+    # a fraction of 1e-999999999, which is 0 in doubles, would fill the memory
+    is_hidden = value == 0 and "e" in getattr(value, "text", "").lower()
+    return not (is_tiny or is_hidden)
+
+
+def _exact(number: float) -> Fraction:
+    """A number as its decimal says."""
+    if isinstance(number, WrittenNumber):
+        return Fraction(number.text)
+    return Fraction(number)
+
+
+def _minus(row: Any, first: Sequence[Fraction]) -> list[float]:
+    return [
+        float(_exact(value) - start) for value, start in zip(row, first, strict=True)
+    ]

@@ -1,0 +1,154 @@
+"""Coordinates far from the origin: counted from the mechanism, or said to be rounded."""
+
+from decimal import Decimal
+
+import pytest
+
+import linkages
+from bifurc.files.dataset import load_atlas, save_atlas
+from bifurc.seeds import Level
+from linkages.app.summary import make_summary
+from linkages.file import read_file
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.origin import WrittenNumber, counted_from_near
+from linkages.mechanisms.subject import mechanism_of
+from linkages.mechanisms.toml_text import mechanism_toml
+
+UPWARDS = (0.0, 0.0, 1.0)
+SLIDER_CRANK = """
+[[joints]]
+name = "A"
+kind = "revolute"
+bodies = ["frame", "crank"]
+point = [{x}, 0.0, 0.0]
+direction = [0, 0, 1]
+[[joints]]
+name = "B"
+kind = "revolute"
+bodies = ["crank", "rod"]
+point = [{b}, 0.8, 0.0]
+direction = [0, 0, 1]
+[[joints]]
+name = "C"
+kind = "revolute"
+bodies = ["rod", "slider"]
+point = [{c}, 0.0, 0.0]
+direction = [0, 0, 1]
+[[joints]]
+name = "D"
+kind = "prismatic"
+bodies = ["frame", "slider"]
+direction = [1, 0, 0]
+"""
+
+
+def slider_crank_file(folder, offset):
+    x = Decimal(offset)
+    path = folder / "slider_crank.toml"
+    text = SLIDER_CRANK.format(x=x, b=x + Decimal("0.6"), c=x + Decimal("1.2"))
+    path.write_text(text)
+    return path
+
+
+def far_slider_crank(offset):
+    joints = (
+        Joint("A", "revolute", ("f", "c"), (offset, 0, 0), UPWARDS),
+        Joint("B", "revolute", ("c", "r"), (offset + 0.6, 0.8, 0), UPWARDS),
+        Joint("C", "revolute", ("r", "s"), (offset + 1.2, 0, 0), UPWARDS),
+        Joint("D", "prismatic", ("f", "s"), None, (1, 0, 0)),
+    )
+    return Mechanism(joints, "far")
+
+
+@pytest.mark.parametrize("offset", ["0.0", "-70.0", "30000.0", "100000.1", "1e12"])
+def test_the_decimals_of_a_file_are_counted_from_the_mechanism(offset, tmp_path):
+    mechanism = read_file(slider_crank_file(tmp_path, offset))
+    points = [joint.point for joint in mechanism.joints[:3]]
+    assert points == [(0.0, 0.0, 0.0), (0.6, 0.8, 0.0), (1.2, 0.0, 0.0)]
+    assert mechanism.origin == (float(offset), 0.0, 0.0)
+
+
+@pytest.mark.parametrize("offset", ["30000.0", "100000.0"])
+def test_bifurcations_far_from_the_origin_are_found(offset, tmp_path):
+    atlas = linkages.map_linkage(read_file(slider_crank_file(tmp_path, offset)))
+    assert len(atlas.forms) == 2
+    assert len(atlas.bifurcations) == 2
+    assert atlas.completeness.level == Level.CERTIFIED
+    place = f"{float(offset):.10g}"
+    assert f"Points are counted from {place} 0 0 of the file." in make_summary(atlas)
+
+
+@pytest.mark.parametrize("offset", [3e4, 1e5])
+def test_near_misses_that_rounding_of_coordinates_explains_are_in_doubt(offset):
+    atlas = linkages.map_linkage(far_slider_crank(offset))
+    assert len(atlas.near_misses) == 4
+    assert atlas.completeness.level == Level.ESTIMATED
+    assert "4 near misses may be at bifurcations" in atlas.completeness.statement
+    assert "The points are far from the origin" in make_summary(atlas)
+
+
+def test_near_misses_that_rounding_does_not_explain_are_certain():
+    joints = list(far_slider_crank(0.0).joints)
+    joints[1] = Joint("B", "revolute", ("c", "r"), (0.6 + 1e-9, 0.8, 0), UPWARDS)
+    atlas = linkages.map_linkage(Mechanism(tuple(joints), "near"))
+    assert len(atlas.near_misses) == 4
+    assert atlas.completeness.level == Level.CERTIFIED
+
+
+def test_a_far_loop_of_revolute_joints_says_how_well_it_is_known():
+    points = [(0, 0, 0), (0, 1, 0), (2, 1.5, 0), (2, 0, 0)]
+    bodies = ["frame", "crank", "coupler", "rocker", "frame"]
+    joints = [
+        Joint(f"J{k}", "revolute", (bodies[k], bodies[k + 1]), (x + 1e5, y, z), UPWARDS)
+        for k, (x, y, z) in enumerate(points)
+    ]
+    atlas = linkages.map_linkage(Mechanism(tuple(joints), "far four-bar"))
+    assert len(atlas.forms) == 2
+    assert "known to 7.3e-12 only" in make_summary(atlas)
+
+
+def test_the_axes_of_a_far_single_loop_are_those_of_a_near_one(tmp_path):
+    places = [
+        "[{0}0.0, 0, 0]",
+        "[{0}0.7, 1.1, 0]",
+        "[{0}2.3, 1.5, 0]",
+        "[{0}2.9, 0, 0]",
+    ]
+    loops = []
+    for start in ("", "40000"):
+        points = ", ".join(place.format(start) for place in places)
+        path = tmp_path / "axes.toml"
+        path.write_text(f"points = [{points}]\ndirections = {[list(UPWARDS)] * 4}\n")
+        loops.append(read_file(path))
+    assert loops[0] == loops[1]
+
+
+def test_far_points_of_bars_are_counted_from_the_first(tmp_path):
+    path = tmp_path / "bars.toml"
+    path.write_text(
+        'fixed = ["A", "B"]\nbars = [["A", "C"], ["B", "D"], ["C", "D"]]\n[points]\n'
+        "A = [5e6, -7e6]\nB = [5000002.3, -7e6]\nC = [5e6, -6999998.9]\n"
+        "D = [5000002.3, -6999998.8]\n"
+    )
+    mechanism = read_file(path)
+    assert mechanism.origin == (5e6, -7e6, 0.0)
+    places = {joint.point for joint in mechanism.joints}
+    assert places == {(0, 0, 0), (2.3, 0, 0), (0, 1.1, 0), (2.3, 1.2, 0)}
+
+
+def test_the_origin_is_kept_in_files_and_datasets(tmp_path):
+    mechanism = read_file(slider_crank_file(tmp_path, "30000.0"))
+    copy = tmp_path / "copy.toml"
+    copy.write_text(mechanism_toml(mechanism))
+    assert read_file(copy).origin == mechanism.origin
+    assert read_file(copy) == mechanism
+    path = save_atlas(linkages.map_linkage(mechanism), tmp_path / "atlas.nc")
+    assert mechanism_of(load_atlas(path)).origin == mechanism.origin
+
+
+def test_numbers_that_no_fraction_should_hold_are_left_to_their_reader():
+    rows = [[WrittenNumber("1e-999999999"), 0, 0], [1, 0, 0]]
+    assert counted_from_near(rows) == (rows, None)
+    rows = [[1e300, 0, 0], [1, 0, 0]]
+    assert counted_from_near(rows) == (rows, None)
