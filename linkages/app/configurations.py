@@ -30,6 +30,8 @@ __all__ = [
     "unknown_factors",
 ]
 
+# what unknowns are shown in, by the units of an atlas
+UNITS = {"rad": "deg", "size": "lengths", "": "entries ax to bz of rotation matrices"}
 SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
 
 
@@ -85,8 +87,8 @@ def heading(atlas: Atlas) -> str:
     """What stands above configurations."""
     if readout_of(atlas) is None:
         return "joint angles (deg)"
-    unit = "deg" if set(atlas.units) == {"rad"} else "deg, lengths"
-    return f"{', '.join(joint_names(atlas))} ({unit})"
+    units = [words for unit, words in UNITS.items() if unit in atlas.units]
+    return f"{', '.join(joint_names(atlas))} ({', '.join(units)})"
 
 
 class ArclengthUnit(NamedTuple):

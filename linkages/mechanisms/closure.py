@@ -61,7 +61,7 @@ class MechanismClosure(NumericalProblem):
         self.structure = Structure(mechanism)
         unknowns = self.structure.unknowns
         self.names = tuple(unknown.label for unknown in unknowns)
-        self.units = tuple("rad" if one.is_angle else "size" for one in unknowns)
+        self.units = tuple(unknown.unit for unknown in unknowns)
         self.periods = np.array([unknown.period for unknown in unknowns])
         self.bounds = np.array([[one.low, one.high] for one in unknowns])
         self.data_rounding = mechanism.coordinate_rounding / self.structure.unit

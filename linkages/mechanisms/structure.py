@@ -102,9 +102,10 @@ class Share(NamedTuple):
 
 @dataclass(frozen=True)
 class Unknown:
-    """An unknown: the number of its ``variable`` (-1 for a number of an embedded
-    spherical joint), which others may follow, its period and its limits, in rad or in
-    the structure's unit."""
+    """An unknown: the number of its ``variable`` (-1 for a number of a body or a point
+    that no joint places), which others may follow, its period and its limits, in rad or
+    in the structure's unit. It is an angle, a length, or else an entry of a rotation
+    matrix."""
 
     label: str
     variable: int
@@ -112,6 +113,14 @@ class Unknown:
     low: float
     high: float
     is_angle: bool
+    is_length: bool
+
+    @property
+    def unit(self) -> str:
+        """What it is counted in: "rad", "size" or, of an entry of a matrix, nothing."""
+        if self.is_angle:
+            return "rad"
+        return "size" if self.is_length else ""
 
 
 class Structure:
@@ -379,24 +388,18 @@ class Structure:
         unknowns = [self._unknown(number) for number in self._leading]
         for pair in self._kept_spherical:
             joint = self._joint_of(pair)[0]
-            unknowns += [_number_of(joint, part) for part in ROTATION]
+            unknowns += [_entry_of_rotation(joint, part) for part in ROTATION]
         for free in self.free_pairs.values():
             body = self.mechanism.bodies[free.moved]
-            unknowns += [_number_of(body, part) for part in (*ROTATION, *TRANSLATION)]
+            unknowns += [_entry_of_rotation(body, part) for part in ROTATION]
+            unknowns += [_length(f"{body}.{part}") for part in TRANSLATION]
         for point in self.free_points:
             unknowns += self._numbers_of_point(point)
         return tuple(unknowns)
 
     def _numbers_of_point(self, point: FreePoint) -> list[Unknown]:
         return [
-            Unknown(
-                f"{point.name}.{part}",
-                -1,
-                np.inf,
-                low / self.unit,
-                high / self.unit,
-                False,
-            )
+            _length(f"{point.name}.{part}", low / self.unit, high / self.unit)
             for part, (low, high) in zip(TRANSLATION, point.limits, strict=False)
         ]
 
@@ -415,8 +418,8 @@ class Structure:
     def scales(self) -> np.ndarray:
         """What the unknowns (n,) are multiplied with to be in rad and in the user's
         unit."""
-        is_slide = [not one.is_angle and one.variable >= 0 for one in self.unknowns]
-        return np.where(is_slide, self.unit, 1.0)
+        is_length = [unknown.is_length for unknown in self.unknowns]
+        return np.where(is_length, self.unit, 1.0)
 
     @cached_property
     def column_of(self) -> dict[int, int]:
@@ -518,11 +521,15 @@ class Structure:
                 raise GeometryError(what, [low, high], "such that they overlap")
         if np.isfinite(high):
             low, high = low / unit, high / unit
-            return Unknown(variable.label, number, np.inf, low, high, is_angle)
+            return Unknown(
+                variable.label, number, np.inf, low, high, is_angle, not is_angle
+            )
         period = common_period(ratios)
         if not np.isfinite(period):
             low, high = -TURNS_REACH, TURNS_REACH
-        return Unknown(variable.label, number, period, low, high, is_angle)
+        return Unknown(
+            variable.label, number, period, low, high, is_angle, not is_angle
+        )
 
     def _range(self, number: int) -> tuple[float, float]:
         """From where to where a variable is followed, in rad and the user's unit:
@@ -578,6 +585,12 @@ def _range_of_leader(
     return low, high
 
 
-def _number_of(name: str, part: str) -> Unknown:
-    """An unknown that is a number of a rotation or a translation."""
-    return Unknown(f"{name}.{part}", -1, np.inf, -np.inf, np.inf, False)
+def _entry_of_rotation(name: str, part: str) -> Unknown:
+    """An unknown that is an entry of a rotation matrix."""
+    label = f"{name}.{part}"
+    return Unknown(label, -1, np.inf, -np.inf, np.inf, is_angle=False, is_length=False)
+
+
+def _length(label: str, low: float = -np.inf, high: float = np.inf) -> Unknown:
+    """An unknown that is a coordinate of a body or a point."""
+    return Unknown(label, -1, np.inf, low, high, is_angle=False, is_length=True)

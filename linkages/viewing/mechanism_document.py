@@ -163,7 +163,7 @@ def _unknown(unknown: Unknown, factor: float) -> UnknownDocument:
     return {
         "name": unknown.label,
         "is_angle": unknown.is_angle,
-        "is_length": not unknown.is_angle and unknown.variable >= 0,
+        "is_length": unknown.is_length,
         "factor": factor,
         "period": unknown.period if np.isfinite(unknown.period) else None,
     }
