@@ -54,12 +54,12 @@ def _coordinates(readout: Readout) -> str:
     if any(mechanism.origin):
         place = " ".join(f"{coordinate:.10g}" for coordinate in mechanism.origin)
         text += f"\n\nPoints are counted from {place} of the file."
-    if not mechanism.is_near_origin:
+    if not mechanism.is_known_to_rounding:
         rounding = mechanism.coordinate_rounding
         share = rounding / readout.structure.unit
         text += (
-            f"\n\nThe points are far from the origin: their coordinates are known to "
-            f"{rounding:.2g} only, {share:.2g} of the characteristic length."
+            f"\n\nCoordinates of points are known to {rounding:.2g} only, {share:.2g} of "
+            "the characteristic length."
         )
     return text
 

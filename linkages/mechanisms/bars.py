@@ -22,7 +22,7 @@ from linkages.mechanisms.figure_bodies import (
 )
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.origin import Place, counted_from_near, origin_of
+from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 
 __all__ = ["read_bars"]
 
@@ -77,7 +77,7 @@ def read_bars(content: Content, name: str) -> Mechanism:
     do (least squares). Raises `GeometryError` for anything wrong, and where bars of
     these lengths cannot be assembled next to the points.
     """
-    points, origin = _read_points(content)
+    points, near = _read_points(content)
     on_bars = _read_points_on_bars(content, points)
     known = [*points, *on_bars]
     fixed = read_fixed(content, known)
@@ -85,22 +85,27 @@ def read_bars(content: Content, name: str) -> Mechanism:
     system = _Bars(points, fixed, bars, on_bars)
     places = _assembled(system)
     joints = _joints(system, places)
-    origin_in_file = origin_of(content, origin)
-    return Mechanism(tuple(joints), name, is_planar=True, origin=origin_in_file)
+    return Mechanism(
+        tuple(joints),
+        name,
+        is_planar=True,
+        origin=origin_of(content, near.origin),
+        rounding=near.rounding,
+    )
 
 
 # --- keys -----------------------------------------------------------------------------
 
 
-def _read_points(content: Content) -> tuple[dict[str, complex], Place | None]:
-    """The points, and from where they are counted where that is not the origin."""
+def _read_points(content: Content) -> tuple[dict[str, complex], Coordinates]:
+    """The points, and their coordinates as they are counted from near."""
     table = content.get("points")
     if not isinstance(table, Mapping) or not table:
         raise GeometryError("points", quoted(table), "a table of points [x, y]")
-    rows, origin = counted_from_near(list(table.values()))
-    places = dict(zip(table, rows, strict=True))
+    near = counted_from_near(list(table.values()))
+    places = dict(zip(table, near.rows, strict=True))
     points = {name: _complex(f"point {name}", row) for name, row in places.items()}
-    return points, origin
+    return points, near
 
 
 def _complex(what: str, row: object) -> complex:

@@ -22,7 +22,7 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint, Motion
 from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.origin import Place, counted_from_near, origin_of
+from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 from linkages.mechanisms.plane import normal_of_plane
 from linkages.values import check_angle
 
@@ -72,30 +72,29 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     tables = content["joints"]
     if not isinstance(tables, list):
         raise GeometryError("joints", quoted(tables), "tables [[joints]]")
-    tables, origin = _from_near(tables)
+    tables, near = _from_near(tables)
     joints = [_read_joint(k, table, unit) for k, table in enumerate(tables, start=1)]
     mechanism = Mechanism(tuple(joints), given)
     return replace(
         mechanism,
         is_planar=_read_planar(content, mechanism),
-        origin=origin_of(content, origin),
+        origin=origin_of(content, near.origin),
+        rounding=near.rounding,
     )
 
 
-def _from_near(tables: Sequence[object]) -> tuple[list[object], Place | None]:
+def _from_near(tables: Sequence[object]) -> tuple[list[object], Coordinates]:
     """The tables of joints with points that are counted from one of them, where they
-    are far from the origin, and that point."""
+    are far from the origin, and these points."""
     points = [
         table.get("point") if isinstance(table, Mapping) else None for table in tables
     ]
-    rows, origin = counted_from_near(points)
-    if origin is None:
-        return list(tables), None
+    near = counted_from_near(points)
     moved: list[object] = []
-    for table, row in zip(tables, rows, strict=True):
+    for table, row in zip(tables, near.rows, strict=True):
         is_moved = isinstance(table, Mapping) and row is not None
         moved.append({**table, "point": row} if is_moved else table)  # type: ignore[dict-item]
-    return moved, origin
+    return moved, near
 
 
 def _read_planar(content: Content, mechanism: Mechanism) -> bool:

@@ -23,7 +23,7 @@ from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.origin import Place, WrittenNumber, counted_from_near
+from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
 from linkages.mechanisms.poses import Poses
 
 __all__ = ["read_fold"]
@@ -88,7 +88,7 @@ def read_fold(text: str, name: str) -> Mechanism:
     title = content.get("file_title", content.get("frame_title", name))
     if not isinstance(title, str):
         raise GeometryError("file_title", quoted(title), "a text in quotes")
-    points, origin = _points(frame)
+    points, near = _points(frame)
     faces = _faces(frame, len(points))
     edges = _edges(frame, len(points))
     creases = _creases(faces, edges)
@@ -104,7 +104,10 @@ def read_fold(text: str, name: str) -> Mechanism:
             if not any(_is_same_hinge(joint, other) for other in joints):
                 joints.append(joint)
                 angles[joint.name] = np.radians(crease.edge.angle)
-    mechanism = Mechanism(tuple(joints), title or name, origin=origin)
+    origin = near.origin or (0.0, 0.0, 0.0)
+    mechanism = Mechanism(
+        tuple(joints), title or name, origin=origin, rounding=near.rounding
+    )
     if FOLDED in frame.get("frame_classes", []) or not any(angles.values()):
         return mechanism
     _check_flat(points)
@@ -198,9 +201,10 @@ def _list(frame: Frame, key: str) -> list[Any]:
     return given
 
 
-def _points(frame: Frame) -> tuple[np.ndarray, Place]:
-    """The vertices (v, 3), and from where they are counted."""
-    rows, origin = counted_from_near(_list(frame, "vertices_coords"))
+def _points(frame: Frame) -> tuple[np.ndarray, Coordinates]:
+    """The vertices (v, 3), and how they are counted."""
+    near = counted_from_near(_list(frame, "vertices_coords"))
+    rows = near.rows
     points = np.zeros((len(rows), 3))
     for number, row in enumerate(rows):
         what = f"vertices_coords[{number}]"
@@ -209,7 +213,7 @@ def _points(frame: Frame) -> tuple[np.ndarray, Place]:
         for k, coordinate in enumerate(row):
             check_number(what, coordinate)
             points[number, k] = coordinate
-    return points, origin or (0.0, 0.0, 0.0)
+    return points, near
 
 
 def _faces(frame: Frame, vertices: int) -> list[list[int]]:

@@ -56,7 +56,8 @@ class Mechanism:
 
     ``is_planar``: it was given in a plane, so that a body has three freedoms for
     Grübler's count. ``origin`` is where a file that counts them from elsewhere has the
-    origin of the points; nothing that is computed hangs on it.
+    origin of the points; nothing that is computed hangs on it. ``rounding``: how far off
+    they may be, where that is more than they are as doubles.
     Raises `GeometryError` where a joint is named twice, a body hangs on one joint only,
     the bodies do not hang together, or joints are coupled in a circle.
     """
@@ -65,6 +66,7 @@ class Mechanism:
     name: str = field(default="", compare=False)
     is_planar: bool = False
     origin: Vector = field(default=(0.0, 0.0, 0.0), compare=False)
+    rounding: float = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
@@ -192,14 +194,16 @@ class Mechanism:
 
     @property
     def coordinate_rounding(self) -> float:
-        """How far off coordinates of points may be as they are doubles, in the unit of
-        length."""
-        return float(np.spacing(np.abs(self._points).max())) / 2
+        """How far off coordinates of points may be, in the unit of length."""
+        of_doubles = float(np.spacing(np.abs(self._points).max())) / 2
+        return max(of_doubles, self.rounding)
 
     @property
-    def is_near_origin(self) -> bool:
-        """Whether coordinates of points are not large beside the mechanism."""
+    def is_known_to_rounding(self) -> bool:
+        """Whether coordinates of points are as exact as doubles of the size of the
+        mechanism are."""
         farthest = float(np.abs(self._points).max())
+        farthest = max(farthest, 2 * self.rounding / np.finfo(float).eps)
         return is_near_origin(farthest, spread_of(self._points))
 
     @cached_property
@@ -250,7 +254,8 @@ class Mechanism:
         }
         x, y, z = self.origin
         origin = (factor * x, factor * y, factor * z)
-        return replace(self._with_values_times(joints, factors), origin=origin)
+        scaled = self._with_values_times(joints, factors)
+        return replace(scaled, origin=origin, rounding=factor * self.rounding)
 
     def mirrored(self) -> Mechanism:
         """The mirror image in the plane z = 0; turns change their sign."""

@@ -28,6 +28,7 @@ __all__ = [
 
 Place: TypeAlias = tuple[float, float, float]
 
+DIGITS_OF_DOUBLES = 15  # from so many on, a decimal is a double that was printed
 LARGEST_EXPONENT = 150  # of ten: beyond, a number is left to the checks of its reader
 
 
@@ -43,11 +44,13 @@ class WrittenNumber(float):
 
 
 class Coordinates(NamedTuple):
-    """The ``rows`` of coordinates, None where one was None, counted from ``origin`` in
-    the rows that were given; None where they are as they were."""
+    """The rows of coordinates, None where one was None, counted from ``origin`` in
+    the rows that were given, None where they are as they were; and how far off they may
+    be, as decimals were doubles."""
 
     rows: list[Any]
-    origin: Place | None
+    origin: Place | None = None
+    rounding: float = 0.0
 
 
 def counted_from_near(rows: Sequence[object]) -> Coordinates:
@@ -57,7 +60,7 @@ def counted_from_near(rows: Sequence[object]) -> Coordinates:
     Differences of `WrittenNumber`s and integers are exact but for one rounding. Where a
     row is no list of such numbers all are left as they are: their reader refuses them.
     """
-    unchanged = Coordinates(list(rows), None)
+    unchanged = Coordinates(list(rows))
     given = [row for row in rows if row is not None]
     if not given or not all(_is_row(row, given[0]) for row in given):
         return unchanged
@@ -67,7 +70,8 @@ def counted_from_near(rows: Sequence[object]) -> Coordinates:
     first = [_exact(number) for number in given[0]]  # type: ignore[attr-defined]
     shifted = [None if row is None else _minus(row, first) for row in rows]
     x, y, z = [float(number) for number in first] + [0.0] * (3 - len(first))
-    return Coordinates(shifted, (x, y, z))
+    rounding = max(_rounding(number) for row in given for number in row)  # type: ignore[attr-defined]
+    return Coordinates(shifted, (x, y, z), rounding)
 
 
 def origin_of(content: Mapping[str, Any], near: Place | None) -> Place:
@@ -117,6 +121,18 @@ def _exact(number: float) -> Fraction:
     if isinstance(number, WrittenNumber):
         return Fraction(number.text)
     return Fraction(number)
+
+
+def _rounding(number: float) -> float:
+    """How far off a number may be: a decimal of few digits is exact."""
+    if isinstance(number, int):
+        return 0.0
+    if isinstance(number, WrittenNumber):
+        mantissa = number.text.lower().partition("e")[0]
+        digits = "".join(filter(str.isdigit, mantissa)).strip("0")
+        if len(digits) < DIGITS_OF_DOUBLES:
+            return 0.0
+    return float(np.spacing(abs(number))) / 2
 
 
 def _minus(row: Any, first: Sequence[Fraction]) -> list[float]:

@@ -29,12 +29,12 @@ class SingleLoop:
 def as_single_loop(structure: Structure) -> SingleLoop | None:
     """The mechanism as one loop of 4 to 12 revolute joints; None where it is none, or
     where joints have limits, are coupled or stand locked elsewhere than at 0, or where
-    coordinates are large beside the mechanism."""
+    coordinates are known to less than doubles hold."""
     mechanism = structure.mechanism
     if mechanism.independent_loops != 1 or mechanism.is_coupled:
         return None
     # the equations of a mechanism say what hangs on the rounding of coordinates
-    if not mechanism.is_near_origin:
+    if not mechanism.is_known_to_rounding:
         return None
     if not _has_plain_turns_only(mechanism):
         return None

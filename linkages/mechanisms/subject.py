@@ -22,6 +22,8 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
     values: dict[str, Any] = {"joints": joints, "is_planar": mechanism.is_planar}
     if any(mechanism.origin):
         values["origin"] = list(mechanism.origin)
+    if mechanism.rounding:
+        values["rounding"] = mechanism.rounding
     return {"name": mechanism.name, "mechanism": values}
 
 
@@ -85,4 +87,5 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     assert isinstance(given, dict)
     is_planar = bool(given.get("is_planar", False))
     origin = origin_of(given, None)
-    return Mechanism(tuple(joints), name, is_planar, origin)
+    rounding = float(given.get("rounding", 0.0))
+    return Mechanism(tuple(joints), name, is_planar, origin, rounding)

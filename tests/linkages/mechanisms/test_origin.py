@@ -85,7 +85,7 @@ def test_near_misses_that_rounding_of_coordinates_explains_are_in_doubt(offset):
     assert len(atlas.near_misses) == 4
     assert atlas.completeness.level == Level.ESTIMATED
     assert "4 near misses may be at bifurcations" in atlas.completeness.statement
-    assert "The points are far from the origin" in make_summary(atlas)
+    assert "Coordinates of points are known to" in make_summary(atlas)
 
 
 def test_near_misses_that_rounding_does_not_explain_are_certain():
@@ -149,6 +149,42 @@ def test_the_origin_is_kept_in_files_and_datasets(tmp_path):
 
 def test_numbers_that_no_fraction_should_hold_are_left_to_their_reader():
     rows = [[WrittenNumber("1e-999999999"), 0, 0], [1, 0, 0]]
-    assert counted_from_near(rows) == (rows, None)
+    assert counted_from_near(rows) == (rows, None, 0.0)
     rows = [[1e300, 0, 0], [1, 0, 0]]
-    assert counted_from_near(rows) == (rows, None)
+    assert counted_from_near(rows) == (rows, None, 0.0)
+
+
+def test_a_spherical_loop_far_from_the_origin_moves_as_one_that_is_near(tmp_path):
+    # sixteen digits beside 1: axes that meet miss each other by 1e-12 of the size
+    rows = [
+        ("A", ["f", "a"], "[1.0, 0.0, 0.0001]", [0.0, 0.0, 1.0]),
+        (
+            "B",
+            ["a", "b"],
+            "[1.000112928494679, 0.0, 0.00016506712298193567]",
+            [0.5646424733950354, 0.0, 0.8253356149096783],
+        ),
+        (
+            "C",
+            ["b", "c"],
+            "[1.0001738094359964, 0.0002190273890588195, 0.00010870732634300209]",
+            [0.5793647866551066, 0.7300912968627317, 0.3623577544766736],
+        ),
+        (
+            "D",
+            ["f", "c"],
+            "[1.0000605903874886, 0.000351296020934508, 0.00018143844857023095]",
+            [0.15147596872130856, 0.8782400523362699, 0.4535961214255773],
+        ),
+    ]
+    text = ""
+    for name, bodies, point, direction in rows:
+        text += f'[[joints]]\nname = "{name}"\nkind = "revolute"\n'
+        text += f"bodies = {bodies}\npoint = {point}\ndirection = {direction}\n"
+    path = tmp_path / "small.toml"
+    path.write_text(text)
+    mechanism = read_file(path)
+    assert mechanism.rounding == pytest.approx(1.1e-16, rel=0.01)
+    atlas = linkages.map_linkage(mechanism)
+    assert len(atlas.forms) == 1
+    assert "Coordinates of points are known to 1.1e-16" in make_summary(atlas)
