@@ -7,10 +7,11 @@ from linkages.app.forms import listed_numbers
 from linkages.app.mechanism_document import LooseChainDocument, describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.texts import in_degrees, in_lengths, section
-from linkages.mechanisms.facts import VariableRange, form_facts
+from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.plane import is_on_sphere, normal_of_plane
+from linkages.mechanisms.ranges import VariableRange
 from linkages.mechanisms.readout import Readout
 
 __all__ = ["describe_joints", "describe_loops", "describe_motions"]

@@ -10,7 +10,8 @@ from bifurc.atlas import Atlas
 from linkages.app.entry_text import list_below, parameter_table
 from linkages.app.forms import listed_numbers
 from linkages.app.texts import in_degrees, section, table
-from linkages.mechanisms.facts import VariableRange, form_facts
+from linkages.mechanisms.facts import form_facts
+from linkages.mechanisms.ranges import VariableRange
 from linkages.mechanisms.readout import Readout
 from linkages.networks.entries import NetworkEntry
 from linkages.networks.mechanism import NetworkMechanism, lock_network

@@ -207,10 +207,7 @@ class MechanismClosure(NumericalProblem):
     def reference(self) -> np.ndarray:
         """The reference configuration (n,): all variables 0. Where joints are locked
         elsewhere it need not be closed."""
-        reference = np.zeros(self.n)
-        for columns in self.structure.embedded.values():
-            reference[list(columns[:6])] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
-        return reference
+        return self.structure.reference
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """The closed configuration nearest to the reference, those that dyads build

@@ -10,16 +10,15 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.decisions import unit_over_rounding
 from bifurc.numerics.blur import change_by_rounding
-from bifurc.torus import whole_turns, wrap
 from linkages.decisions import is_dependent_constraint, keeps_angle
 from linkages.mechanisms.closure import MechanismClosure
+from linkages.mechanisms.ranges import VariableRange, variable_ranges
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.structure import ClosureKind
 
 __all__ = [
     "FormFacts",
     "LoopFacts",
-    "VariableRange",
     "form_facts",
     "loop_facts",
 ]
@@ -90,18 +89,6 @@ def _rank(matrix: np.ndarray) -> int:
 
 
 @dataclass(frozen=True)
-class VariableRange:
-    """The range of a variable along a form, from ``low`` to ``high`` (rad, the user's
-    unit) as it is followed from where its angle lies between -pi and pi, and its
-    ``turns``, 0 where the form is not closed."""
-
-    label: str
-    low: float
-    high: float
-    turns: int
-
-
-@dataclass(frozen=True)
 class FormFacts:
     """What a form of a mechanism does: the ``ranges`` of all variables, the joints that
     are ``still``, and the bodies that move as one, in ``groups`` of two and more."""
@@ -123,25 +110,8 @@ def form_facts(atlas: Atlas, index: int, readout: Readout) -> FormFacts:
         problem = MechanismClosure(readout.mechanism)
         rounding = change_by_rounding(problem, branch)
     groups = _groups(readout, samples, unit_over_rounding(keeps_angle, rounding))
-    ranges = _ranges(readout, points, branch.closed)
+    ranges = variable_ranges(readout, branch, points)
     return FormFacts(ranges, _still(readout, groups), groups)
-
-
-def _ranges(
-    readout: Readout, points: np.ndarray, is_closed: bool
-) -> tuple[VariableRange, ...]:
-    """The ranges of all variables at ``points`` (k, n) of a form, of which the first
-    two are its ends; turns are 0 where it is not closed."""
-    values = readout.values(points)
-    travel = whole_turns(values[1] - values[0], readout.periods) * is_closed
-    begin = wrap(values[0], readout.periods)
-    values = values + (begin - values[0])
-    lowest, highest = values.min(axis=0), values.max(axis=0)
-    rows = zip(readout.labels(), lowest, highest, travel, strict=True)
-    return tuple(
-        VariableRange(label, float(low), float(high), int(turns))
-        for label, low, high, turns in rows
-    )
 
 
 def _groups(

@@ -35,6 +35,12 @@ class Readout:
         """The loop that the atlas is of; None where it is of a `MechanismClosure`."""
         return as_single_loop(self.structure)
 
+    @cached_property
+    def reference(self) -> np.ndarray:
+        """The reference configuration (n,) in the unknowns of the atlas."""
+        single = self.single_loop
+        return self.structure.reference if single is None else single.reference
+
     def unknowns(self, points: np.ndarray) -> np.ndarray:
         """Configurations (k, n) of the atlas in the unknowns of the structure."""
         single = self.single_loop

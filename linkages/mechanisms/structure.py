@@ -421,6 +421,14 @@ class Structure:
         is_length = [unknown.is_length for unknown in self.unknowns]
         return np.where(is_length, self.unit, 1.0)
 
+    @property
+    def reference(self) -> np.ndarray:
+        """The unknowns (n,) where all variables are 0 and all bodies in their places."""
+        reference = np.zeros(len(self.unknowns))
+        for columns in self.embedded.values():
+            reference[list(columns[:6])] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+        return reference
+
     @cached_property
     def column_of(self) -> dict[int, int]:
         """The number of the unknown that every free variable is or follows, by its

@@ -31,6 +31,7 @@ log = logging.getLogger(__name__)
 MOST_STARTS = 50  # random starts until one closes within the limits
 SEED = 0
 FULL_TURN = 2 * math.pi
+ROUNDING = 1e-9  # rad, of an angle at the end of its limits
 WITH_POINT = (
     JointKind.REVOLUTE,
     JointKind.PRISMATIC,
@@ -282,15 +283,22 @@ def _values(joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> list[flo
 def _angle(
     joint: BodyJoint, number: int, first: np.ndarray, second: np.ndarray
 ) -> float:
-    """The turn from the first frame to the second one, plus full turns until it is
-    within the limits of variable ``number`` where it can be."""
+    """The turn from the first frame to the second one, from -pi to pi, or, where only
+    that is within the limits of variable ``number``, full turns away."""
     cosine = first[:3, 0] @ second[:3, 0]
     sine = first[:3, 1] @ second[:3, 0]
     angle = math.atan2(sine, cosine)
     limits = joint.limits[number] if joint.limits else None
-    if limits is None:
+    if limits is None or _is_within(limits, angle):
         return angle
-    return angle + FULL_TURN * math.ceil((limits[0] - angle) / FULL_TURN)
+    middle = (limits[0] + limits[1]) / 2
+    turned = angle + FULL_TURN * round((middle - angle) / FULL_TURN)
+    return turned if _is_within(limits, turned) else angle
+
+
+def _is_within(limits: Limits, angle: float) -> bool:
+    """Whether an angle is within limits, but for rounding."""
+    return limits[0] - ROUNDING <= angle <= limits[1] + ROUNDING
 
 
 def _placed(

@@ -443,3 +443,24 @@ def test_joints_between_two_loops_are_held_and_those_at_an_end_left_out(
     mechanism = read(tmp_path, twice)
     assert "held, as they lie in no loop: joints N" in caplog.text
     assert mechanism.independent_loops == 2
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [("10 100", (10, 100)), ("-400 400", (-400, 400)), ("0 90", (0, 90))],
+)
+def test_limits_that_the_pose_of_the_file_misses_stay_as_they_are(
+    given, expected, tmp_path
+):
+    path = tmp_path / "model.xml"
+    path.write_text(f"""<mujoco model="four-bar"><compiler angle="degree"/>
+<worldbody>
+ <body name="a"><joint name="j1" type="hinge" axis="0 0 1"/>
+  <body name="b" pos="1 0 0"><joint name="j2" type="hinge" axis="0 0 1"/>
+   <body name="c" pos="1 1 0"><joint name="j3" type="hinge" axis="0 0 1"/>
+    <body name="d" pos="1 -.4 0">
+     <joint name="j4" type="hinge" axis="0 0 1" range="{given}"/>
+ </body></body></body></body></worldbody>
+<equality><weld body1="d"/></equality></mujoco>""")
+    (limits,) = load(path).joint("j4").limits
+    assert np.degrees(limits) == pytest.approx(expected)
