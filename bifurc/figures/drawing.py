@@ -17,6 +17,7 @@ from matplotlib.textpath import text_to_path
 from matplotlib.ticker import MultipleLocator
 
 from bifurc.atlas import Atlas
+from bifurc.decisions import closes_to_rounding
 from bifurc.figures.panels import fix_names_of_axes
 from bifurc.figures.planes import (
     Plane,
@@ -296,7 +297,9 @@ def note_emptiness(axes: Axes, atlas: Atlas) -> None:
     if atlas.forms:
         return
     note = "no form"
-    if 0 < atlas.closure_gap < np.inf:
+    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
+        note += " within the bounds"
+    elif 0 < atlas.closure_gap < np.inf:
         note += f"\nclosure gap {atlas.closure_gap:.1e}"
     axes.text(
         0.5,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bifurc.atlas import Atlas
+from bifurc.decisions import closes_to_rounding
 from bifurc.seeds import Level
 from bifurc.singular.point import Kind
 from bifurc.text_tables import count_of
@@ -34,6 +35,8 @@ def verdict_of(atlas: Atlas) -> str:
     if isolated:
         count = count_of(isolated, "isolated solution")
         return f"There is no curve of solutions, but {count}."
+    if closes_to_rounding(atlas.closure_gap):
+        return "There is no solution within the bounds; starts reach some outside."
     return (
         "There is no solution within the bounds: the equations are missed by "
         f"{atlas.closure_gap:.3g} of their magnitude at the median start."

@@ -16,6 +16,7 @@ from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
 from linkages.app.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
+from linkages.app.limits_text import kept_out_by_limits
 from linkages.app.texts import count_of
 
 __all__ = ["Verdict", "exit_by", "is_without_gaps", "judge"]
@@ -109,7 +110,6 @@ def _nothing_known(atlas: Atlas) -> str:
 def _immobile(atlas: Atlas) -> str:
     shaky = sum(1 for point in atlas.points if point.kind is Kind.ISOLATED)
     assemblies = len(atlas.rigid) + shaky
-    gap = f"{atlas.closure_gap:.3g} of the characteristic length"
     if atlas.near_motions:
         unit = arclength_unit(atlas)
         sentence = (
@@ -118,10 +118,18 @@ def _immobile(atlas: Atlas) -> str:
     elif assemblies:
         sentence = "The linkage is rigid."
     else:
-        return f"The linkage has no real configuration: its loop stays open by {gap}."
+        return kept_out_by_limits(atlas) or _nowhere_closed(atlas)
     if not assemblies:
         return sentence
     return f"{sentence} {_assemblies(assemblies, shaky)}"
+
+
+def _nowhere_closed(atlas: Atlas) -> str:
+    start = "The linkage has no real configuration"
+    if closes_to_rounding(atlas.closure_gap):
+        return f"{start} within the limits in which slides are followed."
+    gap = f"{atlas.closure_gap:.3g} of the characteristic length"
+    return f"{start}: its loop stays open by {gap}."
 
 
 def _near_motion(motion: NearMotion, unit: ArclengthUnit) -> str:

@@ -15,6 +15,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint, NearMotion, Surface
 from bifurc.checks import check_type
+from bifurc.decisions import closes_to_rounding
 from bifurc.figures.graph_layout import lay_out_graph
 from bifurc.figures.planes import choose_plane
 from bifurc.figures.style import color_on_dark, form_style
@@ -229,6 +230,8 @@ def _note(atlas: Atlas) -> str:
     """What the map says where there is no curve on it."""
     if atlas.forms or atlas.surfaces:
         return ""
+    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
+        return "no form within the limits"
     if 0 < atlas.closure_gap < np.inf:
         return f"no form; closure gap {atlas.closure_gap:.1e}"
     return "no form"

@@ -1,0 +1,65 @@
+"""The sentence on what a mechanism is, where its limits keep everything out."""
+
+import numpy as np
+import pytest
+
+from bifurc.search.settings import SearchSettings
+from linkages.app.exit_codes import ExitCode
+from linkages.app.verdict import judge
+from linkages.mapping import map_linkage
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+
+FEW = SearchSettings(starts=40)
+UPWARDS = (0.0, 0.0, 1.0)
+
+
+def slider_crank(crank=None, slide=None, height=2.5):
+    """A crank of length 1, a rod of length 3, and a slide so high above the crank's
+    axis: the crank turns to and fro where that is more than 2."""
+    reach = 1.0 + np.sqrt(3.0**2 - height**2)
+    joints = (
+        Joint("A", "revolute", ("f", "c"), (0, 0, 0), UPWARDS, limits=(crank,)),
+        Joint("B", "revolute", ("c", "r"), (1, 0, 0), UPWARDS),
+        Joint("C", "revolute", ("r", "s"), (reach, height, 0), UPWARDS),
+        Joint("D", "prismatic", ("f", "s"), None, (1, 0, 0), limits=(slide,)),
+    )
+    return Mechanism(joints, "slider-crank")
+
+
+def verdict_of(mechanism):
+    return judge(map_linkage(mechanism, settings=FEW))
+
+
+def test_limits_of_a_turn_that_keep_everything_out_are_said():
+    # sin A is 2.5 - 3 at least
+    verdict = verdict_of(slider_crank(crank=tuple(np.radians((220.0, 320.0)))))
+    assert verdict.code is ExitCode.DOES_NOT_MOVE
+    assert verdict.sentence == (
+        "The linkage has no real configuration within its limits. Without them it "
+        "closes with A from -30.00 to 210.00 (limits: 220.00 to 320.00)."
+    )
+
+
+def test_limits_of_a_slide_that_keep_everything_out_are_said():
+    verdict = verdict_of(slider_crank(slide=(50.0, 60.0), height=0.5))
+    assert verdict.code is ExitCode.DOES_NOT_MOVE
+    assert "closes with D from " in verdict.sentence
+    assert "(limits: 50 to 60)" in verdict.sentence
+
+
+def test_of_limits_that_exclude_each_other_both_are_said():
+    crank = tuple(np.radians((80.0, 100.0)))
+    verdict = verdict_of(slider_crank(crank=crank, slide=(1.5, 3.0), height=0.5))
+    assert "closes with A at all angles (limits: 80.00 to 100.00)" in verdict.sentence
+    assert ", D from " in verdict.sentence
+
+
+@pytest.mark.parametrize("limits", [None, (-1.0, 1.0)])
+def test_what_never_closes_stays_open(limits):
+    joints = list(slider_crank(height=2.5).joints)
+    joints[0] = Joint("A", "revolute", ("f", "c"), (0, 0, 0), UPWARDS, limits=(limits,))
+    joints[3] = Joint("D", "prismatic", ("f", "s"), None, (1, 0, 0), locked=(50.0,))
+    verdict = verdict_of(Mechanism(tuple(joints), "open"))
+    assert verdict.code is ExitCode.DOES_NOT_MOVE
+    assert "its loop stays open by" in verdict.sentence
