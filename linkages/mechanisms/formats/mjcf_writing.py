@@ -15,6 +15,7 @@ from xml.sax.saxutils import quoteattr
 import networkx as nx
 import numpy as np
 
+from linkages.mechanisms.formats.names import NameRules, with_names_for
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
@@ -29,8 +30,42 @@ WORLD = "world"
 
 def mechanism_mjcf(mechanism: Mechanism) -> str:
     """The text of an MJCF model in which qpos0 is the reference configuration and joint
-    coordinates, called after the variables, have their values. Masses are made up."""
-    return _Writer(mechanism).text()
+    coordinates, called after the variables, have their values. Masses are made up.
+    Names that would stand there for two things are changed, and the log says so."""
+    return _Writer(with_names_for(mechanism, _rules(mechanism))).text()
+
+
+def _names_of_joint(joint: Joint) -> list[str]:
+    """The names that may stand in a file for a joint: of its pairs, of the points that
+    close them, of its variables, and of slides with a turn."""
+    pairs = [joint.name]
+    if len(joint.bodies) > 2:
+        pairs = [f"{joint.name}.{body}" for body in joint.bodies[1:]]
+    names = [*pairs, *joint.labels]
+    for pair in pairs:
+        names += [f"{pair}.1", f"{pair}.2"]
+    return names + [_advance_name(label) for label in joint.labels]
+
+
+def _advance_name(label: str) -> str:
+    """What the slide is called that goes with a turn."""
+    return f"{label}.advance"
+
+
+def _copy_name(joint: str, pair: int) -> str:
+    """What the copy of a body is called that closes a pair of a joint."""
+    return f"{joint}.copy{pair}"
+
+
+def _rules(mechanism: Mechanism) -> NameRules:
+    """Bodies, joints and equalities have names of their own."""
+    pairs = range(len(mechanism.pairs))
+    return NameRules(
+        is_allowed=lambda name: name != WORLD,
+        of_joint=_names_of_joint,
+        links_of_joint=lambda joint: [_copy_name(joint.name, pair) for pair in pairs],
+        siblings=False,
+    )
 
 
 class _Writer:
@@ -46,7 +81,7 @@ class _Writer:
         """The whole model."""
         pairs = self.mechanism.pairs
         copies = {
-            number: f"{pairs[number].joint}.copy{number}"
+            number: _copy_name(pairs[number].joint, number)
             for number in range(len(pairs))
             if number not in self.tree and not self._is_closed_by_points(number)
         }
@@ -142,9 +177,7 @@ class _Writer:
         ]
 
     def _body_name(self, body: str) -> str:
-        if body == self.mechanism.frame:
-            return WORLD
-        return f"{body}.body" if body == WORLD else body
+        return WORLD if body == self.mechanism.frame else body
 
     def _points(self, body: str) -> list[np.ndarray]:
         joints = [joint for joint in self.mechanism.joints if body in joint.bodies]
@@ -192,7 +225,7 @@ class _Writer:
         sign = 1.0 if is_forward else -1.0
         lines = [_axis_line(label, kind, motion, sign, variable.limits)]
         if motion.is_turn and motion.advance:
-            slide = f"{label}.advance"
+            slide = _advance_name(label)
             lines.append(_axis_line(slide, "slide", motion, sign, None))
             self._couple(slide, label, 0.0, motion.advance)
         return lines

@@ -13,8 +13,9 @@ from collections.abc import Iterable
 from xml.sax.saxutils import escape, quoteattr
 
 from linkages.loop import GeometryError
+from linkages.mechanisms.formats.names import NameRules, with_names_for
 from linkages.mechanisms.formats.sdf_couplings import AXES
-from linkages.mechanisms.joint import JointKind, Motion
+from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
 
@@ -26,7 +27,9 @@ WORLD = "world"
 def mechanism_sdf(mechanism: Mechanism) -> str:
     """The text of an SDF file with one model in the reference configuration; masses are
     made up. Raises `GeometryError` where a joint is locked elsewhere than at 0, for
-    which SDF has no word."""
+    which SDF has no word. Names that SDF forbids, or that stand there for two things,
+    are changed, and the log says so."""
+    mechanism = with_names_for(mechanism, NAMES)
     moment = repr(Size(mechanism).characteristic_length ** 2)
     links = [body for body in mechanism.bodies if body != mechanism.frame]
     joints = []
@@ -37,17 +40,49 @@ def mechanism_sdf(mechanism: Mechanism) -> str:
     lines = [
         '<?xml version="1.0"?>',
         '<sdf version="1.11">',
-        f"  <model name={quoteattr(mechanism.name or 'mechanism')}>",
+        f"  <model name={quoteattr(_model_name(mechanism))}>",
     ]
     for link in links:
         lines += _link(_body_name(mechanism, link), moment)
     return "\n".join([*lines, *joints, "  </model>", "</sdf>"]) + "\n"
 
 
+def _is_allowed(name: str) -> bool:
+    """Whether a name is not reserved (SDFormat 1.7 and later)."""
+    is_reserved = name.startswith("__") and name.endswith("__")
+    return not (is_reserved or "::" in name or name == WORLD)
+
+
+def _names_of_joint(joint: Joint) -> list[str]:
+    """The names that may stand in a file for a joint: of its pairs, of its variables,
+    and of the links between these."""
+    pairs = [joint.name]
+    if len(joint.bodies) > 2:
+        pairs = [f"{joint.name}.{body}" for body in joint.bodies[1:]]
+    return [*pairs, *joint.labels, *(_link_name(label) for label in joint.labels)]
+
+
+def _link_name(label: str) -> str:
+    """What the link behind a variable is called."""
+    return f"{label}.link"
+
+
+# links are among the names of joints: all are siblings
+NAMES = NameRules(
+    is_allowed=_is_allowed,
+    of_joint=_names_of_joint,
+    links_of_joint=lambda joint: (),
+    siblings=True,
+)
+
+
 def _body_name(mechanism: Mechanism, body: str) -> str:
-    if body == mechanism.frame:
-        return WORLD
-    return f"{body}.body" if body == WORLD else body
+    return WORLD if body == mechanism.frame else body
+
+
+def _model_name(mechanism: Mechanism) -> str:
+    name = mechanism.name.replace("::", ".") or "mechanism"
+    return name if _is_allowed(name) else f"{name}.model"
 
 
 def _link(name: str, moment: str) -> list[str]:
@@ -80,7 +115,7 @@ def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
         for tag, variable in zip(AXES, variables, strict=True):
             axes += _axis(tag, variable, mechanism, 1.0)
         return _joint(name, "universal", base, moved, place, axes), []
-    between = [f"{variable.label}.link" for variable in variables[:-1]]
+    between = [_link_name(variable.label) for variable in variables[:-1]]
     bodies = [base, *between, moved]
     lines = []
     for variable, first, second in zip(variables, bodies, bodies[1:], strict=False):

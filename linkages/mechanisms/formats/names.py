@@ -1,0 +1,114 @@
+"""Names of bodies and joints that a file of another program can hold.
+
+Such a file has names of its own for parts of a joint, forbids some names, and wants
+every one given once. Where a mechanism has others, bodies and joints are renamed before
+it is written, and the log says so.
+"""
+
+from __future__ import annotations
+
+import itertools
+import logging
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+from linkages.mechanisms.couplings import Coupling
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = ["NameRules", "with_names_for"]
+
+log = logging.getLogger(__name__)
+
+NamesOfJoint: TypeAlias = Callable[[Joint], Iterable[str]]
+
+
+@dataclass(frozen=True)
+class NameRules:
+    """What names a format allows: ``is_allowed`` of one, ``of_joint`` all that stand in
+    a file among joints for one, ``links_of_joint`` those among bodies, and whether
+    bodies and joints are ``siblings``, of which no two have one name."""
+
+    is_allowed: Callable[[str], bool]
+    of_joint: NamesOfJoint
+    links_of_joint: NamesOfJoint
+    siblings: bool
+
+
+def with_names_for(mechanism: Mechanism, rules: NameRules) -> Mechanism:
+    """The mechanism with names that the ``rules`` allow, each given once; the body at
+    rest, which is the world in the file, keeps its own."""
+    taken_by_bodies: set[str] = set()
+    bodies = {mechanism.frame: mechanism.frame}
+    for body in mechanism.bodies:
+        if body == mechanism.frame:
+            continue
+        names = (
+            name
+            for name in _alternatives(body, "body")
+            if rules.is_allowed(name) and name not in taken_by_bodies
+        )
+        bodies[body] = next(names)
+        taken_by_bodies.add(bodies[body])
+    taken = taken_by_bodies if rules.siblings else set()
+    joints: list[Joint] = []
+    labels: dict[str, str] = {}
+    for joint in mechanism.joints:
+        renamed = _renamed(joint, bodies, rules, taken, taken_by_bodies)
+        taken.update(rules.of_joint(renamed))
+        taken_by_bodies.update(rules.links_of_joint(renamed))
+        labels |= zip(joint.labels, renamed.labels, strict=True)
+        joints.append(renamed)
+    _say(bodies, "body")
+    own = {
+        old.name: new.name for old, new in zip(mechanism.joints, joints, strict=True)
+    }
+    _say(own, "joint")
+    coupled = tuple(_with_leaders(joint, labels) for joint in joints)
+    return replace(mechanism, joints=coupled)
+
+
+def _renamed(
+    joint: Joint,
+    bodies: Mapping[str, str],
+    rules: NameRules,
+    taken: set[str],
+    taken_by_bodies: set[str],
+) -> Joint:
+    """The joint with a name such that none that stands in the file for it is taken."""
+    own_bodies = tuple(bodies[body] for body in joint.bodies)
+    for name in _alternatives(joint.name, "joint"):
+        candidate = replace(joint, name=name, bodies=own_bodies)
+        among_joints = set(rules.of_joint(candidate))
+        among_bodies = set(rules.links_of_joint(candidate))
+        if not all(map(rules.is_allowed, among_joints | among_bodies)):
+            continue
+        if not (among_joints & taken or among_bodies & taken_by_bodies):
+            return candidate
+    raise AssertionError("there is always another name")
+
+
+def _alternatives(name: str, ending: str) -> Iterator[str]:
+    """A name, and others that say what it was."""
+    yield name
+    plain = name.replace("::", ".")
+    yield plain
+    yield f"{plain}.{ending}"
+    for number in itertools.count(2):
+        yield f"{plain}.{ending}{number}"
+
+
+def _with_leaders(joint: Joint, labels: Mapping[str, str]) -> Joint:
+    """The joint with couplings to variables by their new labels."""
+    coupled = tuple(
+        None if one is None else Coupling(labels[one.to], one.ratio, one.offset)
+        for one in joint.coupled
+    )
+    return replace(joint, coupled=coupled)
+
+
+def _say(names: Mapping[str, str], noun: str) -> None:
+    for old, new in names.items():
+        if new != old:
+            log.warning("%s %s is called %s in the file", noun, old, new)
