@@ -186,6 +186,10 @@ def _names_at(atlas: Atlas, point: MeetingPoint) -> list[str]:
     """Names of the forms, once for every pass, and the surfaces at a singular point."""
     forms = [atlas.forms[index].name for index, _ in point.passes]
     surfaces = [atlas.surfaces[index].name for index in point.surfaces]
+    if point.kind is Kind.DIMENSION_CHANGE and not surfaces:
+        # charts tell which surface is met; those that are only sampled have none
+        sampled = [one.name for one in atlas.surfaces if one.charts is None]
+        surfaces = [" or ".join(sampled)] if sampled else []
     return forms + surfaces
 
 

@@ -176,7 +176,10 @@ def _read_limits(
             raise GeometryError(what, quoted(given), allowed)
         low, high = _in_rad(what, row, motion, unit)
         if not low < high:
-            raise GeometryError(what, row, "a smaller number and a larger one")
+            allowed = "a smaller number and a larger one"
+            if low == high:
+                allowed += f"; a joint that stands still has locked = {row[0]}"
+            raise GeometryError(what, row, allowed)
         limits.append((low, high))
     return tuple(limits)
 

@@ -8,19 +8,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.joint_places import joint_places
 from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["Size"]
 
 ROUNDING = 1e-12  # of the spread of the points: a distance that is none
-# freedoms of the point of a joint: along its axis, or anywhere
-ALONG = (JointKind.REVOLUTE, JointKind.CYLINDRICAL, JointKind.HELICAL)
-ANYWHERE = (JointKind.PRISMATIC, JointKind.PLANAR, JointKind.RIGID)
 
 
 class _Span(NamedTuple):
-    """Two joints, by number, on one body."""
+    """Two places of joints, by number, on one body."""
 
     body: str
     first: int
@@ -31,11 +28,13 @@ class Size:
     """The lengths of a mechanism's bodies.
 
     Every joint is represented by the point of its axis that makes all bodies together
-    as short as can be (least squares). The point of a slide is anywhere.
+    as short as can be (least squares). The point of a slide is anywhere. A joint that
+    is written as several is one: see `joint_places`.
     """
 
     def __init__(self, mechanism: Mechanism):
         self.mechanism = mechanism
+        self.places = joint_places(mechanism)
 
     @property
     def characteristic_length(self) -> float:
@@ -49,9 +48,8 @@ class Size:
 
     @cached_property
     def points(self) -> np.ndarray:
-        """A point (k, 3) for each of the k joints."""
-        joints = self.mechanism.joints
-        bases = [_free_directions(joint) for joint in joints]
+        """A point (k, 3) for each of the k places of joints."""
+        bases = [place.free for place in self.places]
         starts = np.cumsum([0, *(len(basis) for basis in bases)])
         rows, columns = 3 * len(self._spans), int(starts[-1])
         matrix = np.zeros((rows, columns))
@@ -74,7 +72,8 @@ class Size:
         where they all meet."""
         lengths = dict.fromkeys(self.mechanism.bodies, 0.0)
         if not len(self._distances(self.points)):
-            return dict.fromkeys(lengths, self.characteristic_length)
+            ends = {body for place in self.places for body in place.bodies}
+            return lengths | dict.fromkeys(ends, self.characteristic_length)
         for span in self._spans:
             gap = self.points[span.first] - self.points[span.second]
             distance = float(np.linalg.norm(gap))
@@ -83,14 +82,13 @@ class Size:
 
     @cached_property
     def _given(self) -> np.ndarray:
-        return np.array([joint.place for joint in self.mechanism.joints])
+        return np.array([place.point for place in self.places])
 
     @cached_property
     def _spans(self) -> list[_Span]:
         spans = []
         for body in self.mechanism.bodies:
-            joints = self.mechanism.joints
-            here = [k for k, joint in enumerate(joints) if body in joint.bodies]
+            here = [k for k, place in enumerate(self.places) if body in place.bodies]
             spans += [_Span(body, *two) for two in combinations(here, 2)]
         return spans
 
@@ -102,12 +100,3 @@ class Size:
         distances = np.linalg.norm(first - second, axis=1)
         apart: np.ndarray = distances[distances > ROUNDING * spread]
         return apart
-
-
-def _free_directions(joint: Joint) -> np.ndarray:
-    """Unit vectors (k, 3) along which the point of a joint may be chosen."""
-    if joint.kind in ANYWHERE:
-        return np.eye(3)
-    if joint.kind in ALONG:
-        return joint.motions[0].direction[None]
-    return np.empty((0, 3))

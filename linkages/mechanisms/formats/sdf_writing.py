@@ -102,7 +102,10 @@ def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
         if variable.locked:
             allowed = "0, or left out, in an SDF file"
             what = f"locked of joint {variable.label}"
-            raise GeometryError(what, variable.locked, allowed)
+            value = f"{variable.locked:.10g}"
+            if variable.motion.is_turn:
+                value = f"{math.degrees(variable.locked):.10g} degrees"
+            raise GeometryError(what, value, allowed)
     base, moved = (_body_name(mechanism, body) for body in (pair.base, pair.moved))
     name = _joint_name(mechanism, pair)
     place = joint.place

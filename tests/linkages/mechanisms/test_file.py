@@ -177,6 +177,8 @@ def test_errors_of_limits_and_locks_are_in_the_unit_of_the_file(tmp_path):
         read(tmp_path, four_bar("limits = [-90, 90]\nlocked = 120\n"))
     with pytest.raises(LinkageFileError, match=r"limits of joint D: \[90, -90\]"):
         read(tmp_path, four_bar("limits = [90, -90]\n"))
+    with pytest.raises(LinkageFileError, match="stands still has locked = 5"):
+        read(tmp_path, four_bar("limits = [5, 5]\n"))
 
 
 def test_a_point_beyond_all_measure_is_refused(tmp_path):
