@@ -143,7 +143,7 @@ def test_the_pitch_of_a_screw_has_its_sign_in_old_files_too(tmp_path):
 
 def test_a_lock_has_no_word_in_sdf():
     slider_crank = EXAMPLES["slider_crank"]
-    with pytest.raises(GeometryError, match="locked of joint J4: -0.25 is"):
+    with pytest.raises(GeometryError, match=r"locked of joint J4: -0\.25 is"):
         mechanism_sdf(slider_crank.with_locks({"J4": -0.25}))
     with pytest.raises(GeometryError, match="locked of joint J1: 30 degrees is"):
         mechanism_sdf(slider_crank.with_locks({"J1": np.pi / 6}))
