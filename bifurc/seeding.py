@@ -13,7 +13,7 @@ from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 from bifurc.torus import wrap
 
-__all__ = ["missed_probability", "random_seeds"]
+__all__ = ["missed_probability", "random_seeds", "start_region"]
 
 AT_ONCE = 10  # starts between two looks at the clock
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
@@ -32,7 +32,7 @@ def random_seeds(
     Unknowns are drawn from the bounds; where these are infinite, from the period, or
     from -scale to scale.
     """
-    low, high = _region(problem) if region is None else region.T
+    low, high = (start_region(problem) if region is None else region).T
     starts = rng.uniform(low, high, (count, problem.n))
     points, gaps = _projected(problem, starts, deadline)
     points = _next_to_bounds(problem, points)
@@ -64,14 +64,14 @@ def _projected(
     return np.concatenate(points), np.concatenate(gaps)
 
 
-def _region(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper ends (n,) of the box from which starts are drawn."""
+def start_region(problem: Problem) -> np.ndarray:
+    """The box (n, 2) from which starts are drawn."""
     low, high = problem.bounds.T
     periodic = np.isfinite(problem.periods)
     half = np.where(periodic, 0.5 * problem.periods, problem.scale)
     low = np.where(np.isfinite(low), low, -half)
     high = np.where(np.isfinite(high), high, half)
-    return low, high
+    return np.column_stack([low, high])
 
 
 def _next_to_bounds(problem: Problem, points: np.ndarray) -> np.ndarray:

@@ -49,7 +49,9 @@ class Seeds:
     random starts, the rest were constructed. ``missed`` (g, n) is where the random
     starts ended that reached no solution, ``gaps`` (g,) the residuals there. ``audit``,
     where the problem has one, judges the branches of a search, in about as many seconds
-    as its second argument says.
+    as its second argument says. ``home``, where shifts of the unknowns lead from curves
+    to others that are the same but for them, is the shift (n,) that brings samples
+    (k, n) of a curve to the one among them that is to be traced.
     """
 
     points: np.ndarray
@@ -57,6 +59,17 @@ class Seeds:
     gaps: np.ndarray
     missed: np.ndarray
     audit: Callable[[Sequence[Branch], float], Audit] | None = None
+    home: Callable[[np.ndarray], np.ndarray] | None = None
+
+    def and_random(self, others: Seeds) -> Seeds:
+        """These seeds and ``others``, all of random starts."""
+        return replace(
+            self,
+            points=np.concatenate([self.points, others.points]),
+            random=np.concatenate([self.random, others.random]),
+            gaps=np.concatenate([self.gaps, others.gaps]),
+            missed=np.concatenate([self.missed, others.missed]),
+        )
 
     def with_constructed(self, points: np.ndarray) -> Seeds:
         """These seeds and after them further ``points`` (k, n) that solve the

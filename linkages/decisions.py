@@ -118,6 +118,15 @@ meets_in_one_point = Decision(
     "the rounding of coordinates; a chain whose axes are off by more gets all six "
     "equations, and misses them by as much",
 )
+cancels_in_whole_turns = Decision(
+    "whole turns that cancel",
+    "whole turns of several joints advance nothing, so that configurations that differ "
+    "by them are one but for whole turns",
+    "what they advance, over the largest advance of a joint in one turn",
+    1e-11,
+    "the rounding of pitches, some 1e-16 a turn; turns that do not cancel miss by a "
+    "share of a turn",
+)
 is_rounding_of_zero = Decision(
     "equation without unknowns",
     "a closure equation that holds no unknown is satisfied",

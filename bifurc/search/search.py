@@ -66,6 +66,8 @@ TINY = 1e-300  # keeps a singular value of zero from being divided by
 LOOKS_WHERE_STOPPED = 6  # at ends of starts that reached no solution
 LOOKS_WHERE_SLOW = 4  # at ends of starts where |F| still falls
 SLOW_REACH = 0.5  # how far from these, over the scale, a singular point may lie
+MOST_MOVES = 3  # of a solution to the curve that is listed for its own
+SAMPLES = 256  # of a curve, by which it is told how far it is moved
 LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
 
 
@@ -179,11 +181,36 @@ class Search:
             fate = self._fate_at_low_rank(point, values)
             if fate is not None:
                 return fate
-        trace = self._trace(Start(point))
+        trace = self._trace(Start(self._moved_home(point)))
         self._branch_off(trace.starts)
         if trace.fate is None:
             return self._fate_of_assembly(point)
         return trace.fate
+
+    def _moved_home(self, point: np.ndarray) -> np.ndarray:
+        """A solution (n,) on the curve that is listed for the one through ``point``
+        (n,), where curves are the same but for shifts."""
+        home = self.findings.seeds.home
+        if home is None:
+            return point
+        for _ in range(MOST_MOVES):
+            if self.findings.branch_through(point) is not None:
+                break
+            tracing = self.settings.tracing
+            branch = trace_branch(self.problem, point, None, tracing, LENIENT)
+            if not self._is_curve(branch):
+                break
+            samples = branch.sample(SAMPLES)
+            shift = home(samples)
+            if not np.any(shift):
+                break
+            shifted = samples + shift
+            inmost = int(np.argmin(self.problem.excess(shifted)))
+            solutions, gaps = self.problem.project(shifted[[inmost]])
+            if not is_start_solved(float(gaps[0])):
+                break
+            point = solutions[0]
+        return point
 
     def _may_be_singular(self, point: np.ndarray, values: np.ndarray) -> bool:
         """Whether a seed (n,) may be a singular point: a singular value is small there,

@@ -282,16 +282,11 @@ class UnitProblem(FunctionProblem):
             return random_seeds(self, rng, count, self.region, deadline)
         near = random_seeds(self, rng, count - count // 2, self.region, deadline)
         anywhere = random_seeds(self, rng, count // 2, self.own_box, deadline)
-        return Seeds(
-            points=np.concatenate([near.points, anywhere.points]),
-            random=np.concatenate([near.random, anywhere.random]),
-            gaps=np.concatenate([near.gaps, anywhere.gaps]),
-            missed=np.concatenate([near.missed, anywhere.missed]),
-        )
+        return near.and_random(anywhere)
 
     def seeds_inwards(self, seeds: Seeds) -> Seeds:
-        """Seeds of the user in these units; an audit of theirs sees the user's
-        branches."""
+        """Seeds of the user in these units; an audit of theirs, and what shifts
+        curves, see the user's."""
         units, judge = self.own_units, seeds.audit
 
         def audit(branches: Sequence[Branch], seconds: float) -> Audit:
@@ -301,12 +296,18 @@ class UnitProblem(FunctionProblem):
             verdict = judge(own, seconds)
             return replace(verdict, starts=units.inwards(verdict.starts))
 
+        def home(samples: np.ndarray) -> np.ndarray:
+            assert seeds.home is not None
+            shift: np.ndarray = seeds.home(units.outwards(samples)) / units.sizes
+            return shift
+
         return replace(
             seeds,
             points=units.inwards(seeds.points),
             gaps=seeds.gaps * self.problem.magnitude / self.magnitude,
             missed=units.inwards(seeds.missed),
             audit=None if judge is None else audit,
+            home=None if seeds.home is None else home,
         )
 
     @property

@@ -18,6 +18,8 @@ from linkages.app.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
 from linkages.app.limits_text import kept_out_by_limits
 from linkages.app.texts import count_of
+from linkages.assembly_statements import has_all_assemblies
+from linkages.mechanisms.translates import translates_of
 
 __all__ = ["Verdict", "exit_by", "is_without_gaps", "judge"]
 
@@ -72,6 +74,8 @@ def _remark(atlas: Atlas) -> str:
 
 def _mobile(atlas: Atlas) -> str:
     forms = count_of(len(atlas.forms), "form")
+    if atlas.forms and translates_of(atlas) is not None:
+        forms += " (up to whole turns)"
     if not atlas.surfaces:
         components = count_of(atlas.components, "component")
         bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
@@ -121,7 +125,7 @@ def _immobile(atlas: Atlas) -> str:
         return kept_out_by_limits(atlas) or _nowhere_closed(atlas)
     if not assemblies:
         return sentence
-    return f"{sentence} {_assemblies(assemblies, shaky)}"
+    return f"{sentence} {_assemblies(atlas, assemblies, shaky)}"
 
 
 def _nowhere_closed(atlas: Atlas) -> str:
@@ -148,11 +152,18 @@ def _near_motion(motion: NearMotion, unit: ArclengthUnit) -> str:
     )
 
 
-def _assemblies(count: int, shaky: int) -> str:
+def _assemblies(atlas: Atlas, count: int, shaky: int) -> str:
+    """In how many assemblies a linkage closes, at least where random starts alone led to
+    them."""
+    least = "" if has_all_assemblies(atlas.completeness.statement) else "at least "
     remark = f", {shaky} of them shaky (of lower rank)" if shaky else ""
     if count == shaky == 1:
         remark = ", which is shaky (of lower rank)"
+    translates = translates_of(atlas)
+    if translates is not None:
+        fewest = "" if translates.are_all else "at least "
+        remark += f" (up to whole turns; with them {fewest}{translates.assemblies})"
     return (
-        f"It closes in {count_of(count, 'isolated assembly')}{remark}, and does not "
-        "move from there."
+        f"It closes in {least}{count_of(count, 'isolated assembly')}{remark}, and does "
+        "not move from there."
     )

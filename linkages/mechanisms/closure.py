@@ -23,13 +23,14 @@ from bifurc.problem import (
     Solver,
     SphereProjection,
 )
-from bifurc.seeding import random_seeds
+from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Seeds
 from linkages.mechanisms.curvature import CurvatureBounds
 from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
+from linkages.mechanisms.turn_lattice import TurnLattice, turn_lattice
 from linkages.mechanisms.whole_turns import WholeTurns, turns_that_advance
 
 if TYPE_CHECKING:
@@ -213,7 +214,7 @@ class MechanismClosure(NumericalProblem):
         """The closed configuration nearest to the reference, those that dyads build
         where a joint stands at given values, and what is reached from ``count`` random
         starts."""
-        drawn = random_seeds(self, rng, count)
+        drawn = self._drawn(rng, count)
         starts = self.reference[None]
         slices = slice_by_dyads(self.structure, rng)
         if slices is not None:
@@ -221,7 +222,27 @@ class MechanismClosure(NumericalProblem):
         points, gaps = self.project(starts)
         is_inside = self.excess(points) <= 0.0
         seeds = drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
+        lattice = self.lattice
+        if lattice:
+            seeds = replace(
+                seeds, points=lattice.homes(seeds.points), home=lattice.home
+            )
         turns = turns_that_advance(self.structure)
         if slices is None and turns:
-            return replace(seeds, audit=WholeTurns(self, turns))
+            return replace(seeds, audit=WholeTurns(self, turns, lattice))
         return replace(seeds, audit=slices)
+
+    def _drawn(self, rng: np.random.Generator, count: int) -> Seeds:
+        """What is reached from random starts; where whole turns lead to the same again,
+        half of them from a region that holds a translate of everything."""
+        if not self.lattice:
+            return random_seeds(self, rng, count)
+        region = self.lattice.region(start_region(self))
+        anywhere = random_seeds(self, rng, count // 2)
+        near = random_seeds(self, rng, count - count // 2, region)
+        return anywhere.and_random(near)
+
+    @cached_property
+    def lattice(self) -> TurnLattice:
+        """The whole turns after which every closed configuration is closed again."""
+        return turn_lattice(self.structure)

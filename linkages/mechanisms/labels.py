@@ -15,6 +15,7 @@ from linkages.decisions import keeps_angle
 from linkages.labels import FormLabels, largest_residual
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.subject import mechanism_subject
+from linkages.mechanisms.translates import with_translates
 
 __all__ = ["label_mechanism"]
 
@@ -29,7 +30,8 @@ def label_mechanism(atlas: Atlas, problem: MechanismClosure) -> Atlas:
     subject = mechanism_subject(problem.mechanism)
     # what unknowns are multiplied with to be in rad and in the user's unit
     subject["scale"] = problem.structure.scales.tolist()
-    return replace(named, subject=subject)
+    labelled = replace(named, subject=subject)
+    return with_translates(labelled, problem.structure, problem.lattice)
 
 
 def _labels(problem: MechanismClosure, branch: Branch) -> FormLabels:

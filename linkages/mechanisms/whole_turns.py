@@ -17,9 +17,10 @@ from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
 from bifurc.seeds import Audit, Level
+from linkages.assembly_statements import RANDOM_ASSEMBLIES
 from linkages.closure.coupled import common_period
-from linkages.mechanisms.dyads.slices import RANDOM_ASSEMBLIES
 from linkages.mechanisms.structure import Structure
+from linkages.mechanisms.turn_lattice import TurnLattice
 
 __all__ = ["WholeTurns", "turns_that_advance"]
 
@@ -49,10 +50,11 @@ def turns_that_advance(structure: Structure) -> dict[int, float]:
 @dataclass(frozen=True, eq=False)
 class WholeTurns:
     """The forms of a ``problem`` with ``turns`` that advance, as `turns_that_advance`
-    has them."""
+    has them; those that shifts of the ``lattice`` lead to are one."""
 
     problem: Problem
     turns: dict[int, float]
+    lattice: TurnLattice
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """Configurations a whole turn of a joint beside ``branches``, as starts; or, of
@@ -83,5 +85,4 @@ class WholeTurns:
                 turned.append(beside)
         points, gaps = self.problem.project(np.concatenate(turned))
         is_inside = self.problem.excess(points) <= 0.0
-        inside: np.ndarray = points[is_start_solved(gaps) & is_inside]
-        return inside
+        return self.lattice.homes(points[is_start_solved(gaps) & is_inside])

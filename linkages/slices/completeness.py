@@ -40,6 +40,11 @@ from bifurc.decisions import is_tied
 from bifurc.limits import Deadline
 from bifurc.search.canonical_order import order_values
 from bifurc.seeds import Audit, Level
+from linkages.assembly_statements import (
+    ALL_FOLLOWED,
+    MISSING_ASSEMBLIES,
+    RANDOM_ASSEMBLIES,
+)
 from linkages.decisions import is_same_dead_point
 from linkages.loop import Loop
 from linkages.slices.assemblies import Assemblies, isolated_assemblies
@@ -52,12 +57,6 @@ FEWEST = 4  # joints that move on a motion, at least
 CUT = 0.3819660112501051  # of its length: where a curve without dead points is cut
 TURN = 2 * np.pi
 SAMPLES = 64  # of a motion, to see whether it turns a joint
-ALL_ASSEMBLIES = (
-    "no isolated assembly of full rank is missing: the 16 paths that lead to all of "
-    "them were followed"
-)
-MISSING_ASSEMBLIES = "isolated assemblies may be missing"
-RANDOM_ASSEMBLIES = "isolated assemblies are those that random starts reached"
 
 
 @dataclass(frozen=True)
@@ -208,7 +207,7 @@ class SliceAudit:
 def _with_assemblies(motions: Audit, assemblies: Assemblies) -> Audit:
     """The audit of motions with what is known of isolated assemblies."""
     level = motions.level
-    known = ALL_ASSEMBLIES
+    known = ALL_FOLLOWED
     if not assemblies.complete:
         known = f"{MISSING_ASSEMBLIES}: {assemblies.statement}"
         level = Level.CERTIFIED if level is Level.PROVED else level

@@ -17,6 +17,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.seeds import Audit, Level
+from linkages.assembly_statements import ALL_BUILT, RANDOM_ASSEMBLIES
 from linkages.mechanisms.dyads.build import Builder, Geometry, TooManyError
 from linkages.mechanisms.dyads.geometry import DegenerateDyadError, PlaneGeometry
 from linkages.mechanisms.dyads.plan import make_plan
@@ -24,12 +25,11 @@ from linkages.mechanisms.dyads.space import SpaceGeometry
 from linkages.mechanisms.plane import normal_of_plane
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["RANDOM_ASSEMBLIES", "DyadSlices", "slice_by_dyads"]
+__all__ = ["DyadSlices", "slice_by_dyads"]
 
 SLICES = 36  # of a driver's period, or of its limits
 MOST_DRIVERS = 4
 MOST_TRIED = 16  # variables that are looked at as drivers
-RANDOM_ASSEMBLIES = "isolated assemblies are those that random starts reached"
 
 
 class _Slice(NamedTuple):
@@ -61,11 +61,7 @@ class DyadSlices:
         every configuration in the slices."""
         nowhere = np.empty((0, len(self.structure.unknowns)))
         if not self.drivers:
-            text = (
-                "dyads build all configurations: there is no motion, and no assembly is "
-                "missing"
-            )
-            return Audit(Level.CERTIFIED, text, nowhere)
+            return Audit(Level.CERTIFIED, ALL_BUILT, nowhere)
         text = f"complete slices, built of dyads: every motion is here {self._moves()}"
         if not self.misses_none:
             text += ", and others may be missing"

@@ -1,0 +1,136 @@
+"""Whole turns whose advances cancel lead to configurations that are one but for them."""
+
+import numpy as np
+import pytest
+
+import linkages
+from bifurc.search.settings import SearchSettings
+from linkages.app.verdict import judge
+from linkages.mechanisms.closure import MechanismClosure
+from linkages.mechanisms.couplings import Coupling
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.translates import translates_of
+
+X, Z = (1, 0, 0), (0, 0, 1)
+TURN = 2 * np.pi
+
+
+def screws(points, pitches):
+    """A loop of helical joints along z."""
+    bodies = [f"b{k}" for k in range(len(points))]
+    joints = []
+    for k, (point, pitch) in enumerate(zip(points, pitches, strict=True)):
+        pair = (bodies[k], bodies[(k + 1) % len(points)])
+        joints.append(Joint(f"H{k}", "helical", pair, point, Z, pitch=pitch))
+    return Mechanism(tuple(joints))
+
+
+TRIANGLE = ((0, 0, 0), (1, 0, 0), (0, 2, 0))
+FOUR_BAR = ((0, 0, 0), (1, 0, 0), (1.5, 2, 0), (0, 2.5, 0))
+TURNS_EACH_WAY = 14  # of a joint of the four-bar, within its limits
+
+
+def whole_turns(problem):
+    """The basis of the lattice in turns."""
+    return problem.lattice.basis / TURN
+
+
+@pytest.mark.parametrize(
+    ("pitches", "rank"),
+    [
+        ((1.0, 1.0, 1.0), 2),
+        ((1.0, 0.7, 0.3), 2),
+        ((1.0, np.sqrt(2.0), np.sqrt(2.0)), 1),
+        ((1.0, np.sqrt(2.0), np.sqrt(3.0)), 0),
+    ],
+)
+def test_whole_turns_cancel_where_pitches_are_in_proportion(pitches, rank):
+    problem = MechanismClosure(screws(TRIANGLE, pitches))
+    assert len(problem.lattice) == rank
+    assert np.allclose(whole_turns(problem) @ pitches, 0.0, atol=1e-12)
+    assert np.array_equal(whole_turns(problem), np.round(whole_turns(problem)))
+
+
+def test_shifts_lead_from_closed_configurations_to_closed_ones():
+    problem = MechanismClosure(screws(FOUR_BAR, (1.0, -2.0, 0.5, 1.5)))
+    rng = np.random.default_rng(0)
+    seeds = problem.seeds(rng, 40)
+    turns = rng.integers(-3, 4, (len(seeds.points), len(problem.lattice)))
+    shifted = seeds.points + turns @ problem.lattice.basis
+    assert problem.gaps(shifted).max() < 1e-12
+
+
+def test_a_slide_takes_up_what_a_screw_advances():
+    bodies = ["frame", "crank", "rod", "rocker", "screw"]
+    places = [(0, 0, 0), (0.5, 1.0, 0), (2, 1.4, 0), (2.2, 0, 0)]
+    joints = [
+        Joint(f"R{k}", "revolute", (bodies[k], bodies[k + 1]), places[k], Z)
+        for k in range(3)
+    ]
+    pair = ("rocker", "screw")
+    joints.append(Joint("H", "helical", pair, places[3], Z, pitch=0.4))
+    joints.append(Joint("P", "prismatic", ("screw", "frame"), direction=Z))
+    problem = MechanismClosure(Mechanism(tuple(joints)))
+    (shift,) = problem.lattice.basis
+    unit = problem.structure.unit
+    assert shift[problem.names.index("H")] == pytest.approx(TURN)
+    assert abs(shift[problem.names.index("P")]) == pytest.approx(0.4 / unit)
+
+
+def test_what_turns_between_two_screws_lets_no_advance_pass():
+    joints = (
+        Joint("H1", "helical", ("a", "b"), (0, 0, 0), Z, pitch=1.0),
+        Joint("R1", "revolute", ("b", "c"), (1, 0, 0), X),
+        Joint("H2", "helical", ("c", "d"), (1, 1, 0), Z, pitch=1.0),
+        Joint("R2", "revolute", ("d", "a"), (0, 1, 0.3), X),
+    )
+    assert len(MechanismClosure(Mechanism(joints)).lattice) == 0
+
+
+def test_a_turn_with_a_rack_on_it_is_not_free():
+    joints = (
+        Joint("A", "revolute", ("f", "c"), (0, 0, 0), Z),
+        Joint("B", "revolute", ("c", "r"), (0.6, 0.8, 0), Z),
+        Joint("C", "revolute", ("r", "s"), (3, 0, 0), Z),
+        Joint("D", "prismatic", ("f", "s"), direction=X, coupled=(Coupling("A", 0.1),)),
+    )
+    assert len(MechanismClosure(Mechanism(joints)).lattice) == 0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_parallel_screws_have_a_form_for_each_assembly_mode(seed):
+    settings = SearchSettings(starts=60, certify=False)
+    mechanism = screws(FOUR_BAR, (1.0, 1.0, 1.0, 1.0))
+    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    assert len(atlas.forms) == 2
+    translates = translates_of(atlas)
+    # two joints of four turn to and fro, each at one of these places
+    assert 2 * TURNS_EACH_WAY**2 * 4 <= translates.forms < 2 * (2 * 14 + 1) ** 2
+    assert "2 forms (up to whole turns)" in judge(atlas).sentence
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_assemblies_of_screws_are_those_of_the_triangle(seed):
+    settings = SearchSettings(starts=120, certify=False)
+    mechanism = screws(TRIANGLE, (1.0, 1.0, 1.0))
+    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    assert len(atlas.rigid) == 2
+    problem = MechanismClosure(mechanism)
+    most = int(problem.bounds[0, 1] / TURN)
+    turns = np.arange(-most - 1, most + 1)
+    grid = np.stack(np.meshgrid(turns, turns, turns), axis=-1).reshape(-1, 3)
+    shifts = TURN * grid[grid.sum(axis=1) == 0]
+    places = (atlas.rigid[:, None] + shifts).reshape(-1, 3)
+    # every translate is closed, and so many of them are within the limits
+    assert problem.gaps(places).max() < 1e-11
+    inside = np.count_nonzero(problem.excess(places) <= 0.0)
+    assert translates_of(atlas).assemblies == inside > 600
+    assert f"with them {inside}" in judge(atlas).sentence
+
+
+def test_assemblies_of_random_starts_are_said_to_be_the_fewest():
+    settings = SearchSettings(starts=40, certify=False)
+    mechanism = screws(TRIANGLE, (1.0, 1.0, 1.0))
+    atlas = linkages.map_linkage(mechanism, settings=settings)
+    assert "closes in at least" in judge(atlas).sentence
