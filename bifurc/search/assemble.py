@@ -78,7 +78,8 @@ def assemble_atlas(
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)
     near_misses = _near_misses(problem, traced, periods)
-    doubts = doubts_of(problem, traced, forms, points, surfaces)
+    deflated = findings.components.deflated
+    doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
     doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
     near_motions = _near_motions(problem, findings, periods)
     if near_motions:

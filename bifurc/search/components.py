@@ -8,7 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bifurc.atlas import Surface
-from bifurc.decisions import is_same_point, may_be_null
+from bifurc.curves.rank_deflation import LARGEST, RankDeflated
+from bifurc.decisions import (
+    closes_to_rounding,
+    is_same_point,
+    may_be_null,
+    may_be_singular,
+)
 from bifurc.limits import Deadline
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
@@ -48,18 +54,25 @@ ACROSS = 1e-6
 # Distance, over the scale, and over the error of a point, below which two singular points
 # of surfaces are one.
 APART, ERRORS = 1e-5, 10
+# How far beside a singular point of such a surface it is looked for, over the scale, and
+# how often.
+PROBE, PROBES = 1e-2, 3
+UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
 
 
 @dataclass
 class Components:
     """Numbers of the seeds on components of dimension 2 and more, by dimension, and
     charts over the surfaces. The seeds ``on_shaky`` surfaces, on which F' has a lower
-    rank everywhere, are apart: charts do not fit there.
+    rank everywhere, are apart where one deflation does not make them regular: charts do
+    not fit there.
 
     Parts of the charts that do not hang together are surfaces of their own: each but
     the last was finished, as far as its singular points, before the next was begun.
     ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
-    is known. ``notes`` say what is known of a part, by its number.
+    is known. ``notes`` say what is known of a part, by its number. ``deflated`` is the
+    problem with which surfaces are corrected to along which F' has a lower rank; seeds
+    of dimension 2 lie on such surfaces then.
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
@@ -67,6 +80,7 @@ class Components:
     charts: ChartAtlas | None = None
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
     notes: dict[int, str] = field(default_factory=dict)
+    deflated: RankDeflated | None = None
 
     def cover(
         self, problem: Problem, points: np.ndarray, charts: int, deadline: Deadline
@@ -78,9 +92,11 @@ class Components:
         ``points`` (k, n) lie. Where the covering is unfinished, the seeds beside the
         charts walk over the surface to find out which they belong to.
         """
-        samples = points[self.seeds.get(2, [])]
+        samples = self._samples(points, 2)
         if not len(samples) or charts <= 0 or deadline.passed:
             return []
+        if self.deflated is not None:
+            problem = self.deflated
         covering = cover_surface(
             problem, samples, radius=RADIUS, charts=charts, seconds=deadline.left
         )
@@ -89,6 +105,13 @@ class Components:
             self.part_of = _parts_of(problem, covering, samples, deadline)
             return []
         return [] if deadline.passed else self.seeds.pop(2)
+
+    def _samples(self, points: np.ndarray, dimension: int) -> np.ndarray:
+        """The seeds (k, n) of a dimension, as exact as can be known."""
+        samples = points[self.seeds.get(dimension, [])]
+        if self.deflated is None or dimension != 2 or not len(samples):
+            return samples
+        return self.deflated.project(samples)[0]
 
     def take_note(self, left_out: np.ndarray, on_curves: np.ndarray) -> None:
         """Remember charts at which singular points were not looked for, and charts next
@@ -106,13 +129,15 @@ class Components:
         surfaces: list[Surface] = []
         if self.on_shaky:
             surfaces.append(Surface(2, points[self.on_shaky], note=SHAKY))
-        for dimension, numbers in sorted(self.seeds.items()):
-            samples = points[numbers]
+        for dimension in sorted(self.seeds):
+            samples = self._samples(points, dimension)
             if dimension == 2 and self.charts is not None:
                 surfaces += self._charted_surfaces(self.charts, samples)
                 samples = samples[self.part_of < 0]
             if len(samples):
-                surfaces.append(Surface(dimension, samples))
+                is_shaky = dimension == 2 and self.deflated is not None
+                note = SHAKY if is_shaky else ""
+                surfaces.append(Surface(dimension, samples, note=note))
         return tuple(surfaces)
 
     def _charted_surfaces(
@@ -125,6 +150,8 @@ class Components:
             if not len(on_part):
                 on_part = part.centers[:1]
             note = self.notes.get(k, "")
+            if self.deflated is not None:
+                note = f"{SHAKY}; {UNEXAMINED}"
             surfaces.append(Surface(2, on_part, charts=part, note=note))
         return surfaces
 
@@ -172,9 +199,54 @@ def components_of_seeds(
         numbers = doubtful[(local.dimension == dimension) & is_regular]
         if len(numbers):
             components.seeds[int(dimension)] = numbers.tolist()
-    on_shaky = (local.dimension == 2) & local.shaky
-    components.on_shaky = doubtful[on_shaky].tolist()
+    if 2 not in components.seeds and problem.n <= LARGEST:
+        deflated = RankDeflated(problem, problem.n - NULLITY)
+        numbers = doubtful[local.nullity == NULLITY]
+        on_surfaces = _are_on_surfaces(deflated, points[numbers], deadline)
+        if np.any(on_surfaces):
+            rest = np.setdiff1d(doubtful, numbers[on_surfaces])
+            singular = rest[may_be_singular(values[rest, problem.n - NULLITY - 1])]
+            is_next = _are_next_to_surfaces(deflated, points[singular], deadline)
+            numbers = np.concatenate([numbers[on_surfaces], singular[is_next]])
+            components.seeds[2] = numbers.tolist()
+            components.deflated = deflated
+    if components.deflated is None:
+        on_shaky = (local.dimension == 2) & local.shaky
+        components.on_shaky = doubtful[on_shaky].tolist()
     return components
+
+
+def _are_on_surfaces(
+    deflated: RankDeflated, points: np.ndarray, deadline: Deadline
+) -> np.ndarray:
+    """Whether solutions (k,) next to ``points`` (k, n) lie on surfaces along which F'
+    has the lower rank of the ``deflated`` problem, and no lower one."""
+    on_surfaces = np.zeros(len(points), dtype=bool)
+    if not len(points) or deadline.passed:
+        return on_surfaces
+    solutions, are_solved = deflated.next_to(points)
+    local = local_dimensions(deflated, solutions[are_solved], deadline)
+    is_surface = (local.dimension == 2) & (local.nullity == 2) & local.regular
+    on_surfaces[are_solved] = is_surface
+    return on_surfaces
+
+
+def _are_next_to_surfaces(
+    deflated: RankDeflated, points: np.ndarray, deadline: Deadline
+) -> np.ndarray:
+    """Whether singular solutions ``points`` (k, n) have solutions beside them, as far as
+    a probe goes, that lie on such surfaces."""
+    is_next = np.zeros(len(points), dtype=bool)
+    rng = np.random.default_rng(0)
+    for _ in range(PROBES):
+        steps = rng.normal(size=points.shape)
+        steps *= PROBE * deflated.scale / np.linalg.norm(steps, axis=1)[:, None]
+        ends, gaps = deflated.project(points + steps)
+        beside = np.linalg.norm(deflated.difference(ends, points), axis=1)
+        is_near = closes_to_rounding(gaps) & (beside < 2 * PROBE * deflated.scale)
+        waiting = np.flatnonzero(is_near & ~is_next)
+        is_next[waiting] = _are_on_surfaces(deflated, ends[waiting], deadline)
+    return is_next
 
 
 def singular_points_of(
@@ -188,7 +260,7 @@ def singular_points_of(
     samples of curves, becomes a note on the surface.
     """
     charts = components.charts
-    if charts is None or problem.n < NULLITY:
+    if charts is None or problem.n < NULLITY or components.deflated is not None:
         return []
     candidates = _lowest_charts(problem, charts)
     points: list[LocatedPoint] = []

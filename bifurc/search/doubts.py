@@ -44,16 +44,18 @@ def doubts_of(
     forms: Sequence[Form],
     points: Sequence[MeetingPoint],
     surfaces: Sequence[Surface],
+    of_surfaces: Problem | None = None,
 ) -> tuple[str, ...]:
     """One sentence for each thing that doubles do not decide: surfaces that may be
     curves, curves that may be surfaces, stretches of forms that are not certified, ends
     of forms at nothing known, singular points of no certain kind.
 
-    The ``forms`` are those of the branches ``traced``.
+    The ``forms`` are those of the branches ``traced``. Solutions on the ``surfaces``
+    are regular ones of the problem ``of_surfaces``, where it is another one.
     """
     doubts: list[str] = []
     for surface in surfaces:
-        doubts += _doubts_of_surface(problem, surface)
+        doubts += _doubts_of_surface(of_surfaces or problem, surface)
     for index, branch in enumerate(traced):
         doubts += _doubts_of_form(problem, index, branch, points)
     for index, form in enumerate(forms):

@@ -13,6 +13,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.misclosure import largest_misclosure
+from bifurc.curves.rank_deflation import LARGEST, RankDeflated
 from bifurc.decisions import (
     closes_to_rounding,
     is_at_rest,
@@ -66,6 +67,7 @@ TINY = 1e-300  # keeps a singular value of zero from being divided by
 LOOKS_WHERE_STOPPED = 6  # at ends of starts that reached no solution
 LOOKS_WHERE_SLOW = 4  # at ends of starts where |F| still falls
 SLOW_REACH = 0.5  # how far from these, over the scale, a singular point may lie
+NULLITY_OF_SHAKY = 3  # all along a curve that one deflation of the rank makes regular
 MOST_MOVES = 3  # of a solution to the curve that is listed for its own
 SAMPLES = 256  # of a curve, by which it is told how far it is moved
 LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
@@ -177,6 +179,9 @@ class Search:
         near = self.findings.near_motion_through(point)
         if near is not None:
             return SeedFate(Fate.ON_NEAR_MOTION, near)
+        fate = self._fate_on_shaky_curve(point, values)
+        if fate is not None:
+            return fate
         if self._may_be_singular(point, values):
             fate = self._fate_at_low_rank(point, values)
             if fate is not None:
@@ -272,6 +277,34 @@ class Search:
             return None
         self._branch_off(half_branch_starts(sighting.point))
         return SeedFate(Fate.AT_SINGULAR_POINT, sighting.number)
+
+    def _fate_on_shaky_curve(
+        self, point: np.ndarray, values: np.ndarray
+    ) -> SeedFate | None:
+        """The curve that a seed (n,) lies on where F' has rank n - 3 all along it; None
+        where it has not."""
+        n = self.problem.n
+        nullity = int(np.count_nonzero(may_be_singular(values)))
+        if nullity != NULLITY_OF_SHAKY or n > LARGEST:
+            return None
+        number = self.findings.branch_through(point, self._blur_of_seed(values))
+        if number is not None:
+            return SeedFate(Fate.ON_FORM, number)
+        deflated = RankDeflated(self.problem, n - NULLITY_OF_SHAKY)
+        solutions, are_solved = deflated.next_to(point[None])
+        last = singular_values(deflated, solutions)[0, n - 2]
+        if not are_solved[0] or may_be_singular(float(last)):
+            return None
+        branch = trace_branch(deflated, solutions[0], None, self.settings.tracing)
+        if not self._is_curve(branch):
+            return None
+        number = self.findings.branch_along(branch)
+        if number is None:
+            misclosure = largest_misclosure(self.problem, branch)
+            examined = self.examiner.examine(branch, misclosure)
+            number = self.findings.add_branch(examined.traced)
+            self._branch_off(examined.starts)
+        return SeedFate(Fate.ON_FORM, number)
 
     def _blur_of_seed(self, values: np.ndarray) -> float:
         """How far, over the scale, a seed with singular values (n,) may lie from where
