@@ -364,6 +364,27 @@ class FunctionProblem(NumericalProblem):
 
         return residual
 
+    def value_bounds(
+        self, low: np.ndarray, high: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """Bounds (k, m), (k, m) on F in boxes from ``low`` (k, n) to ``high`` (k, n),
+        with directed rounding; None where the equations are not recorded."""
+        tape = self.recording.tape
+        if tape is None:
+            return None
+        lower, upper = np.ascontiguousarray(low), np.ascontiguousarray(high)
+        return tape.compiled.value_bounds(lower, upper)
+
+    def jacobian_bounds(
+        self, low: np.ndarray, high: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """The same on F' (k, m, n)."""
+        tape = self.recording.tape
+        if tape is None:
+            return None
+        lower, upper = np.ascontiguousarray(low), np.ascontiguousarray(high)
+        return tape.compiled.jacobian_bounds(lower, upper)
+
     # --- curves and solutions ---------------------------------------------------------
 
     @property

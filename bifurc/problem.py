@@ -387,6 +387,19 @@ class Problem(ABC):
         """
         return None
 
+    def value_bounds(
+        self, low: np.ndarray, high: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """Bounds (k, m), (k, m) on F in boxes from ``low`` (k, n) to ``high`` (k, n);
+        None where none are known."""
+        return None
+
+    def jacobian_bounds(
+        self, low: np.ndarray, high: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray] | None:
+        """The same on F' (k, m, n)."""
+        return None
+
     @abstractmethod
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings

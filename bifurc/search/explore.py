@@ -135,6 +135,7 @@ def _explored(
             search.join_branches()
             search.mend_at_germs()
             search.audit_branches()
+            search.audit_in_boxes()
             search.near_motions.look()
     except KeyboardInterrupt:
         interrupted = True

@@ -220,6 +220,15 @@ class Findings:
                 del self.fates[seed]
         self.awaits_audit = True
 
+    def forget_shortcuts(self) -> None:
+        """Forget branches that run along a longer one, which makes a detour."""
+        for number in range(len(self.traced) - 1, -1, -1):
+            branch = self.traced[number].branch
+            others = [one for k, one in enumerate(self.branches) if k != number]
+            longer = [one for one in others if one.length > branch.length]
+            if any(self._runs_along(one, branch) for one in longer):
+                self.supersede_branches([number], [])
+
     def branch_through(self, point: np.ndarray, within: float = 0.0) -> int | None:
         """The number of the first branch through a point (n,), as far as that is known,
         or at less than ``within`` scales from it."""

@@ -25,6 +25,7 @@ from bifurc.decisions import (
     is_start_solved,
     is_stub,
     is_weakly_isolated,
+    may_be_crossed,
     may_be_mobile,
     may_be_shaky,
     may_be_singular,
@@ -48,6 +49,8 @@ from bifurc.search.run import Run
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.search.settings import SearchSettings
 from bifurc.search.start import Start, half_branch_starts
+from bifurc.search.subdivision import Subdivision, can_be_subdivided, subdivide
+from bifurc.search.subdivision_audit import audit_of, refuted_at
 from bifurc.search.weak_seeds import sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
 from bifurc.singular.classify import classify_from_nearby
@@ -70,6 +73,7 @@ SLOW_REACH = 0.5  # how far from these, over the scale, a singular point may lie
 NULLITY_OF_SHAKY = 3  # all along a curve that one deflation of the rank makes regular
 MOST_MOVES = 3  # of a solution to the curve that is listed for its own
 SAMPLES = 256  # of a curve, by which it is told how far it is moved
+ROUNDS_IN_BOXES = 3  # each of them followed up
 LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
 
 
@@ -86,7 +90,7 @@ class Search:
 
     Its steps are called in their order: `gather_seeds`, `sort_seeds`, `trace_seeds`,
     `look_where_starts_stop`, `cover_surfaces`, `separate_points`, `join_branches`,
-    `audit_branches`, and `near_motions.look`. Each adds to the findings of the ``run``.
+    `audit_branches`, `audit_in_boxes`, and `near_motions.look`. Each adds to the findings of the ``run``.
     From the end of the budget on a step does nothing. A Ctrl-C raises
     `KeyboardInterrupt` between two starts, and the findings hold what is known then.
     """
@@ -322,8 +326,9 @@ class Search:
             trace = self._trace(queue.pop())
             queue += trace.starts
 
-    def _trace(self, start: Start) -> _Trace:
-        """Trace the branch through a start, unless it is known."""
+    def _trace(self, start: Start, is_new: bool = False) -> _Trace:
+        """Trace the branch through a start, unless it is known; where the start ``is_new``
+        it is not one of those along which it seems to run."""
         findings = self.findings
         number = findings.branch_through(start.point)
         if number is not None:
@@ -336,7 +341,7 @@ class Search:
             log.info("no curve through %s: %s", start.point, branch.outcome.value)
             return _Trace(SeedFate(Fate.NO_SOLUTION) if is_open else None, [])
         # by rounding over a small singular value a start may lie beside its curve
-        number = findings.branch_along(branch)
+        number = None if is_new else findings.branch_along(branch)
         if number is not None:
             return _Trace(SeedFate(Fate.ON_FORM, number), [])
         fate = self._retrace_lower_rank(branch)
@@ -582,3 +587,50 @@ class Search:
             known = len(findings.seeds.points)
             self._add_seeds(findings.seeds.with_constructed(solutions), known)
             self.trace_seeds()
+
+    def audit_in_boxes(self) -> None:
+        """Divide the bounds of exact equations into boxes, and trace the arcs that show
+        up there, until all are known or nothing new comes of it."""
+        findings = self.findings
+        is_asked = self.settings.boxes > 0 and findings.seeds.audit is None
+        if not is_asked or findings.components.seeds or self.run.is_over:
+            return
+        are_curves = all(t.profile.rank == self.problem.n - 1 for t in findings.traced)
+        if not are_curves or not can_be_subdivided(self.problem):
+            return
+        for _ in range(ROUNDS_IN_BOXES):
+            division = self._division()
+            if division.is_complete:
+                findings.set_audit(audit_of(division))
+                return
+            known = (len(findings.traced), len(findings.points))
+            self._follow_up(division)
+            found = (len(findings.traced), len(findings.points))
+            if self.run.is_over or (found == known and not division.refuted):
+                return
+        for number, s in self._division().refuted:
+            findings.traced[number] = refuted_at(findings.traced[number], s)
+
+    def _division(self) -> Subdivision:
+        """The bounds, divided with what is known now."""
+        findings = self.findings
+        return subdivide(
+            self.problem, findings.branches, findings.points, self.settings.boxes
+        )
+
+    def _follow_up(self, division: Subdivision) -> None:
+        """Trace what a subdivision found, and look at what it left; what it refuted is
+        traced again."""
+        findings = self.findings
+        findings.supersede_branches([number for number, _ in division.refuted], [])
+        for point in division.found:
+            if not self.run.is_over:
+                self._branch_off(self._trace(Start(point), is_new=True).starts)
+        findings.forget_shortcuts()
+        values = singular_values(self.problem, division.left)[:, self.problem.n - 2]
+        for place in division.left[may_be_crossed(values)]:
+            sighting = self.points.near(place, 2, BRANCH_REACH)
+            if sighting is not None and sighting.is_new:
+                self._branch_off(half_branch_starts(sighting.point))
+        self.trace_seeds()
+        self.run.interrupt.check()

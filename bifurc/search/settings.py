@@ -24,7 +24,9 @@ class SearchSettings:
     ``starts``: random starts that are projected onto the solutions. ``budget`` (s): the
     search ends when it is used up, but for the step it is in. ``charts``: the most with
     which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
-    takes the time to find out if a branch is missing. ``certify``: whether every branch
+    takes the time to find out if a branch is missing. ``boxes``: into how many the bounds
+    of exact equations of two to four unknowns are divided at most, to prove that nothing
+    is missing; 0 for not at all. ``certify``: whether every branch
     gets a certificate, and is traced again, finer, where that is refused.
     ``near_motions``: whether curves along which the system is nearly solved are traced;
     without, points of them that solve it are isolated like any other. ``tracing``:
@@ -36,6 +38,7 @@ class SearchSettings:
     budget: float = math.inf
     charts: int = 1500
     prove: bool = True
+    boxes: int = 4000
     certify: bool = True
     near_motions: bool = True
     tracing: TraceSettings = field(default_factory=TraceSettings)
@@ -43,6 +46,7 @@ class SearchSettings:
     def __post_init__(self) -> None:
         check_whole("starts", self.starts, 1)
         check_whole("charts", self.charts, 0)
+        check_whole("boxes", self.boxes, 0)
         check_number("budget", self.budget)
         check_type("prove", self.prove, bool)
         check_type("certify", self.certify, bool)
