@@ -76,13 +76,13 @@ def test_circles_are_divided_over_one_period():
         [(0, 2 * np.pi)] * 2,
         periods=[2 * np.pi] * 2,
     )
-    atlas = explore(torus)
+    atlas = explore(torus, settings=PATIENT)
     assert len(atlas.forms) == 2
     assert atlas.completeness.level is Level.PROVED
 
 
 def test_next_to_singular_points_nothing_is_claimed():
-    atlas = explore(problem(lambda u: [u[0] * u[1]]))
+    atlas = explore(problem(lambda u: [u[0] * u[1]]), settings=PATIENT)
     assert atlas.completeness.level is Level.CERTIFIED
     assert "nothing is claimed within 1e-05 of the scale" in (
         atlas.completeness.statement
