@@ -135,7 +135,8 @@ class SearchOptions:
 
     ``starts`` is the number of random starts, ``seed`` that of their generator,
     ``tolerance`` that of the curves, ``budget`` the most seconds; ``certify``: whether
-    forms get certificates.
+    forms get certificates; ``boxes``: into how many the bounds of equations are divided
+    at most.
     """
 
     starts: int = 200
@@ -143,6 +144,7 @@ class SearchOptions:
     tolerance: float = 1e-13
     budget: float = math.inf
     certify: bool = True
+    boxes: int = 2000
 
     def settings(self) -> SearchSettings:
         """The settings of the search; raises `bifurc.ProblemError`."""
@@ -154,6 +156,7 @@ class SearchOptions:
             starts=self.starts,
             budget=self.budget,
             certify=self.certify,
+            boxes=self.boxes,
             tracing=tracing,
         )
 

@@ -41,6 +41,14 @@ __all__ = ["solve_command"]
     metavar="KEY=VALUE",
     help="Another value of a parameter of the file; may be given several times.",
 )
+@click.option(
+    "--boxes",
+    default=2000,
+    show_default=True,
+    type=click.IntRange(0, 10_000_000),
+    help="Divide the bounds of two to four unknowns into so many boxes at most, to prove "
+    "that nothing is missing; 0 for none.",
+)
 @search_options
 @verbose_option
 def solve_command(
@@ -49,6 +57,7 @@ def solve_command(
     out: Path | None,
     as_json: bool,
     no_certify: bool,
+    boxes: int,
     verbose: bool,
     search: SearchOptions,
 ) -> None:
@@ -75,7 +84,9 @@ def solve_command(
     paths: list[Path] = []
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_system(system, replace(search, certify=not no_certify))
+        atlas = explore_system(
+            system, replace(search, certify=not no_certify, boxes=boxes)
+        )
         summary = make_summary(atlas)
         try:
             if as_json:

@@ -129,3 +129,16 @@ def test_a_budget_that_ends_at_once_says_that_nothing_is_known(path) -> None:
     result = solve(path, "--budget", "1e-9")
     assert result.exit_code == 7
     assert "is not known" in result.stdout
+
+
+def test_boxes_prove_that_nothing_is_missing(tmp_path) -> None:
+    file = tmp_path / "lemniscate.toml"
+    file.write_text(
+        'equations = ["(x^2 + y^2)^2 = x^2 - y^2"]\n[unknowns]\nx = [-2, 2]\ny = [-2, 2.1]\n'
+    )
+    levels = []
+    for boxes in (0, 100_000):
+        result = solve(file, "--json", "--boxes", boxes)
+        levels.append(json.loads(result.stdout)["completeness"]["level"])
+    assert levels == ["estimated", "certified"]
+    assert solve(file, "--boxes", -1).exit_code == 2
