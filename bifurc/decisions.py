@@ -986,18 +986,19 @@ is_period = Decision(
 is_on_axis = Decision(
     "on the imaginary axis",
     "an eigenvalue has no real part",
-    "size of its real part over the largest eigenvalue",
-    1e-12,
-    "rounding leaves 1e-15, times the condition of the eigenvalue; stiff equations have "
-    "eigenvalues down to 1e-9 of the largest",
+    "size of its real part over what a change of the place by 1e-12 of the sizes, and "
+    "rounding of the entries of F', make of the eigenvalue",
+    3.0,
+    "places are exact to 1e-13; where an eigenvalue crosses the axis it is this small on "
+    "a stretch of 1e-12 only",
     third_answer="a stretch of a form on which most places show one is neutral, neither "
     "stable nor unstable",
 )
 is_real_crossing = Decision(
     "real crossing",
     "the eigenvalue that crosses the imaginary axis is real, and there is no Hopf point",
-    "its imaginary part over the largest eigenvalue",
-    1e-7,
+    "its imaginary part over what rounding makes of it",
+    3.0,
     "two eigenvalues that meet on the real axis are exact to half the digits",
 )
 is_fold_of_crossing = Decision(
@@ -1010,10 +1011,12 @@ is_fold_of_crossing = Decision(
 )
 is_event = Decision(
     "event",
-    "a function takes the value where its difference to it changes sign",
-    "the difference there over the largest one next to it",
-    1e-6,
-    "next to a root it is rounding; at a pole it is larger than anywhere near",
+    "a function that is steeper than samples show is zero where it changes sign",
+    "its value there over the larger of those 1e-9 of the length of the form beside it",
+    0.1,
+    "it is 1 at a jump and 1e7 at a pole; of a cube root it is 5e-3, and less of what is "
+    "less steep",
+    third_answer="a change of sign that is no zero is said to be a jump",
 )
 
 is_event_all_along = Decision(
@@ -1022,6 +1025,33 @@ is_event_all_along = Decision(
     "the largest difference on the form over the largest a tenth of the scale off it",
     1e-9,
     "forms are followed to 1e-13 of the scale",
+)
+
+is_same_turn = Decision(
+    "turn of a function",
+    "a function gains the same in every turn of an unknown, or nothing, or two values are "
+    "a whole turn apart",
+    "difference over the size of the function, or over the turn",
+    1e-9,
+    "it is rounding, 1e-15; of a function that is none on the circle it is of order 1",
+    third_answer="such a function is taken within half a period of 0, and that is said",
+)
+hides_turning = Decision(
+    "parameter at rest",
+    "rounding hides whether the parameter grows or falls",
+    "its rate along a form over its largest one there",
+    1e-12,
+    "rates are exact to 1e-13, beside crossings to 3e-14 over the distance",
+    third_answer="the stretch that is hidden is the error of the fold, and a fold whose "
+    "stretch reaches a singular point is that one",
+)
+is_drawn_to_point = Decision(
+    "fold at a singular point",
+    "Newton's method for a fold goes to a singular point, and there is no fold",
+    "distance from the point after it over that before; or over three errors of the point",
+    0.01,
+    "at a cusp it comes to the point by the power of 2/3 or less a step; a fold of its own "
+    "stays where it is, and the quotient is 1",
 )
 
 TABLE = decisions_in(globals())

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import NamedTuple
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.curves.monitor import largest_rates
-from bifurc.decisions import stands_still
 from bifurc.diagrams.diagram import BranchingKind, Stretch
 from bifurc.singular.point import Kind
 
@@ -18,11 +16,11 @@ SAME_CUT = 1e-12  # of a length: a stretch ends at the very arclength of a pass
 
 class TurningPass(NamedTuple):
     """A pass of form number ``form`` at arclength ``s`` at which the parameter turns
-    back; ``bend`` is its second derivative in the arclength."""
+    back; ``side`` is 1 where it grows after that, and -1 where it falls."""
 
     form: int
     s: float
-    bend: float
+    side: float
 
 
 def branching_kind(
@@ -30,38 +28,32 @@ def branching_kind(
     parameter: int,
     point: MeetingPoint,
     turning: Sequence[TurningPass],
+    resting: Container[int],
     stretches: Sequence[Stretch],
 ) -> BranchingKind | None:
     """What a singular point is along the parameter; None where no branches cross.
 
-    ``turning`` are those of its passes at which the parameter turns back, ``stretches``
-    those of all forms.
+    ``turning`` are those of its passes at which the parameter turns back, ``resting``
+    the forms along which it does not change, ``stretches`` those of all forms.
     """
     if point.kind is not Kind.BIFURCATION:
         return None
     if len(point.passes) != 2 or len(turning) > 1:
         return BranchingKind.OTHER
     if not turning:
-        stands = [_stands_still(atlas, parameter, *one) for one in point.passes]
-        return BranchingKind.OTHER if any(stands) else BranchingKind.TRANSCRITICAL
+        stands = any(form in resting for form, _ in point.passes)
+        return BranchingKind.OTHER if stands else BranchingKind.TRANSCRITICAL
     branch = turning[0]
     trunk = next(one for one in point.passes if one != (branch.form, branch.s))
     beside = _unstable_beside(stretches, branch.form, branch.s, 1.0)
     rises = float(atlas.forms[trunk[0]].branch(trunk[1], 1)[parameter])
-    side = 1.0 if rises * branch.bend > 0 else -1.0
+    side = 1.0 if rises * branch.side > 0 else -1.0
     on_trunk = _unstable_beside(stretches, *trunk, side)
     if min(beside, on_trunk) < 0 or beside == on_trunk:
         return BranchingKind.PITCHFORK
     if beside < on_trunk:
         return BranchingKind.SUPERCRITICAL
     return BranchingKind.SUBCRITICAL
-
-
-def _stands_still(atlas: Atlas, parameter: int, form: int, s: float) -> bool:
-    """Whether a form goes along a singular point with the parameter at rest."""
-    branch = atlas.forms[form].branch
-    here = abs(float(branch(s, 1)[parameter]))
-    return stands_still(here, float(largest_rates(branch)[parameter]))
 
 
 def _unstable_beside(

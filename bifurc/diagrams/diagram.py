@@ -27,6 +27,8 @@ class PointKind(Enum):
     HOPF = "Hopf point"
     # A function of the user's takes a value.
     EVENT = "event"
+    # It takes the value and turns back, or stays within rounding of it.
+    TOUCH = "touch"
 
 
 class BranchingKind(Enum):
@@ -63,7 +65,9 @@ class DiagramPoint:
 
     ``label`` is the name of the event, empty for the others. ``value`` is the second
     derivative of the parameter in the arclength at a fold, the angular frequency at a
-    Hopf point, and the value that the function takes at an event.
+    Hopf point, and the value that the function takes at an event. ``error`` is the
+    arclength to either side within which rounding hides where it is, 0 where that is no
+    more than rounding.
     """
 
     name: str
@@ -73,6 +77,7 @@ class DiagramPoint:
     u: np.ndarray
     value: float
     label: str = ""
+    error: float = 0.0
 
     def __repr__(self) -> str:
         what = f"{self.kind.value} {self.label}".rstrip()
@@ -112,13 +117,15 @@ class Diagram:
 
     ``parameter`` is the name of an unknown, empty where there is none but events were
     asked for. ``points`` are folds, Hopf points and events, ``stretches`` cover all
-    forms, ``branchings`` are the singular points at which forms cross.
+    forms, ``branchings`` are the singular points at which forms cross, ``remarks`` what
+    is to be said of events.
     """
 
     parameter: str
     points: tuple[DiagramPoint, ...]
     stretches: tuple[Stretch, ...]
     branchings: tuple[Branching, ...]
+    remarks: tuple[str, ...] = ()
 
     @property
     def folds(self) -> tuple[DiagramPoint, ...]:
@@ -132,8 +139,16 @@ class Diagram:
 
     def events(self, label: str = "") -> tuple[DiagramPoint, ...]:
         """The events called ``label``, or all of them."""
-        events = [p for p in self.points if p.kind is PointKind.EVENT]
-        return tuple(p for p in events if label in ("", p.label))
+        return self._called(PointKind.EVENT, label)
+
+    def touches(self, label: str = "") -> tuple[DiagramPoint, ...]:
+        """The places at which the event called ``label``, or any, takes its value and
+        turns back."""
+        return self._called(PointKind.TOUCH, label)
+
+    def _called(self, kind: PointKind, label: str) -> tuple[DiagramPoint, ...]:
+        of_kind = [p for p in self.points if p.kind is kind]
+        return tuple(p for p in of_kind if label in ("", p.label))
 
     def stretch_at(self, form: int, s: float) -> Stretch | None:
         """The stretch of a form, given by its index, on which arclength ``s`` lies."""
@@ -153,6 +168,7 @@ class Diagram:
             "folds": len(self.folds),
             "Hopf points": len(self.hopf_points),
             "events": len(self.events()),
+            "touches": len(self.touches()),
             "branchings": len(self.branchings),
         }
         words = ", ".join(f"{count} {noun}" for noun, count in counts.items())

@@ -1,23 +1,36 @@
-"""Events: where functions of the unknowns take given values along a form."""
+"""Events: where functions of the unknowns take given values along a form.
+
+An unknown with a period is a place on a circle. So a function of it that gains a
+constant in each turn, as the unknown itself does, takes its value modulo that constant.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TypeAlias, cast
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.checks import check_callable, check_finite, check_type, floats_of
-from bifurc.curves.monitor import NODES
-from bifurc.decisions import is_event, is_event_all_along
+from bifurc.decisions import is_event_all_along, is_same_turn
+from bifurc.diagrams.zeros import Zeros, zeros_along
 from bifurc.errors import ProblemError
-from bifurc.numerics.roots import bracketed_roots
+from bifurc.torus import wrap
 
-__all__ = ["EventFunction", "EventRequests", "event_places", "events_of"]
+__all__ = [
+    "CircleCut",
+    "EventFunction",
+    "EventRequests",
+    "event_zeros",
+    "events_of",
+    "on_circles",
+]
 
-SAMPLES, BESIDE = 16, 0.1  # places on a branch, so far, over their sizes, off it
+SAMPLES, BESIDE = 32, 0.1  # places on a branch, so far, over their sizes, off it
+LOST = 1e-14  # of the values of a function: what rounding makes of them
+FINEST = 1e-3  # of the largest gain: turns that have a common part have a larger one
 UnknownsToNumber: TypeAlias = Callable[[np.ndarray], float]
 # By their names: a function whose zeros are looked for, or a function and what it shall
 # be equal to, one value or several. In place of a function the name of an unknown.
@@ -26,18 +39,40 @@ EventRequests: TypeAlias = Mapping[
 ]
 
 
-@dataclass(frozen=True)
+class CircleCut(NamedTuple):
+    """Unknowns with ``periods`` (n,), each taken within half of it of its ``middle``
+    (n,)."""
+
+    periods: np.ndarray
+    middle: np.ndarray
+
+    def wrapped(self, points: np.ndarray) -> np.ndarray:
+        """Points (k, n) with the unknowns in these ranges."""
+        wrapped: np.ndarray = self.middle + wrap(points - self.middle, self.periods)
+        return wrapped
+
+
+@dataclass(frozen=True, eq=False)
 class EventFunction:
     """A ``function`` of the unknowns (n,) that shall take a ``value``, and the
-    ``label`` under which the user asked for it."""
+    ``label`` under which the user asked for it.
+
+    ``turn`` is what it gains round the circles of the unknowns, modulo which it takes
+    the value; inf where it gains nothing. ``cut`` is how circles are cut open for a
+    function that gains something else at every place, None where it does not.
+    """
 
     label: str
     function: UnknownsToNumber
     value: float
+    turn: float = np.inf
+    cut: CircleCut | None = None
 
-    def differences(self, points: np.ndarray) -> np.ndarray:
-        """What the function is more than the value (k,) at points (k, n); raises
-        `ProblemError` where it gives no number."""
+    def values(self, points: np.ndarray) -> np.ndarray:
+        """The function (k,) at points (k, n); raises `ProblemError` where it gives no
+        number."""
+        if self.cut is not None:
+            points = self.cut.wrapped(points)
         values = np.empty(len(points))
         for k, point in enumerate(points):
             with np.errstate(all="ignore"):
@@ -46,8 +81,23 @@ class EventFunction:
                 name = f"value of the event {self.label!r}"
                 raise ProblemError(name, repr(result), "one number")
             values[k] = float(result.reshape(()))
-        differences: np.ndarray = values - self.value
+        return values
+
+    def differences(self, points: np.ndarray) -> np.ndarray:
+        """What the function is more than the value (k,) at points (k, n); where it has a
+        turn the sine of that, which is 0 at every whole turn and as steep there."""
+        differences: np.ndarray = self.values(points) - self.value
+        if np.isfinite(self.turn):
+            return self.turn / np.pi * np.sin(np.pi / self.turn * differences)
         return differences
+
+    def value_at(self, point: np.ndarray) -> float:
+        """The value, by whole turns next to what the function is at a point (n,)."""
+        if not np.isfinite(self.turn):
+            return self.value
+        here = float(self.values(point[None])[0])
+        turns = np.rint((here - self.value) / self.turn)
+        return self.value + self.turn * float(turns)
 
 
 def events_of(requests: EventRequests, names: Sequence[str]) -> list[EventFunction]:
@@ -84,31 +134,74 @@ def _function_of(
     return cast(UnknownsToNumber, function)
 
 
-def event_places(branch: Branch, event: EventFunction, sizes: np.ndarray) -> np.ndarray:
-    """Arclengths, in order, at which a function passes its value, or takes it at a
-    place that is looked at; ``sizes`` (n,) are those of the unknowns.
+def on_circles(
+    events: Sequence[EventFunction], points: np.ndarray, cut: CircleCut
+) -> list[EventFunction]:
+    """The events as functions on circles, which are ``cut`` where they have to be, as
+    seen at ``points`` (k, n); values a whole turn apart are one."""
+    settled: list[EventFunction] = []
+    for event in events:
+        one = _on_circles(event, points, cut)
+        is_known = any(_is_same(one, other) for other in settled)
+        if not is_known:
+            settled.append(one)
+    return settled
 
-    There are none where it jumps, as at a pole, and on a branch along which it has the
-    value everywhere.
-    """
-    nodes = branch.places(NODES).ravel()
-    s = np.concatenate([[0.0], nodes, [branch.length]])
-    values = event.differences(branch(s))
-    beside = _size_beside(branch, event, sizes)
-    if is_event_all_along(float(np.abs(values).max()), beside):
-        return np.empty(0)
-    at_once: np.ndarray = s[values == 0.0]
-    if branch.closed:
-        at_once = at_once[at_once < branch.length]
-    (changing,) = np.nonzero(values[:-1] * values[1:] < 0)
-    if not len(changing):
-        return at_once
-    low, high = s[changing], s[changing + 1]
-    roots = bracketed_roots(lambda x: event.differences(branch(x)), low, high)
-    ends = np.maximum(np.abs(values[changing]), np.abs(values[changing + 1]))
-    left = np.abs(event.differences(branch(roots)))
-    places: np.ndarray = np.sort(np.concatenate([at_once, roots[is_event(left, ends)]]))
-    return places
+
+def _is_same(event: EventFunction, other: EventFunction) -> bool:
+    """Whether two values that were asked for under one name are a whole turn apart."""
+    if event.label != other.label or not np.isfinite(event.turn):
+        return False
+    turns = (event.value - other.value) / event.turn
+    return is_same_turn(abs(turns - float(np.rint(turns))))
+
+
+def _on_circles(
+    event: EventFunction, points: np.ndarray, cut: CircleCut
+) -> EventFunction:
+    """An event with its turn, or with the ``cut`` where it has none."""
+    periods = cut.periods
+    here = event.values(points)
+    turn = 0.0
+    for index in np.flatnonzero(np.isfinite(periods)):
+        ahead = points.copy()
+        ahead[:, index] += periods[index]
+        gains = event.values(ahead) - here
+        is_known = np.isfinite(gains)
+        if not np.any(is_known):
+            continue
+        gain = float(np.median(gains[is_known]))
+        size = float(np.abs(here[is_known]).max()) + abs(gain)
+        spread = float(np.abs(gains[is_known] - gain).max())
+        if not is_same_turn(spread, size):
+            return replace(event, cut=cut)
+        if not is_same_turn(abs(gain), size):
+            turn = _common_part(turn, abs(gain))
+        if turn < 0.0:
+            return replace(event, cut=cut)
+    return replace(event, turn=turn) if turn > 0.0 else event
+
+
+def _common_part(a: float, b: float) -> float:
+    """The largest number of which ``a`` and ``b`` are whole multiples, -1 where there is
+    none (Euclid's algorithm)."""
+    least = FINEST * max(a, b)
+    while b > least:
+        a, b = b, abs(a - b * float(np.rint(a / b)))
+    return a if is_same_turn(b, least) else -1.0
+
+
+def event_zeros(branch: Branch, event: EventFunction, sizes: np.ndarray) -> Zeros:
+    """Where a function takes its value along a branch; ``sizes`` (n,) are those of the
+    unknowns. Nothing is a zero on a branch along which it has the value everywhere."""
+    values = event.differences(branch.sample(SAMPLES))
+    largest = float(np.abs(values).max())
+    if is_event_all_along(largest, _size_beside(branch, event, sizes)):
+        return Zeros((), (), (), True)
+    known = np.abs(values[np.isfinite(values)])
+    size = float(np.median(known)) if len(known) else 0.0
+    rounding = LOST * (size + abs(event.value))
+    return zeros_along(branch, lambda s: event.differences(branch(s)), rounding)
 
 
 def _size_beside(branch: Branch, event: EventFunction, sizes: np.ndarray) -> float:

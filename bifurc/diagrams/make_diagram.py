@@ -5,21 +5,20 @@ from __future__ import annotations
 import difflib
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
-import numpy as np
-
-from bifurc.atlas import Atlas, Event
+from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.decisions import is_fold_of_crossing
-from bifurc.diagrams.branching import TurningPass, branching_kind
+from bifurc.diagrams.branching import branching_kind
 from bifurc.diagrams.diagram import (
     Branching,
     Diagram,
     DiagramPoint,
     PointKind,
+    Stretch,
 )
-from bifurc.diagrams.events import EventFunction, EventRequests, event_places, events_of
+from bifurc.diagrams.event_points import events_along
+from bifurc.diagrams.events import EventRequests, events_of
+from bifurc.diagrams.spectrum import Spectrum
 from bifurc.diagrams.stability import (
     FormStability,
     HopfPlace,
@@ -27,15 +26,20 @@ from bifurc.diagrams.stability import (
     stability_along,
     unknown_stability,
 )
+from bifurc.diagrams.turnings import Turnings, turnings_of, unknown_sizes
 from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 from bifurc.search.canonical_course import wrapped_periods
-from bifurc.singular.point import Kind
 from bifurc.torus import wrap
 
 __all__ = ["diagram_of", "parameter_index"]
 
-INITIALS = {PointKind.FOLD: "F", PointKind.HOPF: "H", PointKind.EVENT: "E"}
+INITIALS = {
+    PointKind.FOLD: "F",
+    PointKind.HOPF: "H",
+    PointKind.EVENT: "E",
+    PointKind.TOUCH: "T",
+}
 
 
 def diagram_of(
@@ -61,29 +65,26 @@ def diagram_of(
     check_type("atlas", atlas, Atlas)
     check_type("is_flow", is_flow, bool)
     functions = events_of({} if events is None else events, problem.names)
-    found = [
-        place for event in functions for place in _event_points(problem, atlas, event)
-    ]
+    found, remarks = events_along(problem, atlas, functions)
     if parameter is None:
-        return Diagram("", _named(problem, found), (), ())
+        return Diagram("", _named(problem, found), (), (), tuple(remarks))
     index = parameter_index(problem.names, parameter)
-    folds, at_crossings = _turnings(problem, atlas, index)
+    turnings = turnings_of(problem, atlas, index)
     has_stability = is_flow and bool(atlas.forms) and has_square_rest(problem)
-    along = _stability(problem, atlas, index, folds, has_stability)
+    along = _stability(problem, atlas, index, turnings.folds, has_stability)
     hopf_points = [
         _hopf_point(atlas, form, place)
         for form, one in enumerate(along)
         for place in one.hopf_places
     ]
     stretches = tuple(stretch for one in along for stretch in one.stretches)
-    branchings = []
-    for number, point in enumerate(atlas.points):
-        turning = at_crossings.get(number, [])
-        kind = branching_kind(atlas, index, point, turning, stretches)
-        if kind is not None:
-            branchings.append(Branching(number, kind))
-    points = _named(problem, [*folds, *hopf_points, *found])
-    return Diagram(parameter, points, stretches, tuple(branchings))
+    return Diagram(
+        parameter=parameter,
+        points=_named(problem, [*turnings.folds, *hopf_points, *found]),
+        stretches=stretches,
+        branchings=_branchings(atlas, index, turnings, stretches),
+        remarks=tuple(remarks),
+    )
 
 
 def parameter_index(names: Sequence[str], parameter: object) -> int:
@@ -97,51 +98,18 @@ def parameter_index(names: Sequence[str], parameter: object) -> int:
     return list(names).index(str(parameter))
 
 
-class _Turnings(NamedTuple):
-    """Where a parameter turns back: ``folds``, and passes of singular points by the
-    numbers of these."""
-
-    folds: list[DiagramPoint]
-    at_crossings: dict[int, list[TurningPass]]
-
-
-def _turnings(problem: Problem, atlas: Atlas, index: int) -> _Turnings:
-    """Where the unknown number ``index`` turns back."""
-    turnings = _Turnings([], {})
-    for event in atlas.dead_points:
-        if event.index != index:
-            continue
-        crossing = _crossing_at(problem, atlas, event)
-        bend = float(atlas.forms[event.form].branch(event.s, 2)[index])
-        if crossing is None:
-            fold = DiagramPoint("", PointKind.FOLD, event.form, event.s, event.u, bend)
-            turnings.folds.append(fold)
-        else:
-            passing = TurningPass(event.form, crossing.s, bend)
-            turnings.at_crossings.setdefault(crossing.point, []).append(passing)
-    return turnings
-
-
-class _Crossing(NamedTuple):
-    """Singular point number ``point``, passed at arclength ``s``."""
-
-    point: int
-    s: float
-
-
-def _crossing_at(problem: Problem, atlas: Atlas, event: Event) -> _Crossing | None:
-    """The bifurcation at which an event of a form lies, if there is one."""
-    length = atlas.forms[event.form].branch.length
+def _branchings(
+    atlas: Atlas, index: int, turnings: Turnings, stretches: Sequence[Stretch]
+) -> tuple[Branching, ...]:
+    """What the singular points at which forms cross are along the parameter."""
+    branchings = []
     for number, point in enumerate(atlas.points):
-        if point.kind is not Kind.BIFURCATION:
-            continue
-        for form, s in point.passes:
-            gap = abs(s - event.s)
-            gap = min(gap, abs(length - gap))
-            beside = gap - 2 * point.point.error
-            if form == event.form and is_fold_of_crossing(beside, problem.scale):
-                return _Crossing(number, s)
-    return None
+        turning = turnings.at_crossings.get(number, [])
+        resting = turnings.resting
+        kind = branching_kind(atlas, index, point, turning, resting, stretches)
+        if kind is not None:
+            branchings.append(Branching(number, kind))
+    return tuple(branchings)
 
 
 def _stability(
@@ -158,7 +126,8 @@ def _stability(
         passes = [one for point in atlas.points for one in point.passes]
         cuts += [s for passing, s in passes if passing == number]
         if is_known:
-            one = stability_along(problem, form.branch, number, index, cuts)
+            spectrum = Spectrum(problem, form.branch, index, unknown_sizes(problem))
+            one = stability_along(spectrum, number, cuts)
         else:
             one = unknown_stability(form.branch, number, cuts)
         along.append(one)
@@ -169,22 +138,6 @@ def _hopf_point(atlas: Atlas, form: int, place: HopfPlace) -> DiagramPoint:
     branch = atlas.forms[form].branch
     s = place.s % branch.length if branch.closed else place.s
     return DiagramPoint("", PointKind.HOPF, form, s, branch(s), place.frequency)
-
-
-def _event_points(
-    problem: Problem, atlas: Atlas, event: EventFunction
-) -> list[DiagramPoint]:
-    """The places on all forms where a function takes its value."""
-    # an unknown that is counted in a unit of its own is no larger than its bounds
-    sizes = np.minimum(problem.scale, 0.5 * np.diff(problem.bounds, axis=1)[:, 0])
-    points = []
-    for number, form in enumerate(atlas.forms):
-        branch = form.branch
-        for s in event_places(branch, event, sizes).tolist():
-            u, value = branch(s), event.value
-            point = DiagramPoint("", PointKind.EVENT, number, s, u, value, event.label)
-            points.append(point)
-    return points
 
 
 def _named(

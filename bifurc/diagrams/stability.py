@@ -16,8 +16,10 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.monitor import NODES
-from bifurc.decisions import is_on_axis, is_real_crossing
+from bifurc.decisions import is_real_crossing
 from bifurc.diagrams.diagram import Stability, Stretch
+from bifurc.diagrams.spectrum import SMALLEST, Spectrum
+from bifurc.diagrams.zeros import zeros_along
 from bifurc.problem import Problem
 
 __all__ = [
@@ -51,42 +53,6 @@ class FormStability:
     hopf_places: list[HopfPlace]
 
 
-class _Counts(NamedTuple):
-    """Of the eigenvalues at places (k,): how many are ``unstable`` (k,), and how many
-    lie ``on_axis`` (k,), as far as rounding tells."""
-
-    unstable: np.ndarray
-    on_axis: np.ndarray
-
-
-@dataclass(frozen=True)
-class _Spectrum:
-    """The eigenvalues along a branch, the unknown number ``parameter`` held."""
-
-    problem: Problem
-    branch: Branch
-    parameter: int
-
-    def eigenvalues(self, s: np.ndarray) -> np.ndarray:
-        """Eigenvalues (k, n - 1) at arclengths (k,)."""
-        jacobians = self.problem.jacobians(self.branch(s))
-        rest = np.delete(jacobians, self.parameter, axis=2)
-        return np.asarray(np.linalg.eigvals(rest))
-
-    def counts(self, s: np.ndarray) -> _Counts:
-        """How many are unstable at arclengths (k,), and how many on the axis."""
-        values = self.eigenvalues(s)
-        largest = np.abs(values).max(axis=1, keepdims=True)
-        unit = np.broadcast_to(largest, values.shape)
-        on_axis = is_on_axis(np.abs(values.real), unit) | (largest == 0.0)
-        unstable = (values.real > 0.0) & ~on_axis
-        return _Counts(unstable.sum(axis=1), on_axis.sum(axis=1))
-
-    def numbers(self, s: np.ndarray) -> np.ndarray:
-        """How many are unstable (k,) by their signs alone."""
-        return np.asarray((self.eigenvalues(s).real > 0.0).sum(axis=1))
-
-
 def has_square_rest(problem: Problem) -> bool:
     """Whether there are as many equations as unknowns besides a parameter."""
     middle = np.zeros((1, problem.n))
@@ -94,24 +60,25 @@ def has_square_rest(problem: Problem) -> bool:
 
 
 def stability_along(
-    problem: Problem, branch: Branch, form: int, parameter: int, cuts: Sequence[float]
+    spectrum: Spectrum, form: int, cuts: Sequence[float]
 ) -> FormStability:
     """The stretches of a form and its Hopf points.
 
-    ``cuts`` are the arclengths of its folds and singular points, ``parameter`` is the
-    index of the unknown that is held.
+    ``cuts`` are the arclengths of its folds and singular points.
     """
-    spectrum = _Spectrum(problem, branch, parameter)
+    branch = spectrum.branch
     ends = _ends(branch, cuts)
-    nodes = _nodes(problem, branch)
+    nodes = _nodes(spectrum.problem, branch)
+    imaginary = _imaginary_places(spectrum)
     stretches: list[Stretch] = []
     places: list[HopfPlace] = []
     for start, end in pairwise(ends):
-        inner = _places_between(start, end, nodes)
+        inner = _places_between(start, end, nodes, imaginary)
         counts = spectrum.counts(inner)
         is_clear = counts.on_axis == 0
-        if 2 * np.count_nonzero(is_clear) < len(inner):
-            number = int(np.median(counts.unstable))
+        even = spectrum.counts(start + INNER * (end - start))
+        if 2 * np.count_nonzero(even.on_axis) > len(INNER):
+            number = int(np.median(even.unstable))
             stability = Stability.UNSTABLE if number else Stability.NEUTRAL
             stretches.append(Stretch(form, start, end, stability, number))
             continue
@@ -120,6 +87,19 @@ def stability_along(
         stretches += _between(spectrum, form, [start, *crossings, end])
     hopf_places = [place for place in places if place.frequency > 0.0]
     return FormStability(stretches, hopf_places)
+
+
+def _imaginary_places(spectrum: Spectrum) -> np.ndarray:
+    """Arclengths (k,), in order, at which a pair of eigenvalues may be imaginary, of one
+    turn and, of a closed form, of the next."""
+    branch = spectrum.branch
+    if not 2 < spectrum.problem.n <= MANY_UNKNOWNS:
+        return np.empty(0)
+    zeros = zeros_along(branch, spectrum.pair_product)
+    places = np.array([s for zero in zeros.zeros for s in (zero.low, zero.high)])
+    if branch.closed:
+        places = np.concatenate([places, places + branch.length])
+    return np.sort(places)
 
 
 def unknown_stability(
@@ -150,12 +130,18 @@ def _nodes(problem: Problem, branch: Branch) -> np.ndarray:
     return np.concatenate([nodes, nodes + branch.length]) if branch.closed else nodes
 
 
-def _places_between(start: float, end: float, nodes: np.ndarray) -> np.ndarray:
-    """Places (k,), in order, at which a stretch is looked at."""
+def _places_between(
+    start: float, end: float, nodes: np.ndarray, imaginary: np.ndarray
+) -> np.ndarray:
+    """Places (k,), in order, at which a stretch is looked at: between any two places at
+    which a pair of eigenvalues may be ``imaginary`` (k,) there is one."""
     margin = CLEAR_OF_CUTS * (end - start)
     is_inside = (nodes > start + margin) & (nodes < end - margin)
     inner = start + INNER * (end - start)
-    return np.unique(np.concatenate([nodes[is_inside], inner]))
+    between = imaginary[(imaginary > start) & (imaginary < end)]
+    marks = np.concatenate([[start], between, [end]])
+    middles = 0.5 * (marks[:-1] + marks[1:])
+    return np.unique(np.concatenate([nodes[is_inside], inner, middles]))
 
 
 class _Bracket(NamedTuple):
@@ -168,7 +154,7 @@ class _Bracket(NamedTuple):
 
 
 def _crossings(
-    spectrum: _Spectrum, places: np.ndarray, numbers: np.ndarray
+    spectrum: Spectrum, places: np.ndarray, numbers: np.ndarray
 ) -> list[float]:
     """Arclengths, in order, at which the number of unstable eigenvalues changes, which
     is ``numbers`` (k,) at ``places`` (k,)."""
@@ -185,7 +171,7 @@ def _crossings(
     return crossings
 
 
-def _first_change(spectrum: _Spectrum, bracket: _Bracket) -> float:
+def _first_change(spectrum: Spectrum, bracket: _Bracket) -> float:
     """The arclength, to rounding, at which the number of unstable eigenvalues first is
     another than where a bracket begins."""
     low, high = bracket.low, bracket.high
@@ -200,18 +186,18 @@ def _first_change(spectrum: _Spectrum, bracket: _Bracket) -> float:
     return float(high)
 
 
-def _hopf_place(spectrum: _Spectrum, s: float) -> HopfPlace:
+def _hopf_place(spectrum: Spectrum, s: float) -> HopfPlace:
     """The pair of eigenvalues that crosses the axis at ``s``; frequency 0 for a real
     one."""
-    values = spectrum.eigenvalues(np.array([s]))[0]
-    nearest = values[np.argmin(np.abs(values.real))]
-    frequency = float(abs(nearest.imag))
-    if is_real_crossing(frequency, float(np.abs(values).max())):
+    values, errors = spectrum.with_errors(np.array([s]))
+    nearest = int(np.argmin(np.abs(values[0].real)))
+    frequency = float(abs(values[0, nearest].imag))
+    if is_real_crossing(frequency, max(float(errors[0, nearest]), SMALLEST)):
         frequency = 0.0
     return HopfPlace(s, frequency)
 
 
-def _between(spectrum: _Spectrum, form: int, ends: Sequence[float]) -> list[Stretch]:
+def _between(spectrum: Spectrum, form: int, ends: Sequence[float]) -> list[Stretch]:
     """The stretches between consecutive ``ends``, on each of which the number of
     unstable eigenvalues does not change."""
     stretches = []

@@ -193,6 +193,8 @@ def _marked(atlas: Atlas) -> list[tuple[str, _Mark, np.ndarray]]:
             mark = _Mark("fold", "s")
         elif point.kind is PointKind.HOPF:
             mark = _Mark("Hopf point", "^")
+        elif point.kind is PointKind.TOUCH:
+            mark = _Mark(f"{point.label} (touch)", "d")
         else:
             number = labels.index(point.label)
             symbol = EVENT_SYMBOLS[number % len(EVENT_SYMBOLS)]

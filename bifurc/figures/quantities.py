@@ -18,22 +18,25 @@ __all__ = ["AxisRequest", "Quantity", "quantity_of"]
 AxisRequest: TypeAlias = "str | Callable[[np.ndarray], float]"
 NORM = "|u|"
 SAMPLES = 64  # of a form at which it is seen what an axis shows
+ROOM = 0.05  # of a period: how much of it is to be empty where a form is not cut
 
 
 @dataclass(frozen=True)
 class Quantity:
     """A number for every point, with the ``label`` of its axis; ``period`` is where it
-    begins again, inf where it does not."""
+    begins again, inf where it does not: it is shown within half of it of ``middle``."""
 
     label: str
     function: Callable[[np.ndarray], np.ndarray]
     period: float = np.inf
+    middle: float = 0.0
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """Values (k,) at points (k, n)."""
         values = self.function(points)
         if np.isfinite(self.period):
-            values = values - self.period * np.round(values / self.period)
+            turns = np.round((values - self.middle) / self.period)
+            values = values - self.period * turns
         return values
 
 
@@ -54,7 +57,9 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
     if request in names:
         index = names.index(request)
         label = _with_unit(atlas, index)
-        return Quantity(label, lambda points: points[:, index], _period(atlas, index))
+        period = float(atlas.periods[index])
+        middle = _middle(atlas, index) if np.isfinite(period) else 0.0
+        return Quantity(label, lambda points: points[:, index], period, middle)
     inner = request[1:-1] if isinstance(request, str) else ""
     if isinstance(request, str) and request == f"|{inner}|" and inner in names:
         index = names.index(inner)
@@ -110,13 +115,15 @@ def _with_unit(atlas: Atlas, index: int) -> str:
     return f"{name} ({unit})" if unit else name
 
 
-def _period(atlas: Atlas, index: int) -> float:
-    """The period of an unknown; inf where all forms lie within one."""
+def _middle(atlas: Atlas, index: int) -> float:
+    """The middle of what is shown of an unknown with a period: that of the forms, where
+    they lie within one period, or 0."""
     period = float(atlas.periods[index])
-    if not np.isfinite(period):
-        return period
     ends = [form.branch.sample(SAMPLES)[:, index] for form in atlas.forms]
     if not ends:
-        return np.inf
+        return 0.0
     values = np.concatenate(ends)
-    return period if np.ptp(values) > period else np.inf
+    low, high = float(values.min()), float(values.max())
+    fits_about_zero = max(-low, high) <= 0.5 * period
+    has_room = high - low < (1.0 - ROOM) * period
+    return 0.5 * (low + high) if has_room and not fits_about_zero else 0.0

@@ -23,9 +23,11 @@ from bifurc.files.checksum import checksum
 from bifurc.files.diagram_layout import (
     BRANCHINGS,
     DIAGRAM_POINTS,
+    REMARKS,
     STRETCHES,
     read_branching,
     read_diagram_point,
+    read_remark,
     read_stretch,
 )
 from bifurc.files.errors import AtlasFileError
@@ -61,7 +63,7 @@ if TYPE_CHECKING:
 __all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
 
 FORMAT = "bifurc atlas"
-FORMAT_VERSION = 7
+FORMAT_VERSION = 8
 CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 
@@ -348,6 +350,7 @@ def _read_diagram(dataset: xr.Dataset, frame: Frame) -> Diagram | None:
         points=tuple(map(read_diagram_point, DIAGRAM_POINTS.rows(dataset, frame))),
         stretches=tuple(map(read_stretch, STRETCHES.rows(dataset, frame))),
         branchings=tuple(map(read_branching, BRANCHINGS.rows(dataset, frame))),
+        remarks=tuple(map(read_remark, REMARKS.rows(dataset, frame))),
     )
 
 

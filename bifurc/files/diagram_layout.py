@@ -17,9 +17,11 @@ from bifurc.files.table import JOINT, UNIT, Column, Row, Table
 __all__ = [
     "BRANCHINGS",
     "DIAGRAM_POINTS",
+    "REMARKS",
     "STRETCHES",
     "read_branching",
     "read_diagram_point",
+    "read_remark",
     "read_stretch",
 ]
 
@@ -64,6 +66,12 @@ DIAGRAM_POINTS: Table[DiagramPoint] = Table(
             "second derivative of the parameter at a fold, angular frequency at a Hopf "
             "point, value of the function at an event",
             "1",
+        ),
+        Column(
+            "diagram_point_error",
+            lambda p: p.error,
+            "arclength to either side within which rounding hides the point",
+            UNIT,
         ),
     ),
 )
@@ -116,6 +124,19 @@ BRANCHINGS: Table[Branching] = Table(
     ),
 )
 
+REMARKS: Table[str] = Table(
+    "diagram_remark",
+    lambda atlas: _diagram(atlas).remarks,
+    (
+        Column(
+            "diagram_remark",
+            lambda remark: remark,
+            "what is to be said of an event",
+            dtype=str,
+        ),
+    ),
+)
+
 
 def read_diagram_point(row: Row) -> DiagramPoint:
     """The point of a row of `DIAGRAM_POINTS`."""
@@ -127,7 +148,13 @@ def read_diagram_point(row: Row) -> DiagramPoint:
         u=row["diagram_point_configuration"],
         value=float(row["diagram_point_value"]),
         label=str(row["diagram_point_label"]),
+        error=float(row["diagram_point_error"]),
     )
+
+
+def read_remark(row: Row) -> str:
+    """The remark of a row of `REMARKS`."""
+    return str(row["diagram_remark"])
 
 
 def read_stretch(row: Row) -> Stretch:

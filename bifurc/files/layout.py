@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.files.diagram_layout import BRANCHINGS, DIAGRAM_POINTS, STRETCHES
+from bifurc.files.diagram_layout import BRANCHINGS, DIAGRAM_POINTS, REMARKS, STRETCHES
 from bifurc.files.form_layout import FORMS
 from bifurc.files.near_motion_layout import NEAR_MOTIONS
 from bifurc.files.point_layout import DEAD_POINTS, NEAR_MISSES, POINTS
@@ -71,6 +71,7 @@ TABLES: tuple[Table[Any], ...] = (
     DIAGRAM_POINTS,
     STRETCHES,
     BRANCHINGS,
+    REMARKS,
 )
 
 

@@ -149,6 +149,7 @@ def _diagram(atlas: Atlas, diagram: Diagram | None) -> dict[str, Json] | None:
         "folds": [_diagram_point(atlas, one) for one in diagram.folds],
         "hopf_points": [_diagram_point(atlas, one) for one in diagram.hopf_points],
         "events": [_diagram_point(atlas, one) for one in diagram.events()],
+        "touches": [_diagram_point(atlas, one) for one in diagram.touches()],
         "branchings": [
             {"point": atlas.points[one.point].name, "kind": one.kind.value}
             for one in diagram.branchings
@@ -163,6 +164,7 @@ def _diagram(atlas: Atlas, diagram: Diagram | None) -> dict[str, Json] | None:
             }
             for one in diagram.stretches
         ],
+        "remarks": list(diagram.remarks),
     }
 
 
@@ -174,4 +176,5 @@ def _diagram_point(atlas: Atlas, point: DiagramPoint) -> dict[str, Json]:
         "arclength": point.s,
         "u": _values(atlas, point.u),
         "value": point.value,
+        "error": point.error,
     }

@@ -31,6 +31,8 @@ def make_summary(atlas: Atlas) -> str:
         _folds(atlas),
         _hopf_points(atlas),
         _events(atlas),
+        _touches(atlas),
+        _remarks(atlas),
         _stretches(atlas),
         _near_misses(atlas),
         _isolated(atlas),
@@ -142,10 +144,11 @@ def _diagram_points(atlas: Atlas, kind: PointKind) -> list[DiagramPoint]:
 def _folds(atlas: Atlas) -> str:
     rows = []
     for point in _diagram_points(atlas, PointKind.FOLD):
-        rows.append([point.name, *_numbers(point.u), atlas.forms[point.form].name])
+        row = [point.name, *_numbers(point.u), f"{point.error:.0e}"]
+        rows.append([*row, atlas.forms[point.form].name])
     parameter = atlas.diagram.parameter if atlas.diagram else ""
     title = f"Folds ({parameter} turns back)"
-    return _shown(title, ["name", *_heads(atlas), "form"], rows)
+    return _shown(title, ["name", *_heads(atlas), "error", "form"], rows)
 
 
 def _hopf_points(atlas: Atlas) -> str:
@@ -164,6 +167,21 @@ def _events(atlas: Atlas) -> str:
         rows.append([*row, atlas.forms[point.form].name])
     heads = ["name", "event", *_heads(atlas), "form"]
     return _shown("Events", heads, rows)
+
+
+def _touches(atlas: Atlas) -> str:
+    rows = []
+    for point in _diagram_points(atlas, PointKind.TOUCH):
+        row = [point.name, point.label, *_numbers(point.u), f"{point.error:.0e}"]
+        rows.append([*row, atlas.forms[point.form].name])
+    heads = ["name", "event", *_heads(atlas), "error", "form"]
+    return _shown("Events that are touched", heads, rows)
+
+
+def _remarks(atlas: Atlas) -> str:
+    """What is to be said of events."""
+    remarks = atlas.diagram.remarks if atlas.diagram else ()
+    return "\n".join(f"Note: {remark}." for remark in remarks)
 
 
 def _stretches(atlas: Atlas) -> str:

@@ -124,3 +124,22 @@ def test_an_axis_function_must_be_finite_somewhere(pitchfork) -> None:
 
     with pytest.raises(ProblemError, match=r"axis function height: nan .* finite"):
         plot_diagram(pitchfork, "p", height)
+
+
+def test_marks_lie_on_the_curve_of_an_unknown_with_a_period() -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [np.sin(u[0]) - u[1]],
+        [(-np.pi, np.pi), (-2, 2)],
+        names=["phi", "p"],
+        periods=[2 * np.pi, np.inf],
+    )
+    atlas = bifurc.explore(problem, parameter="p", events={"one": ("phi", 1)})
+    axes = plot_diagram(atlas, "p", "phi").axes[0]
+    lines = [line.get_xydata() for line in axes.lines]
+    curves = np.concatenate([rows for rows in lines if len(rows) > 1])
+    curves = curves[np.isfinite(curves).all(axis=1)]
+    marks = [rows[0] for rows in lines if len(rows) == 1]
+    assert len(marks) == 3
+    for mark in marks:
+        assert np.linalg.norm(curves - mark, axis=1).min() < 0.03
+    assert np.ptp(curves[:, 1]) <= 2 * np.pi + 1e-9

@@ -98,7 +98,13 @@ def atlas() -> Atlas:
             "y",
             (
                 DiagramPoint(
-                    "F1", PointKind.FOLD, 1, 1 / 3, np.array([0.1, -0.0]), 7.0
+                    "F1",
+                    PointKind.FOLD,
+                    1,
+                    1 / 3,
+                    np.array([0.1, -0.0]),
+                    7.0,
+                    error=0.2,
                 ),
                 DiagramPoint(
                     "E1", PointKind.EVENT, 0, 0.0, np.zeros(2), -1e-300, "a name"
@@ -109,6 +115,7 @@ def atlas() -> Atlas:
                 Stretch(1, 0.1, 7.0, Stability.UNKNOWN, -1),
             ),
             (Branching(1, BranchingKind.SUBCRITICAL),),
+            ("event 'a name': it jumps", "and another"),
         ),
         dead_points=(
             Event(0, 2 / 3, np.array([0.3, -0.0]), index=1),

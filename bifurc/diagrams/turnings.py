@@ -1,0 +1,156 @@
+"""Where a parameter turns back along forms: folds, and passes of singular points."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.branch import Branch
+from bifurc.curves.monitor import NODES
+from bifurc.decisions import (
+    hides_turning,
+    is_drawn_to_point,
+    is_fold_of_crossing,
+    stands_still,
+)
+from bifurc.diagrams.branching import TurningPass
+from bifurc.diagrams.diagram import DiagramPoint, PointKind
+from bifurc.diagrams.fold import Fold, refined_fold
+from bifurc.diagrams.zeros import Zero, ZeroKind, zeros_along
+from bifurc.problem import Problem
+from bifurc.singular.point import Kind
+
+__all__ = ["Turnings", "turnings_of", "unknown_sizes"]
+
+
+class Turnings(NamedTuple):
+    """Where a parameter turns back: ``folds``, and passes of singular points by the
+    numbers of these (``at_crossings``). ``resting`` are the forms along which it does
+    not change."""
+
+    folds: list[DiagramPoint]
+    at_crossings: dict[int, list[TurningPass]]
+    resting: set[int]
+
+
+class _Pass(NamedTuple):
+    """Singular point number ``point``, passed at arclength ``s``."""
+
+    point: int
+    s: float
+
+
+def unknown_sizes(problem: Problem) -> np.ndarray:
+    """Sizes (n,) of the unknowns: one that is counted in a unit of its own is no larger
+    than its bounds."""
+    return np.minimum(problem.scale, 0.5 * np.diff(problem.bounds, axis=1)[:, 0])
+
+
+def turnings_of(problem: Problem, atlas: Atlas, index: int) -> Turnings:
+    """Where the unknown number ``index`` turns back along the forms of an atlas."""
+    sizes = unknown_sizes(problem)
+    turnings = Turnings([], {}, set())
+    for number, form in enumerate(atlas.forms):
+        branch = form.branch
+        rates = np.abs(branch(branch.places(NODES).ravel(), 1)).max(axis=0)
+        largest = float(rates[index])
+        if stands_still(largest / sizes[index], float((rates / sizes).max())):
+            turnings.resting.add(number)
+            continue
+        hidden = hides_turning.threshold * largest
+        zeros = zeros_along(branch, partial(_rate, branch, index), hidden)
+        for zero in zeros.zeros:
+            if zero.kind is ZeroKind.CROSSING:
+                _add(turnings, problem, atlas, number, zero, index)
+    return turnings
+
+
+def _rate(branch: Branch, index: int, s: np.ndarray) -> np.ndarray:
+    """The rate (k,) of an unknown at arclengths (k,)."""
+    return branch(s, 1)[:, index]
+
+
+def _add(
+    turnings: Turnings,
+    problem: Problem,
+    atlas: Atlas,
+    form: int,
+    zero: Zero,
+    index: int,
+) -> None:
+    """Add what the parameter does at a zero of its rate."""
+    passing = _pass_at(problem, atlas, form, zero)
+    if passing is not None:
+        turning = TurningPass(form, passing.s, zero.after)
+        turnings.at_crossings.setdefault(passing.point, []).append(turning)
+        return
+    branch = atlas.forms[form].branch
+    start = branch(zero.s)
+    sizes = unknown_sizes(problem)
+    fold = refined_fold(problem, start, branch(zero.s, 1), index, sizes)
+    reached = start if fold is None else fold.u
+    if any(
+        _is_drawn(problem, point, start, reached, sizes)
+        for point in atlas.points
+        if point.kind is not Kind.RANK_DROP
+    ):
+        return
+    turnings.folds.append(_fold_point(branch, form, zero, fold, index, sizes))
+
+
+def _pass_at(problem: Problem, atlas: Atlas, form: int, zero: Zero) -> _Pass | None:
+    """The pass of a singular point that lies where rounding hides how a parameter
+    turns, if there is one."""
+    length = atlas.forms[form].branch.length
+    middle, half = 0.5 * (zero.low + zero.high), 0.5 * (zero.high - zero.low)
+    for number, point in enumerate(atlas.points):
+        if point.kind is Kind.RANK_DROP:
+            continue
+        for passing, s in point.passes:
+            gap = abs(s - middle)
+            if atlas.forms[form].branch.closed:
+                gap = min(gap, abs(length - gap))
+            beside = gap - half - 2 * point.point.error
+            if passing == form and is_fold_of_crossing(beside, problem.scale):
+                return _Pass(number, s)
+    return None
+
+
+def _is_drawn(
+    problem: Problem,
+    point: MeetingPoint,
+    start: np.ndarray,
+    reached: np.ndarray,
+    sizes: np.ndarray,
+) -> bool:
+    """Whether Newton's method for a fold goes to a singular point."""
+    before = problem.difference(start, point.point.u) / sizes
+    after = problem.difference(reached, point.point.u) / sizes
+    error = 3.0 * point.point.error / float(sizes.min())
+    unit = max(float(np.linalg.norm(before)), error / is_drawn_to_point.threshold)
+    return is_drawn_to_point(float(np.linalg.norm(after)), unit)
+
+
+def _fold_point(
+    branch: Branch,
+    form: int,
+    zero: Zero,
+    fold: Fold | None,
+    index: int,
+    sizes: np.ndarray,
+) -> DiagramPoint:
+    """The fold at a zero of the rate, where Newton's method found it if it stayed
+    there."""
+    half = 0.5 * (zero.high - zero.low)
+    s, u, bend = zero.s, branch(zero.s), float(branch(zero.s, 2)[index])
+    if fold is not None:
+        step = fold.u - u
+        room = half / float(sizes.min()) + 1e-6
+        if float(np.abs(step / sizes).max()) <= room:
+            s += float(step @ branch(zero.s, 1))
+            u, bend = fold.u, fold.bend
+    s = float(np.clip(s, 0.0, branch.length))
+    return DiagramPoint("", PointKind.FOLD, form, s, u, bend, error=half)
