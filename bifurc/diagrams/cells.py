@@ -15,7 +15,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.polynomial import chebyshev
 
-__all__ = ["AlongCurve", "Cell", "CellKind", "cells_along"]
+__all__ = ["NARROWEST", "AlongCurve", "Cell", "CellKind", "cells_along"]
 
 AlongCurve: TypeAlias = Callable[[np.ndarray], np.ndarray]
 

@@ -80,7 +80,7 @@ def _remarks(form: Form, event: EventFunction, zeros: Zeros) -> list[str]:
     head = f"event {event.label!r} on {form.name}"
     remarks = []
     if zeros.jumps:
-        places = ", ".join(f"{s:.6g}" for s in zeros.jumps[:SHOWN])
+        places = ", ".join(f"{jump.s:.6g}" for jump in zeros.jumps[:SHOWN])
         more = ", ..." if len(zeros.jumps) > SHOWN else ""
         remarks.append(f"{head}: it jumps across its value at s = {places}{more}")
     for low, high in zeros.held:

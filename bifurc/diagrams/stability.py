@@ -95,7 +95,7 @@ def _imaginary_places(spectrum: Spectrum) -> np.ndarray:
     branch = spectrum.branch
     if not 2 < spectrum.problem.n <= MANY_UNKNOWNS:
         return np.empty(0)
-    zeros = zeros_along(branch, spectrum.pair_product)
+    zeros = zeros_along(branch, spectrum.pair_product, is_measured=False)
     places = np.array([s for zero in zeros.zeros for s in (zero.low, zero.high)])
     if branch.closed:
         places = np.concatenate([places, places + branch.length])

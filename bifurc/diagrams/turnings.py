@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -62,10 +63,22 @@ def turnings_of(problem: Problem, atlas: Atlas, index: int) -> Turnings:
             continue
         hidden = hides_turning.threshold * largest
         zeros = zeros_along(branch, partial(_rate, branch, index), hidden)
-        for zero in zeros.zeros:
-            if zero.kind is ZeroKind.CROSSING:
+        # where a form is far longer in other unknowns, a rate seems to jump
+        for zero in (*zeros.zeros, *zeros.jumps):
+            if zero.kind in (ZeroKind.CROSSING, ZeroKind.JUMP):
                 _add(turnings, problem, atlas, number, zero, index)
+    for number, passes in turnings.at_crossings.items():
+        turnings.at_crossings[number] = _odd_ones(passes)
     return turnings
+
+
+def _odd_ones(passes: Sequence[TurningPass]) -> list[TurningPass]:
+    """One turning for each pass at which rounding shows an odd number of them, none for
+    an even one."""
+    by_place: dict[tuple[int, float], list[TurningPass]] = {}
+    for one in passes:
+        by_place.setdefault((one.form, one.s), []).append(one)
+    return [same[-1] for same in by_place.values() if len(same) % 2 == 1]
 
 
 def _rate(branch: Branch, index: int, s: np.ndarray) -> np.ndarray:

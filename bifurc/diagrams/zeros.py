@@ -11,7 +11,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.decisions import is_event
-from bifurc.diagrams.cells import AlongCurve, Cell, CellKind, cells_along
+from bifurc.diagrams.cells import NARROWEST, AlongCurve, Cell, CellKind, cells_along
 from bifurc.numerics.roots import bracketed_roots
 
 __all__ = ["Zero", "ZeroKind", "Zeros", "zeros_along"]
@@ -25,6 +25,7 @@ class ZeroKind(Enum):
     CROSSING = "crossing"  # it changes sign
     TOUCH = "touch"  # it does not
     END = "end"  # the curve ends there
+    JUMP = "jump"  # it changes sign, and is none
 
 
 class Zero(NamedTuple):
@@ -42,13 +43,13 @@ class Zero(NamedTuple):
 class Zeros:
     """The zeros of a function along a curve, in order.
 
-    ``jumps`` are arclengths at which it changes sign and is not zero, ``held`` stretches
-    on which it is exactly zero. ``is_resolved`` is False where the limit of parts was
+    ``jumps`` are places at which it changes sign and is not zero, ``held`` stretches on
+    which it is exactly zero. ``is_resolved`` is False where the limit of parts was
     reached before all was plain.
     """
 
     zeros: tuple[Zero, ...]
-    jumps: tuple[float, ...]
+    jumps: tuple[Zero, ...]
     held: tuple[tuple[float, float], ...]
     is_resolved: bool
 
@@ -97,10 +98,17 @@ class _Gap(NamedTuple):
         return self.before.sign * self.after.sign < 0.0
 
 
-def zeros_along(branch: Branch, function: AlongCurve, rounding: float = 0.0) -> Zeros:
+def zeros_along(
+    branch: Branch,
+    function: AlongCurve,
+    rounding: float = 0.0,
+    *,
+    is_measured: bool = True,
+) -> Zeros:
     """The zeros along a curve of a function that maps arclengths (k,) to values (k,),
     known to ``rounding``.
 
+    ``is_measured``: whether the stretch on which rounding hides a crossing is wanted.
     What shows at none of the nodes of a piece, some 20, is not seen.
     """
     if not len(branch.pieces):
@@ -112,17 +120,24 @@ def zeros_along(branch: Branch, function: AlongCurve, rounding: float = 0.0) -> 
     gaps = _gaps(knots)
     changing = [gap for gap in gaps if gap.changes_sign and not gap.is_held]
     places, is_zero = _places(branch, function, changing)
-    crossing = [gap for gap, holds in zip(changing, is_zero, strict=True) if holds]
-    zeros = _crossings(function, crossing, places[is_zero])
+    zeros: list[Zero] = []
+    jumps: list[Zero] = []
+    for gap, s, holds in zip(changing, places.tolist(), is_zero, strict=True):
+        kind = ZeroKind.CROSSING if holds else ZeroKind.JUMP
+        (zeros if holds else jumps).append(Zero(s, kind, s, s, gap.sign_after))
+    if is_measured:
+        crossing = [gap for gap, holds in zip(changing, is_zero, strict=True) if holds]
+        zeros = _with_stretches(function, crossing, zeros, branch.length)
     zeros += [
         zero for gap in gaps if not gap.changes_sign for zero in _touches(gap, branch)
     ]
     if branch.closed:
         zeros = [_within_a_turn(zero, branch.length) for zero in zeros]
+        jumps = [_within_a_turn(jump, branch.length) for jump in jumps]
     zeros.sort(key=lambda zero: zero.s)
     return Zeros(
         zeros=tuple(zeros),
-        jumps=tuple(places[~is_zero].tolist()),
+        jumps=tuple(jumps),
         held=tuple((gap.zeros[0].s, gap.zeros[-1].s) for gap in gaps if gap.is_held),
         is_resolved=all(cell.kind is not CellKind.OPEN for cell in cells),
     )
@@ -219,29 +234,29 @@ def _ends_of(gaps: Sequence[_Gap]) -> tuple[np.ndarray, np.ndarray]:
     return np.array(before), np.array(after)
 
 
-def _crossings(
-    function: AlongCurve, gaps: Sequence[_Gap], places: np.ndarray
+def _with_stretches(
+    function: AlongCurve, gaps: Sequence[_Gap], zeros: Sequence[Zero], length: float
 ) -> list[Zero]:
-    """The zeros at ``places`` (k,) in gaps, each with the stretch on which rounding
-    hides the sign."""
+    """The zeros in gaps, each with the stretch on which rounding hides the sign."""
     if not gaps:
         return []
     hidden = np.array([gap.rounding for gap in gaps])
+    places = np.array([zero.s for zero in zeros])
     before, after = _ends_of(gaps)
     can_tell = np.abs(function(places)) < hidden
-    inner = places[can_tell]
     low, high = places.copy(), places.copy()
-    if len(inner):
+    if np.any(can_tell):
 
         def beyond(s: np.ndarray) -> np.ndarray:
             excess: np.ndarray = np.abs(function(s)) - hidden[can_tell]
             return excess
 
-        low[can_tell] = bracketed_roots(beyond, before[can_tell], inner)
-        high[can_tell] = bracketed_roots(beyond, inner, after[can_tell])
+        inner, precision = places[can_tell], NARROWEST * length
+        low[can_tell] = bracketed_roots(beyond, before[can_tell], inner, precision)
+        high[can_tell] = bracketed_roots(beyond, inner, after[can_tell], precision)
     return [
-        Zero(float(s), ZeroKind.CROSSING, float(first), float(last), gap.sign_after)
-        for gap, s, first, last in zip(gaps, places, low, high, strict=True)
+        zero._replace(low=float(first), high=float(last))
+        for zero, first, last in zip(zeros, low, high, strict=True)
     ]
 
 

@@ -62,6 +62,22 @@ def test_a_form_on_which_the_parameter_rests_makes_a_branch_point() -> None:
     assert [one.kind for one in diagram.branchings] == [BranchingKind.OTHER]
 
 
+def test_a_pitchfork_is_one_whatever_the_unknowns_are_counted_in() -> None:
+    problem = bifurc.FunctionProblem(
+        lambda u: [1e9 * u[0] * (u[2] - u[1] / 1e6), 1e-6 * u[1] - (1e9 * u[0]) ** 2],
+        [(-2e-9, 2e-9), (-1e6, 3e6), (-1, 2)],
+        names=["x", "z", "p"],
+    )
+    diagram = bifurc.explore(problem, parameter="p").diagram
+    assert diagram is not None
+    (branching,) = diagram.branchings
+    assert branching.kind in (
+        BranchingKind.PITCHFORK,
+        BranchingKind.SUPERCRITICAL,
+        BranchingKind.SUBCRITICAL,
+    )
+
+
 @pytest.mark.parametrize("power, least", [(4, 1e-6), (8, 1e-4)])
 def test_a_flat_fold_says_how_well_it_is_known(power, least) -> None:
     (fold,) = diagram_of(lambda u: [u[1] - u[0] ** power]).folds

@@ -69,7 +69,9 @@ def test_every_zero_is_found_with_what_it_is(
 def test_a_jump_is_no_zero(circle, function) -> None:
     zeros = zeros_of(circle, function)
     assert not zeros.zeros and len(zeros.jumps) == 2
-    assert np.abs(circle(np.array(zeros.jumps))[:, 0]).max() < 1e-12
+    assert (
+        np.abs(circle(np.array([jump.s for jump in zeros.jumps]))[:, 0]).max() < 1e-12
+    )
 
 
 def test_a_stretch_of_zeros_is_no_zero(circle) -> None:
