@@ -629,6 +629,14 @@ is_precise_enough = Decision(
     "at a simple point it is 1e-11 and less, at others 1e-8 and more",
     Role.LOOK,
 )
+is_double_assembly = Decision(
+    "double assembly",
+    "two isolated solutions come together where nothing moves, and no more than two",
+    "error over the scale of the place that is located",
+    3e-8,
+    "at a double solution it is 1e-9 and less; where three come together 1e-6 and more",
+    third_answer="what comes together counts as one assembly, in doubt",
+)
 is_lost_in_rounding = Decision(
     "lost in rounding",
     "doubles lose a branch beside a singular point of high order, and the germ has it",

@@ -8,6 +8,7 @@ import numpy as np
 
 from bifurc.decisions import (
     closes_to_rounding,
+    is_double_assembly,
     is_lost_in_rounding,
     is_precise_enough,
 )
@@ -98,7 +99,7 @@ class PointSearch:
         return self._record(located, germ)
 
     def at_assembly(self, point: np.ndarray) -> int | None:
-        """The number of the isolated singular point at which solutions next to
+        """The number of the isolated singular point at which two solutions next to
         ``point`` (n,) come together, as far as rounding tells; None where there is
         none."""
         reach = SEED_REACH * self.problem.scale
@@ -108,6 +109,8 @@ class PointSearch:
         gap = float(self.problem.gaps(located.u[None])[0])
         if not closes_to_rounding(gap):
             return None  # beside two that rounding tells apart
+        if not is_double_assembly(located.error, self.problem.scale):
+            return None  # more than two
         sighting = self.sight(located)
         return sighting.number if sighting.point.kind is Kind.ISOLATED else None
 

@@ -289,8 +289,9 @@ class _Division:
         others = [i for i in range(self.problem.n) if i != parameter]
         inverses = np.linalg.inv(jacobians[:, :, others])
         lowest, highest = self._value_bounds(middles, middles)
-        step = _times(inverses, -0.5 * (lowest + highest))
-        blur = _times(np.abs(inverses), 0.5 * (highest - lowest))
+        with np.errstate(invalid="ignore"):  # where F is not defined in the middle
+            step = _times(inverses, -0.5 * (lowest + highest))
+            blur = _times(np.abs(inverses), 0.5 * (highest - lowest))
         slopes = _times(inverses, jacobians[:, :, parameter])
         reach = np.abs(slopes) + _times(np.abs(inverses), changes.sum(axis=2)) + blur
         what = np.full(len(middles), OPEN)

@@ -77,7 +77,7 @@ def test_of_many_things_the_first_are_shown_and_the_others_counted(atlas):
 
 
 def test_an_atlas_of_nothing_says_so(nothing):
-    assert repr(nothing) == "<Atlas of u1, u2: nothing\n  completeness: estimated>"
+    assert repr(nothing) == "<Atlas of u1, u2: nothing\n  completeness: proved>"
     assert "table" not in Reader(nothing._repr_html_()).seen
 
 
