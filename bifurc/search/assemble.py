@@ -77,7 +77,7 @@ def assemble_atlas(
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)
-    near_misses = _near_misses(problem, traced, periods)
+    near_misses = _near_misses(problem, traced, findings.points, periods)
     deflated = findings.components.deflated
     doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
     doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
@@ -301,9 +301,13 @@ def _is_on_near_motion(findings: Findings, point: SingularPoint) -> bool:
 
 
 def _near_misses(
-    problem: Problem, traced: Sequence[TracedBranch], periods: np.ndarray
+    problem: Problem,
+    traced: Sequence[TracedBranch],
+    points: Sequence[SingularPoint],
+    periods: np.ndarray,
 ) -> tuple[Event, ...]:
-    """The minima of the singular value that are no singular points, form by form."""
+    """The minima of the singular value that are no singular points, nor as near to one
+    of the ``points`` as its place is open, form by form."""
     events = []
     for form, branch in enumerate(traced):
         arclengths, values = branch.minima
@@ -315,10 +319,22 @@ def _near_misses(
         rank = branch.profile.rank
         places = wrap(branch.branch(arclengths), periods)
         for k in order_points(places, periods, problem.scale):
+            if _is_at_point(problem, places[k], points):
+                continue
             s = float(arclengths[k])
             value, error = near_miss_value(problem, branch.branch, rank, s)
             events.append(Event(form, s, places[k], value, error))
     return tuple(events)
+
+
+def _is_at_point(
+    problem: Problem, place: np.ndarray, points: Sequence[SingularPoint]
+) -> bool:
+    """Whether a place (n,) is no farther from a singular point than its error."""
+    return any(
+        float(np.linalg.norm(problem.difference(place, point.u))) <= point.error
+        for point in points
+    )
 
 
 def _dead_points(
