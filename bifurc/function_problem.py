@@ -19,7 +19,7 @@ from bifurc.decisions import (
 )
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
-from bifurc.equations.tape import Tape
+from bifurc.equations.tape import Operation, Tape
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -368,9 +368,10 @@ class FunctionProblem(NumericalProblem):
         self, low: np.ndarray, high: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray] | None:
         """Bounds (k, m), (k, m) on F in boxes from ``low`` (k, n) to ``high`` (k, n),
-        with directed rounding; None where the equations are not recorded."""
+        with directed rounding; None where the equations are not recorded, or jump: an
+        angle does."""
         tape = self.recording.tape
-        if tape is None:
+        if tape is None or np.any(tape.operations == Operation.ANGLE):
             return None
         lower, upper = np.ascontiguousarray(low), np.ascontiguousarray(high)
         return tape.compiled.value_bounds(lower, upper)

@@ -220,14 +220,26 @@ class Findings:
                 del self.fates[seed]
         self.awaits_audit = True
 
-    def forget_shortcuts(self) -> None:
-        """Forget branches that run along a longer one, which makes a detour."""
-        for number in range(len(self.traced) - 1, -1, -1):
-            branch = self.traced[number].branch
-            others = [one for k, one in enumerate(self.branches) if k != number]
-            longer = [one for one in others if one.length > branch.length]
-            if any(self._runs_along(one, branch) for one in longer):
-                self.supersede_branches([number], [])
+    def forget_covered(self, doubtful: Sequence[TracedBranch]) -> None:
+        """Forget those of the ``doubtful`` branches that run along others wherever they
+        solve anything."""
+        others = [one.branch for one in self.traced if one not in doubtful]
+        for traced in doubtful:
+            numbers = [k for k, one in enumerate(self.traced) if one is traced]
+            points = traced.branch(traced.branch.length * PLACES)
+            gaps = self.problem.gaps(points)
+            points = points[is_same_point(gaps, self.problem.scale)]
+            if numbers and self._are_on(others, points):
+                self.supersede_branches(numbers, [])
+
+    def _are_on(self, branches: Sequence[Branch], points: np.ndarray) -> bool:
+        """Whether each of the points (k, n) lies on one of the ``branches``."""
+        within = self._same_place(points)
+        are_there = np.zeros(len(points), dtype=bool)
+        for branch in branches:
+            distance, _ = branch.nearest(points)
+            are_there |= is_same_point(distance, within / is_same_point.threshold)
+        return bool(np.all(are_there))
 
     def branch_through(self, point: np.ndarray, within: float = 0.0) -> int | None:
         """The number of the first branch through a point (n,), as far as that is known,
@@ -263,11 +275,7 @@ class Findings:
 
     def _runs_along(self, one: Branch, other: Branch) -> bool:
         """Whether a branch passes all along another one."""
-        points = other(other.length * PLACES)
-        within = self._same_place(points)
-        distance, _ = one.nearest(points)
-        is_there = is_same_point(distance, within / is_same_point.threshold)
-        return bool(np.all(is_there))
+        return self._are_on([one], other(other.length * PLACES))
 
     def _same_place(
         self, points: np.ndarray, values: np.ndarray | None = None

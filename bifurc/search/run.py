@@ -30,3 +30,9 @@ class Run:
     def is_over(self) -> bool:
         """Whether the budget is used up."""
         return self.deadline.passed
+
+    def is_over_now(self) -> bool:
+        """The same, asked between two steps of something long: a Ctrl-C that was held
+        is raised."""
+        self.interrupt.check()
+        return self.is_over

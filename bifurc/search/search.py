@@ -603,11 +603,11 @@ class Search:
             if division.is_complete:
                 findings.set_audit(audit_of(division))
                 return
-            known = (len(findings.traced), len(findings.points))
+            known = [id(one) for one in (*findings.traced, *findings.points)]
             self._follow_up(division)
-            found = (len(findings.traced), len(findings.points))
-            if self.run.is_over or (found == known and not division.refuted):
-                return
+            now = [id(one) for one in (*findings.traced, *findings.points)]
+            if self.run.is_over or now == known:
+                break
         for number, s in self._division().refuted:
             findings.traced[number] = refuted_at(findings.traced[number], s)
 
@@ -615,18 +615,22 @@ class Search:
         """The bounds, divided with what is known now."""
         findings = self.findings
         return subdivide(
-            self.problem, findings.branches, findings.points, self.settings.boxes
+            self.problem,
+            findings.branches,
+            findings.points,
+            self.settings.boxes,
+            self.run.is_over_now,
         )
 
     def _follow_up(self, division: Subdivision) -> None:
         """Trace what a subdivision found, and look at what it left; what it refuted is
-        traced again."""
+        forgotten where others take its place."""
         findings = self.findings
-        findings.supersede_branches([number for number, _ in division.refuted], [])
+        refuted = [findings.traced[number] for number, _ in division.refuted]
         for point in division.found:
             if not self.run.is_over:
                 self._branch_off(self._trace(Start(point), is_new=True).starts)
-        findings.forget_shortcuts()
+        findings.forget_covered(refuted)
         values = singular_values(self.problem, division.left)[:, self.problem.n - 2]
         for place in division.left[may_be_crossed(values)]:
             sighting = self.points.near(place, 2, BRANCH_REACH)

@@ -3,14 +3,15 @@
 The bounds are divided until every box is settled. A box is empty where bounds on F, or
 on F in the middle and on F' in the box, leave out zero. It holds a single arc where
 Krawczyk's test (1969), with one unknown as the parameter, finds one solution of the
-others for each of its values: a branch through one of these solutions is that arc. What
-remains lies about singular points. F and F' are bounded with directed rounding, the few
+others for each of its values: a branch through one of these solutions is that arc. The
+branches are held against the same bounds all along. What remains lies about singular
+points. F and F' are bounded with directed rounding, the few
 matrices of a box are not.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -19,6 +20,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_same_point
 from bifurc.problem import Problem
+from bifurc.search.stretches import verify_branch
 from bifurc.singular.invariants import CROSSING, LONE_POINT
 from bifurc.singular.point import SingularPoint
 
@@ -41,9 +43,7 @@ NEWTON_STEPS = 4
 BESIDE_CROSSING = 1e-5
 BESIDE_OTHER = 0.03
 STRICTLY = 0.999  # of the width in which an arc may run: where it has to
-BESIDE_BOX = 1e-7  # over the scale: a branch this near to a face may be beside the box
 AT_BOUNDS = 1e-9  # over the scale: a solution so far outside may count as inside
-OPEN, EMPTY, SINGLE = 0, 1, 2  # what is known of a box: nothing, or what it holds
 PLACES = np.array([-1.0, 0.0, 1.0])  # of the parameter, at which an arc is looked at
 
 
@@ -53,7 +53,7 @@ class Subdivision:
 
     ``found`` (k, n) are solutions on arcs of no known branch, ``left`` (j, n) middles of
     boxes that are not settled, `MOST_LEFT` at most, ``refuted`` numbers of branches with
-    arclengths at which they pass a box without a solution. Within ``beside`` of singular
+    arclengths at which they solve nothing. Within ``beside`` of singular
     points, in scales, nothing was looked at.
     """
 
@@ -86,12 +86,16 @@ def subdivide(
     branches: Sequence[Branch],
     points: Sequence[SingularPoint],
     most: int,
+    is_over: Callable[[], bool] = lambda: False,
 ) -> Subdivision:
     """The bounds divided into boxes, until all are settled, or enough is found to be
-    traced first, or there would be more than ``most``."""
+    traced first, or there would be more than ``most``, or the time ``is_over``."""
     division = _Division(problem, branches, points)
+    division.verify_branches()
     low, high = _grid(_box(problem))
     while len(low) and division.is_worth_while and division.count + len(low) <= most:
+        if is_over():
+            break
         division.count += len(low)
         low, high = division.open_quarters(low, high)
     division.left.append(0.5 * (low + high))
@@ -166,6 +170,15 @@ class _Division:
         first."""
         return sum(len(points) for points in self.found) < ENOUGH
 
+    def verify_branches(self) -> None:
+        """Note which branches are none, and where one is not known to be one."""
+        for number, branch in enumerate(self.branches):
+            known = verify_branch(self.problem, branch, self._are_beside_points)
+            if known.misses is not None:
+                self.refuted[number] = known.misses
+            if known.open is not None:
+                self.left.append(known.open[None])
+
     def result(self) -> Subdivision:
         nowhere = np.empty((0, self.problem.n))
         return Subdivision(
@@ -193,20 +206,17 @@ class _Division:
     ) -> tuple[np.ndarray, np.ndarray]:
         """The quarters (j, n), (j, n) of those of the boxes (k, n), (k, n) that are not
         settled."""
-        is_open = ~self._are_beside_points(low, high)
+        diagonals = 0.5 * np.linalg.norm(high - low, axis=1)
+        is_open = ~self._are_beside_points(0.5 * (low + high), diagonals)
         low, high = low[is_open], high[is_open]
-        what = np.full(len(low), OPEN)
-        what[self._are_empty(low, high)] = EMPTY
-        rest = np.flatnonzero(what == OPEN)
+        is_empty = self._are_empty(low, high)
+        low, high = low[~is_empty], high[~is_empty]
         radii = 0.5 * (high - low)
-        jacobians, changes = self._jacobians(low[rest], high[rest], radii[rest])
-        what[rest] = self._contents(low[rest], high[rest], jacobians, changes)
-        self._refute(low, high, what)
-        is_open = what == OPEN
-        still = is_open[rest]
+        jacobians, changes = self._jacobians(low, high, radii)
+        is_open = ~self._are_settled(low, high, jacobians, changes)
         low, high, radii = low[is_open], high[is_open], radii[is_open]
         with np.errstate(invalid="ignore"):
-            slopes = np.max(np.abs(jacobians[still]) + changes[still], axis=1)
+            slopes = np.max(np.abs(jacobians[is_open]) + changes[is_open], axis=1)
         is_small = radii.max(axis=1, initial=0.0) < SMALLEST * self.problem.scale
         self.left.append(0.5 * (low + high)[is_small])
         low, high, slopes = low[~is_small], high[~is_small], slopes[~is_small]
@@ -214,14 +224,13 @@ class _Division:
         low, high, _ = _halves(low, high, slopes)
         return low, high
 
-    def _are_beside_points(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Which boxes lie beside a singular point."""
-        middles = 0.5 * (low + high)
-        diagonals = 0.5 * np.linalg.norm(high - low, axis=1)
-        beside: np.ndarray = np.zeros(len(low), dtype=bool)
+    def _are_beside_points(self, middles: np.ndarray, radii: np.ndarray) -> np.ndarray:
+        """Which balls about ``middles`` (k, n) of ``radii`` (k,) lie beside a singular
+        point."""
+        beside: np.ndarray = np.zeros(len(middles), dtype=bool)
         for center, reach in zip(self.centers, self.reaches, strict=True):
             apart = np.linalg.norm(self.problem.difference(middles, center), axis=1)
-            beside |= apart + diagonals < reach
+            beside |= apart + radii < reach
         return beside
 
     def _are_empty(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -230,42 +239,18 @@ class _Division:
         is_empty: np.ndarray = np.any((lowest > 0.0) | (highest < 0.0), axis=1)
         return is_empty
 
-    def _refute(self, low: np.ndarray, high: np.ndarray, what: np.ndarray) -> None:
-        """Note the branches that pass empty boxes, or solve nothing in others that are
-        settled."""
-        settled = what != OPEN
-        if not np.any(settled):
-            return
-        low, high, what = low[settled], high[settled], what[settled]
-        middles, radii = 0.5 * (low + high), 0.5 * (high - low)
-        within = float(np.linalg.norm(radii, axis=1).max())
-        for number, branch in enumerate(self.branches):
-            if number in self.refuted:
-                continue
-            distances, arclengths = branch.nearest(middles, within=within)
-            near = np.flatnonzero(np.isfinite(distances))
-            feet = branch(arclengths[near])
-            offsets = np.abs(self.problem.difference(feet, middles[near]))
-            inner = radii[near] - BESIDE_BOX * self.problem.scale
-            inside = np.flatnonzero(np.all(offsets < inner, axis=1))
-            gaps = self.problem.gaps(feet[inside])
-            is_wrong = ~is_same_point(gaps, self.problem.scale)
-            is_wrong |= what[near[inside]] == EMPTY
-            if np.any(is_wrong):
-                self.refuted[number] = float(arclengths[near[inside]][is_wrong][0])
-
     # --- Krawczyk's test --------------------------------------------------------------
 
-    def _contents(
+    def _are_settled(
         self,
         low: np.ndarray,
         high: np.ndarray,
         jacobians: np.ndarray,
         changes: np.ndarray,
     ) -> np.ndarray:
-        """What is in boxes (k, n), (k, n), of which F' and its changes are in their
-        radii."""
-        what = np.full(len(low), OPEN)
+        """Which boxes (k, n), (k, n) are empty, or hold a single arc of which it is
+        known which one; F' and its changes are in their radii."""
+        settled = np.zeros(len(low), dtype=bool)
         middles, radii = 0.5 * (low + high), 0.5 * (high - low)
         parameters, is_regular = _parameters(jacobians)
         is_regular &= np.all(np.isfinite(changes), axis=(1, 2))
@@ -274,10 +259,10 @@ class _Division:
             if len(chosen):
                 boxes = (middles[chosen], radii[chosen])
                 matrices = (jacobians[chosen], changes[chosen])
-                what[chosen] = self._contents_over(parameter, *boxes, *matrices)
-        return what
+                settled[chosen] = self._are_settled_over(parameter, *boxes, *matrices)
+        return settled
 
-    def _contents_over(
+    def _are_settled_over(
         self,
         parameter: int,
         middles: np.ndarray,
@@ -294,10 +279,9 @@ class _Division:
             blur = _times(np.abs(inverses), 0.5 * (highest - lowest))
         slopes = _times(inverses, jacobians[:, :, parameter])
         reach = np.abs(slopes) + _times(np.abs(inverses), changes.sum(axis=2)) + blur
-        what = np.full(len(middles), OPEN)
-        what[np.any(np.abs(step) > 1.0 + reach, axis=1)] = EMPTY
-        may_hold = np.all(np.abs(step) + reach < WIDER, axis=1) & (what == OPEN)
-        may_hold = np.flatnonzero(may_hold)
+        settled: np.ndarray = np.any(np.abs(step) > 1.0 + reach, axis=1)
+        is_small = np.all(np.abs(step) + reach < WIDER, axis=1)
+        may_hold = np.flatnonzero(is_small & ~settled)
         boxes = _Boxes(parameter, middles[may_hold], radii[may_hold])
         slope = self._slopes(
             boxes, inverses[may_hold], np.abs(step[may_hold]) + blur[may_hold]
@@ -308,9 +292,8 @@ class _Division:
             points = self._solutions(
                 boxes.at(holds), step[numbers], slope.middles[holds]
             )
-            known = self._are_known(boxes.at(holds), points, slope.at(holds))
-            what[numbers[known]] = SINGLE
-        return what
+            settled[numbers] = self._are_known(boxes.at(holds), points, slope.at(holds))
+        return settled
 
     def _slopes(
         self, boxes: _Boxes, inverses: np.ndarray, offsets: np.ndarray

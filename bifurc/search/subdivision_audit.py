@@ -27,15 +27,15 @@ def audit_of(division: Subdivision) -> Audit:
     if not division.beside:
         return Audit(Level.PROVED, text, nowhere)
     text += (
-        f"; nothing is claimed within {division.beside:.1g} of the scale of the singular "
-        "points"
+        f"; next to singular points, within {division.beside:.1g} of a quarter of the "
+        "region in which solutions were found, nothing is claimed"
     )
     return Audit(Level.CERTIFIED, text, nowhere)
 
 
 def refuted_at(traced: TracedBranch, s: float) -> TracedBranch:
-    """The branch with a gap in its certificate about arclength ``s``, where it passes
-    a box without a solution."""
+    """The branch with a gap in its certificate about arclength ``s``, where it
+    solves nothing."""
     certificate = traced.certificate
     if certificate is None:
         nothing = np.empty((0, 2))

@@ -84,9 +84,7 @@ def test_circles_are_divided_over_one_period():
 def test_next_to_singular_points_nothing_is_claimed():
     atlas = explore(problem(lambda u: [u[0] * u[1]]), settings=PATIENT)
     assert atlas.completeness.level is Level.CERTIFIED
-    assert "nothing is claimed within 1e-05 of the scale" in (
-        atlas.completeness.statement
-    )
+    assert "within 1e-05 of a quarter of the region" in atlas.completeness.statement
 
 
 def test_what_random_starts_miss_is_found():
@@ -178,3 +176,56 @@ def test_some_problems_are_not_divided(unfit):
 def test_a_budget_that_is_over_leaves_nothing_proved():
     atlas = explore(problem(circle), settings=SearchSettings(budget=1e-4))
     assert atlas.completeness.level is Level.OUT_OF_TIME
+
+
+BUMPS = {
+    "in the face of a box": (0.5, 0.6, 1e-3, 0.0, 2),
+    "at a slant": (0.0, 1.2, 3e-4, 0.2, 2),
+    "beyond the bounds": (0.0, 1.2, 1e-3, 0.0, 2),
+}
+
+
+@pytest.mark.parametrize("name", BUMPS)
+def test_a_straight_line_is_not_listed_beside_what_it_leaps_over(name):
+    level, height, width, slope, forms = BUMPS[name]
+
+    def bump(u):
+        x, y = u
+        rise = height * np.exp(-(((x - 0.3) / width) ** 2))
+        return [y - level - slope * x - rise]
+
+    one = problem(bump, [(-1, 1)] * 2)
+    atlas = explore(one, settings=PATIENT)
+    gaps = [one.gaps(form.branch.sample(9001)).max() for form in atlas.forms]
+    assert max(gaps) < 1e-9
+    assert len(atlas.forms) == forms
+
+
+@pytest.mark.parametrize("bulge", [1e-6, 3e-7])
+def test_a_form_that_leaves_the_bounds_for_a_moment_is_not_proved_to_be_one(bulge):
+    def arc(u):
+        return [u[1] - 1 + (u[0] - 0.1) ** 2 - bulge]
+
+    atlas = explore(problem(arc, [(-1, 1)] * 2))
+    is_right = len(atlas.forms) == 2
+    assert is_right or atlas.completeness.level is Level.ESTIMATED
+
+
+def test_where_an_angle_jumps_nothing_is_proved():
+    def ray(u):
+        return [np.arctan2(u[1], u[0]) + 3.14]
+
+    one = problem(ray, [(-2, -1), (-0.09, 1.11)])
+    assert not can_be_subdivided(one)
+    assert len(explore(one).forms) == 1
+
+
+def test_the_budget_ends_a_subdivision():
+    def dense(u):
+        return [np.sin(300 * u[0]) * np.sin(300 * u[1]) - 0.01]
+
+    division = subdivide(
+        problem(dense), [], [], 10**7, iter([False, False, True]).__next__
+    )
+    assert division.count < 10_000
+    assert not division.is_complete
