@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.branch import Branch
+from bifurc.branch import Branch, Outcome
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import (
     hides_turning,
@@ -25,6 +25,9 @@ from bifurc.problem import Problem
 from bifurc.singular.point import Kind
 
 __all__ = ["Turnings", "turnings_of", "unknown_sizes"]
+
+
+BEFORE_END = 1e-6  # of the length of a form: where it is seen how it comes to its end
 
 
 class Turnings(NamedTuple):
@@ -67,6 +70,9 @@ def turnings_of(problem: Problem, atlas: Atlas, index: int) -> Turnings:
         for zero in (*zeros.zeros, *zeros.jumps):
             if zero.kind in (ZeroKind.CROSSING, ZeroKind.JUMP):
                 _add(turnings, problem, atlas, number, zero, index)
+            # a form that ends in its bounds goes on beyond them
+            if zero.kind is ZeroKind.END and branch.outcome is Outcome.LEFT_REGION:
+                _add(turnings, problem, atlas, number, zero, index)
     for number, passes in turnings.at_crossings.items():
         turnings.at_crossings[number] = _odd_ones(passes)
     return turnings
@@ -97,7 +103,8 @@ def _add(
     """Add what the parameter does at a zero of its rate."""
     passing = _pass_at(problem, atlas, form, zero)
     if passing is not None:
-        turning = TurningPass(form, passing.s, zero.after)
+        side = zero.after or _side_before(atlas.forms[form].branch, zero, index)
+        turning = TurningPass(form, passing.s, side)
         turnings.at_crossings.setdefault(passing.point, []).append(turning)
         return
     branch = atlas.forms[form].branch
@@ -112,6 +119,12 @@ def _add(
     ):
         return
     turnings.folds.append(_fold_point(branch, form, zero, fold, index, sizes))
+
+
+def _side_before(branch: Branch, zero: Zero, index: int) -> float:
+    """To which side the parameter goes before a zero of its rate at the end."""
+    inner = max(0.0, 2.0 * zero.low - zero.s - BEFORE_END * branch.length)
+    return -float(np.sign(branch(inner, 1)[index]))
 
 
 def _pass_at(problem: Problem, atlas: Atlas, form: int, zero: Zero) -> _Pass | None:
