@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -25,9 +25,13 @@ def random_seeds(
     count: int,
     region: np.ndarray | None = None,
     deadline: Deadline | None = None,
+    homes: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Seeds:
     """Solutions reached from ``count`` random starts, drawn from a ``region`` (n, 2); of
     those that come after the ``deadline`` there are none.
+
+    Where shifts of the unknowns lead from solutions to others, ``homes`` shifts
+    solutions (k, n) into the bounds before those outside are left out.
 
     Unknowns are drawn from the bounds; where these are infinite, from the period, or
     from -scale to scale.
@@ -38,7 +42,10 @@ def random_seeds(
     points = _next_to_bounds(problem, points)
     if region is not None:
         points = wrap(points, problem.periods)
-    is_taken = is_start_solved(gaps) & problem.are_inside(points)
+    is_solved = is_start_solved(gaps)
+    if homes is not None:
+        points[is_solved] = homes(points[is_solved])
+    is_taken = is_solved & problem.are_inside(points)
     solutions = points[is_taken]
     return Seeds(
         points=solutions,

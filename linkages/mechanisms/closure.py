@@ -220,13 +220,14 @@ class MechanismClosure(NumericalProblem):
         if slices is not None:
             starts = np.concatenate([starts, slices.points])
         points, gaps = self.project(starts)
-        is_inside = self.excess(points) <= 0.0
-        seeds = drawn.with_constructed(points[is_start_solved(gaps) & is_inside])
+        solutions = points[is_start_solved(gaps)]
         lattice = self.lattice
         if lattice:
-            seeds = replace(
-                seeds, points=lattice.homes(seeds.points), home=lattice.home
-            )
+            # what is outside the limits may have a translate inside
+            solutions = lattice.homes(solutions)
+        seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
+        if lattice:
+            seeds = replace(seeds, home=lattice.home)
         turns = turns_that_advance(self.structure)
         if slices is None and turns:
             return replace(seeds, audit=WholeTurns(self, turns, lattice))
@@ -235,11 +236,13 @@ class MechanismClosure(NumericalProblem):
     def _drawn(self, rng: np.random.Generator, count: int) -> Seeds:
         """What is reached from random starts; where whole turns lead to the same again,
         half of them from a region that holds a translate of everything."""
-        if not self.lattice:
+        lattice = self.lattice
+        if not lattice:
             return random_seeds(self, rng, count)
-        region = self.lattice.region(start_region(self))
-        anywhere = random_seeds(self, rng, count // 2)
-        near = random_seeds(self, rng, count - count // 2, region)
+        region = lattice.region(start_region(self), self.reference)
+        anywhere = random_seeds(self, rng, count // 2, homes=lattice.homes)
+        rest = count - count // 2
+        near = random_seeds(self, rng, rest, region, homes=lattice.homes)
         return anywhere.and_random(near)
 
     @cached_property

@@ -56,16 +56,32 @@ class TurnLattice:
         numbers: np.ndarray = np.flatnonzero(np.any(self.basis != 0.0, axis=0))
         return numbers
 
-    def region(self, box: np.ndarray) -> np.ndarray:
-        """The part of a ``box`` (n, 2) about the middle of the limits that holds a
-        translate of every configuration whose advances nearly cancel."""
+    def region(self, box: np.ndarray, reference: np.ndarray) -> np.ndarray:
+        """The part of a ``box`` (n, 2) near the middle of the limits that holds a
+        translate of every configuration whose advances nearly cancel, as those of the
+        ``reference`` (n,) do."""
         region = box.copy()
         columns = self.columns
         reach = 0.5 * np.abs(self.basis[:, columns]).sum(axis=0) + np.pi
-        center = self.limits[columns].mean(axis=1)
-        region[columns, 0] = np.maximum(box[columns, 0], center - reach)
-        region[columns, 1] = np.minimum(box[columns, 1], center + reach)
+        low, high = box[columns].T
+        center = np.clip(self._center(reference), low, high)
+        region[columns, 0] = np.maximum(low, center - reach)
+        region[columns, 1] = np.minimum(high, center + reach)
         return region
+
+    def _center(self, reference: np.ndarray) -> np.ndarray:
+        """The place nearest to the middle of the limits, of the unknowns that shifts
+        change, where advances cancel as in the ``reference`` (n,): the middle itself
+        need be none. Distances count over the widths of the limits."""
+        columns = self.columns
+        low, high = self.limits[columns].T
+        weights = 1.0 / (high - low)
+        rows = self.basis[:, columns]
+        begin = reference[columns]
+        beside = weights * (0.5 * (low + high) - begin)
+        times = np.linalg.lstsq((weights * rows).T, beside, rcond=None)[0]
+        center: np.ndarray = begin + times @ rows
+        return center
 
     def shifts_between(self, lowest: np.ndarray, highest: np.ndarray) -> Shifts:
         """The shifts from ``lowest`` (n,) to ``highest`` (n,), or as many of them as

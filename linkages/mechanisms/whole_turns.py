@@ -84,5 +84,6 @@ class WholeTurns:
                 beside[:, number] += turn
                 turned.append(beside)
         points, gaps = self.problem.project(np.concatenate(turned))
-        is_inside = self.problem.excess(points) <= 0.0
-        return self.lattice.homes(points[is_start_solved(gaps) & is_inside])
+        # what is outside the limits may have a translate inside
+        solutions = self.lattice.homes(points[is_start_solved(gaps)])
+        return solutions[self.problem.are_inside(solutions)]

@@ -1,5 +1,7 @@
 """Whole turns whose advances cancel lead to configurations that are one but for them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -134,3 +136,34 @@ def test_assemblies_of_random_starts_are_said_to_be_the_fewest():
     mechanism = screws(TRIANGLE, (1.0, 1.0, 1.0))
     atlas = linkages.map_linkage(mechanism, settings=settings)
     assert "closes in at least" in judge(atlas).sentence
+
+
+def with_limits(mechanism, limits):
+    """The mechanism with limits of its joints, in turns."""
+    pairs = [(TURN * low, TURN * high) for low, high in limits]
+    joints = [
+        replace(joint, limits=(pair,))
+        for joint, pair in zip(mechanism.joints, pairs, strict=True)
+    ]
+    return replace(mechanism, joints=tuple(joints))
+
+
+def test_what_closes_only_whole_turns_beside_its_reference_is_found():
+    mechanism = screws(TRIANGLE, (1.0, 0.5, np.sqrt(2.0)))
+    limits = [(-3.0, 3.0), (0.8, 6.1), (-6.1, 6.1)]
+    settings = SearchSettings(starts=4, certify=False)
+    atlas = linkages.map_linkage(with_limits(mechanism, limits), settings=settings)
+    assert len(atlas.rigid) >= 1
+    problem = MechanismClosure(with_limits(mechanism, limits))
+    assert np.all(problem.are_inside(atlas.rigid))
+    assert problem.gaps(atlas.rigid).max() < 1e-12
+
+
+@pytest.mark.parametrize("low", [20.0, 20.7])
+def test_starts_are_drawn_where_advances_cancel_within_the_limits(low):
+    mechanism = screws(FOUR_BAR, (1.0, 1.0, np.sqrt(2.0), np.sqrt(2.0)))
+    limits = [(low, low + 0.25)] + [(-30.0, 30.0)] * 3
+    settings = SearchSettings(starts=200, certify=False)
+    atlas = linkages.map_linkage(with_limits(mechanism, limits), settings=settings)
+    (assembly,) = atlas.rigid
+    assert TURN * low - 1e-9 <= assembly[0] <= TURN * (low + 0.25) + 1e-9
