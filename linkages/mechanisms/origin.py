@@ -112,26 +112,30 @@ def _is_number(value: object) -> bool:
         return False
     is_tiny = 0 < abs(value) < 10.0**-LARGEST_EXPONENT
     # a fraction of 1e-999999999, which is 0 in doubles, would fill the memory
-    is_hidden = value == 0 and "e" in getattr(value, "text", "").lower()
+    is_hidden = value == 0 and bool(_digits(value))
     return not (is_tiny or is_hidden)
 
 
 def _exact(number: float) -> Fraction:
-    """A number as its decimal says."""
-    if isinstance(number, WrittenNumber):
+    """A number as its decimal says; a zero is one whatever its exponent."""
+    if isinstance(number, WrittenNumber) and number != 0:
         return Fraction(number.text)
     return Fraction(number)
+
+
+def _digits(number: float) -> str:
+    """The digits of the decimal of a number, without zeros at the ends and without the
+    exponent; empty where nothing is written."""
+    mantissa = getattr(number, "text", "").lower().partition("e")[0]
+    return "".join(filter(str.isdigit, mantissa)).strip("0")
 
 
 def _rounding(number: float) -> float:
     """How far off a number may be: a decimal of few digits is exact."""
     if isinstance(number, int):
         return 0.0
-    if isinstance(number, WrittenNumber):
-        mantissa = number.text.lower().partition("e")[0]
-        digits = "".join(filter(str.isdigit, mantissa)).strip("0")
-        if len(digits) < DIGITS_OF_DOUBLES:
-            return 0.0
+    if isinstance(number, WrittenNumber) and len(_digits(number)) < DIGITS_OF_DOUBLES:
+        return 0.0
     return float(np.spacing(abs(number))) / 2
 
 

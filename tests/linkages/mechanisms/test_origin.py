@@ -154,6 +154,17 @@ def test_numbers_that_no_fraction_should_hold_are_left_to_their_reader():
     assert counted_from_near(rows) == (rows, None, 0.0)
 
 
+@pytest.mark.parametrize("zero", ["0.0e0", "0.000000e+00", "-0E-99", "0.e+999999999"])
+def test_a_zero_with_an_exponent_is_a_zero(zero):
+    rows = [
+        [WrittenNumber("30000.6"), WrittenNumber(zero), 0],
+        [WrittenNumber("30000.9"), WrittenNumber("4.0e-1"), WrittenNumber(zero)],
+    ]
+    near = counted_from_near(rows)
+    assert near.rows == [[0.0, 0.0, 0.0], [0.3, 0.4, 0.0]]
+    assert near.origin == (30000.6, 0.0, 0.0)
+
+
 def test_a_spherical_loop_far_from_the_origin_moves_as_one_that_is_near(tmp_path):
     # sixteen digits beside 1: axes that meet miss each other by 1e-12 of the size
     rows = [
