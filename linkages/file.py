@@ -26,6 +26,7 @@ import difflib
 import logging
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
@@ -254,9 +255,12 @@ def _read_table(content: Content, name: str) -> Loop:
 
 def _read_axes(content: Content, name: str) -> tuple[Loop, np.ndarray]:
     given, directions = (_list(content, key, "vectors [x, y, z]") for key in AXES)
-    points = counted_from_near(given).rows
+    near = counted_from_near(given)
     # `loop_from_axes` checks every vector
-    return loop_from_axes(cast(Vectors, points), cast(Vectors, directions), name)
+    loop, configuration = loop_from_axes(
+        cast(Vectors, near.rows), cast(Vectors, directions), name
+    )
+    return replace(loop, rounding=near.rounding), configuration
 
 
 def _angle_unit(content: Content) -> AngleUnit:

@@ -33,13 +33,19 @@ __all__ = [
 CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)
 
 
-class Subject(TypedDict):
-    """A loop in values that JSON can hold, twists in rad."""
+class LoopTable(TypedDict):
+    """What every loop has, in values that JSON can hold, twists in rad."""
 
     name: str
     lengths: list[float]
     twists: list[float]
     offsets: list[float]
+
+
+class Subject(LoopTable, total=False):
+    """A loop in values that JSON can hold; ``rounding`` where its lengths have one."""
+
+    rounding: float
 
 
 class LabelValues(TypedDict):
@@ -62,12 +68,15 @@ class NoLinkageError(BifurcError, ValueError):
 def subject_of(loop: Loop) -> Subject:
     """The ``subject`` of an atlas of ``loop``."""
     table = loop.arrays
-    return {
+    subject: Subject = {
         "name": loop.name,
         "lengths": table.lengths.tolist(),
         "twists": table.twists.tolist(),
         "offsets": table.offsets.tolist(),
     }
+    if loop.rounding:
+        subject["rounding"] = loop.rounding
+    return subject
 
 
 def loop_of(atlas: Atlas) -> Loop:
@@ -77,7 +86,7 @@ def loop_of(atlas: Atlas) -> Loop:
     subject = atlas.subject
     if "mechanism" in subject and "lengths" not in subject:
         raise NoLinkageError("it is of a mechanism, no single loop of joints")
-    missing = [key for key in Subject.__annotations__ if key not in subject]
+    missing = [key for key in LoopTable.__annotations__ if key not in subject]
     if missing:
         raise NoLinkageError(f"its subject has no {', '.join(missing)}")
     try:
@@ -86,6 +95,7 @@ def loop_of(atlas: Atlas) -> Loop:
             subject["twists"],
             subject["offsets"],
             str(subject["name"]),
+            float(subject.get("rounding", 0.0)),
         )
     except GeometryError as error:
         raise NoLinkageError(str(error)) from None

@@ -43,8 +43,9 @@ class Loop:
 
     ``lengths`` a_{i,i+1} and ``offsets`` R_i share one unit of length, ``twists``
     alpha_{i,i+1} are in radians. Entries may be floats, mpmath numbers, sympy
-    expressions or exact numbers; `arrays` gives the floats. Raises `GeometryError` for
-    unequal or wrong numbers of entries, for entries that are not finite numbers, and
+    expressions or exact numbers; `arrays` gives the floats. ``rounding``: how far off
+    lengths may be, as coordinates far from the origin were rounded; 0 where that is not
+    known. Raises `GeometryError` for unequal or wrong numbers of entries, for entries that are not finite numbers, and
     for twists of over a thousand turns.
     """
 
@@ -52,6 +53,7 @@ class Loop:
     twists: tuple[Number, ...]
     offsets: tuple[Number, ...]
     name: str = field(default="", compare=False)
+    rounding: float = field(default=0.0, compare=False)
 
     def __post_init__(self) -> None:
         for column in ("lengths", "twists", "offsets"):
@@ -144,6 +146,7 @@ class Loop:
             self.twists[first:] + self.twists[:first],
             self.offsets[first:] + self.offsets[:first],
             self.name,
+            self.rounding,
         )
 
     def reversed(self) -> Loop:
@@ -155,20 +158,21 @@ class Loop:
         """
         lengths = self.lengths[-2::-1] + self.lengths[-1:]
         twists = self.twists[-2::-1] + self.twists[-1:]
-        return Loop(lengths, twists, self.offsets[::-1], self.name)
+        return Loop(lengths, twists, self.offsets[::-1], self.name, self.rounding)
 
     def mirrored(self) -> Loop:
         """The mirror image; a configuration keeps its angles."""
         twists = tuple(-twist for twist in self.twists)
         offsets = tuple(-offset for offset in self.offsets)
-        return Loop(self.lengths, twists, offsets, self.name)
+        return Loop(self.lengths, twists, offsets, self.name, self.rounding)
 
     def scaled(self, factor: float) -> Loop:
         """The linkage with all lengths and offsets times ``factor``; a configuration
         keeps its angles."""
         lengths = tuple(factor * length for length in self.lengths)
         offsets = tuple(factor * offset for offset in self.offsets)
-        return Loop(lengths, self.twists, offsets, self.name)
+        rounding = factor * self.rounding
+        return Loop(lengths, self.twists, offsets, self.name, rounding)
 
     def __repr__(self) -> str:
         rows = geometry_rows(self.lengths, self.twists, self.offsets)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from linkages.app.texts import in_degrees, link_name, table
+from linkages.app.texts import in_degrees, known_to, link_name, table
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.loop import Loop
 
@@ -47,7 +47,10 @@ def describe_geometry(loop: Loop) -> str:
             )
         )
     heads = ("joint", "link", "length", "twist (deg)", "offset")
-    return "Geometry\n" + table(heads, rows)
+    text = "Geometry\n" + table(heads, rows)
+    if loop.rounding:
+        text += "\n\n" + known_to(loop.rounding, loop.characteristic_length)
+    return text
 
 
 def _default(parameter: Parameter) -> str:

@@ -6,7 +6,7 @@ from bifurc.atlas import Atlas
 from linkages.app.forms import listed_numbers
 from linkages.app.mechanism_document import LooseChainDocument, describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
-from linkages.app.texts import in_degrees, in_lengths, section
+from linkages.app.texts import in_degrees, in_lengths, known_to, section
 from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -56,12 +56,8 @@ def _coordinates(readout: Readout) -> str:
         place = " ".join(f"{coordinate:.10g}" for coordinate in mechanism.origin)
         text += f"\n\nPoints are counted from {place} of the file."
     if not mechanism.is_known_to_rounding:
-        rounding = mechanism.coordinate_rounding
-        share = rounding / readout.structure.unit
-        text += (
-            f"\n\nCoordinates of points are known to {rounding:.2g} only, {share:.2g} of "
-            "the characteristic length."
-        )
+        unit = readout.structure.unit
+        text += "\n\n" + known_to(mechanism.coordinate_rounding, unit)
     return text
 
 

@@ -6,7 +6,15 @@ import numpy as np
 
 from bifurc.text_tables import count_of, section, table
 
-__all__ = ["count_of", "in_degrees", "in_lengths", "link_name", "section", "table"]
+__all__ = [
+    "count_of",
+    "in_degrees",
+    "in_lengths",
+    "known_to",
+    "link_name",
+    "section",
+    "table",
+]
 
 ROUNDING = 12  # decimals of a length, over the characteristic length, that are shown
 
@@ -28,3 +36,12 @@ def link_name(joint: int, joints: int) -> str:
     "9-10" where numbers have two digits."""
     dash = "-" if joints > 9 else ""
     return f"{joint + 1}{dash}{(joint + 1) % joints + 1}"
+
+
+def known_to(rounding: float, unit: float) -> str:
+    """The sentence on how far off coordinates of points are, in lengths and in shares of
+    the characteristic length, the ``unit``."""
+    return (
+        f"Coordinates of points are known to {rounding:.2g} only, {rounding / unit:.2g} "
+        "of the characteristic length."
+    )

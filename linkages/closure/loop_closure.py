@@ -60,6 +60,7 @@ class LoopClosure(NumericalProblem):
         self.units = ("rad",) * n
         self.periods = np.full(n, 2 * np.pi)
         self.bounds = np.full((n, 2), [-np.inf, np.inf])
+        self.data_rounding = loop.rounding / loop.characteristic_length
         self._geometry = loop.link_geometry
 
     def residuals(self, points: np.ndarray) -> np.ndarray:

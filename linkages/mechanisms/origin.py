@@ -118,7 +118,7 @@ def _is_number(value: object) -> bool:
 
 def _exact(number: float) -> Fraction:
     """A number as its decimal says; a zero is one whatever its exponent."""
-    if isinstance(number, WrittenNumber) and number != 0:
+    if number and isinstance(number, WrittenNumber):
         return Fraction(number.text)
     return Fraction(number)
 

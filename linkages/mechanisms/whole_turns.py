@@ -86,4 +86,5 @@ class WholeTurns:
         points, gaps = self.problem.project(np.concatenate(turned))
         # what is outside the limits may have a translate inside
         solutions = self.lattice.homes(points[is_start_solved(gaps)])
-        return solutions[self.problem.are_inside(solutions)]
+        inside: np.ndarray = solutions[self.problem.are_inside(solutions)]
+        return inside

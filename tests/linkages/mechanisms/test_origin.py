@@ -9,6 +9,7 @@ from bifurc.files.dataset import load_atlas, save_atlas
 from bifurc.seeds import Level
 from linkages.app.summary import make_summary
 from linkages.file import read_file
+from linkages.labels import loop_of
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
@@ -122,6 +123,28 @@ def test_the_axes_of_a_far_single_loop_are_those_of_a_near_one(tmp_path):
         path.write_text(f"points = [{points}]\ndirections = {[list(UPWARDS)] * 4}\n")
         loops.append(read_file(path))
     assert loops[0] == loops[1]
+
+
+# 17 digits: these decimals were doubles, and known no better
+ROUNDED = """points = [[30000.600000000001, 0.0, 0.0], [30000.900000000001, 0.4, 0.0],
+[30001.900000000001, 0.4, 0.0], [30001.599999999999, 0.0, 0.0]]
+directions = [[0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 1]]
+"""
+
+
+def test_rounded_axes_of_a_single_loop_leave_bifurcations_in_doubt(tmp_path):
+    path = tmp_path / "axes.toml"
+    path.write_text(ROUNDED)
+    loop = read_file(path)
+    assert loop.rounding == pytest.approx(1.8e-12, rel=0.02)
+    assert loop.scaled(1e3).rounding == 1e3 * loop.rounding
+    atlas = linkages.map_linkage(loop)
+    assert len(atlas.near_misses) == 4
+    assert atlas.completeness.level == Level.ESTIMATED
+    assert "4 near misses may be at bifurcations" in atlas.completeness.statement
+    again = load_atlas(save_atlas(atlas, tmp_path / "atlas.nc"))
+    assert loop_of(again).rounding == loop.rounding
+    assert "Coordinates of points are known to 1.8e-12 only" in make_summary(again)
 
 
 def test_far_points_of_bars_are_counted_from_the_first(tmp_path):
