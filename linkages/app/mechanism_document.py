@@ -11,6 +11,7 @@ from linkages.mechanisms.facts import form_facts, loop_facts
 from linkages.mechanisms.loose_chains import loose_chains
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import joint_values
+from linkages.mechanisms.translates import translates_of
 
 __all__ = [
     "FormMotionDocument",
@@ -69,12 +70,24 @@ class LooseChainDocument(TypedDict):
     freedoms: int
 
 
+class TranslatesDocument(TypedDict):
+    """How many ``forms`` and ``assemblies`` what is listed up to whole turns of
+    ``joints`` stands for, at least or, where these ``are_all``, exactly; None where
+    they are not counted."""
+
+    joints: list[str]
+    forms: int | None
+    assemblies: int | None
+    are_all: bool
+
+
 class MechanismDocument(TypedDict):
     """The mechanism of a map: ``idle_bodies`` turn about the line between their two
     spherical joints, ``idle_turns`` are variables that turn but a body by itself; the
     map leaves both out, and counts the freedoms of ``loose_chains``. Points are counted
     from the ``origin``, in the coordinates of the file, and off by
-    ``coordinate_rounding`` at most."""
+    ``coordinate_rounding`` at most. ``translates`` is None where nothing is left out
+    that differs by whole turns."""
 
     bodies: list[str]
     frame: str
@@ -87,6 +100,7 @@ class MechanismDocument(TypedDict):
     characteristic_length: float
     origin: list[float]
     coordinate_rounding: float
+    translates: TranslatesDocument | None
 
 
 def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
@@ -123,6 +137,19 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
         "characteristic_length": readout.structure.unit,
         "origin": list(mechanism.origin),
         "coordinate_rounding": mechanism.coordinate_rounding,
+        "translates": _translates(atlas),
+    }
+
+
+def _translates(atlas: Atlas) -> TranslatesDocument | None:
+    translates = translates_of(atlas)
+    if translates is None:
+        return None
+    return {
+        "joints": list(translates.joints),
+        "forms": translates.forms,
+        "assemblies": translates.assemblies,
+        "are_all": translates.are_all,
     }
 
 

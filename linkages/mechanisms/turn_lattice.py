@@ -19,7 +19,7 @@ from linkages.decisions import cancels_in_whole_turns, is_parallel_axis
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.structure import Closure, ClosureKind, Structure
 
-__all__ = ["Shifts", "TurnLattice", "turn_lattice"]
+__all__ = ["Count", "Shifts", "TurnLattice", "turn_lattice"]
 
 DIGITS = 10**13  # to which advances count where whole turns are looked for
 MOST_TURNS = 1000  # of a joint, in a shift that the lattice is made of
@@ -34,6 +34,13 @@ class Shifts(NamedTuple):
     """Shifts (k, n) of a lattice, and whether they ``are_all`` that were asked for."""
 
     vectors: np.ndarray
+    are_all: bool
+
+
+class Count(NamedTuple):
+    """How many translates there are at least, and whether these ``are_all``."""
+
+    number: int
     are_all: bool
 
 
@@ -113,6 +120,12 @@ class TurnLattice:
         low, high = self.limits.T
         return self.shifts_between(low - points.min(axis=0), high - points.max(axis=0))
 
+    def count_of_translates(self, points: np.ndarray) -> Count:
+        """How many `translates` of ``points`` (k, n) there are, themselves among
+        them."""
+        shifts = self.translates(points)
+        return Count(len(shifts.vectors), shifts.are_all)
+
     def home(self, points: np.ndarray) -> np.ndarray:
         """The shift (n,) that brings ``points`` (k, n), one or samples of a curve, as
         near as can be to the middle of the limits.
@@ -135,19 +148,23 @@ class TurnLattice:
                 return shift
         return np.zeros(points.shape[1])
 
-    def fewest_translates(self, points: np.ndarray) -> int:
+    def fewest_translates(self, points: np.ndarray) -> Count:
         """How many translates at least pass the limits, of a curve that goes to them
         and of which ``points`` (k, n) are samples: those that differ in an unknown that
-        stays within them."""
+        stays within them. They are all where no other shift leads within the limits."""
         is_passed = self._is_passed(points)
-        shifts = self._overlapping(points, is_passed).vectors
-        rest = np.round(shifts[:, ~is_passed] / ALIKE)
+        shifts = self._overlapping(points, is_passed)
+        rest = np.round(shifts.vectors[:, ~is_passed] / ALIKE)
         places: set[bytes] = set()
-        for shift, place in zip(shifts, rest, strict=True):
+        is_another = False
+        for shift, place in zip(shifts.vectors, rest, strict=True):
             key = place.tobytes()
-            if key not in places and self._is_partly_inside(points + shift):
+            if key in places and is_another:
+                continue
+            if self._is_partly_inside(points + shift):
                 places.add(key)
-        return len(places)
+                is_another = is_another or bool(np.any(shift))
+        return Count(len(places), shifts.are_all and not is_another)
 
     def _is_passed(self, points: np.ndarray) -> np.ndarray:
         """Whether a curve with samples (k, n) goes to limits of an unknown (n,)."""

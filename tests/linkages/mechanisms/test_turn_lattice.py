@@ -7,6 +7,8 @@ import pytest
 
 import linkages
 from bifurc.search.settings import SearchSettings
+from linkages.app.configurations import readout_of
+from linkages.app.mechanism_document import describe_mechanism
 from linkages.app.verdict import judge
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling
@@ -167,3 +169,63 @@ def test_starts_are_drawn_where_advances_cancel_within_the_limits(low):
     atlas = linkages.map_linkage(with_limits(mechanism, limits), settings=settings)
     (assembly,) = atlas.rigid
     assert TURN * low - 1e-9 <= assembly[0] <= TURN * (low + 0.25) + 1e-9
+
+
+def four_bar(places, limits):
+    """Four revolute joints along z through these places, with the limits (rad) of
+    some by number."""
+    bodies = ["frame", "crank", "rod", "rocker", "frame"]
+    joints = []
+    for k, place in enumerate(places):
+        own = (limits[k],) if k in limits else ()
+        pair = (bodies[k], bodies[k + 1])
+        joints.append(Joint(f"J{k + 1}", "revolute", pair, place, Z, limits=own))
+    return Mechanism(tuple(joints))
+
+
+def test_forms_that_bifurcations_join_are_not_counted_again():
+    kite = ((0, 0, 0), (0.6, 0.8, 0), (0.6, 1.8, 0), (3, 0, 0))
+    wide = np.deg2rad(800.0)
+    settings = SearchSettings(starts=60, certify=False)
+    atlas = linkages.map_linkage(four_bar(kite, {1: (-wide, wide)}), settings=settings)
+    assert len(atlas.forms) == 6
+    assert translates_of(atlas).forms is None
+    statement = atlas.completeness.statement
+    assert "what differs by whole turns of J2 alone may be listed once" in statement
+    assert "stands for" not in statement
+    document = describe_mechanism(atlas, readout_of(atlas))
+    assert document["translates"] == {
+        "joints": ["J2"],
+        "forms": None,
+        "assemblies": None,
+        "are_all": False,
+    }
+
+
+def test_shaky_assemblies_are_counted_with_their_turns():
+    places = ((0, 0, 0), (1, 0, 0), (3, 0, 0))
+    bodies = ["f", "a", "b", "f"]
+    wide = np.deg2rad(400.0)
+    joints = [
+        Joint(f"J{k}", "revolute", (bodies[k], bodies[k + 1]), place, Z)
+        for k, place in enumerate(places)
+    ]
+    joints[0] = replace(joints[0], limits=((-wide, wide),))
+    settings = SearchSettings(starts=40, certify=False)
+    atlas = linkages.map_linkage(Mechanism(tuple(joints)), settings=settings)
+    assert translates_of(atlas).assemblies == 3
+    assert "with them 3" in judge(atlas).sentence
+
+
+@pytest.mark.parametrize("limit", [30.0, 170.0])
+def test_nothing_is_said_of_turns_where_no_other_fits(limit):
+    crank_rocker = ((0, 0, 0), (0.5, 1.0, 0), (2, 1.4, 0), (2.2, 0, 0))
+    narrow = np.deg2rad(limit)
+    mechanism = four_bar(crank_rocker, {3: (-narrow, narrow)})
+    settings = SearchSettings(starts=60, certify=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings)
+    assert len(MechanismClosure(mechanism).lattice) == 1
+    assert atlas.forms
+    assert translates_of(atlas) is None
+    assert "whole turns" not in atlas.completeness.statement + judge(atlas).sentence
+    assert describe_mechanism(atlas, readout_of(atlas))["translates"] is None
