@@ -30,7 +30,7 @@ __all__ = ["FREE", "read_mechanism"]
 
 Content: TypeAlias = Mapping[str, Any]
 
-OF_FILE = ("name", "angles", "planar", "origin", "joints")
+OF_FILE = ("name", "angles", "planar", "origin", "rounding", "joints")
 OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars", "origin")
 OF_ARCS = ("name", "angles", "fixed", "arcs", "points", "points_on_arcs")
 OF_LOOPS = ("name", "angles", "loops")
@@ -79,7 +79,7 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
         mechanism,
         is_planar=_read_planar(content, mechanism),
         origin=origin_of(content, near.origin),
-        rounding=near.rounding,
+        rounding=max(near.rounding, _read_rounding(content)),
     )
 
 
@@ -106,6 +106,15 @@ def _read_planar(content: Content, mechanism: Mechanism) -> bool:
         allowed = "false, as not all axes are parallel and all slides across them"
         raise GeometryError("planar", "true", allowed)
     return is_planar
+
+
+def _read_rounding(content: Content) -> float:
+    """How far off coordinates of points may be, as the file says."""
+    rounding = content.get("rounding", 0.0)
+    check_number("rounding", rounding)
+    if rounding < 0:
+        raise GeometryError("rounding", rounding, "0 or more, a length")
+    return float(rounding)
 
 
 def _angle_unit(content: Content) -> float:

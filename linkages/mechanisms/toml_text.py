@@ -22,6 +22,8 @@ def mechanism_toml(mechanism: Mechanism) -> str:
         lines.append("planar = true")
     if any(mechanism.origin):
         lines.append(f"origin = {json.dumps(mechanism.origin)}")
+    if mechanism.rounding:
+        lines.append(f"rounding = {json.dumps(mechanism.rounding)}")
     for joint in mechanism.joints:
         lines += ["", "[[joints]]", *_joint_lines(joint)]
     return "\n".join(lines) + "\n"

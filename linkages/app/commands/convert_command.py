@@ -49,6 +49,11 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     if any(mechanism.origin):
         place = " ".join(f"{coordinate:.10g}" for coordinate in mechanism.origin)
         say(f"Points are counted from {place} of {source}.")
+    if mechanism.rounding and out.suffix.lower() != ".toml":
+        say(
+            f"Coordinates of points are known to {mechanism.rounding:.2g} only, which "
+            f"{out} does not say: a map of it is surer than it should be."
+        )
 
 
 def _mechanism(source: str, hold: HoldOptions) -> Mechanism:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 from click.testing import CliRunner
 
@@ -64,3 +66,13 @@ def test_nothing_is_written_where_it_cannot_be(
     assert result.exit_code == 2
     assert message.format(folder=tmp_path) in result.stderr
     assert not (tmp_path / out).exists()
+
+
+@pytest.mark.parametrize(("ending", "is_said"), [("toml", False), ("sdf", True)])
+def test_a_rounding_that_a_file_cannot_hold_is_said(ending, is_said, tmp_path):
+    mechanism = replace(EXAMPLES["slider_crank"], rounding=2e-12)
+    source = tmp_path / "rounded.toml"
+    source.write_text(mechanism_toml(mechanism), encoding="utf-8")
+    result = bifurc("convert", source, tmp_path / f"other.{ending}")
+    assert result.exit_code == 0, result.output
+    assert ("known to 2e-12 only" in result.output) == is_said

@@ -8,7 +8,7 @@ import linkages
 from bifurc.files.dataset import load_atlas, save_atlas
 from bifurc.seeds import Level
 from linkages.app.summary import make_summary
-from linkages.file import read_file
+from linkages.file import LinkageFileError, read_file
 from linkages.labels import loop_of
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -168,6 +168,42 @@ def test_the_origin_is_kept_in_files_and_datasets(tmp_path):
     assert read_file(copy) == mechanism
     path = save_atlas(linkages.map_linkage(mechanism), tmp_path / "atlas.nc")
     assert mechanism_of(load_atlas(path)).origin == mechanism.origin
+
+
+def far_rounded_mechanism(folder):
+    """A parallelogram whose coordinates are doubles that were printed."""
+    text = ""
+    places = ["30000.600000000001", "30000.900000000001"]
+    places += ["30001.900000000001", "30001.599999999999"]
+    heights = ["0.0", "0.4", "0.4", "0.0"]
+    bodies = ["f", "a", "b", "c", "f"]
+    for k, (x, y) in enumerate(zip(places, heights, strict=True)):
+        text += f'[[joints]]\nname = "J{k}"\nkind = "revolute"\n'
+        text += f"bodies = {bodies[k : k + 2]}\n"
+        text += f"point = [{x}, {y}, 0.0]\ndirection = [0, 0, 1]\n"
+    path = folder / "rounded.toml"
+    path.write_text(text)
+    return read_file(path)
+
+
+def test_the_rounding_is_kept_in_files(tmp_path):
+    mechanism = far_rounded_mechanism(tmp_path)
+    copy = tmp_path / "copy.toml"
+    copy.write_text(mechanism_toml(mechanism))
+    again = read_file(copy)
+    assert again.rounding == mechanism.rounding == pytest.approx(1.8e-12, rel=0.02)
+    atlas = linkages.map_linkage(again)
+    assert "4 near misses may be at bifurcations" in atlas.completeness.statement
+
+
+@pytest.mark.parametrize("given", ["-1e-9", "nan", '"small"', "true"])
+def test_a_rounding_that_is_none_is_refused(given, tmp_path):
+    path = tmp_path / "copy.toml"
+    text = mechanism_toml(far_rounded_mechanism(tmp_path))
+    (line,) = [one for one in text.splitlines() if one.startswith("rounding")]
+    path.write_text(text.replace(line, f"rounding = {given}"))
+    with pytest.raises(LinkageFileError, match="rounding"):
+        read_file(path)
 
 
 def test_numbers_that_no_fraction_should_hold_are_left_to_their_reader():
