@@ -90,13 +90,16 @@ def _renamed(
 
 
 def _alternatives(name: str, ending: str) -> Iterator[str]:
-    """A name, and others that say what it was."""
+    """A name, and others that say what it was, with another end or begin: what stands
+    in a file for a joint begins with its name and may end with that of a body."""
     yield name
     plain = name.replace("::", ".")
     yield plain
     yield f"{plain}.{ending}"
+    yield f"{ending}.{plain}"
     for number in itertools.count(2):
         yield f"{plain}.{ending}{number}"
+        yield f"{ending}{number}.{plain}"
 
 
 def _with_leaders(joint: Joint, labels: Mapping[str, str]) -> Joint:

@@ -77,3 +77,19 @@ def test_couplings_follow_joints_that_are_renamed(tmp_path):
     path.write_text(mechanism_sdf(Mechanism(tuple(joints))), encoding="utf-8")
     (coupling,) = load(path).joint("c.joint").coupled
     assert coupling == Coupling("f", -2.0, 0.0)
+
+
+@pytest.mark.parametrize("ending", WRITERS)
+def test_a_joint_of_several_bodies_gets_another_begin(ending, tmp_path):
+    # the pair of the joint __J that carries the body x__ would be called __J.x__
+    joints = (
+        Joint("__J", "revolute", ("f", "b", "x__"), (0, 0, 0), UPWARDS),
+        Joint("A", "revolute", ("b", "c"), (1, 0, 0), UPWARDS),
+        Joint("B", "revolute", ("x__", "c"), (0, 1, 0), UPWARDS),
+        Joint("C", "revolute", ("f", "d"), (3, 0, 0), UPWARDS),
+        Joint("joint.__J.b", "revolute", ("d", "c"), (2, 2, 0), UPWARDS),
+    )
+    mechanism = Mechanism(joints)
+    path = tmp_path / f"model{ending}"
+    path.write_text(WRITERS[ending](mechanism), encoding="utf-8")
+    assert load(path).independent_loops == mechanism.independent_loops
