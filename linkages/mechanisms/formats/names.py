@@ -39,46 +39,63 @@ class NameRules:
 def with_names_for(mechanism: Mechanism, rules: NameRules) -> Mechanism:
     """The mechanism with names that the ``rules`` allow, each given once; the body at
     rest, which is the world in the file, keeps its own."""
-    taken_by_bodies: set[str] = set()
-    bodies = {mechanism.frame: mechanism.frame}
-    for body in mechanism.bodies:
-        if body == mechanism.frame:
-            continue
-        names = (
-            name
-            for name in _alternatives(body, "body")
-            if rules.is_allowed(name) and name not in taken_by_bodies
-        )
-        bodies[body] = next(names)
-        taken_by_bodies.add(bodies[body])
+    bodies = _names_of_bodies(mechanism, rules)
+    taken_by_bodies = {bodies[body] for body in bodies if body != mechanism.frame}
     taken = taken_by_bodies if rules.siblings else set()
-    joints: list[Joint] = []
+    renamed: dict[str, Joint] = {}
+    # names that can stay are given first, so that no alternative takes one of them
+    for alternatives in (_no_alternatives, _alternatives):
+        for joint in mechanism.joints:
+            if joint.name in renamed:
+                continue
+            names = alternatives(joint.name, "joint")
+            own = _renamed(joint, names, bodies, rules, taken, taken_by_bodies)
+            if own is None:
+                continue
+            taken.update(rules.of_joint(own))
+            taken_by_bodies.update(rules.links_of_joint(own))
+            renamed[joint.name] = own
+    joints = [renamed[joint.name] for joint in mechanism.joints]
     labels: dict[str, str] = {}
-    for joint in mechanism.joints:
-        renamed = _renamed(joint, bodies, rules, taken, taken_by_bodies)
-        taken.update(rules.of_joint(renamed))
-        taken_by_bodies.update(rules.links_of_joint(renamed))
-        labels |= zip(joint.labels, renamed.labels, strict=True)
-        joints.append(renamed)
+    for joint, own in zip(mechanism.joints, joints, strict=True):
+        labels |= zip(joint.labels, own.labels, strict=True)
     _say(bodies, "body")
-    own = {
-        old.name: new.name for old, new in zip(mechanism.joints, joints, strict=True)
-    }
-    _say(own, "joint")
+    _say({name: joint.name for name, joint in renamed.items()}, "joint")
     coupled = tuple(_with_leaders(joint, labels) for joint in joints)
     return replace(mechanism, joints=coupled)
 
 
+def _names_of_bodies(mechanism: Mechanism, rules: NameRules) -> dict[str, str]:
+    """The name in the file of every body, by its own; those that are allowed stay."""
+    moving = [body for body in mechanism.bodies if body != mechanism.frame]
+    taken = {body for body in moving if rules.is_allowed(body)}
+    bodies = {mechanism.frame: mechanism.frame}
+    for body in moving:
+        if rules.is_allowed(body):
+            bodies[body] = body
+            continue
+        names = (
+            name
+            for name in _alternatives(body, "body")
+            if rules.is_allowed(name) and name not in taken
+        )
+        bodies[body] = next(names)
+        taken.add(bodies[body])
+    return bodies
+
+
 def _renamed(
     joint: Joint,
+    names: Iterable[str],
     bodies: Mapping[str, str],
     rules: NameRules,
     taken: set[str],
     taken_by_bodies: set[str],
-) -> Joint:
-    """The joint with a name such that none that stands in the file for it is taken."""
+) -> Joint | None:
+    """The joint with the first of the names such that none that stands in the file for
+    it is taken; None where there is none."""
     own_bodies = tuple(bodies[body] for body in joint.bodies)
-    for name in _alternatives(joint.name, "joint"):
+    for name in names:
         candidate = replace(joint, name=name, bodies=own_bodies)
         among_joints = set(rules.of_joint(candidate))
         among_bodies = set(rules.links_of_joint(candidate))
@@ -86,7 +103,11 @@ def _renamed(
             continue
         if not (among_joints & taken or among_bodies & taken_by_bodies):
             return candidate
-    raise AssertionError("there is always another name")
+    return None
+
+
+def _no_alternatives(name: str, ending: str) -> Iterator[str]:
+    yield name
 
 
 def _alternatives(name: str, ending: str) -> Iterator[str]:

@@ -93,3 +93,14 @@ def test_a_joint_of_several_bodies_gets_another_begin(ending, tmp_path):
     path = tmp_path / f"model{ending}"
     path.write_text(WRITERS[ending](mechanism), encoding="utf-8")
     assert load(path).independent_loops == mechanism.independent_loops
+
+
+def test_names_that_are_allowed_stay(caplog):
+    joints = ("x::y", "x.y", "x.y.joint", "D")
+    bodies = ("f", "u::v", "u.v", "u.v.body")
+    with caplog.at_level(logging.WARNING):
+        mechanism_sdf(slider_crank(joints, bodies))
+    assert [record.getMessage() for record in caplog.records] == [
+        "body u::v is called body.u.v in the file",
+        "joint x::y is called joint.x.y in the file",
+    ]
