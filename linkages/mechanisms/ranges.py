@@ -2,7 +2,8 @@
 
 Angles are known but for whole turns. A form that passes through the reference
 configuration has them from there, where they are 0; on others the middle of each range
-lies above -180 and up to 180 degrees. Neither hangs on where a form begins.
+lies above -180 and up to 180 degrees. Neither hangs on where a form begins, but for
+joints that turn fully: of their ranges only the width counts.
 """
 
 from __future__ import annotations
