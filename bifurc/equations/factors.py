@@ -15,6 +15,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from bifurc.equations.tape import Node, Operation, Tape, TapeWriter
 
 if TYPE_CHECKING:
@@ -68,17 +70,24 @@ def written_factors(tape: Tape) -> Factors:
     return collection.factors()
 
 
-def polynomial_factors(tape: Tape, rows: Sequence[int]) -> Factors:
+def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> Factors:
     """The same, with the square-free factors of polynomials for the equations ``rows``,
     where they are polynomials in the unknowns and in functions of them, of not too many
-    terms."""
+    terms.
+
+    They are expanded about the middle of a ``region`` (n, 2) that is far from zero: there
+    the terms of (u - c)^2 are as large as c^2, and what they add up to is lost.
+    """
     written = written_factors(tape)
     writer = TapeWriter(tape.n)
     slots = tape.write_on(writer)
     of_factors = written.tape.write_on(writer)
     collection = _Collection(writer)
+    origins = _origins(region)
     for row, slot in enumerate(tape.outputs.tolist()):
-        found = _polynomial_powers(writer, slots[slot]) if row in rows else None
+        found = None
+        if row in rows:
+            found = _polynomial_powers(writer, slots[slot], origins)
         if found is None:
             found = {
                 of_factors[output]: power
@@ -155,9 +164,23 @@ _OF_POLYNOMIALS = (
 _REFUSED = (Operation.DIVIDE, *_ROOTS)
 
 
-def _polynomial_powers(writer: TapeWriter, output: int) -> dict[int, int] | None:
+def _origins(region: np.ndarray) -> list[float]:
+    """From where each unknown is counted in a ``region`` (n, 2): from zero if that is
+    inside, or else from a number of few digits next to the middle."""
+    low, high = region.T
+    middles, half_widths = 0.5 * (low + high), 0.5 * (high - low)
+    units = np.exp2(np.floor(np.log2(half_widths)))
+    rounded = units * np.round(middles / units)
+    origins: list[float] = np.where((low <= 0) & (high >= 0), 0.0, rounded).tolist()
+    return origins
+
+
+def _polynomial_powers(
+    writer: TapeWriter, output: int, origins: Sequence[float]
+) -> dict[int, int] | None:
     """The slots of the square-free factors of the polynomial in slot ``output``, newly
-    written, and the power of each; None where there is none."""
+    written in the unknowns less their ``origins`` (n,), and the power of each; None where
+    there is none."""
     inner = _polynomial_part(writer, output)
     nodes = {slot: writer.node(slot) for slot in inner}
     if not all(math.isfinite(node.constant) for node in nodes.values()):
@@ -167,13 +190,24 @@ def _polynomial_powers(writer: TapeWriter, output: int) -> dict[int, int] | None
     ]
     if not generators or any(nodes[k].operation in _REFUSED for k in generators):
         return None
-    polynomial = _expanded(nodes, output, generators)
+    shifts = [_shift_of(nodes[slot], origins) for slot in generators]
+    polynomial = _expanded(nodes, output, dict(zip(generators, shifts, strict=True)))
     if polynomial is None or not polynomial:
         return None
     _, factors = polynomial.sqf_list()
-    return {
-        _written(writer, factor, generators): int(power) for factor, power in factors
-    }
+    shifted = [
+        writer.add(slot, writer.constant(-shift)) if shift else slot
+        for slot, shift in zip(generators, shifts, strict=True)
+    ]
+    return {_written(writer, factor, shifted): int(power) for factor, power in factors}
+
+
+def _shift_of(generator: Node, origins: Sequence[float]) -> float:
+    """From where a generator is counted: an unknown from its origin, a function from
+    zero."""
+    if generator.operation is not Operation.UNKNOWN:
+        return 0.0
+    return origins[generator.left]
 
 
 def _polynomial_part(writer: TapeWriter, output: int) -> list[int]:
@@ -192,15 +226,18 @@ def _polynomial_part(writer: TapeWriter, output: int) -> list[int]:
 
 
 def _expanded(
-    nodes: dict[int, Node], output: int, generators: Sequence[int]
+    nodes: dict[int, Node], output: int, shifts: dict[int, float]
 ) -> PolyElement | None:
-    """The polynomial in slot ``output`` over the rational numbers; None where it has
-    more than `MOST_TERMS`."""
+    """The polynomial in slot ``output`` over the rational numbers, in the generators,
+    given by their slots, less the ``shifts`` of them; None where it has more than
+    `MOST_TERMS`."""
     from sympy import QQ, ring
 
-    names = [f"g{slot}" for slot in generators]
-    domain, *symbols = ring(names, QQ)
-    values: dict[int, PolyElement] = dict(zip(generators, symbols, strict=True))
+    domain, *symbols = ring([f"g{slot}" for slot in shifts], QQ)
+    values: dict[int, PolyElement] = {
+        slot: symbol + domain(QQ(*shift.as_integer_ratio()))
+        for (slot, shift), symbol in zip(shifts.items(), symbols, strict=True)
+    }
     for slot, node in nodes.items():
         if slot in values:
             continue

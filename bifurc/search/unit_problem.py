@@ -515,7 +515,7 @@ def _deflated(own: UnitProblem) -> UnitProblem:
     rows = np.flatnonzero(np.count_nonzero(is_flat, axis=0) >= FEWEST_FLAT)
     if not len(rows):
         return own
-    factors = polynomial_factors(tape, rows.tolist())
+    factors = polynomial_factors(tape, rows.tolist(), region)
     if factors.are_repeated:
         simplified = Simplified(factors.radical(), factors)
         own = _problem_on(own.problem, region, simplified)

@@ -8,6 +8,7 @@ from bifurc.equations.factors import Factors, polynomial_factors, written_factor
 from bifurc.equations.tape import Tape
 
 POINTS = np.random.default_rng(0).uniform(0.5, 1.5, (20, 2))
+REGION = np.array([[-2.0, 2.0]] * 2)
 
 
 def tape_of(function) -> Tape:
@@ -55,13 +56,13 @@ def test_functions_count_as_factors():
 def test_squares_of_roots_and_quotients_are_left_alone(function):
     tape = tape_of(function)
     assert not written_factors(tape).are_repeated
-    assert not polynomial_factors(tape, [0]).are_repeated
+    assert not polynomial_factors(tape, [0], REGION).are_repeated
 
 
 def test_an_expanded_polynomial_is_taken_apart_by_powers():
     tape = tape_of(lambda u: [u[0] ** 3 - u[0] ** 2 * u[1], u[0]])
     assert not written_factors(tape).are_repeated
-    factors = polynomial_factors(tape, [0])
+    factors = polynomial_factors(tape, [0], REGION)
     assert factors.rows == (0, 0, 1) and sorted(factors.powers[:2]) == [1, 2]
     x, y = POINTS.T
     assert is_multiple_of(radical_of(factors), x * (x - y))
@@ -72,7 +73,7 @@ def test_a_square_is_one_in_any_units_and_in_functions_of_the_unknowns():
         a, b = 0.1 * u[0] + 0.7 * u[1], np.exp(u[0])
         return [a**2 - 2 * a * b + b**2]
 
-    factors = polynomial_factors(tape_of(expanded), [0])
+    factors = polynomial_factors(tape_of(expanded), [0], REGION)
     assert factors.powers == (2,)
     x, y = POINTS.T
     assert is_multiple_of(radical_of(factors), 0.1 * x + 0.7 * y - np.exp(x))
@@ -80,9 +81,39 @@ def test_a_square_is_one_in_any_units_and_in_functions_of_the_unknowns():
 
 def test_factors_of_a_square_that_is_none_but_for_rounding_are_not_made_up():
     tape = tape_of(lambda u: [u[0] ** 2 - 0.2 * u[0] + 0.01])  # 0.1 ** 2 is not 0.01
-    assert not polynomial_factors(tape, [0]).are_repeated
+    assert not polynomial_factors(tape, [0], REGION).are_repeated
 
 
 def test_a_polynomial_of_too_many_terms_stays_what_it_is():
     tape = tape_of(lambda u: [(1 + u[0] + u[1]) ** 40 - 1])
-    assert not polynomial_factors(tape, [0]).are_repeated
+    assert not polynomial_factors(tape, [0], REGION).are_repeated
+
+
+@pytest.mark.parametrize("far", [1e2, 1e5, 1e7, 123456.7])
+def test_factors_keep_their_digits_far_from_the_origin(far):
+    def expanded(u):
+        a, b = (u[0] - far) ** 2, u[1] ** 2 - 1
+        return [a * a + 2 * a * b + b * b]
+
+    region = np.array([[far - 2, far + 2.1], [-2.03, 1.97]])
+    factors = polynomial_factors(tape_of(expanded), [0], region)
+    assert factors.powers == (2,)
+    x = far + POINTS[:, 0]
+    points = np.column_stack([x, POINTS[:, 1]])
+    values = factors.radical().compiled.residuals(points)[:, 0]
+    assert is_multiple_of(values, (x - far) ** 2 + POINTS[:, 1] ** 2 - 1)
+
+
+def test_a_double_circle_far_from_the_origin_is_one_form():
+    far = 1e5
+
+    def expanded(u):
+        a, b = (u[0] - far) ** 2, u[1] ** 2 - 1
+        return [a * a + 2 * a * b + b * b]
+
+    bounds = [(far - 2, far + 2.1), (-2.03, 1.97)]
+    atlas = bifurc.explore(bifurc.FunctionProblem(expanded, bounds))
+    (form,) = atlas.forms
+    assert form.multiplicity == 2
+    x, y = form.branch.sample(200).T
+    assert np.abs(np.hypot(x - far, y) - 1).max() < 1e-9
