@@ -339,11 +339,13 @@ class Findings:
         doubles saw where they lose its branches: points that more digits did not show,
         and assemblies."""
         self.germs.append(germ)
-        self.points = [
-            point
-            for point in self.points
-            if point.is_confirmed or not self._is_hidden_by(germ, point.u)
-        ]
+        upcoming = len(self.points)
+        successors = {
+            number: upcoming
+            for number, point in enumerate(self.points)
+            if not point.is_confirmed and self._is_hidden_by(germ, point.u)
+        }
+        self._drop_points(successors)
         ghosts = [k for k, u in enumerate(self.rigid) if self._is_hidden_by(germ, u)]
         for number in reversed(ghosts):
             self._forget_assembly(number, len(self.points))
@@ -420,13 +422,30 @@ class Findings:
         """Take each of the ``pairs`` of singular points, by their numbers, for one: that
         which is confirmed, or else which doubles know less well, for they say so only
         where they see it."""
-        dropped = set()
+        successors: dict[int, int] = {}
         for one, other in pairs:
-            if one in dropped or other in dropped:
+            if one in successors or other in successors:
                 continue
-            both = (one, other)
-            dropped.add(min(both, key=self._standing))
-        self.points = [p for k, p in enumerate(self.points) if k not in dropped]
+            less, more = sorted((one, other), key=self._standing)
+            successors[less] = more
+        self._drop_points(successors)
+
+    def _drop_points(self, successors: dict[int, int]) -> None:
+        """Forget the singular points with some numbers, each for its successor: another
+        one, which may have a successor itself, or the one that is recorded next. The
+        seeds at each of them are then at its last successor."""
+        upcoming = len(self.points)
+        kept = [k for k in range(upcoming + 1) if k not in successors]
+        renumbered = {number: place for place, number in enumerate(kept)}
+        self.points = [p for k, p in enumerate(self.points) if k not in successors]
+        for seed, fate in list(self.fates.items()):
+            if fate.fate is not Fate.AT_SINGULAR_POINT:
+                continue
+            number = fate.number
+            while number in successors:
+                number = successors[number]
+            place = renumbered[number]
+            self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, place)
 
     def _standing(self, number: int) -> tuple[bool, float]:
         """What is known of a singular point; that which is more stays."""

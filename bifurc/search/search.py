@@ -280,7 +280,11 @@ class Search:
         if sighting is None:
             return None
         self._branch_off(half_branch_starts(sighting.point))
-        return SeedFate(Fate.AT_SINGULAR_POINT, sighting.number)
+        # points that were found on these branches may have changed its number
+        known = self.findings.point_at(sighting.point.u, sighting.point.error)
+        if known is None:
+            known = self.findings.point_hidden_at(point)
+        return None if known is None else SeedFate(Fate.AT_SINGULAR_POINT, known.number)
 
     def _fate_on_shaky_curve(
         self, point: np.ndarray, values: np.ndarray

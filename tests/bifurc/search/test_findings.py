@@ -14,6 +14,8 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeds import Audit, Level, Seeds
+from bifurc.singular.germ import Germ
+from bifurc.singular.local_branches import Neighbourhood
 from bifurc.singular.point import SingularPoint
 
 PROBLEM = FunctionProblem(lambda u: np.array([u @ u - 1]), [(-2, 2)] * 2)
@@ -70,6 +72,40 @@ def test_a_singular_point_is_new_once(findings):
     again = findings.point_near(np.array([0.0, 1.0 + 1e-8]), is_same_point.threshold)
     assert again == (first.point, 0, False)
     assert findings.point_near(np.array([0.0, 1.1]), is_same_point.threshold) is None
+
+
+def test_seeds_at_points_that_are_one_follow_the_point_that_stays(findings):
+    errors = [0.1, 0.2, 0.3, 0.4]
+    for k, error in enumerate(errors):
+        findings.add_point(replace(point_at([0.1 * k, 1.0]), error=error))
+    for k in range(4):
+        findings.fates[k] = SeedFate(Fate.AT_SINGULAR_POINT, k)
+    findings.merge_points([(0, 1), (1, 0), (1, 3)])  # 0 is 1, and this is 3
+    assert [point.error for point in findings.points] == [0.3, 0.4]
+    at_third = SeedFate(Fate.AT_SINGULAR_POINT, 0)
+    at_fourth = SeedFate(Fate.AT_SINGULAR_POINT, 1)
+    assert findings.fates == {0: at_fourth, 1: at_fourth, 2: at_third, 3: at_fourth}
+
+
+def test_seeds_at_points_that_a_germ_replaces_are_at_its_point():
+    lost = FunctionProblem(lambda u: [u[1] ** 2 - u[0] ** 8], [(-2, 2)] * 2)
+    findings = Findings(lost)
+    ghost = replace(point_at([1e-3, 0.0]), is_confirmed=False)
+    far = point_at([1.0, 1.0])
+    for point in (ghost, far):
+        findings.add_point(point)
+    findings.fates = {k: SeedFate(Fate.AT_SINGULAR_POINT, k) for k in (0, 1)}
+    findings.rigid_assembly(np.array([0.0, 0.0]))
+    findings.fates[2] = SeedFate(Fate.RIGID, 0)
+    neighbourhood = Neighbourhood(0.01, ())
+    germ = Germ(np.zeros(2), np.empty((0, 2)), (), neighbourhood)
+    findings.add_germ(germ)
+    number = findings.add_point(point_at(germ.u)).number
+    assert findings.points[:1] == [far]
+    assert findings.fates[1] == SeedFate(Fate.AT_SINGULAR_POINT, 0)
+    at_germ = SeedFate(Fate.AT_SINGULAR_POINT, number)
+    assert findings.fates[0] == findings.fates[2] == at_germ
+    assert not findings.rigid
 
 
 def test_a_rigid_assembly_keeps_its_number(findings):
