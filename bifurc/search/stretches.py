@@ -88,9 +88,8 @@ def _judge(
     assert values is not None and jacobians is not None
     is_wrong = np.any((values[0] > 0.0) | (values[1] < 0.0), axis=1)
     is_wrong |= ~is_same_point(problem.gaps(middles), problem.scale)
-    with np.errstate(invalid="ignore"):
-        mean = 0.5 * (jacobians[0] + jacobians[1])
-        width = 0.5 * (jacobians[1] - jacobians[0])
+    mean = 0.5 * (jacobians[0] + jacobians[1])
+    width = 0.5 * (jacobians[1] - jacobians[0])
     is_finite = np.all(np.isfinite(mean) & np.isfinite(width), axis=(1, 2))
     sizes = np.linalg.norm(width, axis=(1, 2))
     smallest = np.zeros(len(middles))

@@ -91,13 +91,16 @@ def subdivide(
     """The bounds divided into boxes, until all are settled, or enough is found to be
     traced first, or there would be more than ``most``, or the time ``is_over``."""
     division = _Division(problem, branches, points)
-    division.verify_branches()
-    low, high = _grid(_box(problem))
-    while len(low) and division.is_worth_while and division.count + len(low) <= most:
-        if is_over():
-            break
-        division.count += len(low)
-        low, high = division.open_quarters(low, high)
+    with np.errstate(over="ignore", invalid="ignore"):  # bounds on F may be infinite
+        division.verify_branches()
+        low, high = _grid(_box(problem))
+        while (
+            len(low) and division.is_worth_while and division.count + len(low) <= most
+        ):
+            if is_over():
+                break
+            division.count += len(low)
+            low, high = division.open_quarters(low, high)
     division.left.append(0.5 * (low + high))
     return division.result()
 
@@ -215,8 +218,7 @@ class _Division:
         jacobians, changes = self._jacobians(low, high, radii)
         is_open = ~self._are_settled(low, high, jacobians, changes)
         low, high, radii = low[is_open], high[is_open], radii[is_open]
-        with np.errstate(invalid="ignore"):
-            slopes = np.max(np.abs(jacobians[is_open]) + changes[is_open], axis=1)
+        slopes = np.max(np.abs(jacobians[is_open]) + changes[is_open], axis=1)
         is_small = radii.max(axis=1, initial=0.0) < SMALLEST * self.problem.scale
         self.left.append(0.5 * (low + high)[is_small])
         low, high, slopes = low[~is_small], high[~is_small], slopes[~is_small]
@@ -274,9 +276,8 @@ class _Division:
         others = [i for i in range(self.problem.n) if i != parameter]
         inverses = np.linalg.inv(jacobians[:, :, others])
         lowest, highest = self._value_bounds(middles, middles)
-        with np.errstate(invalid="ignore"):  # where F is not defined in the middle
-            step = _times(inverses, -0.5 * (lowest + highest))
-            blur = _times(np.abs(inverses), 0.5 * (highest - lowest))
+        step = _times(inverses, -0.5 * (lowest + highest))
+        blur = _times(np.abs(inverses), 0.5 * (highest - lowest))
         slopes = _times(inverses, jacobians[:, :, parameter])
         reach = np.abs(slopes) + _times(np.abs(inverses), changes.sum(axis=2)) + blur
         settled: np.ndarray = np.any(np.abs(step) > 1.0 + reach, axis=1)
@@ -394,9 +395,8 @@ class _Division:
         bounds = self.problem.jacobian_bounds(low, high)
         assert bounds is not None
         lowest, highest = bounds
-        with np.errstate(invalid="ignore"):
-            middles = 0.5 * (lowest + highest) * radii[:, None]
-            widths = 0.5 * (highest - lowest) * radii[:, None]
+        middles = 0.5 * (lowest + highest) * radii[:, None]
+        widths = 0.5 * (highest - lowest) * radii[:, None]
         return middles, np.where(np.isfinite(middles), widths, np.inf)
 
 
