@@ -52,7 +52,7 @@ class Doubt(NamedTuple):
 NO_DOUBT = Doubt(is_refused=False, is_stalled=False, refused_length=0.0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TracedBranch:
     """A branch with what was seen along it.
 

@@ -89,10 +89,11 @@ class Search:
     """The search for all branches and singular points of a ``problem``.
 
     Its steps are called in their order: `gather_seeds`, `sort_seeds`, `trace_seeds`,
-    `look_where_starts_stop`, `cover_surfaces`, `separate_points`, `join_branches`,
-    `audit_branches`, `audit_in_boxes`, and `near_motions.look`. Each adds to the findings of the ``run``.
-    From the end of the budget on a step does nothing. A Ctrl-C raises
-    `KeyboardInterrupt` between two starts, and the findings hold what is known then.
+    `look_where_starts_stop`, `cover_surfaces`, `separate_points`, `mend_at_germs`,
+    `join_branches`, `audit_branches`, `audit_in_boxes`, and `near_motions.look`. Each
+    adds to the findings of the ``run``. From the end of the budget on a step does
+    nothing. A Ctrl-C raises `KeyboardInterrupt` between two starts, and the findings
+    hold what is known then.
     """
 
     def __init__(
@@ -603,26 +604,25 @@ class Search:
         if not are_curves or not can_be_subdivided(self.problem):
             return
         for _ in range(ROUNDS_IN_BOXES):
-            division = self._division()
+            division = self._divided(self.settings.boxes)
             if division.is_complete:
                 findings.set_audit(audit_of(division))
                 return
-            known = [id(one) for one in (*findings.traced, *findings.points)]
+            known = (*findings.traced, *findings.points)
             self._follow_up(division)
-            now = [id(one) for one in (*findings.traced, *findings.points)]
-            if self.run.is_over or now == known:
+            is_changed = (*findings.traced, *findings.points) != known
+            if self.run.is_over or not is_changed:
                 break
-        for number, s in self._division().refuted:
+        for number, s in self._divided(0).refuted:
             findings.traced[number] = refuted_at(findings.traced[number], s)
 
-    def _division(self) -> Subdivision:
-        """The bounds, divided with what is known now."""
-        findings = self.findings
+    def _divided(self, boxes: int) -> Subdivision:
+        """The bounds divided into so many ``boxes`` at most, with what is known now."""
         return subdivide(
             self.problem,
-            findings.branches,
-            findings.points,
-            self.settings.boxes,
+            self.findings.branches,
+            self.findings.points,
+            boxes,
             self.run.is_over_now,
         )
 

@@ -20,7 +20,6 @@ SHORTEST = 1e-7  # half a stretch, over the scale, that is not divided any more
 # curve of solutions then runs next to the branch and nowhere leaves it.
 STEADY = 0.5
 ARCLENGTH = 1.001  # times the distance from the middle, at most, that s is off it
-BEYOND = 1e-7  # over the scale: a branch so far beyond the bounds has left them
 
 
 class Verification(NamedTuple):
@@ -101,7 +100,7 @@ def _beyond_bounds(problem: Problem, branch: Branch) -> np.ndarray | None:
     """A place (n,) of a branch beyond the bounds, None where it has none."""
     for places in dead_points(branch):
         points = branch(places)
-        is_beyond = problem.excess(points) > BEYOND * problem.scale
+        is_beyond = ~problem.are_inside(points)
         if np.any(is_beyond):
             beyond: np.ndarray = points[is_beyond][0]
             return beyond

@@ -5,8 +5,7 @@ on F in the middle and on F' in the box, leave out zero. It holds a single arc w
 Krawczyk's test (1969), with one unknown as the parameter, finds one solution of the
 others for each of its values: a branch through one of these solutions is that arc. The
 branches are held against the same bounds all along. What remains lies about singular
-points. F and F' are bounded with directed rounding, the few
-matrices of a box are not.
+points. F and F' are bounded with directed rounding, the few matrices of a box are not.
 """
 
 from __future__ import annotations
@@ -34,16 +33,14 @@ SMALLEST = 1e-7  # radius of a box, over the scale, that is not divided any more
 # Times as wide as in the unknown along which F changes most: there a box is cut.
 THIN = 32
 WIDER = 4.0  # times as wide as a box is where its arc may run: one that touches a corner, too
-# By how much the slope of an arc over its parameter may vary in a box, in radii: a branch
-# that is the arc at `PLACES` leaps over nothing between them.
-STEADY = 0.3
-NEWTON_STEPS = 4
+NEWTON_STEPS = 5
+SOLVED = 1e-9  # over the scale: |F| where Newton's method has settled
+DETOUR = 2.0  # times as long as its chord a branch may be from one place to the next
 # Radii, over the scale, about singular points in which nothing is claimed: of ordinary
 # crossings and others, where branches may run very close to each other.
 BESIDE_CROSSING = 1e-5
 BESIDE_OTHER = 0.03
 STRICTLY = 0.999  # of the width in which an arc may run: where it has to
-AT_BOUNDS = 1e-9  # over the scale: a solution so far outside may count as inside
 PLACES = np.array([-1.0, 0.0, 1.0])  # of the parameter, at which an arc is looked at
 
 
@@ -53,8 +50,8 @@ class Subdivision:
 
     ``found`` (k, n) are solutions on arcs of no known branch, ``left`` (j, n) middles of
     boxes that are not settled, `MOST_LEFT` at most, ``refuted`` numbers of branches with
-    arclengths at which they solve nothing. Within ``beside`` of singular
-    points, in scales, nothing was looked at.
+    arclengths at which they solve nothing. Within ``beside`` of singular points, in
+    scales, nothing was looked at.
     """
 
     count: int
@@ -142,6 +139,14 @@ class _Slopes(NamedTuple):
     def at(self, numbers: np.ndarray) -> _Slopes:
         """Those with these numbers."""
         return _Slopes(self.middles[numbers], self.spreads[numbers])
+
+
+class _Feet(NamedTuple):
+    """The numbers of the branches (k,) on which points lie, -1 for none, and the
+    arclengths there (k,)."""
+
+    branch: np.ndarray
+    s: np.ndarray
 
 
 class _Division:
@@ -287,13 +292,13 @@ class _Division:
         slope = self._slopes(
             boxes, inverses[may_hold], np.abs(step[may_hold]) + blur[may_hold]
         )
-        holds = np.flatnonzero(np.all(slope.spreads < STEADY, axis=1))
+        holds = np.flatnonzero(np.all(np.isfinite(slope.spreads), axis=1))
         if len(holds):
-            numbers = may_hold[holds]
+            single = boxes.at(holds)
             points = self._solutions(
-                boxes.at(holds), step[numbers], slope.middles[holds]
+                single, step[may_hold[holds]], slope.middles[holds]
             )
-            settled[numbers] = self._are_known(boxes.at(holds), points, slope.at(holds))
+            settled[may_hold[holds]] = self._are_known(single, points, slope.at(holds))
         return settled
 
     def _slopes(
@@ -339,44 +344,67 @@ class _Division:
     def _are_known(
         self, boxes: _Boxes, points: np.ndarray, slopes: _Slopes
     ) -> np.ndarray:
-        """Of which boxes (k,), with ``points`` (k, 3, n) of a single arc, that one is
-        known, or plainly outside the bounds; a solution on each one that is in part
-        inside them and not known is found, and settles the box too."""
-        count, places, n = points.shape
-        flat = points.reshape(-1, n)
-        is_outside = self._are_outside(flat).reshape(count, places, n)
-        outside = np.any(is_outside, axis=2)
-        is_new = ~self._are_on_branches(flat).reshape(count, places) & ~outside
+        """Of which boxes (k,), with ``points`` (k, 3, n) of a single arc, it is known
+        all along; a solution on each one that is in part inside the bounds and on no
+        branch is found, and settles the box too."""
+        flat = points.reshape(-1, points.shape[2])
+        sides = self._sides(flat).reshape(points.shape)
+        outside = np.any(sides != 0, axis=2)
+        feet = self._feet(flat)
+        numbers = feet.branch.reshape(outside.shape)
+        is_solved = self.problem.gaps(flat) < SOLVED * self.problem.scale
+        is_solved = np.all(is_solved.reshape(outside.shape), axis=1)
+        is_new = (numbers < 0) & ~outside & is_solved[:, None]
         new = np.any(is_new, axis=1)
         self.found.append(points[new, np.argmax(is_new[new], axis=1)])
-        # where it rises or falls all along it passes a bound once, and stays outside
-        # where it is outside at both ends
+        # an unknown that rises or falls all along passes a bound once
         is_steady = np.abs(slopes.middles) > slopes.spreads
         is_steady = np.insert(is_steady, boxes.parameter, True, axis=1)
-        crosses = np.any(is_outside, axis=1)
-        is_plain = np.all(is_steady | ~crosses, axis=1)
-        stays = np.any(is_outside[:, 0] & is_outside[:, -1], axis=1)
-        settled: np.ndarray = new | (is_plain & (stays | ~np.all(outside, axis=1)))
-        return settled
-
-    def _are_outside(self, points: np.ndarray) -> np.ndarray:
-        """In which unknowns (k, n) points (k, n) lie outside the bounds."""
-        low, high = self.problem.bounds.T
-        slack = AT_BOUNDS * self.problem.scale
-        outside: np.ndarray = (points < low - slack) | (points > high + slack)
-        return outside
-
-    def _are_on_branches(self, points: np.ndarray) -> np.ndarray:
-        """Which of the points (k, n) lie on a known branch."""
-        known = np.zeros(len(points), dtype=bool)
-        for branch in self.branches:
-            open_ = np.flatnonzero(~known)
-            if not len(open_):
-                break
-            within = is_same_point.threshold * self.problem.scale
-            distances, _ = branch.nearest(points[open_], within=within)
-            known[open_] = is_same_point(distances, self.problem.scale)
+        settled = is_solved.copy()
+        for k in range(len(PLACES) - 1):
+            before, after = sides[:, k], sides[:, k + 1]
+            is_covered = self._are_covered(feet, points, k)
+            stays = np.any((before == after) & (before != 0) & is_steady, axis=1)
+            leaves = outside[:, k] != outside[:, k + 1]
+            leaves &= np.all(is_steady | (before == after), axis=1)
+            settled &= is_covered | stays | leaves
+        known: np.ndarray = new | settled
         return known
+
+    def _are_covered(self, feet: _Feet, points: np.ndarray, k: int) -> np.ndarray:
+        """On which arcs (j,) one branch runs straight from place ``k`` of the ``points``
+        (j, 3, n), of which the ``feet`` are given, to the next."""
+        numbers = feet.branch.reshape(points.shape[:2])
+        arclengths = feet.s.reshape(points.shape[:2])
+        travelled = np.abs(arclengths[:, k + 1] - arclengths[:, k])
+        lengths = np.array(
+            [*(b.length if b.closed else np.inf for b in self.branches), 0]
+        )
+        travelled = np.minimum(travelled, np.abs(lengths[numbers[:, k]] - travelled))
+        chords = np.linalg.norm(points[:, k + 1] - points[:, k], axis=1)
+        is_one = (numbers[:, k] == numbers[:, k + 1]) & (numbers[:, k] >= 0)
+        covered: np.ndarray = is_one & (travelled < DETOUR * chords)
+        return covered
+
+    def _sides(self, points: np.ndarray) -> np.ndarray:
+        """To which side (k, n) of the bounds points (k, n) lie outside, 0 inside."""
+        low, high = self.problem.bounds.T
+        slack = self.problem.slack
+        is_above = (points > high + slack).astype(int)
+        sides: np.ndarray = is_above - (points < low - slack)
+        return sides
+
+    def _feet(self, points: np.ndarray) -> _Feet:
+        """The branches on which points (k, n) lie."""
+        feet = _Feet(np.full(len(points), -1), np.zeros(len(points)))
+        within = is_same_point.threshold * self.problem.scale
+        for number, branch in enumerate(self.branches):
+            rest = np.flatnonzero(feet.branch < 0)
+            distances, arclengths = branch.nearest(points[rest], within=within)
+            is_on = is_same_point(distances, self.problem.scale)
+            feet.branch[rest[is_on]] = number
+            feet.s[rest[is_on]] = arclengths[is_on]
+        return feet
 
     # --- bounds -----------------------------------------------------------------------
 
