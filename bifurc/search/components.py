@@ -201,7 +201,9 @@ def components_of_seeds(
             components.seeds[int(dimension)] = numbers.tolist()
     if 2 not in components.seeds and problem.n <= LARGEST:
         deflated = RankDeflated(problem, problem.n - NULLITY)
-        numbers = doubtful[local.nullity == NULLITY]
+        # about these fewer solutions may lie than fill the null space
+        is_open = (local.nullity == NULLITY) & (local.dimension < NULLITY)
+        numbers = doubtful[is_open]
         on_surfaces = _are_on_surfaces(deflated, points[numbers], deadline)
         if np.any(on_surfaces):
             rest = np.setdiff1d(doubtful, numbers[on_surfaces])
