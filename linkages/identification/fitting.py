@@ -168,9 +168,14 @@ def _scanned_candidates(
 def _built(
     entry: Entry, view: View, guesses: Iterable[Mapping[str, float]]
 ) -> Iterator[Candidate]:
-    """Those of the ``guesses`` that the constructor accepts."""
+    """Those of the ``guesses``, each once, that the constructor accepts."""
+    seen = set()
     for guess in guesses:
         parameters = {name: float(value) for name, value in guess.items()}
+        numbers = tuple(round(value, 12) for value in parameters.values())
+        if numbers in seen:
+            continue
+        seen.add(numbers)
         values = _build(entry, parameters)
         if values is not None and np.all(np.isfinite(values)):
             yield Candidate(view, parameters, values)
