@@ -9,6 +9,9 @@ STUDIES := special_wohlhart_double_goldberg special_double_subtractive_goldberg 
 # Processes keep the byte code that they compile: tests start many, each of which would compile all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
+# Processes share the cores: threads of BLAS in each would only compete.
+export OPENBLAS_NUM_THREADS ?= 1
+
 .PHONY: map test test-fragile test-processors lint studies gallery bench docs pages dist viewer chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
@@ -49,19 +52,19 @@ gallery: .venv/ready  ## every figure of the sources, drawn from the geometry, i
 
 bench: .venv/ready-to-test  ## a short, fixed set of benchmarks, with versions and machine, into out/bench.json
 	mkdir -p out
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.bench --out out/bench.json
+	$(BIN)/python -m studies.bench --out out/bench.json
 
 # Linkages are mapped anew where parameters or code have changed; nothing is fetched, and no page fetches anything.
 docs: .venv/ready-to-test  ## the site, into out/site; fails on any warning and any dead link
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m docs.generator sources
-	OPENBLAS_NUM_THREADS=1 MPLBACKEND=Agg $(BIN)/python -m sphinx -q -W --keep-going -n -j auto -b html -c docs \
+	$(BIN)/python -m docs.generator sources
+	MPLBACKEND=Agg $(BIN)/python -m sphinx -q -W --keep-going -n -j auto -b html -c docs \
 	  build/docs/source out/site
 	$(BIN)/python -m docs.generator links
 
 pages: .venv/ready-to-test  ## the pages of the docs that come out of the code, where a test says that one is old
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.pages
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.page_sizes --page
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m studies.margins --members 2 --near 60 --page
+	$(BIN)/python -m studies.pages
+	$(BIN)/python -m studies.page_sizes --page
+	$(BIN)/python -m studies.margins --members 2 --near 60 --page
 
 dist: .venv/ready  ## sdist and wheel into dist/
 	$(BIN)/python -m pip install --quiet build

@@ -15,6 +15,7 @@ from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
+from bifurc.numerics.threads import one_thread
 from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
 from bifurc.search.restated import restated
@@ -71,30 +72,40 @@ def explore(
     if parameter is not None:
         parameter_index(problem.names, parameter)
     events_of({} if events is None else events, problem.names)
+    with one_thread(problem.n):
+        atlas = _explored_in_any_units(problem, settings, seed, seeds, progress)
+        if parameter is None and not events:
+            return atlas
+        diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
+        return replace(atlas, diagram=diagram)
+
+
+def _explored_in_any_units(
+    problem: Problem,
+    settings: SearchSettings,
+    seed: int,
+    seeds: Seeds | None,
+    progress: Callable[[str, int], None] | None,
+) -> Atlas:
+    """The atlas, found in units of the search's own where the problem lets it."""
     began = time.perf_counter()
     own = in_own_units(problem, Deadline(settings.budget, began))
     if own is None:
-        atlas = _explored(problem, settings, seed, seeds, progress, began)
-    else:
+        return _explored(problem, settings, seed, seeds, progress, began)
+    atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
+    has_lengths = bool(atlas.surfaces or atlas.near_motions)
+    if has_lengths and not own.own_units.is_uniform:
+        # areas and lengths are those of the user only where all sizes are one:
+        # the search is made again, with a budget of its own
+        first = time.perf_counter() - began
+        own, began = in_one_size(own), time.perf_counter()
         atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
-        has_lengths = bool(atlas.surfaces or atlas.near_motions)
-        if has_lengths and not own.own_units.is_uniform:
-            # areas and lengths are those of the user only where all sizes are one:
-            # the search is made again, with a budget of its own
-            first = time.perf_counter() - began
-            own, began = in_one_size(own), time.perf_counter()
-            atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
-            whole = first + atlas.provenance.seconds
-            atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
-        multiplicities = [
-            form.multiplicity * own.multiplicity_along(form.branch)
-            for form in atlas.forms
-        ]
-        atlas = restated(atlas, problem, own.own_units, multiplicities)
-    if parameter is None and not events:
-        return atlas
-    diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
-    return replace(atlas, diagram=diagram)
+        whole = first + atlas.provenance.seconds
+        atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
+    multiplicities = [
+        form.multiplicity * own.multiplicity_along(form.branch) for form in atlas.forms
+    ]
+    return restated(atlas, problem, own.own_units, multiplicities)
 
 
 def _explored_in_units(

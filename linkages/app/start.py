@@ -1,5 +1,6 @@
 """Where the program `bifurc` begins."""
 
+import os
 import sys
 
 __all__ = ["main"]
@@ -7,6 +8,8 @@ __all__ = ["main"]
 
 def main() -> None:
     """Run the command line; Ctrl-C ends it in one line also while it is imported."""
+    # matrices of a hundred rows and fewer: threads of BLAS would only compete
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         from linkages.app.cli import main as command_line
     except KeyboardInterrupt:
