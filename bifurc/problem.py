@@ -380,8 +380,8 @@ class Problem(ABC):
 
     def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
         """Bounds (k,) on |F''|, over the magnitude, at all complex points no farther
-        than ``reach`` (k,) from a real point within the bounds; None where none are
-        known.
+        than ``reach`` (k,) from a real point within the bounds where the relative
+        residual is at most ``curvature_residual``; None where none are known.
 
         F is taken as the analytic function that it is next to a solution.
         """

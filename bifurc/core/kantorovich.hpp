@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "bifurc/core/adjugates.hpp"
@@ -21,9 +22,9 @@ constexpr double tiny = 1e-150;              // in a denominator: its square is 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 }  // namespace kantorovich
 
-// What is known of F'', over the magnitude: ``bound`` is K, as long as |F| is at most ``residual``;
-// ``growth`` is what F'' changes by along a unit of length, at most, up to half of ``reach``; ``error`` is
-// that of F'' itself, over K.
+// What is known of F'', over the magnitude, as long as |F| is at most ``residual``: ``bound`` is K,
+// ``growth`` is what F'' changes by along a unit of length, at most, up to half of ``reach`` from such a
+// place; ``error`` is that of F'' itself, over K.
 struct SecondDerivative {
     double bound, residual, growth, reach, error;
 };
@@ -256,6 +257,15 @@ private:
             frames_on_ellipses_[e] = std::hypot(jacobian, slopes[e]);
         }
         residual_error_ = chebyshev_.error(residuals);
+        // Rivlin 1990: what interpolation at n Chebyshev nodes makes of a number, at most
+        const double lebesgue = 1.0 + 2.0 / std::numbers::pi * std::log(static_cast<double>(chebyshev_.nodes()));
+        residual_between_ = lebesgue * largest_residual_ + residual_error_;
+    }
+
+    // Whether F is so small up to ``radius`` from the curve that what is known of F'' holds there.
+    bool is_nearly_solved(double radius) const {
+        const double slope = largest_jacobian_ + second_.bound * radius;
+        return residual_between_ + slope * radius <= second_.residual;
     }
 
     void bound_inverse() {
@@ -343,9 +353,7 @@ private:
 
     double doubt_by_bound(double size, double gap) const {
         const double radius = 2.0 * size * gap;
-        const double slope = largest_jacobian_ + second_.bound * radius;
-        const bool is_valid = largest_residual_ + slope * radius <= second_.residual;
-        return is_valid ? second_.bound * size * size * gap : kantorovich::infinity;
+        return is_nearly_solved(radius) ? second_.bound * size * size * gap : kantorovich::infinity;
     }
 
     // --- F'' ---
@@ -354,7 +362,7 @@ private:
     // ``blocks`` say to within the error of ``sizes``, and what it changes by off the curve.
     double contraction(const Blocks& blocks, const Box& gaps, const ColumnSizes& sizes) const {
         const double radius = 2.0 * sizes.reach(blocks.box(gaps));
-        if (!(radius < 0.5 * second_.reach)) return kantorovich::infinity;
+        if (!(radius < 0.5 * second_.reach) || !is_nearly_solved(0.0)) return kantorovich::infinity;
         const Blocks widened = blocks.widened(second_.growth * radius + sizes.error, sizes);
         const Box box = widened.box(gaps);
         return sizes.reach(box) <= radius ? widened.contraction(box) : kantorovich::infinity;
@@ -471,7 +479,8 @@ private:
     std::vector<double> frames_on_ellipses_;
     Matrix<double> components_, component_series_;
     std::array<double, 3> largest_{};  // bounds on columns of Q all along the arc
-    double largest_residual_ = 0.0, largest_jacobian_ = 0.0, residual_error_ = 0.0;
+    double largest_residual_ = 0.0, largest_jacobian_ = 0.0;
+    double residual_error_ = 0.0, residual_between_ = 0.0;  // of interpolation; |F| between the nodes
     double rounding_ = 0.0, interpolation_ = 0.0, interpolation_of_strong_ = 0.0;  // of H Q - p I
     double slack_ = 0.0;  // by which |p| may be less than at the edges of a cell
 };

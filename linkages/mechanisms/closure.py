@@ -125,25 +125,17 @@ class MechanismClosure(NumericalProblem):
             columns += structure.embedded.get(number, ())
         return sorted(set(columns))
 
-    def curvature_bound(self) -> float | None:
-        """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations;
-        None for a mechanism with embedded spherical joints, or with points that legs
-        carry anywhere."""
-        bounds = self._curvature
-        return None if bounds is None else bounds.near_solutions
+    def curvature_bound(self) -> float:
+        """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations."""
+        return self._curvature.near_solutions
 
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
         """Bounds (k,) on |F''| at complex points no farther than ``reach`` (k,) from a
-        real one within the limits; None as for `curvature_bound`."""
-        bounds = self._curvature
-        return None if bounds is None else bounds.at_complex_points(reach)
+        real one within the limits near closed configurations."""
+        return self._curvature.at_complex_points(reach)
 
     @cached_property
-    def _curvature(self) -> CurvatureBounds | None:
-        shifts = [k for columns in self.structure.shifts.values() for k in columns]
-        is_anywhere = not np.all(np.isfinite(self.bounds[shifts]))
-        if self.structure.embedded or is_anywhere:
-            return None
+    def _curvature(self) -> CurvatureBounds:
         return CurvatureBounds(self.structure, self.curvature_residual)
 
     # --- curves and solutions ---------------------------------------------------------

@@ -473,6 +473,18 @@ class Structure:
         values: np.ndarray = shares * self._unit_of(variable)
         return values
 
+    def largest_value(self, variable: int) -> float:
+        """The largest absolute value that a variable, by number, takes within the
+        limits, in rad and the structure's unit; infinite where it has none."""
+        share = self.share(variable)
+        if share is None:
+            locked = self.mechanism.variables[variable].locked
+            assert locked is not None
+            return abs(locked) / self._unit_of(variable)
+        unknown = self.unknowns[share.column]
+        largest = max(abs(unknown.low), abs(unknown.high))
+        return abs(share.rate) * largest + abs(share.offset)
+
     def limits(self, variable: int) -> tuple[float, float] | None:
         """The limits within which a variable, by number, is followed, in rad and the
         user's unit; None where it is locked or has none."""

@@ -19,7 +19,7 @@ from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
 from linkages.mechanisms.toml_text import mechanism_toml
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
-from tests.linkages.mechanisms.test_poses import platform
+from tests.linkages.mechanisms.spatial_mechanisms import platform
 
 SLIDER_CRANK = """
 name = "slider-crank"

@@ -13,7 +13,7 @@ from linkages.mechanisms.poses import Poses
 from linkages.mechanisms.structure import Structure
 from tests.linkages.links.test_clearance import nearest_by_optimisation
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
-from tests.linkages.mechanisms.test_curvature import rods
+from tests.linkages.mechanisms.spatial_mechanisms import rods
 
 MECHANISMS = {
     "CRCR": lambda: mechanism_of_case(cases()["Bennett geometry with joints CRCR"]),

@@ -4,10 +4,19 @@ import numpy as np
 import pytest
 
 from linkages.mechanisms.closure import MechanismClosure
-from linkages.mechanisms.joint import Joint
-from linkages.mechanisms.mechanism import Mechanism
 from tests.linkages.mechanisms.frameworks import OCTAHEDRON, framework, places_of
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.spatial_mechanisms import (
+    carried_by_legs,
+    one_of_each,
+    platform,
+    platform_on_a_platform,
+    ring_with_rods,
+    rods,
+    rods_and_a_leg,
+    rsrs,
+    samples,
+)
 
 NAMES = [
     "Bennett geometry with joints CRCR",
@@ -19,54 +28,26 @@ NAMES = [
 ]
 
 
-def one_of_each():
-    """A loop with a helical, a universal, a planar and a spherical joint."""
-    return Mechanism(
-        (
-            Joint("H", "helical", ("a", "b"), (0, 0, 0), (0, 0, 1), pitch=0.7),
-            Joint("U", "universal", ("b", "c"), (1, 0, 0.3), (0, 1, 0), (1, 0, 1)),
-            Joint("E", "planar", ("c", "d"), (1, 1, 0), (0, 0.6, 0.8)),
-            Joint("S", "spherical", ("d", "a"), (0, 1.3, 0)),
-        )
-    )
-
-
-def rods():
-    """A plate on a hinge, and a rod from it to a slider."""
-    return Mechanism(
-        (
-            Joint("R", "revolute", ("base", "plate"), (0, 0, 0), (1, 0, 0.2)),
-            Joint("S1", "spherical", ("plate", "rod"), (0.3, 1, 0)),
-            Joint("S2", "spherical", ("rod", "slider"), (0.4, 1.2, 1.5)),
-            Joint("P", "prismatic", ("slider", "base"), direction=(0.1, 0, 1)),
-        )
-    )
-
-
-def rods_and_a_leg():
-    """Two rods of a plate to a point, which a leg carries."""
-    return Mechanism(
-        (
-            Joint("A", "spherical", ("base", "a"), (0, 0, 0)),
-            Joint("B", "spherical", ("base", "b"), (1, 0.2, 0)),
-            Joint("C", "spherical", ("base", "c"), (0.3, 1, 0.1)),
-            Joint("P", "prismatic", ("c", "d"), direction=(0.2, -0.6, 0.9)),
-            Joint("D", "spherical", ("a", "b", "d"), (0.5, 0.4, 1)),
-        )
-    )
-
-
 MECHANISMS = [mechanism_of_case(cases()[name]) for name in NAMES]
 MECHANISMS += [one_of_each(), rods(), rods_and_a_leg()]
 MECHANISMS += [framework(places_of("ABCDEF", 2), OCTAHEDRON)]
+MECHANISMS += [rsrs(), platform(), platform((None, None, *(0.0,) * 4))]
+MECHANISMS += [carried_by_legs(), platform_on_a_platform()]
+MECHANISMS += [ring_with_rods(np.random.default_rng(seed)) for seed in (1, 2, 3)]
 
 
-def samples(problem, rng, count):
-    """Random points within the limits."""
-    low, high = problem.bounds.T
-    low = np.where(np.isfinite(low), low, -np.pi)
-    high = np.where(np.isfinite(high), high, np.pi)
-    return rng.uniform(low, high, (count, problem.n))
+def near_solutions(problem, rng):
+    """Random points within the limits at which the equations are nearly solved."""
+    points, gaps = problem.project(samples(problem, rng, 60))
+    points = points[(gaps < 1e-10) & (problem.excess(points) <= 0.0)]
+    sizes = np.array([0.0, 0.02, 0.1, 0.2])[:, None, None]
+    near = points + sizes * rng.normal(size=(4, *points.shape))
+    near = near.reshape(-1, problem.n)
+    near = near[rng.permutation(len(near))]
+    is_near = problem.gaps(near) <= problem.curvature_residual
+    near = near[is_near & (problem.excess(near) <= 0.0)]
+    assert len(near) > 5
+    return near
 
 
 def largest_value(hessian, rng):
@@ -85,12 +66,7 @@ def largest_value(hessian, rng):
 def test_the_bound_near_solutions_holds_and_is_of_the_right_size(mechanism):
     problem = MechanismClosure(mechanism)
     rng = np.random.default_rng(4)
-    points, gaps = problem.project(samples(problem, rng, 40))
-    is_inside = problem.excess(points) <= 0.0
-    near = points[(gaps < 1e-10) & is_inside]
-    near = near + 0.02 * rng.normal(size=near.shape)
-    near = near[problem.gaps(near) <= problem.curvature_residual][:12]
-    assert len(near)
+    near = near_solutions(problem, rng)[:16]
     bound = problem.curvature_bound()
     seen = [largest_value(problem.hessian(point), rng) for point in near]
     assert max(seen) <= bound
@@ -103,7 +79,7 @@ def test_the_bound_at_complex_points_holds(mechanism):
     rng = np.random.default_rng(5)
     for reach in (1e-3, 0.3):
         bound = problem.complex_curvature(np.array([reach]))[0]
-        for point in samples(problem, rng, 6):
+        for point in near_solutions(problem, rng)[:6]:
             direction = rng.normal(size=problem.n)
             direction *= reach / np.linalg.norm(direction)
             seen = largest_value(complex_hessian(problem, point, direction), rng)

@@ -14,7 +14,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.structure import Structure
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
-from tests.linkages.mechanisms.test_poses import platform
+from tests.linkages.mechanisms.spatial_mechanisms import platform
 
 Z = (0, 0, 1)
 

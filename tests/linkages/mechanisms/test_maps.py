@@ -16,7 +16,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
 from studies.known_mechanisms import WAYS
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
-from tests.linkages.mechanisms.test_poses import platform
+from tests.linkages.mechanisms.spatial_mechanisms import platform
 
 FEW = SearchSettings(starts=60)
 Z = (0, 0, 1)

@@ -6,41 +6,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from linkages.mechanisms.closure import MechanismClosure
-from linkages.mechanisms.joint import Joint
-from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
-from tests.linkages.mechanisms.test_curvature import one_of_each, rods, samples
-
-
-def platform(locked=(0.0,) * 6):
-    """A platform on six legs, each between two spherical joints."""
-    rng = np.random.default_rng(3)
-    feet = 2.0 * rng.normal(size=(6, 3)) * (1, 1, 0.15)
-    tops = 1.2 * rng.normal(size=(6, 3)) * (1, 1, 0.25) + (0, 0, 1.7)
-    joints = []
-    for i, (foot, top) in enumerate(zip(feet, tops, strict=True)):
-        low, up = f"low{i}", f"up{i}"
-        lock = () if locked[i] is None else (locked[i],)
-        joints += [
-            Joint(f"A{i}", "spherical", ("base", low), foot),
-            Joint(f"P{i}", "prismatic", (low, up), direction=top - foot, locked=lock),
-            Joint(f"B{i}", "spherical", (up, "plate"), top),
-        ]
-    return Mechanism(tuple(joints), "platform")
-
-
-def rsrs():
-    """A loop with two spherical joints and no rod: one of them is embedded."""
-    return Mechanism(
-        (
-            Joint("R1", "revolute", ("base", "a"), (0, 0, 0), (0, 0, 1)),
-            Joint("S1", "spherical", ("a", "b"), (1, 0, 0)),
-            Joint("R2", "revolute", ("b", "c"), (2, 1.2, 0.4), (1, 0.3, 0)),
-            Joint("S2", "spherical", ("c", "base"), (2.5, 0, 0.3)),
-        )
-    )
-
+from tests.linkages.mechanisms.spatial_mechanisms import (
+    one_of_each,
+    platform,
+    rods,
+    rsrs,
+    samples,
+)
 
 MECHANISMS = [
     one_of_each(),

@@ -21,6 +21,7 @@ from tests.linkages.mechanisms.frameworks import (
     framework,
     places_of,
 )
+from tests.linkages.mechanisms.spatial_mechanisms import ring_with_rods
 
 FEW = SearchSettings(starts=40)
 
@@ -277,27 +278,6 @@ def test_a_rod_without_length_is_refused_also_where_an_idle_turn_makes_it() -> N
     )
     with pytest.raises(GeometryError, match="joints a and b of body x: at one point"):
         MechanismClosure(Mechanism(joints))
-
-
-def ring_with_rods(rng):
-    """A ring of bodies with joints of many kinds at few points, and rods across it."""
-    count = int(rng.integers(3, 7))
-    points = rng.normal(size=(int(rng.integers(4, 8)), 3))
-    joints = []
-    for k in range(count):
-        bodies = (f"b{k}", f"b{(k + 1) % count}")
-        here, there = points[rng.choice(len(points), 2, replace=False)]
-        kind = rng.choice(["spherical", "spherical", "revolute", "cylindrical"])
-        # axes run through the points of other joints: some turns are idle
-        axis = None if kind == "spherical" else tuple(there - here)
-        joints.append(Joint(f"J{k}", str(kind), bodies, tuple(here), axis))
-    for k in range(int(rng.integers(1, 5))):
-        ends = points[rng.choice(len(points), 2, replace=False)]
-        bodies = rng.choice(count, 2, replace=False)
-        for letter, body, place in zip("ab", bodies, ends, strict=True):
-            name, pair = f"R{k}{letter}", (f"b{body}", f"rod{k}")
-            joints.append(Joint(name, "spherical", pair, tuple(place)))
-    return Mechanism(tuple(joints))
 
 
 @pytest.mark.parametrize("seed", range(30))

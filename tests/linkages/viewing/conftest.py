@@ -22,9 +22,13 @@ from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
 from tests.linkages.mechanisms.frameworks import flexible_octahedron
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.spatial_mechanisms import (
+    one_of_each,
+    platform,
+    rods,
+    rsrs,
+)
 from tests.linkages.mechanisms.test_couplings import five_bar
-from tests.linkages.mechanisms.test_curvature import one_of_each, rods
-from tests.linkages.mechanisms.test_poses import platform, rsrs
 
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 FLAGS = (

@@ -18,7 +18,7 @@ from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network, network_subject
 from linkages.viewing.document import MOST_SAMPLES, make_view_document
 from linkages.viewing.title import title_of
-from tests.linkages.mechanisms.test_poses import platform
+from tests.linkages.mechanisms.spatial_mechanisms import platform
 from tests.linkages.viewing.conftest import slider_crank
 
 DSG = "special-double-subtractive-goldberg"
