@@ -249,19 +249,7 @@ def _certificates(atlas: Atlas) -> str:
             )
         )
     heads = ("name", "status", "points", "bound K", "refused (rad)", "blurred (rad)")
-    text = section("Certificates (each form is one arc of solutions)", heads, rows)
-    return "\n\n".join(part for part in (text, _without_certificate(atlas)) if part)
-
-
-def _without_certificate(atlas: Atlas) -> str:
-    """Which forms have no certificate though one was asked for, and why."""
-    names = [form.name for form in listed_forms(atlas) if form.certificate is None]
-    if not names or not atlas.provenance.settings.certify:
-        return ""
-    return (
-        f"Without a certificate: {', '.join(names)}. Unknowns without limits, such as "
-        "the rotation of a body on spherical joints, leave its bounds open."
-    )
+    return section("Certificates (each form is one arc of solutions)", heads, rows)
 
 
 def _show_intervals(intervals: NDArray[np.float64]) -> str:

@@ -127,6 +127,16 @@ def test_a_curve_that_runs_straight_across_a_near_miss_is_not_certified(gap):
     assert np.all(np.abs(middle - 0.9) < 4 * np.sqrt(gap))
 
 
+@pytest.mark.parametrize("largest", [1e-5, np.inf])
+def test_nothing_is_certified_where_the_residual_is_too_large_for_the_bound(largest):
+    problem = Hyperbola(1e-4)
+    problem.curvature_residual = largest
+    branch = straight_branch(problem)
+    certificate = certify_branch(problem, branch, profile_branch(problem, branch))
+    refused = certificate.refused_length / branch.length
+    assert (refused == 1.0) == (largest < 1e-4)
+
+
 @pytest.mark.parametrize("gap", 10.0 ** -np.arange(1, 11))
 def test_a_curve_glued_from_two_arcs_where_they_are_closest_is_not_certified(gap):
     problem = Hyperbola(gap)

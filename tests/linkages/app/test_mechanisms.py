@@ -124,12 +124,16 @@ def test_a_route_over_slides_is_not_in_degrees(folder):
     assert "e-1" not in output
 
 
-def test_forms_without_a_certificate_are_named(folder):
+def test_forms_of_platforms_have_certificates_on_screen_and_in_json(folder):
     one_free = platform((None, *(0.0,) * 5))
     Path("platform.toml").write_text(mechanism_toml(one_free), encoding="utf-8")
     output = run("map", "platform.toml").stdout
-    assert "Without a certificate: Form 1, Form 2" in output
-    assert "Without a certificate" not in run("map", "slider_crank.toml").stdout
+    table = output.split("Certificates (each form is one arc of solutions)")[1]
+    assert "Form 1  certified" in table
+    document = json.loads(run("map", "platform.toml", "--json").stdout)
+    certificates = [form["certificate"] for form in document["forms"]]
+    assert {one["status"] for one in certificates} == {"certified"}
+    assert not any(one["refused"] or one["blurred"] for one in certificates)
 
 
 def test_counts_on_a_sphere_stand_beside_those_in_space(folder):
