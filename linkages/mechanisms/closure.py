@@ -31,7 +31,11 @@ from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.turn_lattice import TurnLattice, turn_lattice
-from linkages.mechanisms.whole_turns import WholeTurns, turns_that_advance
+from linkages.mechanisms.whole_turns import (
+    WholeTurns,
+    starts_at_every_turn,
+    turns_that_advance,
+)
 
 if TYPE_CHECKING:
     import mpmath
@@ -204,23 +208,25 @@ class MechanismClosure(NumericalProblem):
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """The closed configuration nearest to the reference, those that dyads build
-        where a joint stands at given values, and what is reached from ``count`` random
-        starts."""
+        where a joint stands at given values, what is reached from every turn of a joint
+        that advances, and from ``count`` random starts."""
         drawn = self._drawn(rng, count)
-        starts = self.reference[None]
+        lattice = self.lattice
+        turns = turns_that_advance(self.structure)
+        starts = [self.reference[None]]
         slices = slice_by_dyads(self.structure, rng)
         if slices is not None:
-            starts = np.concatenate([starts, slices.points])
-        points, gaps = self.project(starts)
+            starts.append(slices.points)
+        elif not lattice:
+            starts.append(starts_at_every_turn(self, turns, rng))
+        points, gaps = self.project(np.concatenate(starts))
         solutions = points[is_start_solved(gaps)]
-        lattice = self.lattice
         if lattice:
             # what is outside the limits may have a translate inside
             solutions = lattice.homes(solutions)
         seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
         if lattice:
             seeds = replace(seeds, home=lattice.home)
-        turns = turns_that_advance(self.structure)
         if slices is None and turns:
             return replace(seeds, audit=WholeTurns(self, turns, lattice))
         return replace(seeds, audit=slices)

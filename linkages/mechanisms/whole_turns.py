@@ -3,11 +3,13 @@ joint, or a slide that follows.
 
 After a whole turn more it has advanced, and what closes the loop then is another form,
 or none. Random starts reach such forms one by one; beside a known one
-the others are found by turning each joint.
+the others are found by turning each joint. Isolated assemblies have none beside them
+that is known: they are looked for from starts at every turn.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,15 +18,17 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
+from bifurc.seeding import start_region
 from bifurc.seeds import Audit, Level
 from linkages.assembly_statements import RANDOM_ASSEMBLIES
 from linkages.closure.coupled import common_period
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.turn_lattice import TurnLattice
 
-__all__ = ["WholeTurns", "turns_that_advance"]
+__all__ = ["WholeTurns", "starts_at_every_turn", "turns_that_advance"]
 
 MOST_FORMS = 120  # beyond, forms beside them are not looked for
+AT_A_TURN, MOST_STARTS = 50, 2000  # random starts, and those of all turns of a joint
 PLACES = np.array([0.05, 0.35, 0.65, 0.95])  # on a form, of its length
 
 
@@ -45,6 +49,20 @@ def turns_that_advance(structure: Structure) -> dict[int, float]:
     angles = [number for number in advancing if structure.unknowns[number].is_angle]
     periods = {number: common_period(ratios[number]) for number in sorted(angles)}
     return {n: period for n, period in periods.items() if np.isfinite(period)}
+
+
+def starts_at_every_turn(
+    problem: Problem, turns: dict[int, float], rng: np.random.Generator
+) -> np.ndarray:
+    """Random points (k, n), as many at each of the ``turns`` that a joint which advances
+    may make within its limits, as `turns_that_advance` has them."""
+    low, high = start_region(problem).T
+    starts = [np.empty((0, problem.n))]
+    for number, period in turns.items():
+        count = math.ceil((high[number] - low[number]) / period)
+        most = min(AT_A_TURN * count, MOST_STARTS)
+        starts.append(rng.uniform(low, high, (most, problem.n)))
+    return np.concatenate(starts)
 
 
 @dataclass(frozen=True, eq=False)

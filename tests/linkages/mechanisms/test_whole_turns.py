@@ -9,6 +9,7 @@ from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
 from linkages.mechanisms import whole_turns
 from linkages.mechanisms.closure import MechanismClosure
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.translates import translates_of
@@ -72,3 +73,38 @@ def test_what_is_beside_a_form_is_moved_to_where_it_is_listed():
     assert len(audit.starts)
     problem = MechanismClosure(nut_on_a_rocker(2.5))
     assert np.abs(problem.lattice.homes(audit.starts) - audit.starts).max() == 0.0
+
+
+def rack(ratio):
+    """A crank that drives a rack, and a rod from the one to the other."""
+    follows = (Coupling("A", ratio),)
+    joints = (
+        Joint("A", "revolute", ("frame", "crank"), (0, 0, 0), Z),
+        Joint("B", "revolute", ("crank", "rod"), (0.6, 0.8, 0), Z),
+        Joint("C", "revolute", ("rod", "slide"), (3, 0, 0), Z),
+        Joint("D", "prismatic", ("frame", "slide"), None, (1, 0, 0), coupled=follows),
+    )
+    return Mechanism(joints)
+
+
+def assemblies_of_rack(ratio, low, high):
+    """The angles of the crank, up to a grid, at which the rod has its length."""
+    angles = np.linspace(low, high, 1_000_001) + 1e-7
+    along = 3 + ratio * angles - (0.6 * np.cos(angles) - 0.8 * np.sin(angles))
+    aside = 0.6 * np.sin(angles) + 0.8 * np.cos(angles)
+    excess = np.hypot(along, aside) - np.hypot(2.4, 0.8)
+    return angles[1:][excess[1:] * excess[:-1] < 0]
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("ratio", [0.1, -0.25])
+def test_a_rigid_mechanism_has_its_assemblies_at_every_turn(ratio, seed):
+    mechanism = rack(ratio)
+    problem = MechanismClosure(mechanism)
+    column = problem.names.index("A")
+    expected = assemblies_of_rack(ratio, *problem.bounds[column])
+    assert len(expected) >= 5
+    settings = SearchSettings(starts=20, near_motions=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    angles = np.sort([assembly[column] for assembly in atlas.rigid])
+    assert angles == pytest.approx(expected, abs=1e-3)
