@@ -27,6 +27,7 @@ __all__ = [
     "readout_of",
     "show_configuration",
     "show_travel",
+    "unit_of_arclengths",
     "unknown_factors",
 ]
 
@@ -103,11 +104,18 @@ def arclength_unit(atlas: Atlas) -> ArclengthUnit:
     else that of the unknowns, in which lengths are over the characteristic length."""
     if set(atlas.units) == {"rad"}:
         return ArclengthUnit(float(np.degrees(1.0)), "deg")
+    return ArclengthUnit(1.0, unit_of_arclengths(atlas))
+
+
+def unit_of_arclengths(atlas: Atlas) -> str:
+    """What arclengths count as they are in the atlas and in files: rad, lengths over
+    the characteristic length, or both."""
+    if set(atlas.units) == {"rad"}:
+        return "rad"
     readout = readout_of(atlas)
     size = 1.0 if readout is None else readout.structure.unit
     lengths = f"lengths over {size:.4g}"
-    name = f"rad, {lengths}" if "rad" in atlas.units else lengths
-    return ArclengthUnit(1.0, name)
+    return f"rad, {lengths}" if "rad" in atlas.units else lengths
 
 
 def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:

@@ -36,7 +36,7 @@ class LinkageDocument(TypedDict):
 
 
 class CertificateDocument(TypedDict):
-    """What is certified of a form, and the intervals of arclength (rad) where that is
+    """What is certified of a form, and the intervals of its arclength where that is
     refused or where F' is singular to within rounding."""
 
     status: str

@@ -17,6 +17,7 @@ from linkages.app.configurations import (
     network_at,
     readout_of,
     show_configuration,
+    unit_of_arclengths,
 )
 from linkages.app.entry_text import describe_geometry
 from linkages.app.forms import listed_forms
@@ -248,7 +249,9 @@ def _certificates(atlas: Atlas) -> str:
                 _show_intervals(certificate.blurred),
             )
         )
-    heads = ("name", "status", "points", "bound K", "refused (rad)", "blurred (rad)")
+    unit = unit_of_arclengths(atlas)
+    intervals = f"refused ({unit})", f"blurred ({unit})"
+    heads = ("name", "status", "points", "bound K", *intervals)
     return section("Certificates (each form is one arc of solutions)", heads, rows)
 
 
