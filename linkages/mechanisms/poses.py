@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
 
@@ -52,15 +53,15 @@ class Poses:
         from_frame: np.ndarray = _inverse(poses[:, frame])[:, None] @ of_bodies
         return from_frame
 
-    def rotations(self, points: np.ndarray, number: int) -> np.ndarray:
-        """The rotations (k, 3, 3) of the moved body of a pair with respect to its
-        base."""
+    def rotations(self, points: np.ndarray, numbers: Sequence[int]) -> np.ndarray:
+        """The rotations (p, k, 3, 3) of the moved bodies of some pairs, by ``numbers``
+        (p,), with respect to their bases."""
         bodies = self.mechanism.bodies
-        pair = self.mechanism.pairs[number]
-        poses = self.at(points)
-        base = poses[:, bodies.index(pair.base), :3, :3]
-        moved = poses[:, bodies.index(pair.moved), :3, :3]
-        rotations: np.ndarray = np.swapaxes(base, 1, 2) @ moved
+        pairs = [self.mechanism.pairs[number] for number in numbers]
+        base = [bodies.index(pair.base) for pair in pairs]
+        moved = [bodies.index(pair.moved) for pair in pairs]
+        of_bodies = np.moveaxis(self.at(points)[..., :3, :3], 1, 0)
+        rotations: np.ndarray = np.swapaxes(of_bodies[base], 2, 3) @ of_bodies[moved]
         return rotations
 
     @cached_property

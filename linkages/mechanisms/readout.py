@@ -101,19 +101,33 @@ class Readout:
         """The variables of every joint at one configuration (n,) of an atlas; those of
         a spherical joint are its rotation vectors. A rigid joint has none."""
         values = self.wrapped(point)
+        vectors = self._rotation_vectors(point)
         by_joint: dict[str, list[float]] = {}
         for number, pair in enumerate(self.mechanism.pairs):
             numbers = [float(values[k]) for k in pair.variables]
-            if pair.center is not None:
-                unknowns = self.unknowns(point[None])
-                rotations = self._poses.rotations(unknowns, number)
-                numbers = rotation_vectors(rotations)[0].tolist()
+            numbers += vectors.get(number, [])
             by_joint.setdefault(pair.joint, []).extend(numbers)
         result: JointVariables = {}
         for joint, numbers in by_joint.items():
             if numbers:
                 result[joint] = numbers[0] if len(numbers) == 1 else numbers
         return result
+
+    def _rotation_vectors(self, point: np.ndarray) -> dict[int, list[float]]:
+        """The rotation vectors of all spherical pairs, by number, at one configuration
+        (n,)."""
+        if not self._spherical:
+            return {}
+        unknowns = self.unknowns(point[None])
+        rotations = self._poses.rotations(unknowns, self._spherical)
+        vectors = rotation_vectors(rotations[:, 0]).tolist()
+        return dict(zip(self._spherical, vectors, strict=True))
+
+    @cached_property
+    def _spherical(self) -> list[int]:
+        """The spherical pairs, by number."""
+        pairs = enumerate(self.mechanism.pairs)
+        return [number for number, pair in pairs if pair.center is not None]
 
     @cached_property
     def _poses(self) -> Poses:
@@ -124,15 +138,22 @@ class Readout:
         joints make, of each further body with respect to the first one, from the
         reference configuration. They are called after the joint, "S1", or, in a joint
         of several bodies, "S1.rod"."""
+        if not self._spherical:
+            return {}
         unknowns = self.unknowns(np.atleast_2d(points))
-        rotations = {}
-        for number, pair in enumerate(self.mechanism.pairs):
-            if pair.center is None:
-                continue
+        rotations = self._poses.rotations(unknowns, self._spherical)
+        return dict(zip(self._labels_of_spherical, rotations, strict=True))
+
+    @property
+    def _labels_of_spherical(self) -> list[str]:
+        """What the spherical pairs are called."""
+        labels = []
+        for number in self._spherical:
+            pair = self.mechanism.pairs[number]
             is_of_several = len(self.mechanism.joint(pair.joint).bodies) > 2
             label = f"{pair.joint}.{pair.moved}" if is_of_several else pair.joint
-            rotations[label] = self._poses.rotations(unknowns, number)
-        return rotations
+            labels.append(label)
+        return labels
 
     def poses(self, points: np.ndarray) -> np.ndarray:
         """The transforms (k, b, 4, 4) of all bodies at configurations (k, n) of an
