@@ -73,7 +73,7 @@ class CurvatureBounds:
             for closure in self.structure.closures
         ]
 
-    @property
+    @cached_property
     def _squares_of_rotations(self) -> np.ndarray:
         """Squares of bounds on the second derivatives, by two blocks, of the equations
         that make two vectors a, b orthonormal: (a.a - 1) / 2, (b.b - 1) / 2, a.b."""
@@ -84,7 +84,7 @@ class CurvatureBounds:
             squares[np.ix_(rotation, rotation)] = 1.0
         return squares
 
-    @property
+    @cached_property
     def _spread(self) -> float:
         """The largest sum of the changes of all variables, and of those of blocks of
         unknowns, where the unknowns change by a vector of length 1."""
