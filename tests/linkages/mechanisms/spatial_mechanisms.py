@@ -60,12 +60,12 @@ def carried_by_legs():
 
 
 def platform_on_a_platform():
-    """Six rods from the base to a plate, five from there to a second one, and one from
-    the base to that: a chain with two rotations, one the other way."""
+    """Six rods from the base to a plate, one from there to another plate, and five from
+    plate to plate: chains with two free bodies, one of them the other way."""
     rng = np.random.default_rng(11)
     joints = []
     for k in range(12):
-        below = "base" if k in (0, 1, 2, 3, 4, 5, 11) else "middle"
+        below = "base" if k < 7 else "middle"
         above = "middle" if k < 6 else "top"
         foot, head = rng.normal(size=(2, 3))
         foot[2] += 0 if below == "base" else 2
