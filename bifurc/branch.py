@@ -5,15 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc._core import Curve
 from bifurc.checks import check_distance, check_finite, check_whole, floats_of
+from bifurc.decisions import hides_turning, jumps_at_turning
 from bifurc.errors import ProblemError
 from bifurc.torus import whole_turns
 
-__all__ = ["Branch", "Outcome"]
+__all__ = ["Branch", "Outcome", "Turning"]
 
 SLIVER = 1e-3  # of its radius: so little of a piece is left to the next one
 SAME_PASS = 1e-6  # arclength: feet no farther apart are one
@@ -38,6 +40,18 @@ class Outcome(Enum):
         "closure gap: the start does not solve the equations; "
         "correct the start or the geometry"
     )
+
+
+class Turning(NamedTuple):
+    """A zero of the rate of an unknown at arclength ``s``; from ``low`` to ``high``
+    rounding hides the rate. Its sign ``before`` and ``after`` that, 0 beyond an end of
+    the curve."""
+
+    s: float
+    low: float
+    high: float
+    before: float
+    after: float
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -246,13 +260,27 @@ class Branch:
         check_distance("within", within)
         return self._curve.passes(point, within, SAME_PASS)
 
-    def turning_points(self, unknown: int) -> np.ndarray:
-        """Arclengths, in order, at which the derivative of an ``unknown`` (from 0)
-        changes sign."""
+    def turnings(self, unknown: int) -> tuple[Turning, ...]:
+        """Where the rate of an ``unknown`` (from 0) changes sign, in order, and the ends
+        of an open curve at which it is zero.
+
+        None is missed, by bounds on the polynomials; but where it only touches zero as
+        far as rounding tells there is none. Raises `ProblemError` for an unknown that
+        there is not.
+        """
         check_whole("unknown", unknown, 0)
         if unknown >= self.n:
             raise ProblemError("unknown", unknown, f"below {self.n}")
-        return self._curve.turning_points(unknown)
+        rows = self._curve.turnings(
+            unknown, share=hides_turning.threshold, jump=jumps_at_turning.threshold
+        )
+        return tuple(Turning(*row) for row in rows.tolist())
+
+    def turning_points(self, unknown: int) -> np.ndarray:
+        """Arclengths, in order, at which the derivative of an ``unknown`` (from 0)
+        changes sign, all of them as `turnings` says."""
+        turnings = self.turnings(unknown)
+        return np.array([one.s for one in turnings if one.before * one.after < 0.0])
 
     # --- heights ----------------------------------------------------------------------
 

@@ -1045,13 +1045,23 @@ is_same_turn = Decision(
     third_answer="such a function is taken within half a period of 0, and that is said",
 )
 hides_turning = Decision(
-    "parameter at rest",
-    "rounding hides whether the parameter grows or falls",
-    "its rate along a form over its largest one there",
+    "unknown at rest",
+    "rounding hides whether an unknown, or the parameter, grows or falls",
+    "its rate along a form over a bound on its largest one there",
     1e-12,
     "rates are exact to 1e-13, beside crossings to 3e-14 over the distance",
     third_answer="the stretch that is hidden is the error of the fold, and a fold whose "
     "stretch reaches a singular point is that one",
+)
+jumps_at_turning = Decision(
+    "unknown at rest between pieces",
+    "the error of the pieces hides whether an unknown grows or falls",
+    "its rate on a piece over what the rates of that piece and its neighbours differ by "
+    "where they meet",
+    3.0,
+    "pieces are as exact elsewhere as where they meet, or more; where an unknown turns "
+    "back its rate passes what they differ by, 1e-13 to 1e-9, to both sides",
+    third_answer="as for an unknown at rest",
 )
 is_drawn_to_point = Decision(
     "fold at a singular point",

@@ -87,26 +87,26 @@ public:
         return rate;
     }
 
-    // Arclengths, in order, at which the derivative of an unknown changes sign between two neighbours
-    // of some places of every piece.
-    std::vector<double> turning_points(Index unknown) const {
-        std::vector<double> found;
-        double before = 0.0, rate_before = rate(before, unknown);
-        for (Index number = 0; number < count(); ++number) {
-            const double step = (breaks[number + 1] - breaks[number]) / places_of_piece;
-            for (Index i = 0; i < places_of_piece; ++i) {
-                const double here = breaks[number] + (static_cast<double>(i) + 0.5) * step;
-                const double rate_here = rate(here, unknown);
-                if (rate_before * rate_here < 0.0) found.push_back(root_of_rate(before, here, unknown));
-                if (rate_here == 0.0) continue;
-                before = here;
-                rate_before = rate_here;
-            }
-        }
-        if (count() && rate_before * rate_at_the_end(unknown) < 0.0) {
-            found.push_back(root_of_rate(before, total(), unknown));
-        }
-        return found;
+    // Where a piece begins and ends, in its coordinate.
+    struct Span {
+        double begin, end;
+
+        double reach() const { return std::max(std::abs(begin), std::abs(end)); }
+    };
+
+    Span span(Index number) const {
+        return {(breaks[number] - centers[number]) / radii[number], (breaks[number + 1] - centers[number]) / radii[number]};
+    }
+    double radius(Index number) const { return radii[number]; }
+    double arclength(Index number, double x) const { return centers[number] + x * radii[number]; }
+
+    // The derivative of an unknown in s.
+    double rate(double s, Index unknown) const {
+        const Place place = place_of(s);
+        const View<const double> of = piece(place.piece);
+        double sum = 0.0;
+        for (Index k = order(); k >= 1; --k) sum = sum * place.x + static_cast<double>(k) * of(k, unknown);
+        return sum / radii[place.piece];
     }
 
     std::size_t room_for_a_foot() const { return 3 * unknowns(); }
@@ -181,8 +181,6 @@ private:
     }
 
     static constexpr Index samples_of_piece = 12;
-    static constexpr Index places_of_piece = 16;   // between which turning points are looked for
-    static constexpr int most_steps = 100;         // to a root
     static constexpr int foot_steps = 10;          // of Newton's method
     static constexpr double standing = 1e-15;      // a step, over the length, after which none follows
 
@@ -252,45 +250,6 @@ private:
             jet.slope[j] /= radius;
             jet.bend[j] = 2.0 * jet.bend[j] / (radius * radius);
         }
-    }
-
-    // The derivative of an unknown in s.
-    double rate(double s, Index unknown) const { return rate_on(place_of(s), unknown); }
-
-    double rate_at_the_end(Index unknown) const {
-        const Index last = count() - 1;
-        return rate_on({0.0, last, (total() - centers[last]) / radii[last]}, unknown);
-    }
-
-    double rate_on(const Place& place, Index unknown) const {
-        const View<const double> of = piece(place.piece);
-        double sum = 0.0;
-        for (Index k = order(); k >= 1; --k) sum = sum * place.x + static_cast<double>(k) * of(k, unknown);
-        return sum / radii[place.piece];
-    }
-
-    // The root of that between ``low`` and ``high``, where it has opposite signs, to rounding: the
-    // Illinois method (Dowell and Jarratt 1971).
-    double root_of_rate(double low, double high, Index unknown) const {
-        double rate_low = rate(low, unknown);
-        double rate_high = high < total() ? rate(high, unknown) : rate_at_the_end(unknown);
-        for (int step_number = 0; step_number < most_steps && rate_high != 0.0; ++step_number) {
-            const double secant = high - rate_high * (high - low) / (rate_high - rate_low);
-            const bool is_between = secant > std::min(low, high) && secant < std::max(low, high);
-            const double next = is_between ? secant : 0.5 * (low + high);
-            const double rate_next = rate(next, unknown);
-            const bool has_settled = std::abs(next - high) <= standing * total();
-            if (rate_next * rate_high <= 0.0) {
-                low = high;
-                rate_low = rate_high;
-            } else {
-                rate_low *= 0.5;
-            }
-            high = next;
-            rate_high = rate_next;
-            if (has_settled) break;
-        }
-        return high;
     }
 
     double gap(double a, double b, Index j) const { return periodic_difference(a, b, periods[j]); }

@@ -3,20 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "bifurc/core/arrays.hpp"
 #include "bifurc/core/brackets.hpp"
+#include "bifurc/core/polynomial.hpp"
 #include "bifurc/core/trail.hpp"
 
 namespace bifurc {
 
 namespace exits {
-constexpr Index places = 32;         // on a piece, beside its begin, at which it is held against the bounds
 constexpr double tolerance = 1e-15;  // of the coordinate of an exit
 constexpr int steps = 100;           // to it
+constexpr double rounding = 1e-15;   // of the size of the terms of a piece
 }  // namespace exits
 
 // The bounds that one piece (order + 1, n) may leave, as its coefficients say.
@@ -35,22 +35,15 @@ public:
 
     bool empty() const { return ends_.empty(); }
 
-    // The coordinate between two at which the piece leaves them, if it is outside by more than
-    // ``slack`` at some place there. A piece that runs in one bound leaves where it crosses another.
+    // The first coordinate between two at which the piece leaves them, if it is outside by more than
+    // ``slack`` anywhere there. A piece that runs in one bound leaves where it crosses another.
     std::optional<double> exit_between(double begin, double end, double slack) const {
-        double before = begin;
-        for (Index place = 0; place <= exits::places; ++place) {
-            const double x = begin + (end - begin) * static_cast<double>(place) / exits::places;
-            std::optional<double> first;
-            for (const End& one : ends_) {
-                if (!(excess(one, x) > slack)) continue;
-                const double exit = crossing(one, before, x, slack);
-                first = first ? std::min(*first, exit) : exit;
-            }
-            if (first) return first;
-            before = x;
+        std::optional<double> first;
+        for (const End& one : ends_) {
+            const std::optional<double> exit = exit_by(one, begin, end, slack);
+            if (exit) first = first ? std::min(*first, *exit) : exit;
         }
-        return {};
+        return first;
     }
 
 private:
@@ -60,40 +53,54 @@ private:
         double bound;
     };
 
-    // How far the piece lies outside one end at a coordinate; negative inside.
-    double excess(const End& end, double x) const {
-        double value = 0.0;
-        for (Index k = piece_.rows - 1; k >= 0; --k) value = value * x + piece_(k, end.unknown);
-        return end.side * (value - end.bound);
+    // The same by one end.
+    std::optional<double> exit_by(const End& one, double begin, double end, double slack) const {
+        const Polynomial outside = excess(one, 0.0), beyond = excess(one, slack);
+        const double hidden = exits::rounding * beyond.size(std::max(std::abs(begin), std::abs(end)));
+        std::optional<double> inside, exit;
+        visit_plain_parts(beyond, begin, end, hidden, [&](const PlainPart& part) {
+            for (double x : {part.begin, part.end}) {
+                if (!part.is_flat && beyond(x) > 0.0) {
+                    exit = inside ? crossing(outside, *inside, x) : crossing_along(outside, part.begin, x, slack);
+                    return false;
+                }
+                if (outside(x) < -slack) inside = x;
+            }
+            return true;
+        });
+        return exit ? std::optional(std::max(begin, *exit)) : exit;
     }
 
-    // How fast that grows.
-    double growth(const End& end, double x) const {
-        double slope = 0.0;
-        for (Index k = piece_.rows - 1; k >= 1; --k) slope = slope * x + static_cast<double>(k) * piece_(k, end.unknown);
-        return end.side * slope;
+    // How far the piece lies outside one end by more than the ``slack``; negative inside.
+    Polynomial excess(const End& end, double slack) const {
+        std::vector<double> series(piece_.rows);
+        for (Index k = 0; k < piece_.rows; ++k) series[k] = end.side * piece_(k, end.unknown);
+        series[0] -= end.side * end.bound + slack;
+        return Polynomial(std::move(series));
     }
 
-    // Where the piece crosses one end, ``before`` a coordinate at which it is outside by more than the
-    // ``slack``. From a place on the end, give or take rounding, it may run along it for a while: then
-    // it is left where the tangent crosses it at the first place outside by the slack.
-    double crossing(const End& end, double before, double after, double slack) const {
-        const double already = excess(end, before);
-        if (already > slack) return before;
-        const double level = already < 0.0 ? 0.0 : slack;
-        const auto outside = [&](double x) { return excess(end, x) - level; };
-        const double x = root_between(outside, before, after, exits::tolerance, exits::steps);
-        const double rate = growth(end, x);
-        return rate > 0.0 ? std::max(before, x - level / rate) : x;
+    // Where a piece crosses an end, from a coordinate ``inside`` to one ``outside``.
+    static double crossing(const Polynomial& excess, double inside, double outside) {
+        return root_between(excess, inside, outside, exits::tolerance, exits::steps);
+    }
+
+    // The same from a coordinate ``before`` at which it is on the end, give or take the ``slack``. It
+    // may run along it for a while: it is left where the tangent crosses it at the first place
+    // outside by the slack.
+    static double crossing_along(const Polynomial& excess, double before, double outside, double slack) {
+        if (excess(before) > slack) return before;
+        const auto beyond = [&](double x) { return excess(x) - slack; };
+        const double x = root_between(beyond, before, outside, exits::tolerance, exits::steps);
+        const double rate = excess.slope(x);
+        return rate > 0.0 ? x - slack / rate : x;
     }
 
     View<const double> piece_;
     std::vector<End> ends_;
 };
 
-// The arclength at which a curve, from piece number ``first`` on, first leaves the ``bounds`` (n, 2):
-// where a piece is outside by more than ``slack`` at some of its places, the exit is between that
-// place and the one before. Neighbouring pieces hand over at equal shares of their radii; the first
+// The arclength at which a curve, from piece number ``first`` on, first leaves the ``bounds`` (n, 2),
+// on its way to where it is outside by more than ``slack``. Neighbouring pieces hand over at equal shares of their radii; the first
 // piece is looked at from arclength 0 on, the last one as far as it is trusted.
 inline std::optional<double> exit_of_bounds(const Trail& trail, Index first, View<const double> bounds, double slack) {
     const Index count = trail.count();

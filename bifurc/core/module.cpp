@@ -11,6 +11,7 @@
 #include "bifurc/core/returns.hpp"
 #include "bifurc/core/singular_values.hpp"
 #include "bifurc/core/tape_bindings.hpp"
+#include "bifurc/core/turnings.hpp"
 #include "bifurc/core/valley_bindings.hpp"
 
 namespace nb = nanobind;
@@ -198,11 +199,15 @@ nb::object numbers_of(const Brackets& brackets) {
     return out.release();
 }
 
-nb::object turning_points(const Curve& curve, Index unknown) {
+// (k, 5): the numbers of `Turning`.
+nb::object turnings(const Curve& curve, Index unknown, double share, double jump) {
     if (unknown < 0 || unknown >= curve.unknowns()) throw nb::index_error("no such unknown");
-    const std::vector<double> found = curve.turning_points(unknown);
-    Array<double> out({static_cast<Index>(found.size())});
-    out.fill(found);
+    const std::vector<Turning> found = UnknownRate(curve, unknown, {share, jump}).turnings();
+    Array<double> out({static_cast<Index>(found.size()), 5});
+    double* entry = out.data();
+    for (const Turning& one : found) {
+        for (double value : {one.s, one.low, one.high, one.before, one.after}) *entry++ = value;
+    }
     return out.release();
 }
 
@@ -294,7 +299,7 @@ NB_MODULE(_core, module) {
         .def("rates_of_height", &rates_of_height, "coefficients"_a, "s"_a)
         .def("level_places", &level_places, "coefficients"_a, "low"_a, "high"_a, "tolerance"_a)
         .def("nearest", &nearest, "points"_a, "within"_a)
-        .def("turning_points", &turning_points, "unknown"_a)
+        .def("turnings", &turnings, "unknown"_a, "share"_a, "jump"_a)
         .def("passes", &passes, "point"_a, "within"_a, "same"_a);
     nb::class_<Brackets>(module, "Brackets")
         .def(

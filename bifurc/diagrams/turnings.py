@@ -3,31 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.branch import Branch, Outcome
+from bifurc.branch import Branch, Outcome, Turning
 from bifurc.curves.monitor import NODES
-from bifurc.decisions import (
-    hides_turning,
-    is_drawn_to_point,
-    is_fold_of_crossing,
-    stands_still,
-)
+from bifurc.decisions import is_drawn_to_point, is_fold_of_crossing, stands_still
 from bifurc.diagrams.branching import TurningPass
 from bifurc.diagrams.diagram import DiagramPoint, PointKind
 from bifurc.diagrams.fold import Fold, refined_fold
-from bifurc.diagrams.zeros import Zero, ZeroKind, zeros_along
 from bifurc.problem import Problem
 from bifurc.singular.point import Kind
 
 __all__ = ["Turnings", "turnings_of", "unknown_sizes"]
-
-
-BEFORE_END = 1e-6  # of the length of a form: where it is seen how it comes to its end
 
 
 class Turnings(NamedTuple):
@@ -64,15 +54,11 @@ def turnings_of(problem: Problem, atlas: Atlas, index: int) -> Turnings:
         if stands_still(largest / sizes[index], float((rates / sizes).max())):
             turnings.resting.add(number)
             continue
-        hidden = hides_turning.threshold * largest
-        zeros = zeros_along(branch, partial(_rate, branch, index), hidden)
-        # where a form is far longer in other unknowns, a rate seems to jump
-        for zero in (*zeros.zeros, *zeros.jumps):
-            if zero.kind in (ZeroKind.CROSSING, ZeroKind.JUMP):
-                _add(turnings, problem, atlas, number, zero, index)
+        for place in branch.turnings(index):
+            is_at_end = place.before * place.after == 0.0
             # a form that ends in its bounds goes on beyond them
-            if zero.kind is ZeroKind.END and branch.outcome is Outcome.LEFT_REGION:
-                _add(turnings, problem, atlas, number, zero, index)
+            if not is_at_end or branch.outcome is Outcome.LEFT_REGION:
+                _add(turnings, problem, atlas, number, place, index)
     for number, passes in turnings.at_crossings.items():
         turnings.at_crossings[number] = _odd_ones(passes)
     return turnings
@@ -87,30 +73,25 @@ def _odd_ones(passes: Sequence[TurningPass]) -> list[TurningPass]:
     return [same[-1] for same in by_place.values() if len(same) % 2 == 1]
 
 
-def _rate(branch: Branch, index: int, s: np.ndarray) -> np.ndarray:
-    """The rate (k,) of an unknown at arclengths (k,)."""
-    return branch(s, 1)[:, index]
-
-
 def _add(
     turnings: Turnings,
     problem: Problem,
     atlas: Atlas,
     form: int,
-    zero: Zero,
+    place: Turning,
     index: int,
 ) -> None:
     """Add what the parameter does at a zero of its rate."""
-    passing = _pass_at(problem, atlas, form, zero)
+    passing = _pass_at(problem, atlas, form, place)
     if passing is not None:
-        side = zero.after or _side_before(atlas.forms[form].branch, zero, index)
+        side = place.after or -place.before
         turning = TurningPass(form, passing.s, side)
         turnings.at_crossings.setdefault(passing.point, []).append(turning)
         return
     branch = atlas.forms[form].branch
-    start = branch(zero.s)
+    start = branch(place.s)
     sizes = unknown_sizes(problem)
-    fold = refined_fold(problem, start, branch(zero.s, 1), index, sizes)
+    fold = refined_fold(problem, start, branch(place.s, 1), index, sizes)
     reached = start if fold is None else fold.u
     if any(
         _is_drawn(problem, point, start, reached, sizes)
@@ -118,20 +99,14 @@ def _add(
         if point.kind is not Kind.RANK_DROP
     ):
         return
-    turnings.folds.append(_fold_point(branch, form, zero, fold, index, sizes))
+    turnings.folds.append(_fold_point(branch, form, place, fold, index, sizes))
 
 
-def _side_before(branch: Branch, zero: Zero, index: int) -> float:
-    """To which side the parameter goes before a zero of its rate at the end."""
-    inner = max(0.0, 2.0 * zero.low - zero.s - BEFORE_END * branch.length)
-    return -float(np.sign(branch(inner, 1)[index]))
-
-
-def _pass_at(problem: Problem, atlas: Atlas, form: int, zero: Zero) -> _Pass | None:
+def _pass_at(problem: Problem, atlas: Atlas, form: int, place: Turning) -> _Pass | None:
     """The pass of a singular point that lies where rounding hides how a parameter
     turns, if there is one."""
     length = atlas.forms[form].branch.length
-    middle, half = 0.5 * (zero.low + zero.high), 0.5 * (zero.high - zero.low)
+    middle, half = 0.5 * (place.low + place.high), 0.5 * (place.high - place.low)
     for number, point in enumerate(atlas.points):
         if point.kind is Kind.RANK_DROP:
             continue
@@ -163,20 +138,20 @@ def _is_drawn(
 def _fold_point(
     branch: Branch,
     form: int,
-    zero: Zero,
+    place: Turning,
     fold: Fold | None,
     index: int,
     sizes: np.ndarray,
 ) -> DiagramPoint:
     """The fold at a zero of the rate, where Newton's method found it if it stayed
     there."""
-    half = 0.5 * (zero.high - zero.low)
-    s, u, bend = zero.s, branch(zero.s), float(branch(zero.s, 2)[index])
+    half = 0.5 * (place.high - place.low)
+    s, u, bend = place.s, branch(place.s), float(branch(place.s, 2)[index])
     if fold is not None:
         step = fold.u - u
         room = half / float(sizes.min()) + 1e-6
         if float(np.abs(step / sizes).max()) <= room:
-            s += float(step @ branch(zero.s, 1))
+            s += float(step @ branch(place.s, 1))
             u, bend = fold.u, fold.bend
     s = float(np.clip(s, 0.0, branch.length))
     return DiagramPoint("", PointKind.FOLD, form, s, u, bend, error=half)

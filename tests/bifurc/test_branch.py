@@ -1,9 +1,11 @@
 """A traced curve as a function of its arclength."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from bifurc.branch import Outcome
+from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
@@ -303,3 +305,95 @@ def test_a_closed_curve_has_points_at_all_numbers(circle):
     assert np.all(np.isfinite(circle(-1e3 * circle.length)))
     with pytest.raises(ProblemError, match=r"^arclength: .* must be a number"):
         circle(np.nan)
+
+
+# --- turning points -------------------------------------------------------------------
+
+
+def graph_of(height, breaks, outcome=Outcome.LEFT_REGION):
+    """The curve (s, height(s)) for a polynomial ``height``, in pieces between
+    ``breaks``."""
+    centers, radii = 0.5 * (breaks[1:] + breaks[:-1]), 0.5 * np.diff(breaks)
+    pieces = np.zeros((len(centers), height.degree() + 1, 2))
+    for piece, center, radius in zip(pieces, centers, radii, strict=True):
+        moved = height(np.polynomial.Polynomial([center, radius]))
+        piece[: len(moved.coef), 1] = moved.coef
+        piece[:2, 0] = center, radius
+    return Branch(
+        pieces=pieces,
+        centers=centers,
+        radii=radii,
+        breaks=breaks,
+        residuals=np.zeros(len(centers)),
+        periods=np.full(2, np.inf),
+        outcome=outcome,
+    )
+
+
+def height_with_rate(*roots):
+    return np.polynomial.Polynomial.fromroots(roots).integ()
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 7])
+@pytest.mark.parametrize("apart", [1e-2, 1e-3, 1e-5])
+def test_two_turning_points_close_together_are_two(count, apart):
+    breaks = np.linspace(0.0, 1.0, count + 1)
+    for middle in np.random.default_rng(count).uniform(0.1, 0.9, 20):
+        # between any two places of a piece, and across the end of one
+        for place in (middle, breaks[np.argmin(np.abs(breaks - middle))]):
+            turns = [place - 0.5 * apart, place + 0.5 * apart]
+            inner = [s for s in turns if 0.0 < s < 1.0]
+            curve = graph_of(height_with_rate(*turns, -0.5), breaks)
+            found = curve.turning_points(1)
+            assert found == pytest.approx(inner, abs=1e-3 * apart)
+
+
+@pytest.mark.parametrize("place", [0.3, 0.5, 0.51])
+@pytest.mark.parametrize("power", [2, 4, 6])
+def test_a_rate_that_touches_zero_is_no_turning_point(place, power):
+    breaks = np.array([0.0, 0.5, 1.0])
+    touching = graph_of(height_with_rate(*[place] * power), breaks)
+    assert not len(touching.turning_points(1))
+    crossing = graph_of(height_with_rate(*[place] * (power + 1)), breaks)
+    (turn,) = crossing.turnings(1)
+    # rounding hides the rate until it is 1e-12 of the largest
+    assert turn.low < place < turn.high
+    assert turn.high - turn.low < 4 * 1e-12 ** (1 / (power + 1))
+
+
+def test_a_touch_between_pieces_that_differ_by_their_error_is_no_turning_point():
+    curve = graph_of(height_with_rate(0.5, 0.5), np.array([0.0, 0.5, 1.0]))
+    for error in (1e-13, 1e-9, -1e-9):
+        pieces = curve.pieces.copy()
+        pieces[1, 1, 1] += error
+        inexact = replace(curve, pieces=pieces)
+        assert not len(inexact.turning_points(1))
+
+
+def test_turnings_at_the_ends_of_an_open_curve_say_so():
+    curve = graph_of(height_with_rate(0.0, 0.4, 1.0), np.array([0.0, 0.7, 1.0]))
+    begin, middle, end = curve.turnings(1)
+    assert (begin.s, begin.before, begin.after) == (0.0, 0.0, 1.0)
+    assert (middle.before, middle.after) == (1.0, -1.0)
+    assert (end.s, end.before, end.after) == (1.0, -1.0, 0.0)
+    assert curve.turning_points(1) == pytest.approx([0.4], abs=1e-13)
+
+
+@pytest.mark.parametrize("start", [0.0, np.pi / 2, 1.0])
+def test_a_turning_point_where_a_closed_curve_begins_is_found_once(circle, start):
+    begun = circle.begun_at(start)
+    for unknown, places in ((0, [0.0, np.pi]), (1, [np.pi / 2, 3 * np.pi / 2])):
+        turns = begun.turning_points(unknown)
+        gaps = np.abs(
+            np.exp(1j * (turns + start)[:, None]) - np.exp(1j * np.array(places))
+        )
+        assert len(turns) == 2
+        assert gaps.min(axis=0) == pytest.approx([0.0, 0.0], abs=1e-10)
+        assert np.all((turns >= 0.0) & (turns < begun.length))
+
+
+def test_a_branch_that_is_no_number_has_no_turning_points(circle):
+    for value in (np.nan, np.inf):
+        pieces = circle.pieces.copy()
+        pieces[0, 3, 0] = value
+        replace(circle, pieces=pieces).turning_points(0)

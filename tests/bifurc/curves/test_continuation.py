@@ -69,6 +69,31 @@ def test_a_curve_that_leaves_the_region_is_followed_both_ways_to_the_bounds():
     assert np.abs(ends) == pytest.approx(np.ones((2, 2)), abs=1e-11)
 
 
+@pytest.mark.parametrize("is_recorded", [True, False])
+@pytest.mark.parametrize("height", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_a_curve_ends_where_it_bulges_out_of_the_bounds(height, is_recorded):
+    # y = 1 + height - x^2 leaves y <= 1 for 2 sqrt(height), far less than a piece
+    problem = plane(
+        lambda x, y: y - 1 - height + x * x, -1.0, 1.0, is_recorded=is_recorded
+    )
+    side = np.sqrt(height)
+    for start in (0.5, -0.5, 0.313):
+        branch = trace_branch(problem, [start, 1 + height - start**2])
+        assert branch.outcome is Outcome.LEFT_REGION
+        ends = branch(np.array([0.0, branch.length]))
+        inner = ends[np.argmin(np.abs(ends[:, 0]))]
+        assert inner[0] == pytest.approx(np.copysign(side, start), rel=1e-6)
+        assert inner[1] == pytest.approx(1.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("height", [0.0, 1e-10, -1e-10, -1e-6])
+def test_a_curve_that_only_touches_a_bound_goes_on(height):
+    problem = plane(lambda x, y: y - 1 - height + x * x, -1.0, 1.0)
+    branch = trace_branch(problem, [0.5, 0.75 + height])
+    ends = branch(np.array([0.0, branch.length]))
+    assert np.sort(ends[:, 0]) == pytest.approx([-1.0, 1.0], abs=1e-9)
+
+
 class Disc(FunctionProblem):
     """Curves are followed within the unit circle."""
 

@@ -160,6 +160,32 @@ def test_dead_points_of_a_circle_are_where_a_coordinate_turns_back():
     )
 
 
+@pytest.mark.parametrize("is_recorded", [True, False])
+@pytest.mark.parametrize("middle", [0.0, 0.137, 0.8311])
+def test_dead_points_close_together_are_all_found(is_recorded, middle):
+    # y = x^3 / 3 - e^2 x turns at two places, a few thousandths of a piece apart
+    e = 1e-3
+
+    def function(u):
+        x = u[0] - middle
+        return [u[1] - x**3 / 3 + e**2 * x]
+
+    problem = FunctionProblem(function, [(-1, 1)] * 2, is_recorded=is_recorded)
+    branch = trace_branch(problem, [middle, 0.0])
+    x = branch(dead_points(branch)[1])[:, 0] - middle
+    assert np.sort(x) == pytest.approx([-e, e], rel=1e-6)
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_an_unknown_that_slows_down_and_goes_on_has_no_dead_point(is_recorded):
+    problem = FunctionProblem(
+        lambda u: [u[1] - u[0] ** 3], [(-1, 1)] * 2, is_recorded=is_recorded
+    )
+    for start in (0.0, 0.3, -0.7):
+        branch = trace_branch(problem, [start, start**3])
+        assert [len(s) for s in dead_points(branch)] == [0, 0]
+
+
 def test_an_unknown_that_stands_still_has_no_dead_points():
     _, branch = traced(lambda x, y: y - 0.25, [0.0, 0.25])
     assert [len(s) for s in dead_points(branch)] == [0, 0]

@@ -125,3 +125,16 @@ def test_a_curve_from_a_bound_outwards_ends_there(slope: float) -> None:
     ends = branch(np.array([0.0, branch.length]))
     assert np.abs(ends).min(axis=1)[0] < 1e-14 or np.abs(ends).min(axis=1)[1] < 1e-14
     assert ends[:, 0].min() > -1e-14
+
+
+@pytest.mark.parametrize("height", [1e-2, 1e-6, 1e-8])
+def test_a_curve_that_bulges_out_of_its_bounds_is_two_forms(height: float) -> None:
+    def arch(u):
+        return [u[1] - 1 - height + u[0] ** 2]
+
+    for seed in SEEDS:
+        atlas = explore(FunctionProblem(arch, [(-1, 1)] * 2), seed=seed)
+        assert len(atlas.forms) == 2
+        assert atlas.completeness.level.value == "proved"
+        inner = min(np.abs(form.branch.sample(2)[:, 0]).min() for form in atlas.forms)
+        assert inner == pytest.approx(math.sqrt(height), rel=1e-6)

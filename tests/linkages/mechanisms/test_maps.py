@@ -266,6 +266,17 @@ def test_a_form_that_ends_at_limits_makes_no_turns():
         assert [one.turns for one in ranges] == [0] * len(ranges)
 
 
+@pytest.mark.parametrize("beyond", [1e-2, 1e-6, -1e-6])
+def test_a_slide_that_passes_its_limit_for_a_moment_ends_the_form(beyond):
+    # crank 1 and rod 2: the slide goes from 1 to 3
+    joints = slider_crank(2.0).joints
+    begin = joints[2].point[0]
+    last = replace(joints[3], limits=((0.5 - begin, 3.0 - beyond - begin),))
+    atlas = linkages.map_linkage(Mechanism((*joints[:3], last)), settings=FEW)
+    for form in atlas.forms:
+        assert form.branch.closed == (beyond < 0)
+
+
 # With slides at all four axes of a Bennett linkage the flat states of its turns let all
 # slides move in two ways: planes on which F' has rank 5.
 @pytest.mark.parametrize("seed", [0, 8])
