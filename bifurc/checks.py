@@ -3,6 +3,8 @@ allowed."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -33,7 +35,7 @@ def check_callable(name: str, value: object) -> None:
         raise ProblemError(name, repr(value), "a function")
 
 
-def check_whole(name: str, value: object, lowest: int) -> None:
+def check_whole(name: str, value: object, lowest: float = -math.inf) -> None:
     """Raises `ProblemError` unless ``value`` is a whole number, at least ``lowest``."""
     if not isinstance(value, int | np.integer) or isinstance(value, bool):
         raise ProblemError(name, repr(value), "a whole number")

@@ -185,6 +185,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         "settings",
     ),
     "pieces of order 1": (lambda: TraceSettings(order=1), "order"),
+    "pieces that are too short": (lambda: TraceSettings(order=4), "order"),
     "pieces of order 99": (lambda: TraceSettings(order=99), "order"),
     "pieces of half an order": (lambda: TraceSettings(order=3.5), "order"),
     "a tolerance of text": (lambda: TraceSettings(tolerance="a"), "tolerance"),

@@ -39,9 +39,9 @@ def with_piece_between(
     after: Branch,
     outcome: Outcome,
 ) -> Branch | None:
-    """Two branches with a polynomial through a ``point`` (n,) between them, or one closed by it;
-    None where that is no solution."""
-    order = before.pieces.shape[1] - 1
+    """Two branches with a polynomial through a ``point`` (n,) between them, or one closed
+    by it; None where that is no solution. Its order is 4 where theirs is lower."""
+    order = max(before.pieces.shape[1] - 1, 4)
     begin, end = before(before.length), after(0.0)
     shift = problem.difference(end, begin) - (end - begin)  # whole periods
     chord = end + shift - begin
@@ -52,11 +52,11 @@ def with_piece_between(
     cubic[1] = 0.75 * chord - 0.25 * (slopes[0] + slopes[1])
     cubic[2] = 0.25 * (slopes[1] - slopes[0])
     cubic[3] = 0.25 * (slopes[0] + slopes[1]) - 0.25 * chord
-    if order >= 4:
-        # (1 - t^2)^2 leaves ends and slopes, and the middle goes to the point
-        aside = problem.difference(point, cubic[0])
-        cubic[[0, 2, 4]] += np.outer([1.0, -2.0, 1.0], aside)
-    piece, length = reparametrised(cubic)
+    # (1 - t^2)^2 leaves ends and slopes, and the middle goes to the point
+    aside = problem.difference(point, cubic[0])
+    quartic = cubic.copy()
+    quartic[[0, 2, 4]] += np.outer([1.0, -2.0, 1.0], aside)
+    piece, length = reparametrised(quartic)
     powers = WITHIN[:, None] ** np.arange(order + 1)
     residual = float(problem.gaps(powers @ piece).max())
     if not is_solution(residual):
@@ -78,16 +78,23 @@ def with_piece_between(
 
 def followed_by(one: Branch, other: Branch, shift: np.ndarray) -> Branch:
     """A branch and after it another one, moved by a ``shift`` (n,)."""
-    pieces = other.pieces.copy()
-    pieces[:, 0] += shift
+    rows = max(one.pieces.shape[1], other.pieces.shape[1])
+    before, after = _padded(one.pieces, rows), _padded(other.pieces, rows)
+    after[:, 0] += shift
     return replace(
         other,
-        pieces=np.concatenate([one.pieces, pieces]),
+        pieces=np.concatenate([before, after]),
         centers=np.concatenate([one.centers, other.centers + one.length]),
         radii=np.concatenate([one.radii, other.radii]),
         breaks=np.concatenate([one.breaks, other.breaks[1:] + one.length]),
         residuals=np.concatenate([one.residuals, other.residuals]),
     )
+
+
+def _padded(pieces: np.ndarray, rows: int) -> np.ndarray:
+    """The same polynomials (k, rows, n), with zeros for the higher coefficients."""
+    missing = rows - pieces.shape[1]
+    return np.pad(pieces, ((0, 0), (0, missing), (0, 0)))
 
 
 def joined_outcome(problem: Problem, before: Branch, after: Branch) -> Outcome:

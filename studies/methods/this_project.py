@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import TraceSettings, lowest_order, trace_branch
 from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure
 
 __all__ = ["trace"]
-
-SHORTEST = 3e-4
 
 
 def trace(
@@ -25,10 +23,9 @@ def trace(
     """`bifurc.curves.continuation.trace_branch` at one order and tolerance.
 
     An open curve is followed both ways, from bound to bound: more than the other
-    methods are asked for. The trusted radius of a low order is about ``tolerance ** (1
-    / (order - 1))``: below `SHORTEST` it is not worth a try.
+    methods are asked for.
     """
-    if tolerance ** (1 / (order - 1)) < SHORTEST:
+    if order < lowest_order(tolerance):
         raise MethodFailure("the steps of this order are too short")
     settings = TraceSettings(
         order=order, tolerance=tolerance, max_length=10 * length / problem.scale

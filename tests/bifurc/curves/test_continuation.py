@@ -258,3 +258,27 @@ def test_a_curve_that_begins_at_a_bound_has_a_break_on_either_side_of_a_piece(
     if not is_outside:
         expected = 2 * np.arccos(low)
         assert branch.length == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [-3, 0, 1, 2, 4, 31])
+def test_an_order_out_of_its_range_is_refused_with_the_range(order):
+    with pytest.raises(ProblemError) as error:
+        TraceSettings(order=order)
+    assert str(error.value) == (
+        f"order: {order} is not allowed; it must be from 5 to 30 for a tolerance of "
+        "1e-13; pieces of a lower order are too short"
+    )
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "lowest"), [(1e-2, 2), (1e-7, 3), (1e-10, 4), (1e-13, 5), (1e-14, 5)]
+)
+def test_the_lowest_order_follows_a_circle_in_some_thousand_pieces(tolerance, lowest):
+    with pytest.raises(ProblemError, match=f"from {lowest} to 30"):
+        TraceSettings(order=lowest - 1, tolerance=tolerance)
+    settings = TraceSettings(order=lowest, tolerance=tolerance)
+    circle = plane(lambda x, y: x * x + y * y - 1)
+    branch = trace_branch(circle, [0.0, 1.0], settings=settings)
+    assert branch.outcome is Outcome.CLOSED
+    assert branch.length == pytest.approx(2 * np.pi, abs=30 * tolerance)
+    assert len(branch.pieces) < 10_000

@@ -59,14 +59,9 @@ COPIES = {
 }
 
 
-@pytest.mark.parametrize("copy", COPIES)
-@pytest.mark.parametrize("name", KNOWN)
-def test_redundant_equations_change_nothing(name, copy):
-    function, bound, lengths, bifurcations = KNOWN[name]
-    atlas = explore(
-        FunctionProblem(lambda u: COPIES[copy](function(*u)), [(-bound, bound)] * 2),
-        settings=SearchSettings(starts=40),
-    )
+def check_known(name, atlas, exactness=1e-11):
+    """Asserts that an atlas is the known one, its curves to ``exactness``."""
+    function, _, lengths, bifurcations = KNOWN[name]
     traced = [form.branch.length for form in atlas.forms]
     assert traced == pytest.approx(sorted(lengths, reverse=True), abs=1e-6)
     assert not any(point.note for point in atlas.points)
@@ -76,7 +71,32 @@ def test_redundant_equations_change_nothing(name, copy):
         assert np.linalg.norm(point.point.u - place) < (1e-12 if passes == 2 else 1e-6)
         assert len(point.passes) == passes
     for form in atlas.forms:
-        assert np.abs([function(*u) for u in form.branch.sample(500)]).max() < 1e-11
+        gaps = np.abs([function(*u) for u in form.branch.sample(500)])
+        assert gaps.max() < exactness
+
+
+@pytest.mark.parametrize("copy", COPIES)
+@pytest.mark.parametrize("name", KNOWN)
+def test_redundant_equations_change_nothing(name, copy):
+    function, bound, _, _ = KNOWN[name]
+    atlas = explore(
+        FunctionProblem(lambda u: COPIES[copy](function(*u)), [(-bound, bound)] * 2),
+        settings=SearchSettings(starts=40),
+    )
+    check_known(name, atlas)
+
+
+# Orders and tolerances at the ends of what is allowed, and between.
+@pytest.mark.parametrize(("order", "tolerance"), [(6, 1e-13), (30, 1e-13), (4, 1e-9)])
+@pytest.mark.parametrize("name", [name for name in KNOWN if "triple" not in name])
+def test_pieces_of_any_order_give_the_same_atlas(name, order, tolerance):
+    function, bound, _, _ = KNOWN[name]
+    tracing = TraceSettings(order=order, tolerance=tolerance)
+    atlas = explore(
+        FunctionProblem(lambda u: [function(*u)], [(-bound, bound)] * 2),
+        settings=SearchSettings(starts=40, tracing=tracing),
+    )
+    check_known(name, atlas, exactness=30 * max(tolerance, 1e-12))
 
 
 @pytest.mark.parametrize("shift", [0.0, 1e-15, -1e-15, 4e-14, -4e-14])
