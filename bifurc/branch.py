@@ -36,6 +36,7 @@ class Outcome(Enum):
     STEP_LIMIT = (
         "step limit: the curve is longer than the allowed length; raise max_length"
     )
+    TIME_LIMIT = "time limit: the curve goes on; raise the budget"
     OPEN = (
         "closure gap: the start does not solve the equations; "
         "correct the start or the geometry"

@@ -14,6 +14,7 @@ from bifurc.curves.ends import end_of_curve, same_place
 from bifurc.curves.track import CAUTIOUS, End, Place, Track
 from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
+from bifurc.limits import Deadline
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Anchor, March, MarchSettings, MarchStatus, Problem
 
@@ -26,8 +27,9 @@ __all__ = [
     "trace_branch",
 ]
 
-# Pieces made before the end of the curve is looked for: beside a bend, and at least.
-AT_A_BEND, AT_ONCE = 14, 40
+# Pieces made before the end of the curve is looked for: beside a bend, at least, and at
+# most.
+AT_A_BEND, AT_ONCE, MOST_AT_ONCE = 14, 40, 1000
 # Times the width of the last piece: that of the first one that is tried after it.
 GROWTH = 1.5
 CLEAR = 10.0  # times the radius of least caution: from there on a bend is passed
@@ -35,6 +37,8 @@ CLEAR = 10.0  # times the radius of least caution: from there on a bend is passe
 # is taken for a sign of a crossing.
 ORDINARY = 3e-4
 HIGHEST_ORDER = 30
+# Outcomes after which a curve is not followed the other way.
+WHOLE = (Outcome.CLOSED, Outcome.OPEN, Outcome.STEP_LIMIT, Outcome.TIME_LIMIT)
 
 
 @dataclass(frozen=True)
@@ -75,6 +79,11 @@ class TraceSettings:
                 "positive and increasing",
             )
 
+    def to_tolerance(self, tolerance: float) -> TraceSettings:
+        """The same to another tolerance, of a higher order where that needs one."""
+        order = max(self.order, lowest_order(tolerance))
+        return replace(self, order=order, tolerance=tolerance)
+
 
 def lowest_order(tolerance: float) -> int:
     """The lowest order of pieces with which a curve can be followed to a ``tolerance``.
@@ -96,6 +105,7 @@ def trace_branch(
     direction: np.ndarray | None = None,
     settings: TraceSettings = DEFAULT_SETTINGS,
     closing: float = is_solution.threshold,
+    deadline: Deadline | None = None,
 ) -> Branch:
     """The whole smooth curve through ``start`` (n,), first followed to the side of
     ``direction`` (n,).
@@ -103,8 +113,9 @@ def trace_branch(
     A curve that does not close is followed both ways to its ends. Trouble is an
     `Outcome` on the branch, not an exception: a start that cannot be corrected gives a
     branch of no pieces whose ``gap`` is the residual left. The curve ends where no
-    correction across it brings the relative residual below ``closing``. Raises
-    `ProblemError` for a start or direction of the wrong shape.
+    correction across it brings the relative residual below ``closing``, and where it
+    is followed when the ``deadline`` has passed. Raises `ProblemError` for a start or
+    direction of the wrong shape.
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, TraceSettings)
@@ -114,10 +125,11 @@ def trace_branch(
         if not np.any(direction):
             raise ProblemError("direction", direction, "a vector other than zero")
     tangent = null_vector(problem, start, direction)
-    forward = follow_curve(problem, Place(start, tangent), settings, closing)
-    if forward.outcome in (Outcome.CLOSED, Outcome.OPEN, Outcome.STEP_LIMIT):
+    forward = follow_curve(problem, Place(start, tangent), settings, closing, deadline)
+    if forward.outcome in WHOLE:
         return forward
-    backward = follow_curve(problem, Place(start, -tangent), settings, closing)
+    back = Place(start, -tangent)
+    backward = follow_curve(problem, back, settings, closing, deadline)
     if not len(backward.pieces):
         return forward
     if not len(forward.pieces):
@@ -133,9 +145,10 @@ def follow_curve(
     start: Place,
     settings: TraceSettings,
     closing: float = is_solution.threshold,
+    deadline: Deadline | None = None,
 ) -> Branch:
     """The curve from ``start`` to the side of its tangent until it closes, leaves the
-    region, stalls or grows too long."""
+    region, stalls or grows too long, or the ``deadline`` has passed."""
     track = Track(start, settings.order, problem.has_crossings)
     while True:
         march = _march(problem, track, settings, closing)
@@ -147,6 +160,8 @@ def follow_curve(
         end = end_of_curve(problem, track, first, settings.tolerance)
         if end is None:
             end = _end_of_patience(problem, track, march, settings)
+        if end is None and deadline is not None and deadline.passed:
+            end = End(Outcome.TIME_LIMIT, track.reached)
         if end is not None:
             return track.branch(end, problem.periods)
 
@@ -171,12 +186,13 @@ def _march(
     problem: Problem, track: Track, settings: TraceSettings, closing: float
 ) -> March:
     """Some pieces from the front of the track on."""
+    count = min(max(AT_ONCE, len(track)), MOST_AT_ONCE)
     march_settings = MarchSettings(
         order=settings.order,
         tolerance=settings.tolerance,
         shortest=max(track.caution.shortest, settings.shortest) * problem.scale,
         longest=settings.longest * problem.stride,
-        count=AT_A_BEND if track.is_at_a_bend else max(AT_ONCE, len(track)),
+        count=AT_A_BEND if track.is_at_a_bend else count,
         closing=closing,
         length=settings.max_length * problem.reach - track.reached,
         first=GROWTH * track.last_width,
@@ -221,6 +237,7 @@ def joined_branch(before: Branch, after: Branch) -> Branch:
     second."""
     shift = before.length
     outcomes = (before.outcome, after.outcome)
+    ends = (Outcome.TIME_LIMIT, Outcome.STALLED, after.outcome)
     return replace(
         after,
         pieces=np.concatenate([before.pieces, after.pieces]),
@@ -228,5 +245,5 @@ def joined_branch(before: Branch, after: Branch) -> Branch:
         radii=np.concatenate([before.radii, after.radii]),
         breaks=np.concatenate([before.breaks, after.breaks[1:] + shift]),
         residuals=np.concatenate([before.residuals, after.residuals]),
-        outcome=Outcome.STALLED if Outcome.STALLED in outcomes else after.outcome,
+        outcome=next(end for end in ends if end in outcomes),
     )

@@ -128,9 +128,7 @@ def _known_to(problem: Problem, point: np.ndarray) -> float:
 def _leaving(problem: Problem, track: Track, first: int) -> float | None:
     """Arclength at which the curve, from piece ``first`` on, first leaves its
     region."""
-    if type(problem).excess is not Problem.excess:
-        return _leaving_by_samples(problem, track, first)
-    return _core.exit_of_bounds(
+    by_bounds = _core.exit_of_bounds(
         pieces=track.pieces,
         centers=track.centers,
         radii=track.radii,
@@ -139,11 +137,16 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
         bounds=problem.bounds,
         slack=problem.slack,
     )
+    if type(problem).excess is Problem.excess:
+        return by_bounds
+    by_samples = _leaving_by_samples(problem, track, first)
+    exits = [s for s in (by_bounds, by_samples) if s is not None]
+    return min(exits, default=None)
 
 
 def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | None:
-    """The same for a problem whose class says in a way of its own what lies outside, by
-    `Problem.excess`."""
+    """The same for a problem whose class says in a way of its own, by `Problem.excess`,
+    what besides lies outside."""
     if not problem.has_rim:
         return None
     breaks = track.breaks(track.reached)[first:]

@@ -28,6 +28,7 @@ from bifurc.decisions import (
     is_stretch_short,
     nearly_closes,
 )
+from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.numerics.roots import bracketed_roots
@@ -57,6 +58,7 @@ ROUNDS = 30  # of Newton's method for a place where the misclosure passes zero
 # Rounds in which the place on a bridge is looked for where most is singular, and the
 # places that are looked at in each.
 NARROWINGS, LOOKS = 5, 33
+UNFINISHED = (Outcome.STALLED, Outcome.STEP_LIMIT, Outcome.TIME_LIMIT)
 LOCATED = 1e-9  # over the scale: error of the places where the misclosure is extreme
 
 
@@ -94,7 +96,7 @@ class NearMotionTrace:
     @property
     def has_loose_end(self) -> bool:
         """Whether it stops where it neither closes nor misses too much."""
-        return self.branch.outcome in (Outcome.STALLED, Outcome.STEP_LIMIT)
+        return self.branch.outcome in UNFINISHED
 
     def runs_through(self, problem: Problem, points: np.ndarray) -> np.ndarray:
         """Which of the points (k, n) lie on it, as far as it is known there."""
@@ -120,22 +122,22 @@ def bridges_of(branch: Branch, tolerance: float) -> np.ndarray:
 
 
 def trace_near_motion(
-    problem: Problem, start: np.ndarray, settings: TraceSettings
+    problem: Problem,
+    start: np.ndarray,
+    settings: TraceSettings,
+    deadline: Deadline | None = None,
 ) -> NearMotionTrace | None:
-    """The near motion through a point (n,) at which the system is nearly solved; None
-    where no curve is followed."""
+    """The near motion through a point (n,) at which the system is nearly solved, as far
+    as it is followed before the ``deadline``; None where no curve is followed."""
     valley = ValleyProblem(problem)
     places = np.array([start, *_beside(problem, start)])
     # where the system happens to be solved the residual does not show what is missed
     missed = float(misclosures(problem, places).max())
     tolerance = min(max(PRECISION * missed, FINEST), COARSEST)
-    settings = replace(
-        settings,
-        tolerance=tolerance,
-        max_length=min(settings.max_length, LONGEST),
-    )
+    max_length = min(settings.max_length, LONGEST)
+    settings = replace(settings.to_tolerance(tolerance), max_length=max_length)
     place = _clearest(valley, places, missed)
-    branch = trace_branch(valley, place, None, settings)
+    branch = trace_branch(valley, place, None, settings, deadline=deadline)
     if not len(branch.pieces) or is_same_point(branch.length, problem.scale):
         return None  # it leaves the region where it begins
     course = _course(valley, branch, settings.tolerance)

@@ -15,7 +15,7 @@ from bifurc.curves.certificate import (
     certify_branch,
     is_certifiable,
 )
-from bifurc.curves.continuation import TraceSettings, lowest_order
+from bifurc.curves.continuation import TraceSettings
 from bifurc.curves.jumps import changes_of_course, kinks, repeats_itself
 from bifurc.curves.monitor import Profile
 from bifurc.numerics.blur import known_to
@@ -99,8 +99,7 @@ def finer_settings(settings: TraceSettings) -> Iterator[TraceSettings]:
     """With what a branch is traced again that has no certificate, in turn."""
     longest = min(LONGEST, settings.longest)
     shortest = max(SHORTEST, settings.shortest)
-    order = max(settings.order, lowest_order(FINEST))
-    finest = replace(settings, order=order, tolerance=FINEST)
+    finest = settings.to_tolerance(FINEST)
     yield replace(finest, longest=longest)
     if shortest < longest:
         yield replace(finest, shortest=shortest)

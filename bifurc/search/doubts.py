@@ -170,7 +170,7 @@ def _doubts_of_form(
             f"form {index + 1} is known as far as it was followed: there are no bounds "
             f"on {', '.join(names)}"
         )
-    if branch.outcome is Outcome.STEP_LIMIT:
+    if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
         doubts.append(f"form {index + 1} is longer than it was traced")
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}

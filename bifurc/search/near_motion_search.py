@@ -38,7 +38,8 @@ class NearMotionSearch:
             return number
         if self.findings.is_on_short_stretch(point):
             return None
-        near = trace_near_motion(self.problem, point, self.run.settings.tracing)
+        tracing, deadline = self.run.settings.tracing, self.run.deadline
+        near = trace_near_motion(self.problem, point, tracing, deadline)
         if near is None or closes_to_rounding(near.misclosure):
             return None  # nothing, or a form runs there
         near = replace(near, branch=canonical_course(self.problem, near.branch))

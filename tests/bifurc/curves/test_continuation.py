@@ -7,6 +7,7 @@ from bifurc.branch import Outcome
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
+from bifurc.limits import Deadline
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from tests.bifurc.near_surfaces import CirclesBesideSphere
@@ -258,6 +259,15 @@ def test_a_curve_that_begins_at_a_bound_has_a_break_on_either_side_of_a_piece(
     if not is_outside:
         expected = 2 * np.arccos(low)
         assert branch.length == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_curve_is_followed_no_farther_once_its_time_is_over():
+    wave = plane(lambda x, y: y - 0.1 * np.sin(30 * x), -20.0, 20.0)
+    branch = trace_branch(wave, [0.0, 0.0], deadline=Deadline(0.0))
+    assert branch.outcome is Outcome.TIME_LIMIT
+    # the pieces that are made at once, to one side
+    assert 0 < len(branch.pieces) <= 40
+    assert branch.max_residual < 1e-12
 
 
 @pytest.mark.parametrize("order", [-3, 0, 1, 2, 4, 31])

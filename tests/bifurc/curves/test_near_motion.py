@@ -113,8 +113,8 @@ def test_a_near_motion_needs_no_bridge_where_forms_crossed(monkeypatch):
 
 
 def test_a_near_motion_that_passes_stretches_twice_is_said_to(monkeypatch):
-    def twice_round(problem, start, direction, settings):
-        branch = trace_branch(problem, start, direction, settings)
+    def twice_round(*arguments, **others):
+        branch = trace_branch(*arguments, **others)
         pieces = len(branch.pieces)
         return replace(
             branch,
@@ -172,3 +172,23 @@ def test_a_single_unknown_that_nearly_closes_everywhere_is_a_near_motion():
     almost = FunctionProblem(lambda u: np.array([1e-9 + 0.0 * u[0]]), [(0.0, 1.0)])
     atlas = explore(almost)
     assert len(atlas.near_motions) == 1
+
+
+def test_a_near_motion_is_followed_with_pieces_of_the_order_that_it_needs():
+    # the tolerance is that of the misclosure, for which order 3 is too low
+    settings = TraceSettings(order=3, tolerance=1e-7)
+    near = trace_near_motion(circle_missed(1e-6), np.array([0.6, 0.8]), settings)
+    assert near.is_closed
+    assert near.branch.pieces.shape[1] == 5
+
+
+@pytest.mark.parametrize("height", [1e-2, 1e-6])
+def test_a_near_motion_ends_where_it_bulges_out_of_the_bounds(height):
+    problem = FunctionProblem(
+        lambda u: np.array([u @ u - 1.0, u @ u - 1.0 + 1e-6 * u[0]]),
+        [[-2, 2], [-2, 1 - height]],
+    )
+    near = trace_near_motion(problem, np.array([0.6, -0.8]), SETTINGS)
+    assert not near.is_closed
+    ends = near.branch(np.array([0.0, near.length]))
+    assert ends[:, 1] == pytest.approx([1 - height] * 2, abs=1e-9)

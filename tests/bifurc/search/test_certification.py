@@ -65,7 +65,7 @@ def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
     assert atlas.completeness.level is Level.PROVED
 
 
-def jumping_branch(problem, start, direction, settings, closing):
+def jumping_branch(problem, start, direction, settings, closing, *_):
     """A curve that runs along the axes instead of the hyperbola between them."""
     if settings.tolerance == SETTINGS.tracing.tolerance:
         return polyline([(1.0, 0.0), (-1.0, 0.0)])
