@@ -137,4 +137,5 @@ def test_a_curve_that_bulges_out_of_its_bounds_is_two_forms(height: float) -> No
         assert len(atlas.forms) == 2
         assert atlas.completeness.level.value == "proved"
         inner = min(np.abs(form.branch.sample(2)[:, 0]).min() for form in atlas.forms)
-        assert inner == pytest.approx(math.sqrt(height), rel=1e-6)
+        side = math.sqrt(height)
+        assert inner == pytest.approx(side, abs=1e-12 / side)
