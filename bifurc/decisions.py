@@ -1059,8 +1059,9 @@ jumps_at_turning = Decision(
     "its rate on a piece over what the rates of that piece and its neighbours differ by "
     "where they meet",
     3.0,
-    "pieces are as exact elsewhere as where they meet, or more; where an unknown turns "
-    "back its rate passes what they differ by, 1e-13 to 1e-9, to both sides",
+    "pieces are as exact elsewhere as where they meet, or more; they differ by 4e-14 to "
+    "1.5e-9 of the largest rate over the catalogue, and the rate passes that to both "
+    "sides where an unknown turns back",
     third_answer="as for an unknown at rest",
 )
 is_drawn_to_point = Decision(

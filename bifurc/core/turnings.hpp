@@ -49,15 +49,19 @@ public:
         const std::vector<Knot> knots = curve_.is_closed() ? knots_round_about() : knots_along();
         std::vector<Turning> found;
         Gap gap;
+        const auto close = [&] {
+            if (const std::optional<Turning> one = turning_in(gap)) found.push_back(*one);
+        };
         for (const Knot& knot : knots) {
             if (knot.sign == 0.0) {
                 gap.add(knot);
                 continue;
             }
-            add_turning({gap.before, gap.first_hidden, gap.last_hidden, knot}, found);
+            gap.after = knot;
+            close();
             gap = {knot, {}, {}, {}};
         }
-        add_turning(gap, found);
+        close();
         std::sort(found.begin(), found.end(), [](const Turning& one, const Turning& other) { return one.s < other.s; });
         return found;
     }
@@ -137,18 +141,23 @@ private:
         return knots;
     }
 
-    // What the unknown does in a gap, if it turns back there or the curve ends.
-    void add_turning(const Gap& gap, std::vector<Turning>& found) const {
-        if (!gap.before && !gap.after) return;
-        const double before = gap.before ? gap.before->sign : 0.0, after = gap.after ? gap.after->sign : 0.0;
-        const bool is_at_an_end = gap.first_hidden && before * after == 0.0;
-        if (!is_at_an_end && !(before * after < 0.0)) return;
-        double s = before == 0.0 ? 0.0 : curve_.total();
-        if (!is_at_an_end) s = root(gap.before->s, gap.after->s);
-        const double low = gap.before ? edge(*gap.before, is_at_an_end ? gap.first_hidden->s : s) : s;
-        const double high = gap.after ? edge(*gap.after, is_at_an_end ? gap.last_hidden->s : s) : s;
-        const double turns = curve_.is_closed() && s >= curve_.total() ? curve_.total() : 0.0;
-        found.push_back({s - turns, low - turns, high - turns, before, after});
+    // What the unknown does in a gap, if it turns back there or is at rest where the curve ends.
+    std::optional<Turning> turning_in(const Gap& gap) const {
+        if (gap.before && gap.after) {
+            if (gap.before->sign == gap.after->sign) return {};
+            return turning_between(*gap.before, *gap.after);
+        }
+        if (!gap.first_hidden) return {};
+        if (gap.after) return Turning{0.0, 0.0, edge(*gap.after, gap.last_hidden->s), 0.0, gap.after->sign};
+        if (!gap.before) return {};
+        const double end = curve_.total();
+        return Turning{end, edge(*gap.before, gap.first_hidden->s), end, gap.before->sign, 0.0};
+    }
+
+    Turning turning_between(const Knot& before, const Knot& after) const {
+        const double s = root(before.s, after.s);
+        const double turn = curve_.is_closed() && s >= curve_.total() ? curve_.total() : 0.0;
+        return {s - turn, edge(before, s) - turn, edge(after, s) - turn, before.sign, after.sign};
     }
 
     double root(double low, double high) const {
