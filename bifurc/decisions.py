@@ -856,6 +856,15 @@ is_passed = Decision(
     third_answer="an arc that is not handed over there is looked at like any other, and "
     "in the end said to be not certified",
 )
+may_pass_beside = Decision(
+    "pass beside a singular point",
+    "a branch that comes nearest to a singular point within its error may pass it",
+    "smallest regular singular value on the branch there",
+    1e-5,
+    "where rounding hides the place of a point it is 2e-6 and less on its branches, "
+    "and 1e-3 on another one",
+    third_answer="the point has a note: other half-branches were traced than seen",
+)
 is_stub = Decision(
     "form or stub",
     "what stalls at both ends is the trace of rounding beside a singular point",

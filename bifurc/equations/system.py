@@ -216,12 +216,14 @@ class ScaledTape:
         that of the problem; 1 at most.
 
         F may be far smaller beside its solutions than elsewhere within the bounds.
-        Rounding is measured there; where none are known, about the ``start`` (n,). At
-        some solutions it happens to be nothing: a little way off it is not.
+        Rounding is measured there, and about the ``start`` (n,), where it may be far
+        more than at the median of them: a march that takes it for less stops. At some
+        solutions it happens to be nothing: a little way off it is not.
         """
-        if len(self._solutions):
-            return self._share_at_solutions
-        return self._share_about(np.tile(start, (self._sample_count, 1)))
+        at_start = self._share_about(np.tile(start, (self._sample_count, 1)))
+        if not len(self._solutions):
+            return at_start
+        return max(self._share_at_solutions, at_start)
 
     @property
     def _sample_count(self) -> int:

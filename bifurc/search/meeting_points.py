@@ -10,7 +10,8 @@ import numpy as np
 
 from bifurc.atlas import MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
-from bifurc.decisions import is_same_line, is_same_point
+from bifurc.decisions import is_same_line, is_same_point, may_pass_beside
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_points
 from bifurc.search.components import surfaces_through
@@ -195,7 +196,10 @@ def _passes_at(
     """Arclengths at which a branch passes a point, but for the ``ends`` that lie
     there."""
     within = is_same_point.threshold * problem.scale + 2 * point.error
-    passes = _distinct([float(s) for s in branch.passes(point.u, within)], 2 * within)
+    near = [float(s) for s in branch.passes(point.u, within)]
+    passes = _distinct(
+        [s for s in near if _may_pass(problem, branch(s), point)], 2 * within
+    )
     if branch.outcome is not Outcome.STALLED:
         return passes
     for end in (0.0, branch.length):
@@ -206,3 +210,17 @@ def _passes_at(
             length = max(length, 2 * (gap + within))
         passes = [s for s in passes if abs(s - end) > length]
     return passes
+
+
+def _may_pass(problem: Problem, place: np.ndarray, point: SingularPoint) -> bool:
+    """Whether a branch that comes nearest to a point at a ``place`` (n,) may pass it: it
+    does so there, or rounding hides that it does not.
+
+    A point is known to a large error only where F' is singular to within rounding all
+    about it; a branch along which F' is regular is another one.
+    """
+    distance = float(np.linalg.norm(problem.difference(place, point.u)))
+    if is_same_point(distance, problem.scale):
+        return True
+    values = singular_values(problem, place[None])[0]
+    return bool(may_pass_beside(float(values[problem.n - 2])))

@@ -45,6 +45,7 @@ SPARE = 60  # digits worked to, beside those that differences cost
 ANGLE = 1.0  # rad: between the null vectors and the axes, so that no tangent is one
 RADII = 10.0 ** np.arange(-14, 0, 0.25)  # of circles in which roots are counted
 ROOT_STEPS = 6  # of Newton's method for their common place
+FARTHEST_MEAN = 0.5  # from the place in doubles, in units of the germ, is their mean
 SETTLING = 4  # steps for a power series beyond its degree
 FARTHEST = 4.0  # errors of the point in doubles, and at least this share of the scale:
 NEAREST = 0.02  # no farther away is the place
@@ -369,6 +370,8 @@ def _settled_as(
             unit = _own_unit(terms, multiplicity.order)
             straight = _straightened(terms, unit, multiplicity.order)
             x = _root(straight.terms, multiplicity)
+            if x is None:
+                return None
             shift = mpmath.matrix([x, mpmath.polyval(straight.bend[::-1], x)])
             if mpmath.norm(shift) > 1:
                 return None
@@ -411,7 +414,7 @@ def _multiplicities(terms: Terms) -> list[_Multiplicity]:
         straight = _straightened(terms, unit, order)
         for row in range(order - 1):
             series = [straight.terms[i, row] for i in range(DEGREE + 1 - row)]
-            powers = _roots_together(series)
+            powers = _counts_of_roots(series)
             candidates += [_Multiplicity(order, row, power) for power in powers]
             if powers:
                 break
@@ -435,18 +438,55 @@ def _roots_together(series: list[mpmath.mpf]) -> list[int]:
     return counts
 
 
-def _root(terms: Terms, multiplicity: _Multiplicity) -> mpmath.mpf:
-    """The root next to 0 of the derivative of a coefficient, at which all roots of it
-    come together."""
-    row, power = multiplicity.row, multiplicity.power
-    series = [terms[i, row] for i in range(DEGREE + 1 - row)]
+def _counts_of_roots(series: list[mpmath.mpf]) -> list[int]:
+    """The numbers of roots, with multiplicities, of a polynomial that lie together next
+    to 0: about 0 itself, or else about their own mean.
+
+    Where rounding leaves the place open by a tenth of the distance to the next roots, a
+    circle about 0 that holds eight of them is not clear of these.
+    """
+    counts = _roots_together(series)
+    for power in range(2, len(series) - 1):
+        if power in counts or not any(series[power + 1 :]):
+            continue
+        center = _mean_of_roots(series, power)
+        if center is None or abs(center) > FARTHEST_MEAN:
+            continue
+        if power in _roots_together(_moved(series, center)):
+            counts.append(power)
+    return counts
+
+
+def _moved(series: list[mpmath.mpf], center: mpmath.mpf) -> list[mpmath.mpf]:
+    """The polynomial of the distance from a ``center``, by Horner's scheme."""
+    moved = list(series)
+    for level in range(len(moved)):
+        for k in range(len(moved) - 2, level - 1, -1):
+            moved[k] += center * moved[k + 1]
+    return moved
+
+
+def _mean_of_roots(series: list[mpmath.mpf], power: int) -> mpmath.mpf | None:
+    """The root next to 0 of the derivative of a polynomial of order ``power`` - 1, which
+    is where as many roots are if they are one; None where Newton's method finds none."""
     for _ in range(power - 1):
         series = [k * value for k, value in enumerate(series)][1:]
     rates = [k * value for k, value in enumerate(series)][1:]
     root = mpmath.mpf(0)
     for _ in range(ROOT_STEPS):
-        root -= mpmath.polyval(series[::-1], root) / mpmath.polyval(rates[::-1], root)
+        rate = mpmath.polyval(rates[::-1], root)
+        if not rate:
+            return None
+        root -= mpmath.polyval(series[::-1], root) / rate
     return root
+
+
+def _root(terms: Terms, multiplicity: _Multiplicity) -> mpmath.mpf | None:
+    """The root next to 0 of the derivative of a coefficient, at which all roots of it
+    come together; None where there is none."""
+    row, power = multiplicity.row, multiplicity.power
+    series = [terms[i, row] for i in range(DEGREE + 1 - row)]
+    return _mean_of_roots(series, power)
 
 
 def _straightened(terms: Terms, unit: mpmath.mpf, order: int) -> _Straightened:

@@ -31,7 +31,7 @@ __all__ = [
 
 # Places on the half-branches at which F' is looked at, in the unit of the germ and in
 # scales: from the first on every next one twice as far away, up to the last.
-FIRST, LAST = 1e-4, 0.3
+FIRST, LAST = 1e-4, 0.6
 STARTS = (1e-3, 1e-2)  # shares of the way to the end, from which nodes are reached
 NODES = (32, 64, 128)  # on a branch, the first number that is enough
 TAIL = 6  # coefficients of a series that has converged, which are

@@ -108,3 +108,16 @@ def test_a_curve_is_exact_where_the_equations_are_far_larger_elsewhere(tolerance
     points = branch.sample(300)
     # rounding over the magnitude, which is 1e5, would be 1e-10
     assert np.abs(case.problem.residuals(points)).max() < 2 * tolerance + 5e-12
+
+
+def test_a_curve_starts_where_rounding_is_far_more_than_at_most_solutions():
+    flat = FunctionProblem(
+        lambda u: [(u[1] ** 2 - u[0] ** 8) * (u[1] - 0.05)], [(-1, 1)] * 2
+    )
+    places = np.linspace(0.85, 0.999, 40)
+    tangent = np.array([1.0, 4.0]) / np.sqrt(17.0)
+    settings = MarchSettings(16, 1e-13, 1e-9, 2.0, 1, closing=1e-12)
+    for x in places:
+        march = flat.march(np.array([x, x**4]), tangent, settings)
+        assert len(march.pieces) == 1
+        assert march.radii[0] > 0.05

@@ -59,3 +59,14 @@ def test_an_equation_without_a_singular_point_has_no_germ():
 def test_nothing_is_said_of_more_than_one_equation_on_the_null_space():
     problem = FunctionProblem(lambda u: np.array([u[0] * u[1]] * 2), BOX)
     assert germ_at(problem, LocatedPoint(np.zeros(2), np.eye(2), 1e-5)) is None
+
+
+def test_a_germ_is_found_from_a_place_that_is_far_off_beside_another_curve():
+    problem = FunctionProblem(
+        lambda u: np.array([(u[1] ** 2 - u[0] ** 8) * (u[1] - 0.05)]), [[-1, 1]] * 2
+    )
+    located = LocatedPoint(np.array([2.3e-3, 0.0]), np.eye(2), 0.025)
+    germ = germ_at(problem, located)
+    assert len(germ.directions) == 4
+    assert np.abs(germ.u).max() < 1e-30
+    assert germ.invariants.contacts == (4,)
