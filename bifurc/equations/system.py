@@ -44,6 +44,7 @@ PROJECTION_STEPS = 80
 SPHERE_STEPS = 25
 ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
 SAMPLES, BESIDE = 20, 0.3  # places at which it is measured, so far, over the scale, off
+NEXT_TO = 1e-3  # the same where it is measured at one place
 # the same for many equations, whose roundings make a mean of their own, by the unknowns
 FEWEST_SAMPLES, SAMPLED = 4, 200
 SOLVED = 1e-9  # residual of a solution
@@ -158,9 +159,28 @@ class ScaledTape:
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
-        """Taylor pieces of the curve from ``start`` (n,) along ``tangent`` (n,)."""
-        unit = self._unit
+        """Taylor pieces of the curve from ``start`` (n,) along ``tangent`` (n,).
+
+        Rounding is taken to be that at most solutions. Where no piece comes of it and
+        it is more at the start, it is taken to be that.
+        """
         share = self._share_of_magnitude(start)
+        march = self._march_above(share, start, tangent, settings)
+        if march.status is MarchStatus.STALLED and not len(march.pieces):
+            larger = self._share_next_to(start)
+            if larger > share:
+                march = self._march_above(larger, start, tangent, settings)
+        return march
+
+    def _march_above(
+        self,
+        share: float,
+        start: np.ndarray,
+        tangent: np.ndarray,
+        settings: MarchSettings,
+    ) -> March:
+        """The same, rounding being what it is to a ``share`` of the magnitude."""
+        unit = self._unit
         anchor, within = np.empty((0, self.tape.n)), 0.0
         if settings.anchor is not None:
             place, heading, within = settings.anchor
@@ -216,14 +236,16 @@ class ScaledTape:
         that of the problem; 1 at most.
 
         F may be far smaller beside its solutions than elsewhere within the bounds.
-        Rounding is measured there, and about the ``start`` (n,), where it may be far
-        more than at the median of them: a march that takes it for less stops. At some
-        solutions it happens to be nothing: a little way off it is not.
+        Rounding is measured there; where none are known, about the ``start`` (n,). At
+        some solutions it happens to be nothing: a little way off it is not.
         """
-        at_start = self._share_about(np.tile(start, (self._sample_count, 1)))
-        if not len(self._solutions):
-            return at_start
-        return max(self._share_at_solutions, at_start)
+        if len(self._solutions):
+            return self._share_at_solutions
+        return self._share_about(np.tile(start, (self._sample_count, 1)), BESIDE)
+
+    def _share_next_to(self, start: np.ndarray) -> float:
+        """That share, as it is at a ``start`` (n,) and hardly off it."""
+        return self._share_about(np.tile(start, (self._sample_count, 1)), NEXT_TO)
 
     @property
     def _sample_count(self) -> int:
@@ -233,12 +255,12 @@ class ScaledTape:
     @cached_property
     def _share_at_solutions(self) -> float:
         """That share, as it is at the known solutions."""
-        return self._share_about(self._solutions)
+        return self._share_about(self._solutions, BESIDE)
 
-    def _share_about(self, centers: np.ndarray) -> float:
-        """That share, as it is about points (k, n)."""
+    def _share_about(self, centers: np.ndarray, off: float) -> float:
+        """That share, as it is about points (k, n), so far ``off`` them in scales."""
         rng = np.random.default_rng(0)
-        points = centers + BESIDE * self._scale * rng.normal(size=centers.shape)
+        points = centers + off * self._scale * rng.normal(size=centers.shape)
         lowest, highest = self.tape.compiled.value_bounds(points, points)
         widths = np.linalg.norm(highest - lowest, axis=1)
         widths = widths[np.isfinite(widths) & (widths > 0.0)]

@@ -9,7 +9,12 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.misclosure import largest_misclosure
-from bifurc.decisions import is_lost_in_rounding, is_same_point, is_solution
+from bifurc.decisions import (
+    is_lost_in_rounding,
+    is_precise_enough,
+    is_same_point,
+    is_solution,
+)
 from bifurc.numerics.singular_values import singular_values
 from bifurc.search.branch_examination import BranchExaminer
 from bifurc.search.findings import TracedBranch
@@ -26,6 +31,10 @@ log = logging.getLogger(__name__)
 PLACES = (np.arange(8) + 0.5) / 8  # of every piece, at which branches are compared
 SAME_LENGTH = 0.02  # of a stretch: by which two ways to measure it differ
 LENGTH_LOOKS = 200  # on a local branch, for its length
+# Shares of the way to the end of half a local branch, at which a branch is held against
+# it; where it ends at the point it may stall before.
+SHARES = np.geomspace(2e-3, 1.0, 24)
+BEFORE_CUSP = 0.1
 
 
 class _Pass(NamedTuple):
@@ -88,7 +97,7 @@ class GermMender:
         if any(self.findings.traced[number].is_refused for number in passed):
             return False
         return all(
-            self._follows(branch, *(passing[half][0] for half in branch.halves))
+            self._follows(germ, branch, *(passing[half][0] for half in branch.halves))
             for branch in germ.neighbourhood.branches
         )
 
@@ -101,8 +110,15 @@ class GermMender:
             for s in branch.passes(place, within)
         ]
 
-    def _follows(self, local: LocalBranch, one: _Pass, other: _Pass) -> bool:
-        """Whether the branches that pass the ends of a local branch go along it."""
+    def _follows(
+        self, germ: Germ, local: LocalBranch, one: _Pass, other: _Pass
+    ) -> bool:
+        """Whether the branches that pass the ends of a local branch of a germ go along
+        it."""
+        if not self._runs_along(germ, local, 1.0, one):
+            return False
+        if not self._runs_along(germ, local, -1.0, other):
+            return False
         lengths = [_length(local, side) for side in (1.0, -1.0)]
         if local.returns:
             passes = zip((one, other), lengths, strict=True)
@@ -114,6 +130,19 @@ class GermMender:
         if branch.closed:
             way = min(way, branch.length - way)
         return abs(way - sum(lengths)) < SAME_LENGTH * sum(lengths)
+
+    def _runs_along(
+        self, germ: Germ, local: LocalBranch, side: float, at: _Pass
+    ) -> bool:
+        """Whether a branch is, to the digits that doubles know elsewhere, half a local
+        branch, after the pass at its end.
+
+        F is so flat beside the point that rounding leaves more open.
+        """
+        shares = SHARES[SHARES > BEFORE_CUSP] if local.returns else SHARES
+        places = germ.u + local(side * shares)
+        distances, _ = self.findings.branches[at.branch].nearest(places)
+        return bool(np.all(is_precise_enough(distances, self.problem.scale)))
 
     def _ends_after(self, at: _Pass, length: float) -> bool:
         """Whether a branch ends after a pass and about so long a way."""

@@ -42,7 +42,11 @@ DEGREE = 13  # of the Taylor polynomial
 # found, and of that on which it is judged.
 ROUNDS, LAST = (12, 24, 48), 60
 SPARE = 60  # digits worked to, beside those that differences cost
+SPARE_OF_POINT = 10  # digits of these that a point is not solved to
 ANGLE = 1.0  # rad: between the null vectors and the axes, so that no tangent is one
+# Directions of y that are looked at, and the mean sine of the angle to the tangents over
+# that of the best of them, from which on the branches are not steep.
+TURNS, STEEP = 24, 0.8
 RADII = 10.0 ** np.arange(-14, 0, 0.25)  # of circles in which roots are counted
 ROOT_STEPS = 6  # of Newton's method for their common place
 FARTHEST_MEAN = 0.5  # from the place in doubles, in units of the germ, is their mean
@@ -159,25 +163,30 @@ class _Reduction:
     def __init__(
         self, problem: Problem, located: LocatedPoint, residual: PreciseResidual
     ):
-        turn = np.array(
-            [[np.cos(ANGLE), -np.sin(ANGLE)], [np.sin(ANGLE), np.cos(ANGLE)]]
-        )
-        self.null_space = located.null_space @ turn
+        self.null_space = located.null_space
+        self.turn(ANGLE)
         jacobian = problem.relative_jacobians(located.u[None])[0]
         left, _, right = np.linalg.svd(jacobian)
         rank = problem.n - 2
         self._scale = mpmath.mpf(problem.scale)
         self._magnitude = mpmath.mpf(problem.magnitude * problem.scale)
         self._residual = residual
-        self._axes = _matrix(self.null_space)
         self._across = _matrix(right[:rank].T)  # (n, rank)
         self._solved = _matrix(left[:, :rank].T)  # (rank, m)
-        self._left_over = _matrix(left[:, rank:].T)  # (1, m)
+        self._left_over = list(_matrix(left[:, rank:]))  # m
         self._u = _matrix(located.u[:, None])
 
     def place(self) -> np.ndarray:
         """Where the point is (n,), as far as it has been moved."""
         return np.array([float(value) for value in self._u])
+
+    def turn(self, angle: float) -> None:
+        """Turn the axes by an ``angle`` (rad)."""
+        turn = np.array(
+            [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        )
+        self.null_space = self.null_space @ turn
+        self._axes = _matrix(self.null_space)
 
     def distance_from(self, point: np.ndarray) -> float:
         """How far the place is from a point (n,)."""
@@ -230,31 +239,32 @@ class _Reduction:
         if not self._across.cols:
             return
         derivatives = Differences(self._residual, step * self._scale)
-        jacobian = derivatives.jacobian(self._u) * (self._scale / self._magnitude)
-        self._inverse = mpmath.inverse(self._solved * jacobian * self._across)
-        self._least = mpmath.mpf(10) ** -mpmath.mp.dps * 10**10
+        jacobian = derivatives.jacobian(self._u) / self._magnitude
+        inverse = mpmath.inverse(self._solved * jacobian * self._across)
+        solver = self._across * inverse * self._solved / self._magnitude
+        self._solver = solver.tolist()  # (n, m)
+        self._least = self._scale * mpmath.mpf(10) ** (SPARE_OF_POINT - mpmath.mp.dps)
 
     def _point(self, shift: mpmath.matrix) -> mpmath.matrix:
         """The point (n, 1) above a place (2, 1) on the axes that solves the equations
         across the null space."""
-        point = self._u + self._scale * (self._axes * shift)
+        start = self._u + self._scale * (self._axes * shift)
         if not self._across.cols:
-            return point
+            return start
+        point = list(start)
         for _ in range(mpmath.mp.dps):
-            step = self._inverse * (self._solved * self._over_magnitude(point))
-            point = point - self._scale * (self._across * step)
-            if mpmath.norm(step) < self._least:
+            values = self._residual(point)
+            # lists of numbers: matrices of mpmath take several times as long
+            step = [mpmath.fdot(row, values) for row in self._solver]
+            point = [u - du for u, du in zip(point, step, strict=True)]
+            if max(abs(du) for du in step) < self._least:
                 break
-        return point
+        return mpmath.matrix(point)
 
     def _value(self, shift: mpmath.matrix) -> mpmath.mpf:
         """f at a place (2, 1) on the axes."""
-        values = self._over_magnitude(self._point(shift))
-        return (self._left_over * values)[0]
-
-    def _over_magnitude(self, point: mpmath.matrix) -> mpmath.matrix:
-        """F (m, 1) over magnitude and scale."""
-        return mpmath.matrix(list(self._residual(list(point)))) / self._magnitude
+        values = self._residual(list(self._point(shift)))
+        return mpmath.fdot(self._left_over, values) / self._magnitude
 
 
 def _matrix(values: np.ndarray) -> mpmath.matrix:
@@ -350,6 +360,10 @@ def _settled_terms(
     moved; None where there is none."""
     reach = max(FARTHEST * located.error, NEAREST * problem.scale)
     terms = reduction.taylor(ROUNDS[0])
+    angle = _turn_off_tangents(terms)
+    if angle:
+        reduction.turn(angle)
+        terms = reduction.taylor(ROUNDS[0])
     with mpmath.workdps(LAST + SPARE):
         multiplicities = _multiplicities(terms)
     for multiplicity in multiplicities:
@@ -358,6 +372,27 @@ def _settled_terms(
         if straight is not None and reduction.distance_from(located.u) < reach:
             return straight
     return None
+
+
+def _turn_off_tangents(terms: Terms) -> float:
+    """The angle (rad) by which to turn the axes, so that no branch leaves near that of
+    y, about which it would be steep; 0 where none does.
+
+    The terms of least degree are the product of the distances from the tangents.
+    """
+    orders = _roots_together([terms[0, j] for j in range(DEGREE + 1)])
+    order = next((order for order in orders if order >= 2), None)
+    if order is None:
+        return 0.0
+    leading = np.array([float(terms[order - j, j]) for j in range(order + 1)])
+    angles = np.linspace(0.0, np.pi, TURNS, endpoint=False)
+    along_x, along_y = -np.sin(angles), np.cos(angles)
+    powers = np.arange(order + 1)[:, None]
+    sizes = np.abs(leading @ (along_x ** (order - powers) * along_y**powers))
+    best = int(np.argmax(sizes))
+    if sizes[0] >= STEEP**order * sizes[best]:
+        return 0.0
+    return float(angles[best])
 
 
 def _settled_as(

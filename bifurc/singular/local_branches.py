@@ -36,6 +36,7 @@ STARTS = (1e-3, 1e-2)  # shares of the way to the end, from which nodes are reac
 NODES = (32, 64, 128)  # on a branch, the first number that is enough
 TAIL = 6  # coefficients of a series that has converged, which are
 NEGLIGIBLE, HOPELESS = 1e-13, 1e-2  # beside its size; and those of one that will not
+SLOW = 0.1  # of the tail that half as many nodes leave: a smooth branch leaves far less
 NEWTON_STEPS, SETTLED = 40, 1e-40
 STEP = 1e-45  # of the difference for a derivative
 PREDICT_FROM = 4  # values before
@@ -233,6 +234,7 @@ def _local_branch(
     series does not converge."""
     first, second = (halves[number] for number in pair)
     power = first.ramification
+    before = np.inf
     for count in NODES:
         nodes = chebyshev.chebpts1(count)  # an even number: 0 is none of them
         ahead = _offsets(equation, first, nodes[nodes > 0], width)
@@ -243,8 +245,9 @@ def _local_branch(
         tail = float(np.abs(series[-TAIL:]).max())
         if tail < NEGLIGIBLE * size:
             return LocalBranch(pair, power, series)
-        if tail > HOPELESS * size:
+        if tail > HOPELESS * size or tail > SLOW * before:
             break  # it is not smooth so far, and more nodes are of no use
+        before = tail
     return None
 
 

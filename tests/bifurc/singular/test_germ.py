@@ -70,3 +70,13 @@ def test_a_germ_is_found_from_a_place_that_is_far_off_beside_another_curve():
     assert len(germ.directions) == 4
     assert np.abs(germ.u).max() < 1e-30
     assert germ.invariants.contacts == (4,)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.57, 1.1])
+def test_a_germ_does_not_hang_on_the_axes_of_the_null_space(angle):
+    problem = FunctionProblem(lambda u: np.array([u[0] ** 3 - u[1] ** 4]), BOX)
+    axes = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    germ = germ_at(problem, LocatedPoint(np.array([1e-6, -1e-6]), axes, 1e-5))
+    assert germ.is_through
+    assert np.abs(germ.directions[:, 0]).max() < 1e-12
+    assert germ.radius > 0.01  # so that its branches are known beside it
