@@ -613,6 +613,10 @@ class Search:
             is_changed = (*findings.traced, *findings.points) != known
             if self.run.is_over or not is_changed:
                 break
+            # what is new has not been through the steps before
+            self.separate_points()
+            self.join_branches()
+            self.mend_at_germs()
         for number, s in self._divided(0).refuted:
             findings.traced[number] = refuted_at(findings.traced[number], s)
 

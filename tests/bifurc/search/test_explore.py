@@ -442,3 +442,20 @@ def test_two_flat_points_are_both_found_or_one_is_said_to_be_open():
     assert found == {-1, 1} or "there may be more solutions" in (
         atlas.completeness.statement
     )
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_crossings_next_to_each_other_that_boxes_show_are_told_apart(seed):
+    problem = FunctionProblem(
+        lambda u: [
+            ((u[0] + 0.4) ** 2 + (u[1] + 0.3) ** 2 - 0.25)
+            * (u[0] - 0.499)
+            * (u[0] - 0.501)
+            * (u[1] - 0.5)
+        ],
+        [(-1.0, 1.0)] * 2,
+    )
+    atlas = explore(problem, settings=SearchSettings(starts=1), seed=seed)
+    assert len(atlas.forms) == 4
+    assert [len(p.point.half_branches) for p in atlas.points] == [4, 4]
+    assert not any(point.note for point in atlas.points)
