@@ -207,7 +207,9 @@ class Search:
             if self.findings.branch_through(point) is not None:
                 break
             tracing = self.settings.tracing
-            branch = trace_branch(self.problem, point, None, tracing, LENIENT)
+            branch = trace_branch(
+                self.problem, point, None, tracing, LENIENT, self.run.deadline
+            )
             if not self._is_curve(branch):
                 break
             samples = branch.sample(SAMPLES)
@@ -304,7 +306,12 @@ class Search:
         last = singular_values(deflated, solutions)[0, n - 2]
         if not are_solved[0] or may_be_singular(float(last)):
             return None
-        branch = trace_branch(deflated, solutions[0], None, self.settings.tracing)
+        branch = trace_branch(
+            deflated,
+            solutions[0],
+            settings=self.settings.tracing,
+            deadline=self.run.deadline,
+        )
         if not self._is_curve(branch):
             return None
         number = self.findings.branch_along(branch)
@@ -338,7 +345,8 @@ class Search:
         number = findings.branch_through(start.point)
         if number is not None:
             return _Trace(SeedFate(Fate.ON_FORM, number), [])
-        branch = trace_branch(self.problem, *start, self.settings.tracing, LENIENT)
+        tracing, deadline = self.settings.tracing, self.run.deadline
+        branch = trace_branch(self.problem, *start, tracing, LENIENT, deadline)
         is_open = branch.outcome is Outcome.OPEN
         if is_open:
             findings.gaps.append(branch.gap)
@@ -376,7 +384,8 @@ class Search:
         for settings in finer_settings(self.settings.tracing):
             if self.run.is_over:
                 break
-            branch = trace_branch(self.problem, *start, settings, LENIENT)
+            deadline = self.run.deadline
+            branch = trace_branch(self.problem, *start, settings, LENIENT, deadline)
             if not self._is_curve(branch):
                 continue
             misclosure = largest_misclosure(self.problem, branch)
@@ -410,7 +419,8 @@ class Search:
         """Trace the curve of lower rank through a point (n,); what may cross it is left
         to other seeds."""
         deflated = Deflated(self.problem)
-        branch = trace_branch(deflated, point, direction, self.settings.tracing)
+        tracing, deadline = self.settings.tracing, self.run.deadline
+        branch = trace_branch(deflated, point, direction, tracing, deadline=deadline)
         if not self._is_curve(branch):
             outcome = branch.outcome.value
             log.info("no curve of lower rank through %s: %s", point, outcome)
