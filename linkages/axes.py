@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
 from linkages.loop import (
     MAX_JOINTS,
     MIN_JOINTS,
@@ -56,6 +57,25 @@ class Axes:
         """The largest difference of coordinates of the points."""
         return max(float(np.ptp(self.points, axis=0).max()), 1e-300)
 
+    @property
+    def largest(self) -> float:
+        """The largest coordinate of the points, without its sign."""
+        return float(np.abs(self.points).max())
+
+    def counted_from_first(self) -> Axes:
+        """The axes with points that are counted from the first one, where they are far
+        from the origin; differences of such coordinates are exact."""
+        if are_near_origin(self.points):
+            return self
+        return Axes(self.points - self.points[0], self.directions)
+
+    def rounding(self, missed: float) -> float:
+        """How far off distances of these axes are, of which the largest one that was
+        taken as zero is ``missed``; 0 where doubles of their size are no better."""
+        if are_near_origin(self.points) and is_fine(missed, self.points):
+            return 0.0
+        return max(rounding_of_doubles(self.points), missed)
+
 
 @dataclass(frozen=True)
 class CommonNormal:
@@ -83,17 +103,24 @@ def loop_from_axes(
     the foot of the previous one. Raises `GeometryError` for wrong numbers of vectors,
     coordinates that are not finite numbers, a direction of length zero, and
     neighbouring axes that coincide.
+
+    The loop's ``rounding`` says how far off lengths and offsets are, where that is more
+    than doubles of the size of the linkage are: as points are far from the origin, or as
+    some were taken as zero.
     """
-    axes = _axes(points, directions)
+    given = _axes(points, directions)
+    axes = given.counted_from_first()
     normals = _common_normals(axes)
     across = np.array([normal.direction for normal in normals])
     lengths = np.array([normal.length for normal in normals])
     twists = _twists(axes, across)
     offsets = _offsets(axes, normals)
-    rounding = ROUNDING * float(np.abs(axes.points).max())
-    lengths[np.abs(lengths) < rounding] = 0.0
-    offsets[np.abs(offsets) < rounding] = 0.0
-    loop = Loop(tuple(lengths), tuple(twists), tuple(offsets), name)
+    distances = np.array([lengths, offsets])
+    is_zero = np.abs(distances) < ROUNDING * given.largest
+    rounding = given.rounding(float(np.abs(distances[is_zero]).max(initial=0.0)))
+    distances[is_zero] = 0.0
+    lengths, offsets = distances
+    loop = Loop(tuple(lengths), tuple(twists), tuple(offsets), name, rounding)
     return loop, _joint_angles(axes, across)
 
 

@@ -4,7 +4,7 @@ named forms, closed forms, first guesses and relations."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from functools import cached_property
 from math import radians
@@ -215,7 +215,7 @@ class Entry:
         Raises `GeometryError` and `UnknownParameterError`.
         """
         loop = self.construct(**self.complete(values))
-        return Loop(loop.lengths, loop.twists, loop.offsets, self.name)
+        return replace(loop, name=self.name)
 
     def draw(self, rng: np.random.Generator) -> dict[str, float]:
         """Random parameters within their ranges (the constructor may still refuse

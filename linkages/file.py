@@ -260,7 +260,8 @@ def _read_axes(content: Content, name: str) -> tuple[Loop, np.ndarray]:
     loop, configuration = loop_from_axes(
         cast(Vectors, near.rows), cast(Vectors, directions), name
     )
-    return replace(loop, rounding=near.rounding), configuration
+    rounding = max(loop.rounding, near.rounding)
+    return replace(loop, rounding=rounding), configuration
 
 
 def _angle_unit(content: Content) -> AngleUnit:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from linkages.loop import GeometryError, Loop
@@ -25,9 +27,9 @@ def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop
     lengths = nominal.lengths + size * rng.normal(size=loop.n)
     twists = nominal.twists + error * rng.normal(size=loop.n)
     offsets = nominal.offsets + size * rng.normal(size=loop.n)
-    return Loop(
-        tuple(lengths.tolist()),
-        tuple(twists.tolist()),
-        tuple(offsets.tolist()),
-        loop.name,
+    return replace(
+        loop,
+        lengths=tuple(lengths.tolist()),
+        twists=tuple(twists.tolist()),
+        offsets=tuple(offsets.tolist()),
     )

@@ -8,7 +8,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from linkages.app.texts import count_of, link_name
+from linkages.app.texts import count_of, known_to, link_name
 from linkages.entry import ParameterKind
 from linkages.identification.identify import (
     NEAR,
@@ -30,7 +30,7 @@ LENGTH_ROW, TWIST_ROW, OFFSET_ROW = range(3)  # of a table (3, n)
 def describe_identification(identification: Identification) -> str:
     """The answer as text: lengths in the unit of the table, degrees, joints numbered
     from 1."""
-    name = identification.loop.name
+    loop = identification.loop
     matches = identification.matches
     if matches:
         linkages = count_of(len(matches), "linkage")
@@ -43,7 +43,9 @@ def describe_identification(identification: Identification) -> str:
         if not parts:
             parts = [f"None misses by less than {NEAR:g}, so that none is near."]
     parts += [_locked(joint) for joint in identification.locked]
-    return "\n\n".join([f"{name}\n{sentence}", *parts])
+    if loop.rounding:
+        parts.append(known_to(loop.rounding, loop.characteristic_length))
+    return "\n\n".join([f"{loop.name}\n{sentence}", *parts])
 
 
 def _match(match: Match) -> str:

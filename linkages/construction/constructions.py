@@ -19,6 +19,8 @@ and Chen (2012).
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from linkages.construction.conditions import decided, require_equal
@@ -59,7 +61,7 @@ def lock(loop: Loop, joint: int, kink: KinkAngle = Kink.STRAIGHT) -> Loop:
     offsets[(i + 1) % loop.n] += new.after.offset
     links[i - 1] = new.link
     del links[i], offsets[i]
-    return _loop(links, offsets)
+    return _loop(links, offsets, loop)
 
 
 def locked_angles(
@@ -125,7 +127,7 @@ def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
     end = first.offsets[n] - second.offsets[m]
     back = [-offset for offset in second.offsets[m - 1 : 0 : -1]]
     offsets = [start, *first.offsets[1:n], end, *back]
-    return _loop([*a[:n], *b[:m][::-1]], offsets)
+    return _loop([*a[:n], *b[:m][::-1]], offsets, first, second)
 
 
 def superpose_across_bennett(first: Loop, second: Loop) -> Loop:
@@ -180,7 +182,7 @@ def isomerize(loop: Loop, joint: int) -> Loop:
     links = _links(loop)
     i = _index(loop, joint)
     links[i - 1], links[i] = links[i], links[i - 1]
-    return _loop(links, list(loop.offsets))
+    return _loop(links, list(loop.offsets), loop)
 
 
 def isomerized_angles(loop: Loop, joint: int, theta: np.ndarray) -> np.ndarray:
@@ -234,15 +236,18 @@ def share_joint(
     offsets[n - 1] += forth.after.offset
     offsets[-1] += back.before.offset
     offsets[0] += back.after.offset
-    return _loop([*a[1:-1], forth.link, *b[1:-1], back.link], offsets)
+    links = [*a[1:-1], forth.link, *b[1:-1], back.link]
+    return _loop(links, offsets, first, second)
 
 
 def _links(loop: Loop) -> list[Link]:
     return [Link(a, alpha) for a, alpha in zip(loop.lengths, loop.twists, strict=True)]
 
 
-def _loop(links: list[Link], offsets: list[Number]) -> Loop:
-    return closed_chain(*links, offsets=offsets)
+def _loop(links: list[Link], offsets: list[Number], *sources: Loop) -> Loop:
+    """The loop of these links, known as well as the loops that they come from are."""
+    rounding = max(loop.rounding for loop in sources)
+    return replace(closed_chain(*links, offsets=offsets), rounding=rounding)
 
 
 def _index(loop: Loop, joint: int) -> int:

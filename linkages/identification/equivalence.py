@@ -38,10 +38,10 @@ def table(loop: Loop) -> np.ndarray:
     return np.array([loop.lengths, loop.twists, loop.offsets], dtype=float)
 
 
-def as_loop(values: np.ndarray, name: str = "") -> Loop:
-    """The loop of a table (3, n)."""
+def as_loop(values: np.ndarray, name: str = "", rounding: float = 0.0) -> Loop:
+    """The loop of a table (3, n) with lengths that are known to ``rounding``."""
     lengths, twists, offsets = (tuple(row.tolist()) for row in values)
-    return Loop(lengths, twists, offsets, name)
+    return Loop(lengths, twists, offsets, name, rounding)
 
 
 @dataclass(frozen=True)

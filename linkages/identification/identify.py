@@ -95,7 +95,8 @@ class LockedJoint:
 @dataclass(frozen=True)
 class Identification:
     """What a loop is: ``matches``, the most special first, the ``nearest`` others by
-    distance, and ``locked`` joints.
+    distance, and ``locked`` joints. ``tolerance`` is what they were judged by: what was
+    asked for, or what the rounding of lengths comes to where that is more.
 
     The nearest are those that miss by less than `NEAR`, a twentieth of the
     characteristic length and of a radian all numbers of the table together; a linkage
@@ -123,12 +124,13 @@ def identify(
     """The linkages of the catalogue that ``loop`` is a case of, up to relabelling,
     reversals, mirror image and scale.
 
-    ``tolerance`` bounds `Match.distance`; ``entries`` restricts the search; ``locking``
-    also locks each joint in turn. Raises `ToleranceError` for a tolerance that is
-    negative or not finite.
+    ``tolerance`` bounds `Match.distance`, where lengths are known to less what that may
+    change of it; ``entries`` restricts the search; ``locking`` also locks each joint in
+    turn. Raises `ToleranceError` for a tolerance that is negative or not finite.
     """
     if not (math.isfinite(tolerance) and tolerance >= 0):
         raise ToleranceError(tolerance)
+    tolerance = max(tolerance, _distance_by_rounding(loop))
     given = table(loop)
     unit = loop.characteristic_length
     views = views_of(given)
@@ -144,6 +146,13 @@ def identify(
     locked = _locked_joints(loop, tolerance) if locking else ()
     nearest = _nearest_first(others)
     return Identification(loop, tolerance, tuple(matches), nearest, locked)
+
+
+def _distance_by_rounding(loop: Loop) -> float:
+    """The largest `Match.distance` of a loop from itself with every length and offset
+    off by as much as it may be."""
+    count = len(loop.lengths) + len(loop.offsets)
+    return math.sqrt(count) * loop.rounding / loop.characteristic_length
 
 
 def _match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> Match:

@@ -21,6 +21,7 @@ from linkages.mechanisms.figure_bodies import (
     check_point,
     read_fixed,
 )
+from linkages.mechanisms.joined_names import check_joined_names, joined_name
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -44,7 +45,7 @@ class Arc:
     @property
     def name(self) -> str:
         """What the body is called."""
-        return f"{self.start}-{self.end}"
+        return joined_name(self.start, self.end)
 
 
 @dataclass(frozen=True)
@@ -157,6 +158,7 @@ def _read_arcs(content: Content, known: Sequence[str], unit: float) -> tuple[Arc
         if len(row) == 3:
             angle = _angle(f"angle of {what}", row[2], unit)
         arcs.append(Arc(row[0], row[1], angle))
+    check_joined_names("arc", [(arc.start, arc.end) for arc in arcs])
     return tuple(arcs)
 
 

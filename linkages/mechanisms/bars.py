@@ -20,6 +20,7 @@ from linkages.mechanisms.figure_bodies import (
     check_point,
     read_fixed,
 )
+from linkages.mechanisms.joined_names import check_joined_names, joined_name
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
@@ -47,7 +48,7 @@ class Bar:
     @property
     def name(self) -> str:
         """What the body is called."""
-        return f"{self.start}-{self.end}"
+        return joined_name(self.start, self.end)
 
 
 @dataclass(frozen=True)
@@ -159,6 +160,7 @@ def _read_bars(content: Content, known: Sequence[str]) -> tuple[Bar, ...]:
             if not length > 0:
                 raise GeometryError(f"length of {what}", length, "positive")
         bars.append(Bar(row[0], row[1], length))
+    check_joined_names("bar", [(bar.start, bar.end) for bar in bars])
     return tuple(bars)
 
 

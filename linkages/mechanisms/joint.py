@@ -152,6 +152,15 @@ class Joint:
         )
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """What the joint, its variables and its rotations are called in the
+        mechanism."""
+        own = [self.name, *self.labels]
+        if self.kind is JointKind.SPHERICAL and len(self.bodies) > 2:
+            own += [f"{self.name}.{body}" for body in self.bodies[1:]]
+        return tuple(dict.fromkeys(own))
+
+    @property
     def freedoms(self) -> int:
         """How many freedoms the joint has, with nothing locked."""
         if self.kind is JointKind.SPHERICAL:

@@ -19,6 +19,7 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.decisions import is_parallel_axis, keeps_angle, meets_in_one_point
 from linkages.loop import GeometryError, Loop, check_number, quoted
 from linkages.mechanisms.displacements import transforms
+from linkages.mechanisms.joined_names import check_joined_names, joined_name
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -44,6 +45,14 @@ class Axis(NamedTuple):
         return Axis(point, pose[:3, :3] @ self.direction)
 
 
+class _Link(NamedTuple):
+    """A link after a joint: its ``name``, and the joints that it is called after; None
+    where the file names it."""
+
+    name: str
+    ends: tuple[str, str] | None = None
+
+
 @dataclass(frozen=True, eq=False)
 class _Ring:
     """A loop as it was given: what it is called in messages, the names of its joints
@@ -52,7 +61,7 @@ class _Ring:
 
     what: str
     joints: tuple[str, ...]
-    links: tuple[str, ...]
+    links: tuple[_Link, ...]
     frames: np.ndarray
     size: float
     turn: float
@@ -74,8 +83,10 @@ def read_loops(tables: object, name: str, unit: float) -> Mechanism:
         raise GeometryError("loops", quoted(tables), "tables [[loops]]")
     rings: list[_Ring] = []
     for number, table in enumerate(tables, start=1):
-        names = [link for ring in rings for link in ring.links]
+        names = [link.name for ring in rings for link in ring.links]
         rings.append(_read_ring(f"loops[{number}]", table, unit, names))
+    ends = [link.ends for ring in rings for link in ring.links if link.ends]
+    check_joined_names("link", ends)
     return Mechanism(_joints(rings, _placed_axes(rings)), name)
 
 
@@ -84,7 +95,7 @@ def _joints(rings: Sequence[_Ring], axes: Mapping[str, Axis]) -> tuple[Joint, ..
     bodies: dict[str, list[str]] = {}
     for ring in rings:
         for number, joint in enumerate(ring.joints):
-            both = (ring.links[number - 1], ring.links[number])
+            both = (ring.links[number - 1].name, ring.links[number].name)
             here = bodies.setdefault(joint, [])
             here += [link for link in both if link not in here]
     joints = []
@@ -278,18 +289,19 @@ def _number(what: str, given: Any) -> float:
 
 def _links(
     what: str, given: object, joints: tuple[str, ...], known: Sequence[str]
-) -> tuple[str, ...]:
-    """The names of the links after every joint: as given, or by the joints at their
-    ends, the same for the same two."""
+) -> tuple[_Link, ...]:
+    """The links after every joint, called as given, or by the joints at their ends, the
+    same for the same two."""
     if given is not None:
         names = _names(f"links of {what}", given)
         if len(names) != len(joints):
             allowed = f"{len(joints)}, one after each joint"
             raise GeometryError(f"number of links of {what}", len(names), allowed)
-        return names
+        return tuple(_Link(name) for name in names)
     links = []
     for number, joint in enumerate(joints):
         following = joints[(number + 1) % len(joints)]
-        reverse = f"{following}-{joint}"
-        links.append(reverse if reverse in known else f"{joint}-{following}")
+        is_reverse = joined_name(following, joint) in known
+        ends = (following, joint) if is_reverse else (joint, following)
+        links.append(_Link(joined_name(*ends), ends))
     return tuple(links)

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from linkages.decisions import is_near_origin
+from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling, Leader, leaders
 from linkages.mechanisms.joint import Joint, JointKind, Limits, Motion, Vector
-from linkages.mechanisms.origin import spread_of
 
 if TYPE_CHECKING:
     # networkx takes long to import
@@ -195,16 +194,14 @@ class Mechanism:
     @property
     def coordinate_rounding(self) -> float:
         """How far off coordinates of points may be, in the unit of length."""
-        of_doubles = float(np.spacing(np.abs(self._points).max())) / 2
-        return max(of_doubles, self.rounding)
+        return max(rounding_of_doubles(self._points), self.rounding)
 
     @property
     def is_known_to_rounding(self) -> bool:
         """Whether coordinates of points are as exact as doubles of the size of the
         mechanism are."""
-        farthest = float(np.abs(self._points).max())
-        farthest = max(farthest, 2 * self.rounding / np.finfo(float).eps)
-        return is_near_origin(farthest, spread_of(self._points))
+        points = self._points
+        return are_near_origin(points) and is_fine(self.rounding, points)
 
     @cached_property
     def _points(self) -> np.ndarray:
@@ -382,7 +379,20 @@ def _checked_joints(joints: object) -> tuple[Joint, ...]:
             raise GeometryError("name of a joint", quoted(name), "given once")
     if len(checked) < 2:
         raise GeometryError("number of joints", len(checked), "two or more")
+    _check_names(checked)
     return checked
+
+
+def _check_names(joints: Iterable[Joint]) -> None:
+    """No joint is called as a variable of another one, and no two variables alike."""
+    owners: dict[str, Joint] = {}
+    for joint in joints:
+        for name in joint.names:
+            other = owners.setdefault(name, joint)
+            if other is not joint:
+                what = f"names of joints {other.name} and {joint.name}"
+                allowed = "such that every joint and every variable has its own"
+                raise GeometryError(what, f"{quoted(name)} in both", allowed)
 
 
 def _check_graph(mechanism: Mechanism) -> None:

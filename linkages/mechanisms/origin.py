@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from linkages.decisions import is_near_origin
+from linkages.coordinates import are_near_origin
 from linkages.loop import GeometryError, check_number, quoted
 
 __all__ = [
@@ -23,7 +23,6 @@ __all__ = [
     "WrittenNumber",
     "counted_from_near",
     "origin_of",
-    "spread_of",
 ]
 
 Place: TypeAlias = tuple[float, float, float]
@@ -65,7 +64,7 @@ def counted_from_near(rows: Sequence[object]) -> Coordinates:
     if not given or not all(_is_row(row, given[0]) for row in given):
         return unchanged
     places = np.array(given, dtype=float)
-    if is_near_origin(float(np.abs(places).max()), spread_of(places)):
+    if are_near_origin(places):
         return unchanged
     first = [_exact(number) for number in given[0]]  # type: ignore[attr-defined]
     shifted = [None if row is None else _minus(row, first) for row in rows]
@@ -86,13 +85,6 @@ def origin_of(content: Mapping[str, Any], near: Place | None) -> Place:
     if near is None:
         return (x, y, z)
     return (x + near[0], y + near[1], z + near[2])
-
-
-def spread_of(places: np.ndarray) -> float:
-    """The largest difference of a coordinate of places (k, d); their distance from the
-    origin where all are one, 1 where that is 0."""
-    spread = float(np.ptp(places, axis=0).max())
-    return spread or float(np.abs(places).max()) or 1.0
 
 
 def _is_row(row: object, like: object) -> bool:

@@ -11,7 +11,8 @@ cover.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import NamedTuple
@@ -395,7 +396,7 @@ class Structure:
             unknowns += [_length(f"{body}.{part}") for part in TRANSLATION]
         for point in self.free_points:
             unknowns += self._numbers_of_point(point)
-        return tuple(unknowns)
+        return _each_called_once(unknowns)
 
     def _numbers_of_point(self, point: FreePoint) -> list[Unknown]:
         return [
@@ -603,6 +604,22 @@ def _range_of_leader(
     """Between which values of its leader a variable is within its limits."""
     low, high = sorted(leader.value_of_leader(value) for value in limits)
     return low, high
+
+
+def _each_called_once(unknowns: Sequence[Unknown]) -> tuple[Unknown, ...]:
+    """The unknowns, those that are called as one before them with a number behind: a
+    coordinate of a body may be called as the variable of a joint."""
+    labels: set[str] = set()
+    once = []
+    for unknown in unknowns:
+        label = unknown.label
+        number = 1
+        while label in labels:
+            number += 1
+            label = f"{unknown.label} ({number})"
+        labels.add(label)
+        once.append(replace(unknown, label=label))
+    return tuple(once)
 
 
 def _entry_of_rotation(name: str, part: str) -> Unknown:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import degrees
 from typing import Any
 
@@ -89,7 +89,7 @@ def replaced_ring(placed: PlacedNetwork, joints: Sequence[str]) -> Loop:
     pairs = zip(joints, kinks, strict=True)
     shown = [f"{joint}={degrees(kink):.6g}" for joint, kink in pairs]
     name = ", ".join([f"{network.name} without centre", *shown])
-    return Loop(loop.lengths, loop.twists, loop.offsets, name)
+    return replace(loop, name=name)
 
 
 def lock_network(network: Network, kinks: Mapping[str, float]) -> NetworkMechanism:

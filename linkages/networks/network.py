@@ -10,7 +10,7 @@ around an axis inside, the sum is 0. Angles are D-H angles, in rad.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
 from types import MappingProxyType
@@ -145,7 +145,7 @@ class Network:
         bars = [self.plan.ring_bar(place) for place in range(len(self.plan.ring))]
         links = [self.links[self.plan.bars[bar]] for bar in bars]
         loop = closed_chain(*links)
-        return Loop(loop.lengths, loop.twists, loop.offsets, f"ring of {self.name}")
+        return replace(loop, name=f"ring of {self.name}")
 
     def cell_loop(self, number: int) -> Loop:
         """The Bennett loop of a cell."""

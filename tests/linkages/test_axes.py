@@ -118,3 +118,37 @@ def test_axes_that_make_no_loop_are_refused_by_name_and_value(
 ):
     with pytest.raises(GeometryError, match=words):
         loop_from_axes(points, directions)
+
+
+def meeting_axes(missed):
+    """Four axes of which neighbours meet, but for one pair that misses by so much."""
+    points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    directions = [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]]
+    points[0][2] = missed
+    return points, directions
+
+
+@pytest.mark.parametrize("missed", [1e-16, 3e-14])
+def test_lengths_that_were_taken_as_zero_are_recorded_as_rounding(missed):
+    loop, _ = loop_from_axes(*meeting_axes(missed))
+    assert loop.lengths == (0.0, 0.0, 0.0, 0.0)
+    # what doubles of this size miss anyhow is not worth a word
+    assert loop.rounding == (missed if missed > 1e-15 else 0.0)
+
+
+def test_lengths_that_are_more_than_rounding_are_kept():
+    loop, _ = loop_from_axes(*meeting_axes(1e-12))
+    assert max(loop.lengths) == pytest.approx(1e-12, rel=1e-3)
+    assert loop.rounding == 0.0
+
+
+@pytest.mark.parametrize("far", [1e4, -1e8])
+def test_axes_far_from_the_origin_have_the_lengths_of_their_differences(far):
+    points = [[0, 0, 0], [0.75, 1.125, 0], [2.25, 1.5, 0.5], [3, 0, 0.25]]
+    directions = [[0, 0, 1], [0.1, 0, 1], [0, 0.2, 1], [0.3, 0, 1]]
+    near, _ = loop_from_axes(points, directions)
+    moved, _ = loop_from_axes([[x + far, y, z] for x, y, z in points], directions)
+    assert moved.arrays.lengths == pytest.approx(near.arrays.lengths, abs=1e-14)
+    assert moved.arrays.offsets == pytest.approx(near.arrays.offsets, abs=1e-13)
+    assert near.rounding == 0.0
+    assert moved.rounding == np.spacing(abs(far)) / 2

@@ -1,5 +1,7 @@
 """Geometry of a loop: frames, screws, relabelling, refusals."""
 
+from dataclasses import replace
+
 import mpmath
 import numpy as np
 import pytest
@@ -9,7 +11,10 @@ from hypothesis import strategies as st
 
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
+from linkages.construction.constructions import isomerize, lock
+from linkages.identification.equivalence import as_loop, table
 from linkages.loop import GeometryError, Loop
+from linkages.tolerance import make_with_errors
 
 NAMES = [
     "bennett",
@@ -169,3 +174,19 @@ def test_a_loop_of_other_number_types_is_shown_too():
     assert lines[0] == "Loop: 4 joints"
     assert lines[2].split() == ["1", "12", "a", "alpha", "rad", "0"]
     assert lines[3].split() == ["2", "23", "2", "180.0000", "0"]
+
+
+def test_the_rounding_of_lengths_is_kept_wherever_a_loop_is_made_again():
+    # neighbours at joint 1 have one Bennett ratio
+    loop = replace(entry("goldberg-5r").build(), rounding=1e-9)
+    again = [
+        loop.relabelled(2),
+        loop.reversed(),
+        loop.mirrored(),
+        lock(loop, 3),
+        isomerize(loop, 1),
+        make_with_errors(loop, 1e-3, np.random.default_rng(0)),
+        as_loop(table(loop), rounding=loop.rounding),
+    ]
+    assert [one.rounding for one in again] == [1e-9] * len(again)
+    assert loop.scaled(1e3).rounding == 1e3 * 1e-9

@@ -10,6 +10,7 @@ left out.
 
 from __future__ import annotations
 
+import itertools
 import re
 from dataclasses import dataclass, field, replace
 
@@ -29,6 +30,7 @@ from linkages.mechanisms.formats.mjcf_composites import (
     AxisCoupling,
     joints_of_axes,
 )
+from linkages.mechanisms.formats.mjcf_names import TakenNames, numbered
 from linkages.mechanisms.formats.mjcf_poses import (
     Settings,
     pose_of,
@@ -62,6 +64,7 @@ class _Model:
     axis to the label of the variable that it is."""
 
     settings: Settings
+    taken: TakenNames
     bodies: list[_Body] = field(default_factory=list)
     names: dict[str, _Body] = field(default_factory=dict)
     element_poses: dict[str, np.ndarray] = field(default_factory=dict)
@@ -80,7 +83,7 @@ def read_mjcf(root: Element, name: str) -> Assembly:
     for element in root.children:
         if element.tag in NOT_READ:
             _refuse_element(element)
-    model = _Model(read_settings(root))
+    model = _Model(read_settings(root), TakenNames(root))
     world = _Body(WORLD, np.eye(4))
     model.bodies.append(world)
     model.names[WORLD] = world
@@ -138,7 +141,10 @@ def _read_body(
 ) -> None:
     """Read a body and what is in it; without joints it is one with its parent."""
     childclass = element.attributes.get("childclass", childclass)
-    name = element.attributes.get("name", f"body{len(model.names)}")
+    name = element.attributes.get("name")
+    if name is None:
+        numbers = itertools.count(len(model.names))
+        name = model.taken.new_body(f"body{number}" for number in numbers)
     if name in model.names:
         element.refuse("name", quoted(name), "given once")
     pose = pose @ pose_of(element, model.settings)
@@ -165,7 +171,10 @@ def _read_body(
 def _read_axis(joint: Element, pose: np.ndarray, model: _Model) -> Axis:
     """A joint of a body at ``pose`` (4, 4)."""
     kind = joint.choice("type", ("hinge", "slide", "ball"), "hinge")
-    name = joint.attributes.get("name", f"J{len(model.axes) + 1}")
+    name = joint.attributes.get("name")
+    if name is None:
+        numbers = itertools.count(len(model.axes) + 1)
+        name = model.taken.new_axis(f"J{number}" for number in numbers)
     if name in model.axes:
         joint.refuse("name", quoted(name), "given once")
     point = np.array(joint.numbers("pos", (3,)) or (0.0, 0.0, 0.0))
@@ -205,7 +214,8 @@ def _add_chains(model: _Model) -> None:
         for number, joint in enumerate(joints, start=1):
             second = body
             if number < len(joints):
-                second = _Body(f"{body.name}.{number}", body.pose)
+                name = model.taken.new_body(numbered(f"{body.name}.{number}"))
+                second = _Body(name, body.pose)
                 model.bodies.append(second)
             base, moved = (second, first) if joint.is_reversed else (first, second)
             frames = (
@@ -222,6 +232,9 @@ def _add_chains(model: _Model) -> None:
                 limits=joint.limits,
                 locked=joint.locked,
             )
+            if len(joint.axes) > 1:
+                names = numbered(joint.name, "+".join(joint.axes))
+                body_joint = model.taken.named_joint(body_joint, names, joint.axes)
             model.joints.append(body_joint)
             model.labels |= zip(joint.axes, body_joint.labels, strict=True)
             first = second
@@ -295,7 +308,7 @@ def _read_closures(equality: Element, model: _Model) -> None:
         if element.tag == "weld":
             weld = _read_weld(element, name, model)
             if weld.bodies[0] != weld.bodies[1]:
-                model.joints.append(weld)
+                _add_closure(weld, model)
             continue
         anchor = _read_connect(element, name, model)
         if anchor.bodies[0] is anchor.bodies[1]:
@@ -305,7 +318,17 @@ def _read_closures(equality: Element, model: _Model) -> None:
             anchor = anchor.reversed()
             key = key[::-1]
         groups.setdefault(key, []).append(anchor)
-    model.joints += [_joint_of_anchors(anchors) for anchors in groups.values()]
+    for anchors in groups.values():
+        _add_closure(_joint_of_anchors(anchors), model)
+
+
+def _add_closure(joint: BodyJoint, model: _Model) -> None:
+    """Add a joint of an equality, which may have the name of a joint of the tree."""
+    named = model.taken.named_joint(joint, numbered(joint.name))
+    if named.name != joint.name:
+        note = f"equality {joint.name} is called {named.name}, as there is such a joint"
+        model.notes.append(note)
+    model.joints.append(named)
 
 
 @dataclass

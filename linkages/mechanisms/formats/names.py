@@ -52,7 +52,7 @@ def with_names_for(mechanism: Mechanism, rules: NameRules) -> Mechanism:
             own = _renamed(joint, names, bodies, rules, taken, taken_by_bodies)
             if own is None:
                 continue
-            taken.update(rules.of_joint(own))
+            taken.update(rules.of_joint(own), own.names)
             taken_by_bodies.update(rules.links_of_joint(own))
             renamed[joint.name] = own
     joints = [renamed[joint.name] for joint in mechanism.joints]
@@ -101,6 +101,7 @@ def _renamed(
         among_bodies = set(rules.links_of_joint(candidate))
         if not all(map(rules.is_allowed, among_joints | among_bodies)):
             continue
+        among_joints |= {*candidate.names}
         if not (among_joints & taken or among_bodies & taken_by_bodies):
             return candidate
     return None

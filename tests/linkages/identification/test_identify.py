@@ -2,6 +2,7 @@
 it is a little off."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -213,3 +214,15 @@ def test_no_linkage_is_near_that_misses_by_more_than_the_scale():
         found = identify(as_loop(rng.uniform(0.3, 2.0, (3, 6))), locking=False)
         assert all(match.distance < NEAR for match in found.nearest)
         assert all(match.freedom > 0 for match in found.nearest)
+
+
+def test_lengths_that_are_known_to_less_are_judged_by_that():
+    loop = entry("bennett").build()
+    bennett = [entry("bennett")]
+    lengths = (loop.lengths[0] + 1e-6, *loop.lengths[1:])
+    rounded = replace(loop, lengths=lengths, rounding=1e-6)
+    assert identify(rounded, entries=bennett).names == ("bennett",)
+    assert identify(rounded, entries=bennett).tolerance == pytest.approx(
+        8**0.5 * 1e-6 / rounded.characteristic_length
+    )
+    assert not identify(replace(rounded, rounding=1e-8), entries=bennett).matches

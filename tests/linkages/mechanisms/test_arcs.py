@@ -114,6 +114,13 @@ BAD = {
     "an arc to an unknown point": (content(arcs=[*ARCS, ["A", "X"]]), r"arcs\[4\]"),
     "an arc to itself": (content(arcs=[*ARCS, ["A", "A"]]), r"arcs\[4\]"),
     "an arc given twice": (content(arcs=[*ARCS, ["B", "A"]]), r"arcs\[4\]"),
+    "two arcs of one name": (
+        content(
+            arcs=[["A-B", "C"], ["A", "B-C"]],
+            points=POINTS | {"A-B": [1, 2, 0], "B-C": [0, 2, 1]},
+        ),
+        'arcs "A-B" to "C" and "A" to "B-C": "A-B-C"',
+    ),
     "an arc without length": (
         content(points=POINTS | {"B": [0, 0, 3]}),
         "arc A-B",

@@ -79,3 +79,10 @@ def test_bodies_do_not_depend_on_the_order_of_the_bars(fixed):
         mechanism = read_bars({**content, "points_on_bars": on_bars}, "four-bar")
         counts.add((frozenset(mechanism.bodies), mechanism.gruebler))
     assert len(counts) == 1
+
+
+def test_bars_between_different_points_with_one_name_are_refused():
+    points = {"A": [0, 0], "A-B": [1, 0], "B-C": [1, 1], "C": [0, 1]}
+    bars = [["A", "B-C"], ["A-B", "C"]]
+    with pytest.raises(GeometryError, match='"A" to "B-C" and "A-B" to "C": "A-B-C"'):
+        read_bars({"bars": bars, "points": points}, "two bars")

@@ -146,3 +146,16 @@ def test_a_loop_that_does_not_close_is_refused_with_its_gap(tmp_path):
     text = TEXT.replace("lengths = [", "lengths = [9", 1)
     with pytest.raises(LinkageFileError, match=r"configuration of loops\[1\]: .* gap"):
         read(tmp_path, text)
+
+
+def test_links_of_different_joints_with_one_name_are_refused(tmp_path):
+    # "0-2" to "1" and "0" to "2-1": two links that would be one body, 0-2-1
+    tables = network_loops()[:2]
+    first = {"0": "0-2", "2": "1", "1": "a", "8": "b"}
+    second = {"0": "0-2", "4": "0", "3": "2-1", "2": "1"}
+    called = [
+        ([names[joint] for joint in joints], loop, angles)
+        for names, (joints, loop, angles) in zip((first, second), tables, strict=True)
+    ]
+    with pytest.raises(LinkageFileError, match='"0-2" to "1" and "0" to "2-1"'):
+        read(tmp_path, text_of(called))

@@ -9,6 +9,7 @@ from linkages.loop import GeometryError
 from linkages.mechanisms.displacements import displacement_of
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.structure import Structure
 
 Z = (0, 0, 1)
 
@@ -178,3 +179,52 @@ def with_joint(joint):
 def placed(joint, number):
     """The transform (4, 4) of a body of a locked joint from the reference."""
     return displacement_of(with_joint(joint), number)
+
+
+@pytest.mark.parametrize(
+    ("name", "bodies"),
+    [
+        ("C.turn", ("crank", "coupler")),
+        ("C.slide", ("crank", "coupler")),
+        ("D.rod", ("crank", "coupler")),
+    ],
+)
+def test_a_joint_that_is_called_as_a_variable_of_another_is_refused(name, bodies):
+    joints = (
+        revolute("A", ("frame", "crank"), 0),
+        revolute(name, bodies, 0, 1),
+        Joint("C", "cylindrical", ("coupler", "rocker"), (2, 1.5, 0), Z),
+        revolute("D", ("rocker", "frame", "rod"), 2),
+        revolute("E", ("rod", "crank"), 1),
+    )
+    other = name[0]
+    with pytest.raises(GeometryError, match=rf'joints {name} and {other}: "{name}"'):
+        Mechanism(joints)
+
+
+def test_variables_of_two_joints_that_are_called_alike_are_refused():
+    # the one of C and "turn", the other of C.turn and nothing
+    joints = (
+        Joint("C", "cylindrical", ("a", "b"), (2, 1.5, 0), Z),
+        revolute("C.slide", ("a", "b", "turn"), 0),
+        revolute("E", ("turn", "b"), 1),
+    )
+    with pytest.raises(GeometryError, match=r"joints C and C\.slide"):
+        Mechanism(joints)
+
+
+def test_a_coordinate_of_a_body_and_a_variable_are_called_differently():
+    # platform P, held by six rods, and a joint that is called as it is
+    rng = np.random.default_rng(2)
+    joints = []
+    for k in range(5):
+        near, far = rng.normal(size=(2, 3))
+        joints.append(Joint(f"A{k}", "spherical", ("frame", f"rod{k}"), near))
+        joints.append(
+            Joint(f"B{k}", "spherical", (f"rod{k}", "P"), far + np.array([0, 0, 5]))
+        )
+    joints.append(Joint("P", "planar", ("frame", "arm"), (9, 0, 0), Z))
+    joints.append(Joint("Q", "planar", ("frame", "arm"), (8, 0, 0), (1, 0, 0)))
+    labels = [one.label for one in Structure(Mechanism(tuple(joints))).unknowns]
+    assert {"P.x", "P.x (2)"} <= set(labels)
+    assert len(labels) == len(set(labels))

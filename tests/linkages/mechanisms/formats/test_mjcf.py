@@ -464,3 +464,26 @@ def test_limits_that_the_pose_of_the_file_misses_stay_as_they_are(
 <equality><weld body1="d"/></equality></mujoco>""")
     (limits,) = load(path).joint("j4").limits
     assert np.degrees(limits) == pytest.approx(expected)
+
+
+def test_names_that_mujoco_keeps_apart_are_kept_apart(tmp_path, caplog):
+    # bodies, joints and equalities may be called alike in MuJoCo, or not at all
+    text = """<mujoco><worldbody>
+    <body><joint name="J2.turn" axis="0 0 1"/><joint name="J2.slide" type="slide"/>
+      <geom size="1"/>
+      <body name="body1" pos="0 1 0"><joint axis="0 0 1"/><joint axis="1 0 0"/>
+        <joint axis="0 0 1"/><geom size="1"/></body></body>
+    <body name="body1.1" pos="2 0 0"><joint name="J2" axis="0 0 1"/><geom size="1"/>
+    </body>
+    </worldbody><equality>
+    <connect name="J2" body1="body1" body2="body1.1" anchor="1 0 0"/>
+    <connect name="near" body1="body1" body2="world" anchor="0 0 0"/>
+    </equality></mujoco>"""
+    mujoco.MjModel.from_xml_string(text)
+    mechanism = read(tmp_path, text)
+    names = [joint.name for joint in mechanism.joints]
+    assert names[:2] == ["J2.turn+J2.slide", "J3"]
+    assert "equality J2 is called J2.2" in caplog.text
+    assert len(names) == len(set(names))
+    bodies = {"body1", "body2", "body1.1", "body1.1.2", "body1.2", "world"}
+    assert bodies == set(mechanism.bodies)

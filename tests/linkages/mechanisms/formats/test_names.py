@@ -39,7 +39,6 @@ NAMES = {
     "bodies that are reserved": ("ABCD", ("f", "__root__", "world", "universe")),
     "the world at rest": ("ABCD", ("world", "world.body", "r", "s")),
     "scopes": (("A::B", "A.B", "C", "D"), ("f", "x::y", "x.y", "s")),
-    "a joint like a variable": (("C.slide", "C.turn", "C", "D"), "fcrs"),
     "a body like a link": ("ABCD", ("f", "C.turn.link", "C.copy3", "A")),
     "a body like a copy": ("ABCD", ("f", "A.copy0", "B.copy1", "D.copy3")),
 }
