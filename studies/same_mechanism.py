@@ -29,7 +29,7 @@ from bifurc.atlas import Atlas
 from bifurc.search.settings import SearchSettings
 from bifurc.singular.dimension import local_dimensions
 from linkages.app.options import FOLDER
-from linkages.app.texts import section
+from linkages.app.texts import count_of, section
 from linkages.mapping import map_linkage
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.mechanism import Mechanism
@@ -64,12 +64,11 @@ class Answer:
     @property
     def text(self) -> str:
         """The counts in a few words."""
-        points = [f"{count} {kind}" for kind, count in self.points.items()]
-        words = [f"{self.forms} forms", *points]
-        words += [f"dimensions {', '.join(map(str, self.surfaces))}"] * bool(
-            self.surfaces
-        )
-        words += [f"{self.rigid} rigid"] * bool(self.rigid)
+        words = [count_of(self.forms, "form")]
+        words += [f"{kind}: {count}" for kind, count in self.points.items()]
+        words += [f"surface of dimension {dimension}" for dimension in self.surfaces]
+        if self.rigid:
+            words.append(count_of(self.rigid, "isolated assembly"))
         return "; ".join(words)
 
 

@@ -99,8 +99,10 @@ def _conditions(match: Match) -> str:
 
 
 def _head(match: Match) -> str:
-    free = f", {match.freedom} free parameters" if match.freedom else ""
-    return f"{match.entry.name}: {match.entry.title}{free}"
+    head = f"{match.entry.name}: {match.entry.title}"
+    if not match.freedom:
+        return head
+    return f"{head}, {count_of(match.freedom, 'free parameter')}"
 
 
 def _parameters(match: Match) -> str:

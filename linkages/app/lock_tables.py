@@ -28,7 +28,7 @@ def make_page(name: str, tables: Mapping[str, Sequence[LockedState]]) -> str:
     parts = [f"# {name}"]
     for title, states in tables.items():
         moving = sum(bool(state.mobility) for state in states)
-        head = f"## {len(states)} {title} of locks, {moving} of which leave a motion"
+        head = f"## {len(states)} {title} of locks, {moving} with a motion left"
         parts.append(f"{head}\n\n{as_markdown(states)}")
     return "\n\n".join(parts)
 

@@ -12,7 +12,7 @@ from linkages.app.configurations import (
     show_configuration,
     show_travel,
 )
-from linkages.app.texts import table
+from linkages.app.texts import count_of, table
 
 __all__ = ["describe_route"]
 
@@ -35,7 +35,7 @@ def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
     if any(leg.dimension > 1 for leg in route.legs):
         explanation += " Over a surface the way is a geodesic."
     return (
-        f"Route from {start} to {goal}: {len(route.legs)} legs, "
+        f"Route from {start} to {goal}: {count_of(len(route.legs), 'leg')}, "
         f"{length} in joint space\n"
         f"from {show_configuration(atlas, route.path[0])}\n\n"
         f"{table(heads, _rows(atlas, route))}\n\n{explanation}"

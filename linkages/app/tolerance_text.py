@@ -8,7 +8,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.curves.valley import Unfolding, ValleyEnd
-from linkages.app.texts import section
+from linkages.app.texts import count_of, section
 from linkages.app.tolerance import Ladder, Tolerance, half_branches, is_whole, slope
 
 __all__ = ["describe_tolerance"]
@@ -21,7 +21,7 @@ def describe_tolerance(
     error with which they grow."""
     head = (
         f"Errors of {copies[0].error:g} (standard deviation; rad, and characteristic "
-        f"lengths) in {len(copies)} copies"
+        f"lengths) in {count_of(len(copies), 'copy')}"
     )
     parts = [head, _gaps(atlas, copies, ladder)]
     if atlas.bifurcations:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TypeAlias
 
+from linkages.app.texts import count_of
 from linkages.app.verify import (
     ClosedFormCheck,
     ErratumCheck,
@@ -63,7 +64,9 @@ def _line(head: str, text: str) -> str:
 
 
 def _proof(form: ClosedFormCheck) -> str:
-    proved = f"proved exactly at {form.points} points" if form.proved else "NOT PROVED"
+    proved = "NOT PROVED"
+    if form.proved:
+        proved = f"proved exactly at {count_of(form.points, 'point')}"
     return f"{form.form}: {proved} (doubt {form.doubt:.0e}); {form.source}"
 
 
@@ -78,7 +81,7 @@ def _mobility(members: Sequence[MemberCheck]) -> str:
     by_rank = _alternatives({member.corank for member in members})
     by_tracing = _alternatives({member.mobility for member in members})
     curves = sum(len(member.outcomes) for member in members)
-    return f"{by_rank} by rank, {by_tracing} by tracing ({curves} curves)"
+    return f"{by_rank} by rank, {by_tracing} by tracing ({count_of(curves, 'curve')})"
 
 
 def _alternatives(values: set[int]) -> str:

@@ -92,8 +92,10 @@ def _from_near(tables: Sequence[object]) -> tuple[list[object], Coordinates]:
     near = counted_from_near(points)
     moved: list[object] = []
     for table, row in zip(tables, near.rows, strict=True):
-        is_moved = isinstance(table, Mapping) and row is not None
-        moved.append({**table, "point": row} if is_moved else table)  # type: ignore[dict-item]
+        if isinstance(table, Mapping) and row is not None:
+            moved.append({**table, "point": row})
+        else:
+            moved.append(table)
     return moved, near
 
 

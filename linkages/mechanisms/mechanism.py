@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bifurc.text_tables import count_of
 from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling, Leader, leaders
@@ -276,9 +277,9 @@ class Mechanism:
         kinds = [joint.kind.value for joint in self.joints]
         counts = [f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds)]
         return (
-            f"{self.name or 'Mechanism'}: {len(self.bodies)} bodies, "
-            f"{len(self.joints)} joints ({', '.join(counts)}), "
-            f"{self.independent_loops} independent loops"
+            f"{self.name or 'Mechanism'}: {count_of(len(self.bodies), 'body')}, "
+            f"{count_of(len(self.joints), 'joint')} ({', '.join(counts)}), "
+            f"{count_of(self.independent_loops, 'independent loop')}"
         )
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias, TypeGuard
 
 import numpy as np
 
@@ -60,16 +60,17 @@ def counted_from_near(rows: Sequence[object]) -> Coordinates:
     row is no list of such numbers all are left as they are: their reader refuses them.
     """
     unchanged = Coordinates(list(rows))
-    given = [row for row in rows if row is not None]
-    if not given or not all(_is_row(row, given[0]) for row in given):
+    given = [row for row in rows if _is_row(row)]
+    are_alike = len({len(row) for row in given}) == 1
+    if not are_alike or not all(row is None or _is_row(row) for row in rows):
         return unchanged
     places = np.array(given, dtype=float)
     if are_near_origin(places):
         return unchanged
-    first = [_exact(number) for number in given[0]]  # type: ignore[attr-defined]
-    shifted = [None if row is None else _minus(row, first) for row in rows]
+    first = [_exact(number) for number in given[0]]
+    shifted = [_minus(row, first) if _is_row(row) else None for row in rows]
     x, y, z = [float(number) for number in first] + [0.0] * (3 - len(first))
-    rounding = max(_rounding(number) for row in given for number in row)  # type: ignore[attr-defined]
+    rounding = max(_rounding(number) for row in given for number in row)
     return Coordinates(shifted, (x, y, z), rounding)
 
 
@@ -87,11 +88,9 @@ def origin_of(content: Mapping[str, Any], near: Place | None) -> Place:
     return (x + near[0], y + near[1], z + near[2])
 
 
-def _is_row(row: object, like: object) -> bool:
-    """Whether a row is a list of finite numbers, as many as ``like`` has."""
-    if not isinstance(row, list) or not isinstance(like, list):
-        return False
-    if len(row) != len(like) or len(row) not in (2, 3):
+def _is_row(row: object) -> TypeGuard[list[float]]:
+    """Whether a row is a list of two or three finite numbers."""
+    if not isinstance(row, list) or len(row) not in (2, 3):
         return False
     return all(_is_number(value) for value in row)
 

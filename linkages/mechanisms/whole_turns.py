@@ -20,6 +20,7 @@ from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
 from bifurc.seeding import start_region
 from bifurc.seeds import Audit, Level
+from bifurc.text_tables import count_of
 from linkages.assembly_statements import RANDOM_ASSEMBLIES
 from linkages.closure.coupled import common_period
 from linkages.mechanisms.structure import Structure
@@ -79,9 +80,10 @@ class WholeTurns:
         many branches, that there may be more."""
         nowhere = np.empty((0, self.problem.n))
         if len(branches) > MOST_FORMS or seconds <= 0.0:
+            forms = count_of(len(branches), "form")
             text = (
-                f"there are at least {len(branches)} forms: joints that advance may stand "
-                "whole turns away within their limits, and not all of that was tried"
+                f"at least {forms} in all: joints that advance may stand whole turns "
+                "away within their limits, and not all of that was tried"
             )
             return Audit(Level.ESTIMATED, text, nowhere)
         text = (

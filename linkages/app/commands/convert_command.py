@@ -37,6 +37,7 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     """
     require_ending(TARGET, out, *ENDINGS)
     from bifurc.files.atomic import replace_file
+    from bifurc.text_tables import count_of
     from linkages.app.mechanism_file import mechanism_text
 
     mechanism = _mechanism(source, hold)
@@ -44,8 +45,9 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     require_writable(out, TARGET)
     with writing_to(out, TARGET):
         replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
-    bodies, joints = len(mechanism.bodies), len(mechanism.joints)
-    say(f"{out}: {mechanism.name}, {bodies} bodies, {joints} joints")
+    bodies = count_of(len(mechanism.bodies), "body")
+    joints = count_of(len(mechanism.joints), "joint")
+    say(f"{out}: {mechanism.name}, {bodies}, {joints}")
     if any(mechanism.origin):
         place = " ".join(f"{coordinate:.10g}" for coordinate in mechanism.origin)
         say(f"Points are counted from {place} of {source}.")

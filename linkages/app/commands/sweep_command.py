@@ -92,6 +92,7 @@ def sweep_command(
       bifurc sweep bricard-line-symmetric-zero-offset --random 1000 --out bricard.zarr
       bifurc sweep bennett --random 5000 --scheduler tcp://127.0.0.1:8786
     """
+    from bifurc.text_tables import count_of
     from linkages.app.sweep.plan import read_plan
 
     plan = read_plan(family, parameters, random or 0, starts, seed)
@@ -102,7 +103,7 @@ def sweep_command(
         with prepare_sweep(
             plan, out, workers=workers, scheduler=scheduler, atlases=atlases
         ) as sweep:
-            label = f"{plan.size} members"
+            label = count_of(plan.size, "member")
             with click.progressbar(
                 length=plan.size, label=label, file=sys.stderr
             ) as bar:

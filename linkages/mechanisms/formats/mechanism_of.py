@@ -10,6 +10,7 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 
+from bifurc.text_tables import count_of
 from linkages.decisions import (
     is_closed_as_it_stands,
     is_file_closed,
@@ -98,7 +99,7 @@ def _without_branches(assembly: Assembly, notes: list[str]) -> Assembly:
         graph.remove_nodes_from(ends)
         ends = [body for body in graph if graph.degree(body) < 2]
     if not graph:
-        value = f"{len(assembly.bodies)} bodies without a closed loop"
+        value = f"{count_of(len(assembly.bodies), 'body')} without a closed loop"
         allowed = "a mechanism with a closed loop at least"
         raise GeometryError("mechanism", value, allowed)
     bodies = tuple(body for body in assembly.bodies if body in graph)

@@ -80,7 +80,7 @@ def test_the_tables_of_locks_are_written(tmp_path, monkeypatch):
     result = run("network", "serial-bennett-network", "--locks", "--out", str(tmp_path))
     assert result.exit_code == ExitCode.DONE
     page = (tmp_path / "locks.md").read_text(encoding="utf-8")
-    assert "## 28 pairs of locks, 28 of which leave a motion" in page
+    assert "## 28 pairs of locks, 28 with a motion left" in page
     assert page.rstrip("\n") == result.stdout.rstrip("\n")
     with (tmp_path / "lock_pairs.csv").open(encoding="utf-8", newline="") as file:
         pairs = {row["locks"]: row for row in csv.DictReader(file)}

@@ -1,5 +1,6 @@
 """Coordinates far from the origin: counted from the mechanism, or said to be rounded."""
 
+from dataclasses import replace
 from decimal import Decimal
 
 import pytest
@@ -15,6 +16,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
 from linkages.mechanisms.subject import mechanism_of
 from linkages.mechanisms.toml_text import mechanism_toml
+from tests.linkages.mechanisms.test_maps import slider_crank
 
 UPWARDS = (0.0, 0.0, 1.0)
 SLIDER_CRANK = """
@@ -53,13 +55,15 @@ def slider_crank_file(folder, offset):
 
 
 def far_slider_crank(offset):
-    joints = (
-        Joint("A", "revolute", ("f", "c"), (offset, 0, 0), UPWARDS),
-        Joint("B", "revolute", ("c", "r"), (offset + 0.6, 0.8, 0), UPWARDS),
-        Joint("C", "revolute", ("r", "s"), (offset + 1.2, 0, 0), UPWARDS),
-        Joint("D", "prismatic", ("f", "s"), None, (1, 0, 0)),
-    )
-    return Mechanism(joints, "far")
+    """A slider-crank of equal lengths, with its slider line through the crank pivot."""
+    near = slider_crank()
+    joints = []
+    for joint in near.joints:
+        if joint.point is not None:
+            x, y, z = joint.point
+            joint = replace(joint, point=(x + offset, y, z))
+        joints.append(joint)
+    return replace(near, joints=tuple(joints))
 
 
 @pytest.mark.parametrize("offset", ["0.0", "-70.0", "30000.0", "100000.1", "1e12"])
@@ -91,7 +95,7 @@ def test_near_misses_that_rounding_of_coordinates_explains_are_in_doubt(offset):
 
 def test_near_misses_that_rounding_does_not_explain_are_certain():
     joints = list(far_slider_crank(0.0).joints)
-    joints[1] = Joint("B", "revolute", ("c", "r"), (0.6 + 1e-9, 0.8, 0), UPWARDS)
+    joints[1] = replace(joints[1], point=(0.6 + 1e-9, 0.8, 0))
     atlas = linkages.map_linkage(Mechanism(tuple(joints), "near"))
     assert len(atlas.near_misses) == 4
     assert atlas.completeness.level == Level.CERTIFIED

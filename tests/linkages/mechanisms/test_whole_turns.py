@@ -65,7 +65,7 @@ def test_of_many_forms_it_is_said_that_there_are_more():
 
 
 def test_without_time_for_proofs_none_are_looked_for():
-    assert "at least 1 forms" in audit_of(1, 0.0).statement
+    assert "at least 1 form in all" in audit_of(1, 0.0).statement
 
 
 def test_what_is_beside_a_form_is_moved_to_where_it_is_listed():
