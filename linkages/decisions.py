@@ -127,6 +127,14 @@ cancels_in_whole_turns = Decision(
     "the rounding of pitches, some 1e-16 a turn; turns that do not cancel miss by a "
     "share of a turn",
 )
+is_moved_by_whole_turns = Decision(
+    "same place up to whole turns",
+    "two configurations, or points of two forms, are one but for whole turns",
+    "their distance after these turns, rad and characteristic lengths",
+    1e-6,
+    "forms are closed to 1e-12, shaky assemblies found to 1e-8; others are apart by a "
+    "share of a turn",
+)
 is_rounding_of_zero = Decision(
     "equation without unknowns",
     "a closure equation that holds no unknown is satisfied",

@@ -72,12 +72,13 @@ class LooseChainDocument(TypedDict):
 
 class TranslatesDocument(TypedDict):
     """How many ``forms`` and ``assemblies`` what is listed up to whole turns of
-    ``joints`` stands for, at least or, where these ``are_all``, exactly; None where
-    they are not counted."""
+    ``joints`` stands for, at least or, where these ``are_all``, exactly. Of the forms
+    that are listed ``distinct_forms`` differ by more than such turns."""
 
     joints: list[str]
-    forms: int | None
-    assemblies: int | None
+    forms: int
+    assemblies: int
+    distinct_forms: int
     are_all: bool
 
 
@@ -149,6 +150,7 @@ def _translates(atlas: Atlas) -> TranslatesDocument | None:
         "joints": list(translates.joints),
         "forms": translates.forms,
         "assemblies": translates.assemblies,
+        "distinct_forms": translates.distinct_forms,
         "are_all": translates.are_all,
     }
 

@@ -160,7 +160,7 @@ def _assemblies(atlas: Atlas, count: int, shaky: int) -> str:
     if count == shaky == 1:
         remark = ", which is shaky (of lower rank)"
     translates = translates_of(atlas)
-    if translates is not None and translates.assemblies is not None:
+    if translates is not None:
         fewest = "" if translates.are_all else "at least "
         remark += f" (up to whole turns; with them {fewest}{translates.assemblies})"
     return (

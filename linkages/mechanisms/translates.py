@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,13 +26,16 @@ KEY = "translates"  # in the subject of an atlas
 
 class Translates(NamedTuple):
     """How many ``assemblies`` and ``forms`` there are within the limits with all whole
-    turns, and whether these ``are_all`` of them; None where they are not counted, as
-    forms that a chain of bifurcations joins may be listed more than once. The turns are
-    those of ``joints``, variables by label."""
+    turns, and whether these ``are_all`` of them. The turns are those of ``joints``,
+    variables by label. Of the ``listed_forms``, ``distinct_forms`` differ by more than
+    whole turns: through bifurcations a form may lead to where it is again but for
+    these."""
 
     joints: tuple[str, ...]
-    forms: int | None
-    assemblies: int | None
+    forms: int
+    assemblies: int
+    listed_forms: int
+    distinct_forms: int
     are_all: bool
 
     @property
@@ -43,9 +47,13 @@ class Translates(NamedTuple):
         if self.forms:
             counts.append(count_of(self.forms, "form"))
         differing = f"what differs by whole turns of {', '.join(self.joints)} alone"
-        if self.forms is None:
-            return f"{differing} may be listed once"
         text = f"{differing} is listed once, nearest to the middle of the limits"
+        if self.listed_forms > self.distinct_forms:
+            listed = count_of(self.listed_forms, "form")
+            text = (
+                f"{differing} is listed once, or where bifurcations lead there: of "
+                f"{listed} listed here {self.distinct_forms} differ otherwise"
+            )
         if counts:
             fewest = "" if self.are_all else "at least "
             text += f"; with these turns what is listed stands for {fewest}"
@@ -58,11 +66,12 @@ def translates_of(atlas: Atlas) -> Translates | None:
     values = atlas.subject.get(KEY)
     if values is None:
         return None
-    forms, assemblies = values["forms"], values["assemblies"]
     return Translates(
         tuple(values["joints"]),
-        None if forms is None else int(forms),
-        None if assemblies is None else int(assemblies),
+        int(values["forms"]),
+        int(values["assemblies"]),
+        int(values["listed_forms"]),
+        int(values["distinct_forms"]),
         bool(values["are_all"]),
     )
 
@@ -80,8 +89,6 @@ def with_translates(atlas: Atlas, structure: Structure, lattice: TurnLattice) ->
     counts = (translates.forms, translates.assemblies)
     if translates.are_all and counts == listed and not atlas.surfaces:
         return atlas
-    if _may_be_listed_twice(atlas, lattice):
-        translates = Translates(joints, None, None, are_all=False)
     completeness = atlas.completeness
     statement = f"{completeness.statement}; {translates.sentence}"
     return replace(
@@ -92,15 +99,28 @@ def with_translates(atlas: Atlas, structure: Structure, lattice: TurnLattice) ->
 
 
 def _counted(atlas: Atlas, lattice: TurnLattice, joints: tuple[str, ...]) -> Translates:
-    """How many translates all that is listed has, each for itself."""
-    forms = [_count_of_form(lattice, form.branch) for form in atlas.forms]
+    """How many translates all that is listed has, what is one but for whole turns
+    together."""
+    # it imports modules that a verdict does not need
+    from linkages.mechanisms.turn_classes import classes_of_assemblies, classes_of_forms
+
+    branches = [form.branch for form in atlas.forms]
+    alike = classes_of_forms(branches, lattice)
+    forms = [
+        _count_of_class([_count_of_form(lattice, branch) for branch in branches])
+        for branches in alike
+    ]
+    points = classes_of_assemblies(_assemblies(atlas), atlas.periods, lattice)
     assemblies = [
-        lattice.count_of_translates(point[None]) for point in _assemblies(atlas)
+        _count_of_class([lattice.count_of_translates(one[None]) for one in own])
+        for own in points
     ]
     return Translates(
         joints,
         forms=sum(form.number for form in forms),
         assemblies=sum(assembly.number for assembly in assemblies),
+        listed_forms=len(branches),
+        distinct_forms=len(alike),
         are_all=all(one.are_all for one in forms + assemblies),
     )
 
@@ -111,14 +131,12 @@ def _assemblies(atlas: Atlas) -> list[np.ndarray]:
     return [*atlas.rigid, *shaky]
 
 
-def _may_be_listed_twice(atlas: Atlas, lattice: TurnLattice) -> bool:
-    """Whether a form may be listed with translates of it: through bifurcations other
-    forms lead to them, and these are not where whole turns bring a form."""
-    if atlas.bifurcations:
-        return True
-    closed = [form.branch for form in atlas.forms if form.branch.closed]
-    shifts = [lattice.home(branch.sample(SAMPLES)) for branch in closed]
-    return any(bool(np.any(shift)) for shift in shifts)
+def _count_of_class(counts: Sequence[Count]) -> Count:
+    """How many there are of what is one up to whole turns: as many as lead from any of
+    those listed, and no fewer than are listed."""
+    number = max(*(count.number for count in counts), len(counts))
+    are_all = all(count.are_all for count in counts)
+    return counts[0]._replace(number=number, are_all=are_all)
 
 
 def _count_of_form(lattice: TurnLattice, branch: Branch) -> Count:

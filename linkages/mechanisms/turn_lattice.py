@@ -115,6 +115,15 @@ class TurnLattice:
         is_below = moved <= highest[self.columns] + WITHIN
         return Shifts(shifts[np.all(is_above & is_below, axis=1)], are_all)
 
+    def shifts_towards(self, places: np.ndarray, point: np.ndarray) -> np.ndarray:
+        """The shifts (k, n) that bring each of the places (k, n) next to a ``point``
+        (n,)."""
+        columns = self.columns
+        gaps = (point - places)[:, columns]
+        times = np.linalg.lstsq(self.basis[:, columns].T, gaps.T, rcond=None)[0]
+        shifts: np.ndarray = np.round(times).T @ self.basis
+        return shifts
+
     def translates(self, points: np.ndarray) -> Shifts:
         """The shifts after which all ``points`` (k, n) are within the limits."""
         low, high = self.limits.T
