@@ -7,6 +7,7 @@ and the bodies between have no length.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -18,7 +19,6 @@ from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["JointPlace", "joint_places"]
 
-ON_AXIS = 1e-9  # of a distance from the origin: a point that lies on an axis
 # freedoms of the point of a joint: along its axis, or anywhere
 ALONG = (JointKind.REVOLUTE, JointKind.CYLINDRICAL, JointKind.HELICAL)
 ANYWHERE = (JointKind.PRISMATIC, JointKind.PLANAR, JointKind.RIGID)
@@ -37,29 +37,32 @@ class JointPlace:
 
 def joint_places(mechanism: Mechanism) -> list[JointPlace]:
     """The places of all joints, those that make one cylindrical or planar joint
-    together as one."""
-    chains = _planar_chains(mechanism)
-    used = {id(joint) for chain in chains for joint in chain}
-    for pair in _cylindrical_pairs(mechanism):
-        if not used & {id(joint) for joint in pair}:
-            chains.append(pair)
-            used |= {id(joint) for joint in pair}
+    together as one. Where the point of a slide is given does not matter."""
+    neighbours = _neighbours(mechanism)
+    planar = _planar_chains(neighbours)
+    in_planes = {joint.name for chain in planar for joint in chain}
+    rest = [
+        pair for pair in neighbours if not in_planes & {joint.name for joint in pair}
+    ]
+    cylindrical = _cylindrical_chains(rest)
+    used = in_planes | {joint.name for chain in cylindrical for joint in chain}
     places = [
         JointPlace(frozenset(joint.bodies), joint.place, _free_directions(joint))
         for joint in mechanism.joints
-        if id(joint) not in used
+        if joint.name not in used
     ]
-    return places + [_place_of_chain(chain) for chain in chains]
+    places += [_place_of_chain(chain, np.eye(3)) for chain in planar]
+    for chain in cylindrical:
+        places.append(_place_of_chain(chain, _free_directions(chain[0])))
+    return places
 
 
-def _place_of_chain(chain: list[Joint]) -> JointPlace:
-    """The place of joints between whose bodies nothing else is: that of the turn, anywhere
-    for one in a plane."""
+def _place_of_chain(chain: list[Joint], free: np.ndarray) -> JointPlace:
+    """The place of joints between whose bodies nothing else is: that of the turn."""
     ends = frozenset(chain[0].bodies)
     for joint in chain[1:]:
         ends ^= frozenset(joint.bodies)
     (turn,) = [joint for joint in chain if joint.kind in TURNS]
-    free = np.eye(3) if len(chain) > 2 else _free_directions(turn)
     return JointPlace(ends, turn.place, free)
 
 
@@ -75,62 +78,35 @@ def _neighbours(mechanism: Mechanism) -> list[list[Joint]]:
     return pairs
 
 
-def _cylindrical_pairs(mechanism: Mechanism) -> list[list[Joint]]:
-    """Turns and slides that make a cylindrical joint. Of several turns beside a slide
-    it is that whose axis its point lies on, and none where that does not tell."""
-    turns_of: dict[str, list[Joint]] = {}
-    slides: dict[str, Joint] = {}
-    for joints in _neighbours(mechanism):
+def _cylindrical_chains(neighbours: list[list[Joint]]) -> list[list[Joint]]:
+    """Turns, each with the slides along its axis beside it.
+
+    A slide between two turns is with either of them: it is as far from one to the
+    other, whichever has it.
+    """
+    chains: dict[str, list[Joint]] = {}
+    placed: set[str] = set()
+    for joints in neighbours:
         for slide, turn in (joints, joints[::-1]):
             if slide.kind is not JointKind.PRISMATIC or turn.kind not in TURNS:
                 continue
-            if is_parallel_axis(_sine(slide, turn)):
-                slides[slide.name] = slide
-                turns_of.setdefault(slide.name, []).append(turn)
-    pairs = []
-    for name, turns in turns_of.items():
-        own = turns
-        if len(turns) > 1:
-            own = [turn for turn in turns if _is_on_axis(slides[name], turn)]
-        if len(own) == 1:
-            pairs.append([slides[name], own[0]])
-    return pairs
+            if slide.name in placed or not is_parallel_axis(_sine(slide, turn)):
+                continue
+            chains.setdefault(turn.name, [turn]).append(slide)
+            placed.add(slide.name)
+    return list(chains.values())
 
 
-def _planar_chains(mechanism: Mechanism) -> list[list[Joint]]:
+def _planar_chains(neighbours: list[list[Joint]]) -> list[list[Joint]]:
     """Two slides and a turn across them, in any order, that make a planar joint. Of
-    several that share a joint it is that whose slides have their points on the axis, and
-    none where that does not tell."""
+    several that share a joint none is: each would leave another turn where it is."""
     chains: list[list[Joint]] = []
-    for first, second in combinations(_neighbours(mechanism), 2):
+    for first, second in combinations(neighbours, 2):
         chain = list({joint.name: joint for joint in first + second}.values())
         if len(chain) == 3 and _is_planar(chain):
             chains.append(chain)
-    return [
-        chain
-        for chain in chains
-        if not _rivals(chain, chains)
-        or (
-            _is_at_its_turn(chain)
-            and not any(map(_is_at_its_turn, _rivals(chain, chains)))
-        )
-    ]
-
-
-def _rivals(chain: list[Joint], chains: list[list[Joint]]) -> list[list[Joint]]:
-    """The other chains that share a joint with one."""
-    names = {joint.name for joint in chain}
-    return [
-        other
-        for other in chains
-        if other is not chain and names & {joint.name for joint in other}
-    ]
-
-
-def _is_at_its_turn(chain: list[Joint]) -> bool:
-    """Whether the slides of a chain have their points on the axis of its turn."""
-    (turn,) = [joint for joint in chain if joint.kind in TURNS]
-    return all(_is_on_axis(slide, turn) for slide in chain if slide is not turn)
+    counts = Counter(joint.name for chain in chains for joint in chain)
+    return [chain for chain in chains if all(counts[one.name] == 1 for one in chain)]
 
 
 def _is_planar(chain: list[Joint]) -> bool:
@@ -149,16 +125,6 @@ def _sine(first: Joint, second: Joint) -> float:
     """The sine of the angle between the directions of two joints."""
     directions = first.motions[0].direction, second.motions[0].direction
     return float(np.linalg.norm(np.cross(*directions)))
-
-
-def _is_on_axis(slide: Joint, turn: Joint) -> bool:
-    """Whether the point that is given for a slide lies on the axis of a turn."""
-    if slide.point is None:
-        return False
-    gap = slide.place - turn.place
-    distance = np.linalg.norm(np.cross(gap, turn.motions[0].direction))
-    size = max(np.linalg.norm(slide.place), np.linalg.norm(turn.place))
-    return bool(distance <= ON_AXIS * size)
 
 
 def _free_directions(joint: Joint) -> np.ndarray:

@@ -25,7 +25,7 @@ from linkages.mechanisms.formats.assembly import (
     frame_along,
     translation,
 )
-from linkages.mechanisms.formats.mjcf_composites import (
+from linkages.mechanisms.formats.composites import (
     Axis,
     AxisCoupling,
     joints_of_axes,

@@ -15,6 +15,7 @@ import numpy as np
 from linkages.decisions import is_one_direction
 from linkages.loop import quoted
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, frame_along
+from linkages.mechanisms.formats.sdf_chains import with_joints_of_chains
 from linkages.mechanisms.formats.sdf_couplings import (
     AXES,
     GEARBOX,
@@ -82,8 +83,8 @@ def read_sdf(root: Element, name: str) -> Assembly:
     _collect(model)
     joints = _read_joints(model)
     links = [link.attributes["name"] for link in model.element.all("link")]
-    is_on_world = any(WORLD in joint.bodies for joint in joints)
-    bodies = (WORLD, *links) if is_on_world else tuple(links)
+    joined = {body for joint in joints for body in joint.bodies}
+    bodies = tuple(body for body in (WORLD, *links) if body in joined)
     poses = {body: _pose(body, model) for body in bodies}
     title = model.element.attributes.get("name", name)
     return Assembly(title, bodies, joints, poses)
@@ -108,8 +109,13 @@ def _read_joints(model: _Model) -> tuple[BodyJoint, ...]:
             continue
         joints.append(_read_joint(element, model))
         elements[element.attributes["name"]] = element
+
+    def pose_of(body: str) -> np.ndarray:
+        return _pose(body, model)
+
     joints = with_mimics(joints, elements, model.version)
-    return tuple(with_gearboxes(joints, gearboxes, lambda body: _pose(body, model)))
+    joints = with_gearboxes(joints, gearboxes, pose_of)
+    return with_joints_of_chains(joints, pose_of)
 
 
 # --- poses ----------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 from linkages.loop import GeometryError
 from linkages.mechanisms.formats.names import NameRules, with_names_for
+from linkages.mechanisms.formats.sdf_chains import link_behind
 from linkages.mechanisms.formats.sdf_couplings import AXES
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
@@ -59,12 +60,7 @@ def _names_of_joint(joint: Joint) -> list[str]:
     pairs = [joint.name]
     if len(joint.bodies) > 2:
         pairs = [f"{joint.name}.{body}" for body in joint.bodies[1:]]
-    return [*pairs, *joint.labels, *(_link_name(label) for label in joint.labels)]
-
-
-def _link_name(label: str) -> str:
-    """What the link behind a variable is called."""
-    return f"{label}.link"
+    return [*pairs, *joint.labels, *(link_behind(label) for label in joint.labels)]
 
 
 # links are among the names of joints: all are siblings
@@ -118,7 +114,7 @@ def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
         for tag, variable in zip(AXES, variables, strict=True):
             axes += _axis(tag, variable, mechanism, 1.0)
         return _joint(name, "universal", base, moved, place, axes), []
-    between = [_link_name(variable.label) for variable in variables[:-1]]
+    between = [link_behind(variable.label) for variable in variables[:-1]]
     bodies = [base, *between, moved]
     lines = []
     for variable, first, second in zip(variables, bodies, bodies[1:], strict=False):

@@ -1,4 +1,4 @@
-"""Joints that several joints of an MJCF body make together."""
+"""Joints that several joints one after the other make together, in MJCF and in SDF."""
 
 from __future__ import annotations
 
