@@ -19,7 +19,7 @@ from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.arcs import read_arcs
 from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import Joint, Motion
+from linkages.mechanisms.joint import WITHOUT_PLACE, Joint, Motion
 from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
@@ -89,7 +89,11 @@ def _from_near(tables: Sequence[object]) -> tuple[list[object], Coordinates]:
     points = [
         table.get("point") if isinstance(table, Mapping) else None for table in tables
     ]
-    near = counted_from_near(points)
+    are_anywhere = [
+        isinstance(table, Mapping) and table.get("kind") in WITHOUT_PLACE
+        for table in tables
+    ]
+    near = counted_from_near(points, are_anywhere)
     moved: list[object] = []
     for table, row in zip(tables, near.rows, strict=True):
         if isinstance(table, Mapping) and row is not None:

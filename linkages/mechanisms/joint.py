@@ -20,7 +20,7 @@ from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling
 from linkages.values import check_angle, check_direction
 
-__all__ = ["Joint", "JointKind", "Limits", "Motion", "Vector"]
+__all__ = ["WITHOUT_PLACE", "Joint", "JointKind", "Limits", "Motion", "Vector"]
 
 Vector: TypeAlias = tuple[float, float, float]
 # The least and the largest value of a variable.
@@ -58,6 +58,8 @@ NEEDS = {
     JointKind.PLANAR: _Needs(("direction",), ("point", "second_direction")),
     JointKind.RIGID: _Needs((), ("point",)),
 }
+# the point of such a joint is for drawing alone
+WITHOUT_PLACE = (JointKind.PRISMATIC, JointKind.RIGID)
 LARGEST = 1e100  # coordinate
 GEOMETRY = ("point", "direction", "second_direction", "pitch")
 

@@ -13,7 +13,14 @@ from bifurc.text_tables import count_of
 from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling, Leader, leaders
-from linkages.mechanisms.joint import Joint, JointKind, Limits, Motion, Vector
+from linkages.mechanisms.joint import (
+    WITHOUT_PLACE,
+    Joint,
+    JointKind,
+    Limits,
+    Motion,
+    Vector,
+)
 
 if TYPE_CHECKING:
     # networkx takes long to import
@@ -206,8 +213,12 @@ class Mechanism:
 
     @cached_property
     def _points(self) -> np.ndarray:
-        """The points (k, 3) that are given; the origin where there are none."""
-        points = [joint.point for joint in self.joints if joint.point is not None]
+        """The points (k, 3) at which axes are; the origin where there are none."""
+        points = [
+            joint.point
+            for joint in self.joints
+            if joint.point is not None and joint.kind not in WITHOUT_PLACE
+        ]
         return np.array(points or [(0.0, 0.0, 0.0)])
 
     # --- other mechanisms -------------------------------------------------------------

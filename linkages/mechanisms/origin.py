@@ -22,7 +22,9 @@ __all__ = [
     "Place",
     "WrittenNumber",
     "counted_from_near",
+    "exact_number",
     "origin_of",
+    "rounding_of_number",
 ]
 
 Place: TypeAlias = tuple[float, float, float]
@@ -52,25 +54,29 @@ class Coordinates(NamedTuple):
     rounding: float = 0.0
 
 
-def counted_from_near(rows: Sequence[object]) -> Coordinates:
+def counted_from_near(
+    rows: Sequence[object], are_anywhere: Sequence[bool] = ()
+) -> Coordinates:
     """The rows, lists of two or three coordinates, counted from the first one where
-    they are far from the origin beside their own spread.
+    they are far from the origin beside their own spread. Those that may be given
+    anywhere, as the points of slides, do not say where the others are.
 
     Differences of `WrittenNumber`s and integers are exact but for one rounding. Where a
     row is no list of such numbers all are left as they are: their reader refuses them.
     """
     unchanged = Coordinates(list(rows))
-    given = [row for row in rows if _is_row(row)]
+    pairs = zip(rows, are_anywhere or [False] * len(rows), strict=True)
+    given = [row for row, is_anywhere in pairs if _is_row(row) and not is_anywhere]
     are_alike = len({len(row) for row in given}) == 1
     if not are_alike or not all(row is None or _is_row(row) for row in rows):
         return unchanged
     places = np.array(given, dtype=float)
     if are_near_origin(places):
         return unchanged
-    first = [_exact(number) for number in given[0]]
+    first = [exact_number(number) for number in given[0]]
     shifted = [_minus(row, first) if _is_row(row) else None for row in rows]
     x, y, z = [float(number) for number in first] + [0.0] * (3 - len(first))
-    rounding = max(_rounding(number) for row in given for number in row)
+    rounding = max(rounding_of_number(number) for row in given for number in row)
     return Coordinates(shifted, (x, y, z), rounding)
 
 
@@ -107,7 +113,7 @@ def _is_number(value: object) -> bool:
     return not (is_tiny or is_hidden)
 
 
-def _exact(number: float) -> Fraction:
+def exact_number(number: float) -> Fraction:
     """A number as its decimal says; a zero is one whatever its exponent."""
     if number and isinstance(number, WrittenNumber):
         return Fraction(number.text)
@@ -121,7 +127,7 @@ def _digits(number: float) -> str:
     return "".join(filter(str.isdigit, mantissa)).strip("0")
 
 
-def _rounding(number: float) -> float:
+def rounding_of_number(number: float) -> float:
     """How far off a number may be: a decimal of few digits is exact."""
     if isinstance(number, int):
         return 0.0
@@ -132,5 +138,6 @@ def _rounding(number: float) -> float:
 
 def _minus(row: Any, first: Sequence[Fraction]) -> list[float]:
     return [
-        float(_exact(value) - start) for value, start in zip(row, first, strict=True)
+        float(exact_number(value) - start)
+        for value, start in zip(row, first, strict=True)
     ]

@@ -10,7 +10,7 @@ import numpy as np
 
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import LARGEST, JointKind, Limits
+from linkages.mechanisms.joint import LARGEST, JointKind, Limits, Vector
 
 __all__ = ["Assembly", "BodyJoint", "frame_along", "translation"]
 
@@ -67,6 +67,8 @@ class Assembly:
 
     ``poses`` (4, 4), by body, are a configuration in which the joints fit, or nearly
     so; empty where the file gives none. ``notes`` say what of a file was left out.
+    Places are counted from the ``origin`` of the file, and may be off by ``rounding``,
+    where that is more than they are as doubles.
     Raises `GeometryError` where a joint names a body that is not there, a name is given
     twice, or a coordinate is beyond all measure.
     """
@@ -76,6 +78,8 @@ class Assembly:
     joints: tuple[BodyJoint, ...]
     poses: dict[str, np.ndarray] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    origin: Vector = (0.0, 0.0, 0.0)
+    rounding: float = 0.0
 
     def __post_init__(self) -> None:
         _check_names("name of a body", self.bodies)

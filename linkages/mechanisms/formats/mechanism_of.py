@@ -81,7 +81,12 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
     joints = _coupled(joints, assembly, values, notes)
     for note in notes:
         log.warning("%s: %s", assembly.name, note)
-    return Mechanism(tuple(joints), assembly.name)
+    return Mechanism(
+        tuple(joints),
+        assembly.name,
+        origin=assembly.origin,
+        rounding=assembly.rounding,
+    )
 
 
 # --- what lies in a loop --------------------------------------------------------------

@@ -8,12 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linkages.loop import quoted
-from linkages.mechanisms.formats.assembly import frame_along, translation
+from linkages.mechanisms.formats.assembly import frame_along
+from linkages.mechanisms.formats.exact_poses import ExactPose
 from linkages.mechanisms.formats.xml_tree import Element
 
-__all__ = ["Settings", "pose_of", "read_settings", "rotation_of_quaternion"]
+__all__ = ["AT_REST", "Settings", "pose_of", "read_settings", "rotation_of_quaternion"]
 
 ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
+AT_REST = (0.0, 0.0, 0.0)
 MAIN = "main"  # the class of defaults that holds where none is named
 
 
@@ -92,17 +94,15 @@ def _read_defaults(
 # --- poses ----------------------------------------------------------------------------
 
 
-def pose_of(element: Element, settings: Settings) -> np.ndarray:
-    """The pose (4, 4) of a body, a frame or a site in the element around it; raises
+def pose_of(element: Element, settings: Settings) -> ExactPose:
+    """The pose of a body, a frame or a site in the element around it; raises
     `GeometryError`."""
     given = [key for key in ORIENTATIONS if key in element.attributes]
     if len(given) > 1:
         allowed = "the only orientation"
         element.refuse(f"{given[0]} and {given[1]}", "both given", allowed)
-    result = translation(element.numbers("pos", (3,)) or (0.0, 0.0, 0.0))
-    if given:
-        result[:3, :3] = _orientation(element, given[0], settings)
-    return result
+    rotation = _orientation(element, given[0], settings) if given else None
+    return ExactPose.at(element.numbers("pos", (3,)) or AT_REST, rotation)
 
 
 def _orientation(element: Element, key: str, settings: Settings) -> np.ndarray:

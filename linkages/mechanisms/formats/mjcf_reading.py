@@ -30,8 +30,14 @@ from linkages.mechanisms.formats.composites import (
     AxisCoupling,
     joints_of_axes,
 )
+from linkages.mechanisms.formats.exact_poses import (
+    ExactPlace,
+    ExactPose,
+    Origin,
+)
 from linkages.mechanisms.formats.mjcf_names import TakenNames, numbered
 from linkages.mechanisms.formats.mjcf_poses import (
+    AT_REST,
     Settings,
     pose_of,
     read_settings,
@@ -51,24 +57,29 @@ NUMBERED = re.compile(r"\.\d+$")
 
 @dataclass
 class _Body:
-    """A body that may move: its ``name``, its ``pose`` (4, 4) at qpos0."""
+    """A body that may move: its ``name``, and the ``frame`` (4, 4) at qpos0 in which
+    its joints are written."""
 
     name: str
-    pose: np.ndarray
+    frame: np.ndarray
 
 
 @dataclass
 class _Model:
     """What was read so far. ``names`` leads from every <body> to the `_Body` that it is
-    rigid with, ``sites`` to body and pose (4, 4) in the world, ``labels`` from every
-    axis to the label of the variable that it is."""
+    rigid with, ``sites`` to body and pose in the world, ``labels`` from every axis to
+    the label of the variable that it is. Places are counted from the ``origin``;
+    ``places`` are those of all joints, off by ``rounding`` at most."""
 
     settings: Settings
     taken: TakenNames
+    origin: Origin
     bodies: list[_Body] = field(default_factory=list)
     names: dict[str, _Body] = field(default_factory=dict)
-    element_poses: dict[str, np.ndarray] = field(default_factory=dict)
-    sites: dict[str, tuple[_Body, np.ndarray]] = field(default_factory=dict)
+    element_poses: dict[str, ExactPose] = field(default_factory=dict)
+    sites: dict[str, tuple[_Body, ExactPose]] = field(default_factory=dict)
+    places: list[ExactPlace] = field(default_factory=list)
+    rounding: float = 0.0
     axes: dict[str, Axis] = field(default_factory=dict)
     chains: list[tuple[_Body, _Body, list[Axis]]] = field(default_factory=list)
     joints: list[BodyJoint] = field(default_factory=list)
@@ -77,27 +88,52 @@ class _Model:
     couplings: dict[str, AxisCoupling] = field(default_factory=dict)
     labels: dict[str, str] = field(default_factory=dict)
 
+    def point(self, pose: ExactPose) -> np.ndarray:
+        """The place (3,) of a pose at which a joint is, which is kept in mind."""
+        self.places.append(pose.place)
+        self.rounding = max(self.rounding, pose.rounding)
+        point: np.ndarray = pose.matrix()[:3, 3]
+        return point
+
 
 def read_mjcf(root: Element, name: str) -> Assembly:
     """The assembly that an MJCF model describes; raises `GeometryError`."""
     for element in root.children:
         if element.tag in NOT_READ:
             _refuse_element(element)
-    model = _Model(read_settings(root), TakenNames(root))
-    world = _Body(WORLD, np.eye(4))
+    model = _read_model(root, Origin())
+    origin = Origin.near(model.places)
+    rounding = 0.0
+    if origin.place is not None:
+        model = _read_model(root, origin)
+        rounding = model.rounding
+    bodies = tuple(body.name for body in model.bodies)
+    return Assembly(
+        root.attributes.get("model", name),
+        bodies,
+        tuple(model.joints),
+        {body.name: body.frame for body in model.bodies},
+        tuple(model.notes),
+        model.origin.vector,
+        rounding,
+    )
+
+
+def _read_model(root: Element, origin: Origin) -> _Model:
+    """What an MJCF model describes, with places that are counted from an origin."""
+    model = _Model(read_settings(root), TakenNames(root), origin)
+    world = _Body(WORLD, origin.frame(origin.pose))
     model.bodies.append(world)
     model.names[WORLD] = world
+    model.element_poses[WORLD] = origin.pose
     for worldbody in root.all("worldbody"):
-        _read_children(worldbody, world, np.eye(4), None, model)
+        _read_children(worldbody, world, origin.pose, None, model)
     for equality in root.all("equality"):
         _read_couplings(equality, model)
     _add_chains(model)
     for equality in root.all("equality"):
         _read_closures(equality, model)
-    bodies = tuple(body.name for body in model.bodies)
-    poses = {body.name: body.pose for body in model.bodies}
-    title = root.attributes.get("model", name)
-    return Assembly(title, bodies, tuple(model.joints), poses, tuple(model.notes))
+    return model
 
 
 def _refuse_element(element: Element) -> None:
@@ -111,12 +147,12 @@ def _refuse_element(element: Element) -> None:
 def _read_children(
     element: Element,
     body: _Body,
-    pose: np.ndarray,
+    pose: ExactPose,
     childclass: str | None,
     model: _Model,
 ) -> None:
-    """Read the bodies, frames and sites in an element at ``pose`` (4, 4) in the world,
-    which belongs to ``body``."""
+    """Read the bodies, frames and sites in an element at ``pose`` in the world, which
+    belongs to ``body``."""
     for child in element.children:
         if child.tag in NOT_READ:
             _refuse_element(child)
@@ -135,7 +171,7 @@ def _read_children(
 def _read_body(
     element: Element,
     parent: _Body,
-    pose: np.ndarray,
+    pose: ExactPose,
     childclass: str | None,
     model: _Model,
 ) -> None:
@@ -154,7 +190,7 @@ def _read_body(
     ]
     body = parent
     if joints:
-        body = _Body(name, pose)
+        body = _Body(name, model.origin.frame(pose))
         model.bodies.append(body)
     model.names[name] = body
     model.element_poses[name] = pose
@@ -168,8 +204,8 @@ def _read_body(
     _read_children(element, body, pose, childclass, model)
 
 
-def _read_axis(joint: Element, pose: np.ndarray, model: _Model) -> Axis:
-    """A joint of a body at ``pose`` (4, 4)."""
+def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
+    """A joint of a body at ``pose``."""
     kind = joint.choice("type", ("hinge", "slide", "ball"), "hinge")
     name = joint.attributes.get("name")
     if name is None:
@@ -177,7 +213,7 @@ def _read_axis(joint: Element, pose: np.ndarray, model: _Model) -> Axis:
         name = model.taken.new_axis(f"J{number}" for number in numbers)
     if name in model.axes:
         joint.refuse("name", quoted(name), "given once")
-    point = np.array(joint.numbers("pos", (3,)) or (0.0, 0.0, 0.0))
+    point = ExactPose.at(joint.numbers("pos", (3,)) or AT_REST)
     direction = np.array(joint.numbers("axis", (3,)) or (0.0, 0.0, 1.0))
     if kind != "ball" and not np.any(direction):
         value = quoted(joint.attributes["axis"])
@@ -186,8 +222,10 @@ def _read_axis(joint: Element, pose: np.ndarray, model: _Model) -> Axis:
     limits = None if kind == "ball" else _read_limits(joint, unit, model.settings)
     if kind == "ball" and "range" in joint.attributes:
         model.notes.append(f"left out: the range of the ball joint {name}")
-    place = pose[:3, :3] @ point + pose[:3, 3]
-    axis = Axis(name, kind, place, pose[:3, :3] @ direction, limits)
+    is_slide = kind == "slide"
+    place_of = model.origin.place_of_slide if is_slide else model.point
+    place = place_of(pose @ point)
+    axis = Axis(name, kind, place, pose.rotation @ direction, limits)
     model.axes[name] = axis
     return axis
 
@@ -215,12 +253,12 @@ def _add_chains(model: _Model) -> None:
             second = body
             if number < len(joints):
                 name = model.taken.new_body(numbered(f"{body.name}.{number}"))
-                second = _Body(name, body.pose)
+                second = _Body(name, body.frame)
                 model.bodies.append(second)
             base, moved = (second, first) if joint.is_reversed else (first, second)
             frames = (
-                np.linalg.inv(base.pose) @ joint.first,
-                np.linalg.inv(moved.pose) @ joint.second,
+                np.linalg.inv(base.frame) @ joint.first,
+                np.linalg.inv(moved.frame) @ joint.second,
             )
             body_joint = BodyJoint(
                 joint.name,
@@ -359,7 +397,7 @@ def _read_bodies(element: Element, model: _Model) -> tuple[_Body, _Body]:
 
 def _read_sites(
     element: Element, model: _Model
-) -> tuple[tuple[_Body, np.ndarray], tuple[_Body, np.ndarray]] | None:
+) -> tuple[tuple[_Body, ExactPose], tuple[_Body, ExactPose]] | None:
     """The two sites of an equality; None where it has none."""
     if "site1" not in element.attributes and "site2" not in element.attributes:
         return None
@@ -377,19 +415,15 @@ def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:
     sites = _read_sites(element, model)
     if sites is not None:
         (first, one), (second, other) = sites
-        return _Anchor(name, (first, second), (one[:3, 3], other[:3, 3]))
+        points = model.point(one), model.point(other)
+        return _Anchor(name, (first, second), points)
     bodies = _read_bodies(element, model)
     anchor = element.numbers("anchor", (3,))
     if anchor is None:
         element.refuse("anchor", "missing", "a point in body1, or two sites")
-    pose = _pose_of_element(element.attributes["body1"], model)
-    point = pose[:3, :3] @ np.array(anchor) + pose[:3, 3]
+    pose = model.element_poses[element.attributes["body1"]]
+    point = model.point(pose @ ExactPose.at(anchor))
     return _Anchor(name, bodies, (point, point))
-
-
-def _pose_of_element(name: str, model: _Model) -> np.ndarray:
-    """The pose (4, 4) of a <body>, which may be one with its parent."""
-    return model.element_poses.get(name, np.eye(4))
 
 
 def _read_weld(element: Element, name: str, model: _Model) -> BodyJoint:
@@ -399,22 +433,27 @@ def _read_weld(element: Element, name: str, model: _Model) -> BodyJoint:
         (first, one), (second, other) = sites
     else:
         first, second = _read_bodies(element, model)
-        one = other = _pose_of_element(element.attributes["body1"], model)
+        one = other = model.element_poses[element.attributes["body1"]]
         given = element.numbers("relpose", (7,))
         if given is not None and any(given[3:]):
-            relative = translation(given[:3])
-            relative[:3, :3] = rotation_of_quaternion(np.array(given[3:]))
-            one = one @ relative
-            far = element.attributes.get("body2", WORLD)
-            other = _pose_of_element(far, model)
-    frames = np.linalg.inv(first.pose) @ one, np.linalg.inv(second.pose) @ other
+            turn = rotation_of_quaternion(np.array(given[3:]))
+            one = one @ ExactPose.at(given[:3], turn)
+            other = model.element_poses[element.attributes.get("body2", WORLD)]
+    if model.origin.place is not None:
+        # the same frames of both, brought near
+        near = ExactPose(place=other.inverse().place)
+        one, other = one @ near, other @ near
+    frames = (
+        np.linalg.inv(first.frame) @ one.matrix(),
+        np.linalg.inv(second.frame) @ other.matrix(),
+    )
     return BodyJoint(name, JointKind.RIGID, (first.name, second.name), frames)
 
 
 def _joint_of_anchors(anchors: list[_Anchor]) -> BodyJoint:
     """The joint that two bodies have when they share these points."""
     bodies = anchors[0].bodies
-    inverses = [np.linalg.inv(body.pose) for body in bodies]
+    inverses = [np.linalg.inv(body.frame) for body in bodies]
     places = [np.array([a.points[side] for a in anchors]) for side in (0, 1)]
     kind, columns = _kind_of_points(places[0])
     name = _name_of_anchors(anchors)

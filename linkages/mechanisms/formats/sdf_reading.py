@@ -15,6 +15,7 @@ import numpy as np
 from linkages.decisions import is_one_direction
 from linkages.loop import quoted
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, frame_along
+from linkages.mechanisms.formats.exact_poses import ExactPose, Origin
 from linkages.mechanisms.formats.sdf_chains import with_joints_of_chains
 from linkages.mechanisms.formats.sdf_couplings import (
     AXES,
@@ -24,7 +25,7 @@ from linkages.mechanisms.formats.sdf_couplings import (
     with_mimics,
 )
 from linkages.mechanisms.formats.xml_tree import Element
-from linkages.mechanisms.joint import JointKind, Limits
+from linkages.mechanisms.joint import WITHOUT_PLACE, JointKind, Limits
 
 __all__ = ["read_sdf"]
 
@@ -55,13 +56,18 @@ class _Posed:
 
 @dataclass
 class _Model:
-    """A model while it is read: what has a pose, by name, and the poses (4, 4) in the
-    model that are known."""
+    """A model while it is read: what has a pose, by name, and the poses in the model
+    that are known. Places are counted from the ``origin``."""
 
     element: Element
     version: tuple[int, int]
+    origin: Origin
     posed: dict[str, _Posed] = field(default_factory=dict)
-    poses: dict[str, np.ndarray] = field(default_factory=dict)
+    poses: dict[str, ExactPose] = field(default_factory=dict)
+
+    def frame(self, body: str) -> np.ndarray:
+        """The frame (4, 4) in which the joints of a body are written."""
+        return self.origin.frame(_pose(body, self))
 
 
 def read_sdf(root: Element, name: str) -> Assembly:
@@ -74,20 +80,43 @@ def read_sdf(root: Element, name: str) -> Assembly:
     if len(jointed) != 1:
         names = ", ".join(m.attributes.get("name", "?") for m in jointed) or "none"
         root.refuse("models with joints", names, "one")
-    model = _Model(jointed[0], version)
+    (element,) = jointed
     for tag in ("model", "include"):
-        inner = model.element.first(tag)
+        inner = element.first(tag)
         if inner is not None:
             value = f"on line {inner.line}"
-            model.element.refuse(f"<{tag}>", value, "left out; models are not nested")
+            element.refuse(f"<{tag}>", value, "left out; models are not nested")
+    model = _Model(element, version, Origin())
     _collect(model)
+    rounding = 0.0
+    poses_of_joints = [_pose(joint, model) for joint in _joints_with_places(element)]
+    origin = Origin.near([pose.place for pose in poses_of_joints])
+    if origin.place is not None:
+        model = _Model(element, version, origin)
+        _collect(model)
+        rounding = max(pose.rounding for pose in poses_of_joints)
     joints = _read_joints(model)
     links = [link.attributes["name"] for link in model.element.all("link")]
     joined = {body for joint in joints for body in joint.bodies}
     bodies = tuple(body for body in (WORLD, *links) if body in joined)
-    poses = {body: _pose(body, model) for body in bodies}
-    title = model.element.attributes.get("name", name)
-    return Assembly(title, bodies, joints, poses)
+    return Assembly(
+        model.element.attributes.get("name", name),
+        bodies,
+        joints,
+        {body: model.frame(body) for body in bodies},
+        origin=model.origin.vector,
+        rounding=rounding,
+    )
+
+
+def _joints_with_places(element: Element) -> list[str]:
+    """The names of the joints of a model that are at a place."""
+    elsewhere = [word for word, kind in KINDS.items() if kind in WITHOUT_PLACE]
+    return [
+        joint.attributes["name"]
+        for joint in element.all("joint")
+        if joint.attributes.get("type") not in (*elsewhere, GEARBOX)
+    ]
 
 
 def _version(root: Element) -> tuple[int, int]:
@@ -109,13 +138,9 @@ def _read_joints(model: _Model) -> tuple[BodyJoint, ...]:
             continue
         joints.append(_read_joint(element, model))
         elements[element.attributes["name"]] = element
-
-    def pose_of(body: str) -> np.ndarray:
-        return _pose(body, model)
-
     joints = with_mimics(joints, elements, model.version)
-    joints = with_gearboxes(joints, gearboxes, pose_of)
-    return with_joints_of_chains(joints, pose_of)
+    joints = with_gearboxes(joints, gearboxes, model.frame)
+    return with_joints_of_chains(joints, model.frame)
 
 
 # --- poses ----------------------------------------------------------------------------
@@ -144,12 +169,12 @@ def _link_name(joint: Element, tag: str) -> str:
     return child.text.strip()
 
 
-def _pose(name: str, model: _Model, path: tuple[str, ...] = ()) -> np.ndarray:
-    """The pose (4, 4) of a link, a frame or a joint in the model."""
+def _pose(name: str, model: _Model, path: tuple[str, ...] = ()) -> ExactPose:
+    """The pose of a link, a frame or a joint in the model."""
     if name == MODEL:
-        return np.eye(4)
+        return model.origin.pose
     if name == WORLD:
-        return np.linalg.inv(_own_pose(model.element)[0])
+        return model.origin.pose @ _own_pose(model.element)[0].inverse()
     if name in model.poses:
         return model.poses[name]
     posed = model.posed[name]
@@ -168,32 +193,31 @@ def _pose(name: str, model: _Model, path: tuple[str, ...] = ()) -> np.ndarray:
     return model.poses[name]
 
 
-def _own_pose(element: Element) -> tuple[np.ndarray, str | None]:
-    """The transform (4, 4) in <pose>, and what it says that it is relative to."""
+def _own_pose(element: Element) -> tuple[ExactPose, str | None]:
+    """The transform in <pose>, and what it says that it is relative to."""
     from scipy.spatial.transform import Rotation
 
     child = element.first("pose")
-    result = np.eye(4)
     if child is None:
-        return result, None
+        return ExactPose(), None
     relative_to = child.attributes.get("relative_to") or None
     text = child.text.strip()
     kind = child.choice("rotation_format", ("euler_rpy", "quat_xyzw"), "euler_rpy")
     if not text:
-        return result, relative_to
+        return ExactPose(), relative_to
     count = 6 if kind == "euler_rpy" else 7
     numbers = element.parsed_numbers("<pose>", text, (count,))
-    result[:3, 3] = numbers[:3]
+    rotation = None
     turn = np.array(numbers[3:])
     if kind == "quat_xyzw":
         if not np.any(turn):
             element.refuse("<pose>", quoted(text), "with a quaternion other than 0")
-        result[:3, :3] = Rotation.from_quat(turn).as_matrix()
+        rotation = Rotation.from_quat(turn).as_matrix()
     elif np.any(turn):
         if child.attributes.get("degrees") in ("true", "1"):
             turn = np.radians(turn)
-        result[:3, :3] = Rotation.from_euler("xyz", turn).as_matrix()
-    return result, relative_to
+        rotation = Rotation.from_euler("xyz", turn).as_matrix()
+    return ExactPose.at(numbers[:3], rotation), relative_to
 
 
 # --- joints ---------------------------------------------------------------------------
@@ -208,24 +232,29 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
         element.refuse("type", quoted(word), allowed)
     kind = KINDS[word]
     first, second = (_body(element, tag, model) for tag in ("parent", "child"))
-    place = _pose(name, model)
+    pose = _pose(name, model)
+    place = pose.matrix()
+    if kind is JointKind.PRISMATIC:
+        place[:3, 3] = model.origin.place_of_slide(pose)
+    elif kind is JointKind.RIGID:
+        place = model.origin.frame(pose)  # any frame of both bodies will do
     one = other = place
     limits: tuple[Limits | None, ...] = ()
     if kind not in (JointKind.SPHERICAL, JointKind.RIGID):
-        axis = _axis(element, "axis", place, model)
+        axis = _axis(element, "axis", pose, model)
         one = other = frame_along(place[:3, 3], axis)
         limits = (_limits(element, "axis", word),)
     cosine = 0.0
     if kind is JointKind.UNIVERSAL:
-        second_axis = _axis(element, "axis2", place, model)
+        second_axis = _axis(element, "axis2", pose, model)
         if is_one_direction(float(np.linalg.norm(np.cross(axis, second_axis)))):
             element.refuse("<axis2>", "along <axis>", "another direction")
         other = frame_along(place[:3, 3], second_axis)
         cosine = float(one[:3, 2] @ other[:3, 2])
         limits = (*limits, _limits(element, "axis2", word))
     frames = (
-        np.linalg.inv(_pose(first, model)) @ one,
-        np.linalg.inv(_pose(second, model)) @ other,
+        np.linalg.inv(model.frame(first)) @ one,
+        np.linalg.inv(model.frame(second)) @ other,
     )
     pitch = _pitch(element, model) if kind is JointKind.HELICAL else None
     bodies = first, second
@@ -237,8 +266,8 @@ def _read_gearbox(element: Element, model: _Model) -> Gearbox:
         _body(element, tag, model)
         for tag in ("parent", "child", "gearbox_reference_body")
     )
-    place = _pose(element.attributes["name"], model)
-    one, other = (_axis(element, tag, place, model) for tag in AXES)
+    pose = _pose(element.attributes["name"], model)
+    one, other = (_axis(element, tag, pose, model) for tag in AXES)
     return Gearbox(element, reference, (first, second), (one, other))
 
 
@@ -260,7 +289,7 @@ def _body(joint: Element, tag: str, model: _Model) -> str:
     return name
 
 
-def _axis(element: Element, tag: str, place: np.ndarray, model: _Model) -> np.ndarray:
+def _axis(element: Element, tag: str, pose: ExactPose, model: _Model) -> np.ndarray:
     """The direction (3,) of an axis in the model."""
     axis = element.first(tag)
     if axis is None:
@@ -271,17 +300,17 @@ def _axis(element: Element, tag: str, place: np.ndarray, model: _Model) -> np.nd
     if not np.any(direction):
         allowed = "of a length other than zero"
         element.refuse(f"<{tag}><xyz>", quoted(text.strip()), allowed)
-    frame = place
+    rotation = pose.rotation
     expressed = "" if xyz is None else xyz.attributes.get("expressed_in", "")
     if expressed:
         if expressed not in model.posed and expressed not in (MODEL, WORLD):
             allowed = f"one of {', '.join(model.posed)}"
             element.refuse("expressed_in", quoted(expressed), allowed)
-        frame = _pose(expressed, model)
+        rotation = _pose(expressed, model).rotation
     flag = axis.first("use_parent_model_frame")
     if flag is not None and flag.text.strip() in ("1", "true"):
-        frame = np.eye(4)
-    turned: np.ndarray = frame[:3, :3] @ direction
+        rotation = np.eye(3)
+    turned: np.ndarray = rotation @ direction
     return turned
 
 

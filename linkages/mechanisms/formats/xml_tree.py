@@ -8,6 +8,7 @@ from typing import NoReturn
 from xml.parsers import expat
 
 from linkages.loop import GeometryError, check_number, quoted
+from linkages.mechanisms.origin import WrittenNumber
 
 __all__ = ["Element", "parse_xml"]
 
@@ -55,12 +56,13 @@ class Element:
     def parsed_numbers(
         self, what: str, text: str, counts: tuple[int, ...]
     ) -> list[float]:
-        """The numbers of a text; raises `GeometryError` unless there are so many."""
+        """The numbers of a text, which know their decimals; raises `GeometryError`
+        unless there are so many."""
         allowed = f"{' or '.join(str(count) for count in counts)} numbers"
         if counts == (1,):
             allowed = "a number"
         try:
-            numbers = [float(word) for word in text.split()]
+            numbers: list[float] = [WrittenNumber(word) for word in text.split()]
         except ValueError:
             self.refuse(what, quoted(text), allowed)
         if len(numbers) not in counts:

@@ -262,3 +262,98 @@ def test_a_spherical_loop_far_from_the_origin_moves_as_one_that_is_near(tmp_path
     atlas = linkages.map_linkage(mechanism)
     assert len(atlas.forms) == 1
     assert "Coordinates of points are known to 1.1e-16" in make_summary(atlas)
+
+
+def mjcf_slider_crank(x, slide="0 0 0"):
+    """A slider-crank at x, in bodies that are turned, with decimals as they are."""
+    near = [f"{Decimal(x) + Decimal(dx)}" for dx in ("0", "0.6", "1.2")]
+    return f"""<mujoco><worldbody>
+      <body name="c"><joint name="A" axis="0 0 1" pos="{near[0]} 0 0"/>
+        <body name="r"><joint name="B" axis="0 0 1" pos="{near[1]} 0.8 0"/></body>
+      </body>
+      <body name="s" pos="{near[0]} 0 0" quat="0 1 0 0">
+        <joint name="D" type="slide" axis="1 0 0" pos="{slide}"/></body>
+    </worldbody><equality>
+      <connect name="C.1" body1="r" body2="s" anchor="{near[2]} 0 0"/>
+      <connect name="C.2" body1="r" body2="s" anchor="{near[2]} 0 1e-3"/>
+    </equality></mujoco>"""
+
+
+def sdf_slider_crank(x, slide="0 0 0"):
+    near = [f"{Decimal(x) + Decimal(dx)}" for dx in ("0", "0.6", "1.2")]
+    axis = "<axis><xyz>{}</xyz></axis>"
+    rows = [
+        ("A", "revolute", "world", "c", f"{near[0]} 0 0", "0 0 1"),
+        ("B", "revolute", "c", "r", f"{near[1]} 0.8 0", "0 0 1"),
+        ("C", "revolute", "r", "s", "1.2 0 0", "0 0 1"),
+        ("D", "prismatic", "world", "s", slide, "1 0 0"),
+    ]
+    joints = "".join(
+        f'<joint name="{name}" type="{kind}"><pose>{place} 0 0 0</pose>'
+        f"<parent>{parent}</parent><child>{child}</child>{axis.format(along)}</joint>"
+        for name, kind, parent, child, place, along in rows
+    )
+    links = f'<link name="c"/><link name="r"/><link name="s"><pose>{near[0]} 0 0 0 0 0</pose></link>'
+    return f'<sdf version="1.11"><model name="m">{links}{joints}</model></sdf>'
+
+
+FILES = {"far.xml": mjcf_slider_crank, "far.sdf": sdf_slider_crank}
+
+
+@pytest.mark.parametrize("slide", ["0 0 0", "-1e6 3 0"])
+@pytest.mark.parametrize("offset", ["0", "-70", "30000", "100000.1", "1e12"])
+@pytest.mark.parametrize("name", FILES)
+def test_poses_far_from_the_origin_lose_no_digits(name, offset, slide, tmp_path):
+    path = tmp_path / name
+    path.write_text(FILES[name](offset, slide))
+    mechanism = read_file(path)
+    points = {joint.name: joint.point for joint in mechanism.joints}
+    assert points["A"] == (0.0, 0.0, 0.0)
+    assert points["B"] == (0.6, 0.8, 0.0)
+    assert points["C"] == pytest.approx((1.2, 0.0, 0.0), abs=1e-15)
+    assert mechanism.origin == (float(offset), 0.0, 0.0)
+    assert mechanism.rounding == 0.0
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_bifurcations_of_a_far_model_are_found(name, tmp_path):
+    path = tmp_path / name
+    path.write_text(FILES[name]("30000"))
+    atlas = linkages.map_linkage(read_file(path))
+    assert len(atlas.bifurcations) == 2
+    assert "Points are counted from 30000 0 0 of the file." in make_summary(atlas)
+
+
+def test_turned_bodies_far_from_the_origin_say_what_is_lost(tmp_path):
+    # the arm from the axis of the world to the model is turned by 30 degrees
+    text = mjcf_slider_crank("0")
+    text = text.replace("<worldbody>", '<worldbody><frame euler="0 0 30">')
+    text = text.replace("</worldbody>", "</frame></worldbody>")
+    path = tmp_path / "turned.xml"
+    path.write_text(text.replace("<frame ", '<frame pos="30000 0 0" '))
+    mechanism = read_file(path)
+    assert mechanism.rounding < 1e-15
+    assert mechanism.joint("B").point == pytest.approx(
+        (0.6 * 3**0.5 / 2 - 0.4, 0.3 + 0.4 * 3**0.5, 0), abs=1e-15
+    )
+    arm = '<frame euler="0 0 30"><frame pos="30000 0 0">'
+    text = text.replace('<frame euler="0 0 30">', arm)
+    path.write_text(text.replace("</frame>", "</frame></frame>"))
+    assert read_file(path).rounding == pytest.approx(30000 * 2.2e-16, rel=0.01)
+
+
+def test_decimals_of_a_far_model_that_were_doubles_are_known_no_better(tmp_path):
+    path = tmp_path / "far.sdf"
+    path.write_text(sdf_slider_crank("30000.599999999998"))
+    assert read_file(path).rounding == pytest.approx(1.8e-12, rel=0.02)
+    text = make_summary(linkages.map_linkage(read_file(path)))
+    assert "Coordinates of points are known to 1.8e-12 only" in text
+
+
+@pytest.mark.parametrize("slide", ["", "point = [0, 0, 0]", "point = [-1e9, 3, 0]"])
+def test_the_point_of_a_slide_does_not_say_where_a_mechanism_is(slide, tmp_path):
+    path = slider_crank_file(tmp_path, "30000.0")
+    path.write_text(f"{path.read_text()}{slide}\n")
+    mechanism = read_file(path)
+    assert mechanism.joint("B").point == (0.6, 0.8, 0.0)
+    assert mechanism.is_known_to_rounding
