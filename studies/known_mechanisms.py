@@ -8,7 +8,7 @@ other ways changes what a mechanism does.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from linkages.mechanisms.bars import read_bars
-from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
 
 __all__ = [
@@ -36,6 +36,15 @@ SCALES = (1e-3, 1e3)
 FRAME_SEED = 8  # of another frame of coordinates
 OFFSET = (5.0, -3.0, 2.0)  # of its origin
 LONGER = 3.0  # directions are given by vectors that are no unit vectors
+# joints whose variables change their sign, and no more, with their bodies exchanged
+WITH_OTHER_SIGN = (
+    JointKind.REVOLUTE,
+    JointKind.PRISMATIC,
+    JointKind.CYLINDRICAL,
+    JointKind.HELICAL,
+    JointKind.SPHERICAL,
+    JointKind.RIGID,
+)
 
 
 @dataclass(frozen=True)
@@ -75,23 +84,35 @@ def known_mechanisms() -> dict[str, KnownMechanism]:
 
 
 def relabelled(mechanism: Mechanism) -> Mechanism:
-    """Joints in another order, with other names, and every other one turned round;
-    they are not locked, limited or coupled."""
+    """Joints in another order, with other names, and every other one turned round."""
+    turned = _turned_round(mechanism, mechanism.joints[1::2])
     joints = []
-    for number, joint in enumerate(mechanism.joints[::-1]):
+    labels: dict[str, str] = {}
+    for number, joint in enumerate(turned.joints[::-1]):
         bodies = tuple(f"body {body}" for body in joint.bodies)
-        if number % 2 and len(bodies) == 2:
-            bodies = bodies[::-1]
-        joints.append(replace(joint, name=f"joint {number}", bodies=bodies))
-    return replace(mechanism, joints=tuple(joints))
+        other = replace(joint, name=f"joint {number}", bodies=bodies)
+        labels |= zip(joint.labels, other.labels, strict=True)
+        joints.append(other)
+    return replace(turned, joints=tuple(_renamed(joint, labels) for joint in joints))
+
+
+def _renamed(joint: Joint, labels: Mapping[str, str]) -> Joint:
+    """The joint with couplings to variables by their new labels."""
+    coupled = tuple(
+        None if one is None else replace(one, to=labels[one.to])
+        for one in joint.coupled
+    )
+    return replace(joint, coupled=coupled)
 
 
 def rebased(mechanism: Mechanism) -> Mechanism:
-    """Another body at rest, which is also the first one, and another body of every
-    joint of several the one from which the others are measured."""
+    """Another body at rest, which is also the first one, joints turned round, and
+    another body of every joint of several the one from which the others are measured,
+    where these have no limits, locks or couplings."""
+    turned = _turned_round(mechanism, mechanism.joints)
     middle = len(mechanism.joints) // 2
-    joints = mechanism.joints[middle:] + mechanism.joints[:middle]
-    fixed = joints[0].bodies[-1]
+    joints = turned.joints[middle:] + turned.joints[:middle]
+    fixed = joints[0].bodies[0]
     names = {body: body for body in mechanism.bodies}
     for body in mechanism.bodies:
         if body in FRAMES:
@@ -100,8 +121,31 @@ def rebased(mechanism: Mechanism) -> Mechanism:
     rebased_joints = []
     for joint in joints:
         bodies = tuple(names[body] for body in joint.bodies)
-        rebased_joints.append(replace(joint, bodies=bodies[-1:] + bodies[:-1]))
-    return replace(mechanism, joints=tuple(rebased_joints))
+        if len(bodies) > 2 and not _is_held(joint):
+            bodies = bodies[-1:] + bodies[:-1]
+        rebased_joints.append(replace(joint, bodies=bodies))
+    return replace(turned, joints=tuple(rebased_joints))
+
+
+def _is_held(joint: Joint) -> bool:
+    """Whether values of a joint have limits, are locked or follow others."""
+    values = (*joint.limits, *joint.locked, *joint.coupled)
+    return any(value is not None for value in values)
+
+
+def _turned_round(mechanism: Mechanism, joints: Sequence[Joint]) -> Mechanism:
+    """The mechanism with some joints the other way round, those of two bodies whose
+    variables then have the other sign."""
+    factors: dict[str, float] = {}
+    turned = []
+    names = {joint.name for joint in joints}
+    for joint in mechanism.joints:
+        is_turned = len(joint.bodies) == 2 and joint.kind in WITH_OTHER_SIGN
+        is_turned = is_turned and joint.name in names
+        factors |= dict.fromkeys(joint.labels, -1.0 if is_turned else 1.0)
+        bodies = joint.bodies[::-1] if is_turned else joint.bodies
+        turned.append(replace(joint, bodies=bodies))
+    return mechanism.with_values_times(turned, factors)
 
 
 def moved(mechanism: Mechanism) -> Mechanism:
@@ -113,11 +157,19 @@ def moved(mechanism: Mechanism) -> Mechanism:
     joints = []
     for joint in mechanism.joints:
         along = np.zeros(3) if joint.direction is None else np.array(joint.direction)
-        place = joint.place + rng.normal() * along
-        joint = replace(joint, point=_vector(rotation @ place + OFFSET))
-        if joint.direction is not None:
-            joint = replace(joint, direction=_vector(LONGER * rotation @ along))
-        joints.append(joint)
+        step = rng.normal() * along
+        if joint.kind is JointKind.UNIVERSAL:
+            step = np.zeros(3)  # its axes meet at one point
+        place = _vector(rotation @ (joint.place + step) + OFFSET)
+        changes: dict[str, Any] = {"point": place}
+        for key in ("direction", "second_direction"):
+            vector = getattr(joint, key)
+            if vector is not None:
+                changes[key] = _vector(LONGER * rotation @ np.array(vector))
+            elif key == "second_direction" and joint.kind is JointKind.PLANAR:
+                # where none is given, the first slide hangs on the frame
+                changes[key] = _vector(rotation @ joint.motions[0].direction)
+        joints.append(replace(joint, **changes))
     return replace(mechanism, joints=tuple(joints))
 
 

@@ -46,6 +46,9 @@ __all__ = ["MechanismClosure"]
 # unknowns up to which compiled methods with dense matrices take no longer than those in
 # Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250
+MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
+MARGIN = 0.25  # of limits, inside which they are brought: closure leads out again
+TIMES_BACK = 4  # that each of them is, to where closure leads beyond them again
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 
 
@@ -209,7 +212,8 @@ class MechanismClosure(NumericalProblem):
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         """The closed configuration nearest to the reference, those that dyads build
         where a joint stands at given values, what is reached from every turn of a joint
-        that advances, and from ``count`` random starts."""
+        that advances, and from ``count`` random starts or, where these lead beyond
+        given limits, from within."""
         drawn = self._drawn(rng, count)
         lattice = self.lattice
         turns = turns_that_advance(self.structure)
@@ -221,6 +225,7 @@ class MechanismClosure(NumericalProblem):
             starts.append(starts_at_every_turn(self, turns, rng))
         points, gaps = self.project(np.concatenate(starts))
         solutions = points[is_start_solved(gaps)]
+        solutions = np.concatenate([solutions, self._from_beyond_limits(drawn)])
         if lattice:
             # what is outside the limits may have a translate inside
             solutions = lattice.homes(solutions)
@@ -230,6 +235,26 @@ class MechanismClosure(NumericalProblem):
         if slices is None and turns:
             return replace(seeds, audit=WholeTurns(self, turns, lattice))
         return replace(seeds, audit=slices)
+
+    def _from_beyond_limits(self, drawn: Seeds) -> np.ndarray:
+        """Closed configurations (k, n) within the limits, next to some that random
+        starts reached beyond them: narrow limits leave few that are reached else."""
+        low, high = self.bounds.T
+        limited = np.isfinite(self.bounds).all(axis=1)
+        margin = np.zeros(self.n)
+        margin[limited] = MARGIN * (high - low)[limited]
+        beyond = drawn.missed[is_start_solved(drawn.gaps)][:MOST_BEYOND]
+        inside = [np.empty((0, self.n))]
+        for _ in range(TIMES_BACK):
+            if not len(beyond):
+                break
+            within = np.clip(beyond, low + margin, high - margin)
+            points, gaps = self.project(within)
+            points = points[is_start_solved(gaps)]
+            is_inside = self.are_inside(points)
+            inside.append(points[is_inside])
+            beyond = points[~is_inside]
+        return np.concatenate(inside)
 
     def _drawn(self, rng: np.random.Generator, count: int) -> Seeds:
         """What is reached from random starts; where whole turns lead to the same again,

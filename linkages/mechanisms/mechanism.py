@@ -263,7 +263,7 @@ class Mechanism:
         }
         x, y, z = self.origin
         origin = (factor * x, factor * y, factor * z)
-        scaled = self._with_values_times(joints, factors)
+        scaled = self.with_values_times(joints, factors)
         return replace(scaled, origin=origin, rounding=factor * self.rounding)
 
     def mirrored(self) -> Mechanism:
@@ -273,9 +273,9 @@ class Mechanism:
         for joint, image in zip(self.joints, joints, strict=True):
             signs |= zip(joint.labels, _signs_in_mirror(joint, image), strict=True)
         x, y, z = self.origin
-        return replace(self._with_values_times(joints, signs), origin=(x, y, -z))
+        return replace(self.with_values_times(joints, signs), origin=(x, y, -z))
 
-    def _with_values_times(
+    def with_values_times(
         self, joints: Iterable[Joint], factors: Mapping[str, float]
     ) -> Mechanism:
         """The mechanism of other ``joints`` with the values of all variables times

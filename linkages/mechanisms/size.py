@@ -39,10 +39,14 @@ class Size:
     @property
     def characteristic_length(self) -> float:
         """The mean distance of joints on one body, of those that are apart; where all
-        meet in a point, that of the points that are given; 1 where these do as well."""
+        meet in a point or a line, the mean pitch, or that of the points that are given;
+        1 where these meet as well."""
         distances = self._distances(self.points)
         if len(distances):
             return float(distances.mean())
+        pitches = [abs(one.pitch) for one in self.mechanism.joints if one.pitch]
+        if pitches:
+            return float(np.mean(pitches))
         distances = self._distances(self._given)
         return float(distances.mean()) if len(distances) else 1.0
 

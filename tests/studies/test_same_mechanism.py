@@ -6,7 +6,10 @@ import pytest
 from click.testing import CliRunner
 
 from bifurc.search.settings import SearchSettings
-from studies.known_mechanisms import known_mechanisms
+from linkages.mechanisms.couplings import Coupling
+from linkages.mechanisms.joint import Joint
+from linkages.mechanisms.mechanism import Mechanism
+from studies.known_mechanisms import WAYS, KnownMechanism, known_mechanisms
 from studies.same_mechanism import (
     Answer,
     Run,
@@ -48,6 +51,100 @@ def test_maps_agree_from_another_start_and_in_every_way(name):
     runs = list(compare_ways(name, mechanism, 2, FEW))
     assert len(runs) == 8
     assert [run.lines for run in runs] == [()] * 8
+
+
+Z = (0, 0, 1)
+
+
+def held_mechanisms():
+    """Mechanisms with limits, locks and couplings, and joints of every kind but one."""
+    crank = Joint("A", "revolute", ("f", "c"), (0, 0, 0), Z, limits=((-0.7, 1.2),))
+    rod = Joint("B", "revolute", ("c", "r"), (0.6, 0.8, 0), Z)
+    slider = Joint("C", "revolute", ("r", "s"), (3, 0.3, 0), Z)
+    slide = Joint("D", "prismatic", ("f", "s"), None, (1, 0, 0), limits=((-0.2, 0.4),))
+    yield "slider-crank", (crank, rod, slider, slide)
+    yield (
+        "five-bar with gears",
+        (
+            Joint("A", "revolute", ("f", "a"), (0, 0, 0), Z),
+            Joint("B", "revolute", ("a", "b"), (0.5, 0.5, 0), Z),
+            Joint("C", "revolute", ("b", "c"), (1.2, 1.5, 0), Z),
+            Joint("D", "revolute", ("c", "d"), (2.1, 0.6, 0), Z),
+            Joint(
+                "E",
+                "revolute",
+                ("f", "d"),
+                (2, 0, 0),
+                Z,
+                coupled=(Coupling("A", -2, 0.3),),
+            ),
+        ),
+    )
+    yield (
+        "planar joint with a lock",
+        (
+            Joint("A", "revolute", ("f", "a"), (0, 0, 0), Z),
+            Joint("B", "planar", ("a", "b"), (1, 0.5, 0), Z, locked=(0.37, None, None)),
+            Joint("C", "revolute", ("f", "b"), (2, 0, 0), Z),
+        ),
+    )
+    yield (
+        "cylindrical joints with narrow limits",
+        (
+            Joint("A", "revolute", ("f", "a"), (0, 0, 0), Z),
+            Joint(
+                "B",
+                "cylindrical",
+                ("a", "b"),
+                (1, 0, 0),
+                (0, 0.5, 1),
+                limits=(None, (-0.5, 0.8)),
+            ),
+            Joint("C", "cylindrical", ("b", "c"), (2, 1, 0), (0.2, -0.8, 1)),
+            Joint(
+                "D",
+                "cylindrical",
+                ("f", "c"),
+                (3, 0, 0),
+                (0.7, 0.1, 1),
+                limits=((-1.0, 2.0), None),
+            ),
+        ),
+    )
+    yield (
+        "a screw and its nut on one line",
+        (
+            Joint(
+                "A", "helical", ("f", "n"), (0, 0, 0), Z, pitch=0.7, limits=((-9, 9),)
+            ),
+            Joint("B", "revolute", ("n", "j"), (0, 0, 2), Z),
+            Joint("D", "prismatic", ("f", "j"), None, Z),
+        ),
+    )
+
+
+HELD = dict(held_mechanisms())
+
+
+@pytest.mark.parametrize("name", HELD)
+def test_values_that_are_held_are_the_same_in_every_way(name):
+    settings = replace(FEW, starts=150)
+    runs = list(compare_ways(name, Mechanism(HELD[name]), 1, settings))
+    assert [run.lines for run in runs] == [()] * 7
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_universal_joints_are_what_they_are_in_every_way(way):
+    mechanism = Mechanism(
+        (
+            Joint("A", "revolute", ("f", "i"), (0, 0, 0), (1, 0, 0)),
+            Joint("B", "universal", ("i", "m"), (1, 0, 0), (0, 1, 0), Z),
+            Joint("C", "universal", ("m", "o"), (2, 0, 0), Z, (0, 1, 0)),
+            Joint("D", "revolute", ("f", "o"), (3, 0, 0), (1, 0, 0)),
+        )
+    )
+    # a straight shaft turns about itself
+    assert fact_misses(KnownMechanism(WAYS[way](mechanism), 1, 1)) == ()
 
 
 @pytest.mark.parametrize("name", known_mechanisms())

@@ -160,3 +160,16 @@ def test_a_slider_crank_keeps_turn_and_slide_apart():
         )
     )
     assert Structure(mechanism).unit == pytest.approx((5 + 5 + np.hypot(8, 4)) / 4)
+
+
+def test_axes_on_one_line_are_measured_by_the_pitch():
+    def vise(height):
+        return Mechanism(
+            (
+                Joint("A", "helical", ("f", "n"), (0, 0, 0), UPWARDS, pitch=0.7),
+                Joint("B", "revolute", ("n", "j"), (0, 0, height), UPWARDS),
+                Joint("D", "prismatic", ("f", "j"), None, UPWARDS),
+            )
+        )
+
+    assert [Structure(vise(height)).unit for height in (2.0, -5.0)] == [0.7, 0.7]
