@@ -237,8 +237,11 @@ class MechanismClosure(NumericalProblem):
         return replace(seeds, audit=slices)
 
     def _from_beyond_limits(self, drawn: Seeds) -> np.ndarray:
-        """Closed configurations (k, n) within the limits, next to some that random
-        starts reached beyond them: narrow limits leave few that are reached else."""
+        """Closed configurations (k, n) within limits that are given, next to some that
+        random starts reached beyond them: narrow limits leave few that are reached
+        else."""
+        if all(one.limits is None for one in self.structure.mechanism.variables):
+            return np.empty((0, self.n))
         low, high = self.bounds.T
         limited = np.isfinite(self.bounds).all(axis=1)
         margin = np.zeros(self.n)

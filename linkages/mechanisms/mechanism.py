@@ -418,10 +418,12 @@ def _check_graph(mechanism: Mechanism) -> None:
         allowed = f"joined to {parts[0][0]} by a chain of joints"
         raise GeometryError("bodies", far, allowed)
     for body in mechanism.bodies:
-        if graph.degree(body) < 2:
-            joint = next(j.name for j in mechanism.joints if body in j.bodies)
+        # a joint of several bodies is one, from whichever its angles are measured
+        joints = [joint.name for joint in mechanism.joints if body in joint.bodies]
+        if len(joints) < 2:
             allowed = "two joints or more on every body"
-            raise GeometryError(f"body {body}", f"one joint only, {joint},", allowed)
+            value = f"one joint only, {joints[0]},"
+            raise GeometryError(f"body {body}", value, allowed)
 
 
 def _check_followers(mechanism: Mechanism) -> None:

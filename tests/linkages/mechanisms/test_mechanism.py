@@ -228,3 +228,12 @@ def test_a_coordinate_of_a_body_and_a_variable_are_called_differently():
     labels = [one.label for one in Structure(Mechanism(tuple(joints))).unknowns]
     assert {"P.x", "P.x (2)"} <= set(labels)
     assert len(labels) == len(set(labels))
+
+
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_a_body_on_an_axis_of_several_alone_is_refused_in_any_order(first):
+    bodies = ("loose", "frame", "crank")
+    around = bodies[first:] + bodies[:first]
+    joints = (revolute("A", around, 0), *four_bar().joints[1:])
+    with pytest.raises(GeometryError, match="body loose: one joint only, A"):
+        Mechanism(joints)
