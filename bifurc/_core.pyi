@@ -173,6 +173,34 @@ class Tape:
     def jacobian_bounds(
         self, low: np.ndarray, high: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]: ...
+    def divide(
+        self,
+        low: np.ndarray,
+        high: np.ndarray,
+        centers: np.ndarray,
+        radii: np.ndarray,
+        periods: np.ndarray,
+        smallest: float,
+        most: int,
+    ) -> tuple[
+        int,
+        tuple[np.ndarray, np.ndarray],
+        tuple[np.ndarray, np.ndarray],
+        tuple[np.ndarray, np.ndarray],
+        np.ndarray,
+        np.ndarray,
+    ]: ...
+    def course(
+        self,
+        curve: Curve,
+        breaks: np.ndarray,
+        centers: np.ndarray,
+        radii: np.ndarray,
+        periods: np.ndarray,
+        residual: float,
+        shortest: float,
+        most: int,
+    ) -> tuple[int, float]: ...
     def march(
         self,
         units: np.ndarray,

@@ -132,7 +132,7 @@ class Branch:
             check_whole("derivative", derivative, 0)
         try:
             s = np.asarray(s, dtype=float)
-            points = self._curve.evaluate(s.ravel(), derivative)
+            points = self.compiled.evaluate(s.ravel(), derivative)
         except (TypeError, ValueError) as error:
             allowed = "a number" if self.closed else f"from 0 to {self.length:.6g}"
             raise ProblemError("arclength", s, allowed) from error
@@ -151,7 +151,7 @@ class Branch:
     def ends_of_pieces(self, derivative: int = 0) -> np.ndarray:
         """Where each of the p pieces begins, and where each of them ends (2, p, n), or
         the derivatives in s there."""
-        return self._curve.ends_of_pieces(derivative)
+        return self.compiled.ends_of_pieces(derivative)
 
     def places(self, fractions: np.ndarray) -> np.ndarray:
         """Arclengths (p, k) at ``fractions`` (k,) of each of the p pieces, from 0 where
@@ -249,7 +249,7 @@ class Branch:
             raise ProblemError("shape of the points", points.shape, f"(k, {self.n})")
         check_finite("points", points)
         check_distance("within", within)
-        return self._curve.nearest(points, within)
+        return self.compiled.nearest(points, within)
 
     def passes(self, point: np.ndarray, within: float) -> np.ndarray:
         """All arclengths at which the curve passes ``point`` (n,) at a distance below
@@ -259,7 +259,7 @@ class Branch:
             raise ProblemError("shape of the point", point.shape, f"({self.n},)")
         check_finite("point", point)
         check_distance("within", within)
-        return self._curve.passes(point, within, SAME_PASS)
+        return self.compiled.passes(point, within, SAME_PASS)
 
     def turnings(self, unknown: int) -> tuple[Turning, ...]:
         """Where the rate of an ``unknown`` (from 0) changes sign, in order, and the ends
@@ -272,7 +272,7 @@ class Branch:
         check_whole("unknown", unknown, 0)
         if unknown >= self.n:
             raise ProblemError("unknown", unknown, f"below {self.n}")
-        rows = self._curve.turnings(
+        rows = self.compiled.turnings(
             unknown, share=hides_turning.threshold, jump=jumps_at_turning.threshold
         )
         return tuple(Turning(*row) for row in rows.tolist())
@@ -292,7 +292,7 @@ class Branch:
         linear u); the ``coefficients`` (4, n) are the weights, the phases, and the
         factors angular and linear.
         """
-        return self._curve.rates_of_height(coefficients, s)
+        return self.compiled.rates_of_height(coefficients, s)
 
     def level_places(
         self,
@@ -303,12 +303,12 @@ class Branch:
     ) -> np.ndarray:
         """Arclengths (k,), one between each of ``low`` and ``high`` (k,), at which the
         rate of a height, which has opposite signs there, is zero."""
-        return self._curve.level_places(coefficients, low, high, tolerance)
+        return self.compiled.level_places(coefficients, low, high, tolerance)
 
     # --- what is derived from the pieces ----------------------------------------------
 
     @cached_property
-    def _curve(self) -> Curve:
+    def compiled(self) -> Curve:
         """The curve in compiled form."""
         travel = self.travel if self.closed else np.empty(0)
         return Curve(
@@ -323,7 +323,7 @@ class Branch:
     def __getstate__(self) -> dict[str, object]:
         """What a copy is made of: all but the compiled curve."""
         state = dict(vars(self))
-        state.pop("_curve", None)
+        state.pop("compiled", None)
         return state
 
     @cached_property

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.checks import check_callable, floats_of
 from bifurc.decisions import (
     is_derivative,
@@ -364,27 +365,13 @@ class FunctionProblem(NumericalProblem):
 
         return residual
 
-    def value_bounds(
-        self, low: np.ndarray, high: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray] | None:
-        """Bounds (k, m), (k, m) on F in boxes from ``low`` (k, n) to ``high`` (k, n),
-        with directed rounding; None where the equations are not recorded, or jump: an
-        angle does."""
+    def continuous_tape(self) -> _core.Tape | None:
+        """The recorded equations in compiled form; None where they are not recorded, or
+        jump: an angle does."""
         tape = self.recording.tape
         if tape is None or np.any(tape.operations == Operation.ANGLE):
             return None
-        lower, upper = np.ascontiguousarray(low), np.ascontiguousarray(high)
-        return tape.compiled.value_bounds(lower, upper)
-
-    def jacobian_bounds(
-        self, low: np.ndarray, high: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray] | None:
-        """The same on F' (k, m, n)."""
-        tape = self.recording.tape
-        if tape is None:
-            return None
-        lower, upper = np.ascontiguousarray(low), np.ascontiguousarray(high)
-        return tape.compiled.jacobian_bounds(lower, upper)
+        return tape.compiled
 
     # --- curves and solutions ---------------------------------------------------------
 

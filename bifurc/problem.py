@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from bifurc import torus
+from bifurc import _core, torus
 from bifurc.checks import floats_of
 from bifurc.decisions import is_in_bounds, is_solution
 from bifurc.errors import ProblemError
@@ -387,17 +387,9 @@ class Problem(ABC):
         """
         return None
 
-    def value_bounds(
-        self, low: np.ndarray, high: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray] | None:
-        """Bounds (k, m), (k, m) on F in boxes from ``low`` (k, n) to ``high`` (k, n);
-        None where none are known."""
-        return None
-
-    def jacobian_bounds(
-        self, low: np.ndarray, high: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray] | None:
-        """The same on F' (k, m, n)."""
+    def continuous_tape(self) -> _core.Tape | None:
+        """The equations as a compiled list of operations without jumps, with bounds on F
+        and F' in boxes; None where there is none."""
         return None
 
     @abstractmethod

@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 namespace bifurc {
 
@@ -22,7 +23,13 @@ struct Interval {
     Interval(double low, double high) : low(low), high(high) {}
 
     bool contains(double value) const { return low <= value && value <= high; }
+    bool is_finite() const { return std::isfinite(low) && std::isfinite(high); }
+    double middle() const { return 0.5 * low + 0.5 * high; }
+    // The largest absolute value.
+    double magnitude() const { return std::max(std::abs(low), std::abs(high)); }
 };
+
+using IntervalBox = std::vector<Interval>;
 
 namespace intervals {
 
@@ -31,12 +38,21 @@ constexpr int library_ulps = 4;
 
 inline Interval whole() { return {-infinity, infinity}; }
 
+// More than half the distance to the next double, and less than the whole of it: a sum with it is rounded to
+// the next double (Rump, Zimmermann, Boldo and Melquiond 2009).
+inline double beyond_half(double value) {
+    constexpr double half_ulp = 0.5 * std::numeric_limits<double>::epsilon() * (1.0 + std::numeric_limits<double>::epsilon());
+    return half_ulp * std::abs(value) + std::numeric_limits<double>::denorm_min();
+}
+
 // The interval one double wider on either side, ``ulps`` times.
 inline Interval widened(double low, double high, int ulps = 1) {
     if (std::isnan(low) || std::isnan(high)) return whole();
+    low = std::min(low, std::numeric_limits<double>::max());
+    high = std::max(high, std::numeric_limits<double>::lowest());
     for (int i = 0; i < ulps; ++i) {
-        low = std::nextafter(low, -infinity);
-        high = std::nextafter(high, infinity);
+        low -= beyond_half(low);
+        high += beyond_half(high);
     }
     return {low, high};
 }

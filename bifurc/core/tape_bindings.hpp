@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bifurc/core/bindings.hpp"
+#include "bifurc/core/boxes_bindings.hpp"
 #include "bifurc/core/tape.hpp"
 #include "bifurc/core/valley_bindings.hpp"
 
@@ -98,12 +99,6 @@ inline nb::object tape_entries(const Tape& tape, const Doubles& point) {
     sweep.linearize(numpy::view(point));
     sweep.entries(out.vector());
     return out.release();
-}
-
-inline std::vector<Interval> intervals_of(Vector<const double> low, Vector<const double> high) {
-    std::vector<Interval> box(low.size());
-    for (std::size_t j = 0; j < box.size(); ++j) box[j] = Interval(low[j], high[j]);
-    return box;
 }
 
 inline nb::tuple ends_of(const std::vector<Interval>& values, std::initializer_list<Index> shape) {
@@ -237,6 +232,10 @@ inline void bind_tape(nb::module_& module) {
         .def("entries", &tape_entries, arg("point"))
         .def("value_bounds", &tape_value_bounds, arg("low"), arg("high"))
         .def("jacobian_bounds", &tape_jacobian_bounds, arg("low"), arg("high"))
+        .def("divide", &divide_boxes, arg("low"), arg("high"), arg("centers"), arg("radii"), arg("periods"),
+             arg("smallest"), arg("most"))
+        .def("course", &course_on_tape, arg("curve"), arg("breaks"), arg("centers"), arg("radii"), arg("periods"),
+             arg("residual"), arg("shortest"), arg("most"))
         .def("march", &tape_march, arg("units"), arg("weights"), arg("start"), arg("tangent"), arg("order"),
              arg("tolerance"), arg("shortest"), arg("longest"), arg("count"), arg("closing"), arg("misclosure"),
              arg("anchor"), arg("within"), arg("periods"), arg("bounds"), arg("length"), arg("is_sparse"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
@@ -14,12 +14,16 @@ from bifurc.problem import Problem
 
 __all__ = ["Verification", "verify_branch"]
 
-MOST = 4000  # stretches of a branch that are looked at
+MOST = 4000  # stretches of a branch that are divided
 SHORTEST = 1e-7  # half a stretch, over the scale, that is not divided any more
-# Share of its smallest singular value by which F' may vary about a stretch, on which a
-# curve of solutions then runs next to the branch and nowhere leaves it.
-STEADY = 0.5
-ARCLENGTH = 1.001  # times the distance from the middle, at most, that s is off it
+
+
+class Course(Enum):
+    """What is known of a branch, as `_core.Tape.course` numbers it."""
+
+    SOLVED = 0
+    MISSED = 1
+    OPEN = 2
 
 
 class Verification(NamedTuple):
@@ -32,35 +36,33 @@ class Verification(NamedTuple):
 
 
 def verify_branch(
-    problem: Problem,
-    branch: Branch,
-    are_beside: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    problem: Problem, branch: Branch, centers: np.ndarray, reaches: np.ndarray
 ) -> Verification:
     """Whether a branch solves the equations all along, by bounds on F and F' about
-    stretches of it, but where balls about points (k, n) of radii (k,) ``are_beside`` a
-    singular point."""
+    stretches of it, but in balls about singular points, ``centers`` (k, n), of radii
+    ``reaches`` (k,)."""
     torn = _torn_at(problem, branch)
     if torn is not None:
         return Verification(torn, None)
-    breaks = branch.breaks
-    begin, end = breaks[:-1], breaks[1:]
-    count = 0
-    while len(begin):
-        count += len(begin)
-        middles, halves = branch(0.5 * (begin + end)), 0.5 * (end - begin)
-        is_wrong, is_steady = _judge(problem, middles, halves)
-        is_beside = are_beside(middles, halves)
-        missed = np.flatnonzero(is_wrong & ~is_beside)
-        if len(missed):
-            return Verification(float(0.5 * (begin + end)[missed[0]]), None)
-        rest = np.flatnonzero(~is_steady & ~is_beside)
-        is_short = halves[rest] < SHORTEST * problem.scale
-        if (count > MOST and len(rest)) or np.any(is_short):
-            return Verification(None, middles[rest[0]])
-        begin, end = begin[rest], end[rest]
-        cuts = 0.5 * (begin + end)
-        begin, end = np.concatenate([begin, cuts]), np.concatenate([cuts, end])
-    return Verification(None, _beyond_bounds(problem, branch))
+    tape = problem.continuous_tape()
+    assert tape is not None
+    number, s = tape.course(
+        branch.compiled,
+        branch.breaks,
+        centers,
+        reaches,
+        problem.periods,
+        residual=is_same_point.threshold * problem.scale * problem.magnitude,
+        shortest=SHORTEST * problem.scale,
+        most=MOST,
+    )
+    match Course(number):
+        case Course.MISSED:
+            return Verification(s, None)
+        case Course.OPEN:
+            return Verification(None, branch(s))
+        case Course.SOLVED:
+            return Verification(None, _beyond_bounds(problem, branch))
 
 
 def _torn_at(problem: Problem, branch: Branch) -> float | None:
@@ -73,27 +75,6 @@ def _torn_at(problem: Problem, branch: Branch) -> float | None:
         gaps[-1] = 0.0
     torn = np.flatnonzero(~is_same_point(gaps, problem.scale))
     return float(branch.breaks[torn[0] + 1]) if len(torn) else None
-
-
-def _judge(
-    problem: Problem, middles: np.ndarray, halves: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """On which stretches with ``middles`` (k, n), half as long as ``halves`` (k,), a
-    branch solves nothing somewhere, and on which F' is as good as constant."""
-    reach = ARCLENGTH * halves[:, None]
-    low, high = middles - reach, middles + reach
-    values = problem.value_bounds(low, high)
-    jacobians = problem.jacobian_bounds(low, high)
-    assert values is not None and jacobians is not None
-    is_wrong = np.any((values[0] > 0.0) | (values[1] < 0.0), axis=1)
-    is_wrong |= ~is_same_point(problem.gaps(middles), problem.scale)
-    mean = 0.5 * (jacobians[0] + jacobians[1])
-    width = 0.5 * (jacobians[1] - jacobians[0])
-    is_finite = np.all(np.isfinite(mean) & np.isfinite(width), axis=(1, 2))
-    sizes = np.linalg.norm(width, axis=(1, 2))
-    smallest = np.zeros(len(middles))
-    smallest[is_finite] = np.linalg.svd(mean[is_finite], compute_uv=False)[:, -1]
-    return is_wrong, is_finite & (sizes < STEADY * smallest)
 
 
 def _beyond_bounds(problem: Problem, branch: Branch) -> np.ndarray | None:

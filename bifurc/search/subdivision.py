@@ -5,7 +5,7 @@ on F in the middle and on F' in the box, leave out zero. It holds a single arc w
 Krawczyk's test (1969), with one unknown as the parameter, finds one solution of the
 others for each of its values: a branch through one of these solutions is that arc. The
 branches are held against the same bounds all along. What remains lies about singular
-points. F and F' are bounded with directed rounding, the few matrices of a box are not.
+points. All these bounds are intervals rounded outwards (`bifurc/core/boxes.hpp`).
 """
 
 from __future__ import annotations
@@ -27,21 +27,19 @@ __all__ = ["Subdivision", "can_be_subdivided", "subdivide"]
 
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 256
+AT_ONCE = (
+    1024  # boxes that are looked at before their arcs are held against the branches
+)
 ENOUGH = 30  # solutions on unknown arcs, to trace before boxes are divided further
 MOST_LEFT = 24  # places that are listed of what is not settled
 SMALLEST = 1e-7  # radius of a box, over the scale, that is not divided any more
-# Times as wide as in the unknown along which F changes most: there a box is cut.
-THIN = 32
-WIDER = 4.0  # times as wide as a box is where its arc may run: one that touches a corner, too
-NEWTON_STEPS = 5
 SOLVED = 1e-9  # over the scale: |F| where Newton's method has settled
 DETOUR = 2.0  # times as long as its chord a branch may be from one place to the next
 # Radii, over the scale, about singular points in which nothing is claimed: of ordinary
 # crossings and others, where branches may run very close to each other.
 BESIDE_CROSSING = 1e-5
 BESIDE_OTHER = 0.03
-STRICTLY = 0.999  # of the width in which an arc may run: where it has to
-PLACES = np.array([-1.0, 0.0, 1.0])  # of the parameter, at which an arc is looked at
+WIDER = 1e-15  # of a period: the box of a circle is so much wider than one
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +71,8 @@ def can_be_subdivided(problem: Problem) -> bool:
         return False
     if np.any(problem.has_assumed_bounds):
         return False
-    middle = _box(problem).mean(axis=1)[None]
-    bounds = problem.value_bounds(middle, middle)
-    return bounds is not None and bounds[0].shape[1] == problem.n - 1
+    tape = problem.continuous_tape()
+    return tape is not None and tape.equations == problem.n - 1
 
 
 def subdivide(
@@ -88,57 +85,63 @@ def subdivide(
     """The bounds divided into boxes, until all are settled, or enough is found to be
     traced first, or there would be more than ``most``, or the time ``is_over``."""
     division = _Division(problem, branches, points)
-    with np.errstate(over="ignore", invalid="ignore"):  # bounds on F may be infinite
-        division.verify_branches()
-        low, high = _grid(_box(problem))
-        while (
-            len(low) and division.is_worth_while and division.count + len(low) <= most
-        ):
-            if is_over():
-                break
-            division.count += len(low)
-            low, high = division.open_quarters(low, high)
-    division.left.append(0.5 * (low + high))
+    division.verify_branches()
+    boxes = _grid(_box(problem))
+    while len(boxes.low) and division.is_worth_while and division.count < most:
+        if is_over():
+            break
+        boxes = division.open_boxes(boxes, min(AT_ONCE, most - division.count))
+    division.left.append(boxes.middles)
     return division.result()
 
 
 def _box(problem: Problem) -> np.ndarray:
-    """The bounds (n, 2); of a circle one period."""
+    """The bounds (n, 2); of a circle one period, and a little more."""
     periods = problem.periods
-    turn = np.column_stack([np.zeros(problem.n), periods])
+    turn = np.column_stack([-WIDER * periods, (1.0 + WIDER) * periods])
     is_circle = np.isfinite(periods) & np.isinf(problem.bounds[:, 0])
     box: np.ndarray = np.where(is_circle[:, None], turn, problem.bounds)
     return box
 
 
 class _Boxes(NamedTuple):
-    """Boxes with ``middles`` and ``radii`` (k, n) in which one unknown, the
-    ``parameter``, tells solutions apart."""
+    """Boxes from ``low`` (k, n) to ``high`` (k, n)."""
 
-    parameter: int
-    middles: np.ndarray
-    radii: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
 
     @property
-    def others(self) -> list[int]:
-        """The unknowns but the parameter."""
-        return [i for i in range(self.middles.shape[1]) if i != self.parameter]
+    def middles(self) -> np.ndarray:
+        """Their middles (k, n)."""
+        middles: np.ndarray = 0.5 * (self.low + self.high)
+        return middles
 
     def at(self, numbers: np.ndarray) -> _Boxes:
         """Those with these numbers."""
-        return _Boxes(self.parameter, self.middles[numbers], self.radii[numbers])
+        return _Boxes(self.low[numbers], self.high[numbers])
+
+    def and_others(self, others: _Boxes) -> _Boxes:
+        """These, and the others after them."""
+        low, high = zip(self, others, strict=True)
+        return _Boxes(np.concatenate(low), np.concatenate(high))
+
+    def halves(self) -> _Boxes:
+        """Each of them cut in half where it is widest."""
+        rows = np.arange(len(self.low))
+        sides = np.argmax(self.high - self.low, axis=1)
+        cuts = self.middles[rows, sides]
+        first, second = self.high.copy(), self.low.copy()
+        first[rows, sides] = cuts
+        second[rows, sides] = cuts
+        return _Boxes(self.low, first).and_others(_Boxes(second, self.high))
 
 
-class _Slopes(NamedTuple):
-    """What arcs in k boxes rise over the parameter, in radii of the box: ``middles``
-    (k, n - 1), give or take ``spreads`` (k, n - 1)."""
+class _Arcs(NamedTuple):
+    """Arcs with ``points`` (k, 3, n) where the parameter begins, in the middle and where
+    it ends; an unknown that ``is_steady`` (k, n) rises or falls all along."""
 
-    middles: np.ndarray
-    spreads: np.ndarray
-
-    def at(self, numbers: np.ndarray) -> _Slopes:
-        """Those with these numbers."""
-        return _Slopes(self.middles[numbers], self.spreads[numbers])
+    points: np.ndarray
+    is_steady: np.ndarray
 
 
 class _Feet(NamedTuple):
@@ -158,6 +161,9 @@ class _Division:
         branches: Sequence[Branch],
         points: Sequence[SingularPoint],
     ):
+        tape = problem.continuous_tape()
+        assert tape is not None
+        self.tape = tape
         self.problem = problem
         self.branches = branches
         self.centers = np.array([p.u for p in points]).reshape(-1, problem.n)
@@ -181,7 +187,7 @@ class _Division:
     def verify_branches(self) -> None:
         """Note which branches are none, and where one is not known to be one."""
         for number, branch in enumerate(self.branches):
-            known = verify_branch(self.problem, branch, self._are_beside_points)
+            known = verify_branch(self.problem, branch, self.centers, self.reaches)
             if known.misses is not None:
                 self.refuted[number] = known.misses
             if known.open is not None:
@@ -207,146 +213,37 @@ class _Division:
             middles = middles[np.linalg.norm(offsets, axis=1) > reach]
         return np.array(kept).reshape(-1, self.problem.n)
 
-    # --- one generation ---------------------------------------------------------------
+    # --- boxes ------------------------------------------------------------------------
 
-    def open_quarters(
-        self, low: np.ndarray, high: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The quarters (j, n), (j, n) of those of the boxes (k, n), (k, n) that are not
-        settled."""
-        diagonals = 0.5 * np.linalg.norm(high - low, axis=1)
-        is_open = ~self._are_beside_points(0.5 * (low + high), diagonals)
-        low, high = low[is_open], high[is_open]
-        is_empty = self._are_empty(low, high)
-        low, high = low[~is_empty], high[~is_empty]
-        radii = 0.5 * (high - low)
-        jacobians, changes = self._jacobians(low, high, radii)
-        is_open = ~self._are_settled(low, high, jacobians, changes)
-        low, high, radii = low[is_open], high[is_open], radii[is_open]
-        slopes = np.max(np.abs(jacobians[is_open]) + changes[is_open], axis=1)
-        is_small = radii.max(axis=1, initial=0.0) < SMALLEST * self.problem.scale
-        self.left.append(0.5 * (low + high)[is_small])
-        low, high, slopes = low[~is_small], high[~is_small], slopes[~is_small]
-        low, high, slopes = _halves(low, high, slopes)
-        low, high, _ = _halves(low, high, slopes)
-        return low, high
-
-    def _are_beside_points(self, middles: np.ndarray, radii: np.ndarray) -> np.ndarray:
-        """Which balls about ``middles`` (k, n) of ``radii`` (k,) lie beside a singular
-        point."""
-        beside: np.ndarray = np.zeros(len(middles), dtype=bool)
-        for center, reach in zip(self.centers, self.reaches, strict=True):
-            apart = np.linalg.norm(self.problem.difference(middles, center), axis=1)
-            beside |= apart + radii < reach
-        return beside
-
-    def _are_empty(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-        """Which boxes hold no solution, by the bounds on F alone."""
-        lowest, highest = self._value_bounds(low, high)
-        is_empty: np.ndarray = np.any((lowest > 0.0) | (highest < 0.0), axis=1)
-        return is_empty
-
-    # --- Krawczyk's test --------------------------------------------------------------
-
-    def _are_settled(
-        self,
-        low: np.ndarray,
-        high: np.ndarray,
-        jacobians: np.ndarray,
-        changes: np.ndarray,
-    ) -> np.ndarray:
-        """Which boxes (k, n), (k, n) are empty, or hold a single arc of which it is
-        known which one; F' and its changes are in their radii."""
-        settled = np.zeros(len(low), dtype=bool)
-        middles, radii = 0.5 * (low + high), 0.5 * (high - low)
-        parameters, is_regular = _parameters(jacobians)
-        is_regular &= np.all(np.isfinite(changes), axis=(1, 2))
-        for parameter in range(self.problem.n):
-            chosen = np.flatnonzero(is_regular & (parameters == parameter))
-            if len(chosen):
-                boxes = (middles[chosen], radii[chosen])
-                matrices = (jacobians[chosen], changes[chosen])
-                settled[chosen] = self._are_settled_over(parameter, *boxes, *matrices)
-        return settled
-
-    def _are_settled_over(
-        self,
-        parameter: int,
-        middles: np.ndarray,
-        radii: np.ndarray,
-        jacobians: np.ndarray,
-        changes: np.ndarray,
-    ) -> np.ndarray:
-        """The same of boxes with one ``parameter``; F' is in their radii."""
-        others = [i for i in range(self.problem.n) if i != parameter]
-        inverses = np.linalg.inv(jacobians[:, :, others])
-        lowest, highest = self._value_bounds(middles, middles)
-        step = _times(inverses, -0.5 * (lowest + highest))
-        blur = _times(np.abs(inverses), 0.5 * (highest - lowest))
-        slopes = _times(inverses, jacobians[:, :, parameter])
-        reach = np.abs(slopes) + _times(np.abs(inverses), changes.sum(axis=2)) + blur
-        settled: np.ndarray = np.any(np.abs(step) > 1.0 + reach, axis=1)
-        is_small = np.all(np.abs(step) + reach < WIDER, axis=1)
-        may_hold = np.flatnonzero(is_small & ~settled)
-        boxes = _Boxes(parameter, middles[may_hold], radii[may_hold])
-        slope = self._slopes(
-            boxes, inverses[may_hold], np.abs(step[may_hold]) + blur[may_hold]
+    def open_boxes(self, boxes: _Boxes, most: int) -> _Boxes:
+        """What is not settled when ``most`` of the boxes and of their parts were looked
+        at."""
+        smallest = SMALLEST * self.problem.scale
+        count, waiting, small, with_arcs, points, is_steady = self.tape.divide(
+            np.ascontiguousarray(boxes.low),
+            np.ascontiguousarray(boxes.high),
+            self.centers,
+            self.reaches,
+            self.problem.periods,
+            smallest,
+            most,
         )
-        holds = np.flatnonzero(np.all(np.isfinite(slope.spreads), axis=1))
-        if len(holds):
-            single = boxes.at(holds)
-            points = self._solutions(
-                single, step[may_hold[holds]], slope.middles[holds]
-            )
-            settled[may_hold[holds]] = self._are_known(single, points, slope.at(holds))
-        return settled
+        self.count += count
+        self.left.append(_Boxes(*small).middles)
+        is_known = self._are_known(_Arcs(points, is_steady))
+        unknown = _Boxes(*with_arcs).at(~is_known)
+        widths = np.max(unknown.high - unknown.low, axis=1, initial=0.0)
+        is_small = widths < 2.0 * smallest
+        self.left.append(unknown.at(is_small).middles)
+        quarters = unknown.at(~is_small).halves().halves()
+        return _Boxes(*waiting).and_others(quarters)
 
-    def _slopes(
-        self, boxes: _Boxes, inverses: np.ndarray, offsets: np.ndarray
-    ) -> _Slopes:
-        """The slopes of the arcs over the parameter, at ``offsets`` (k, n - 1) from the
-        middle at most; their spreads are infinite where Krawczyk's test does not find
-        a single arc."""
-        others = boxes.others
-        widths = WIDER * boxes.radii
-        widths[:, boxes.parameter] = boxes.radii[:, boxes.parameter]
-        low, high = boxes.middles - widths, boxes.middles + widths
-        jacobians, changes = self._jacobians(low, high, boxes.radii)
-        products = inverses @ jacobians[:, :, others] - np.eye(len(others))
-        margins = np.abs(inverses) @ changes
-        slopes = -_times(inverses, jacobians[:, :, boxes.parameter])
-        bends = np.sum(np.abs(products) + margins[:, :, others], axis=2)
-        spreads = margins[:, :, boxes.parameter]
-        reach = offsets + np.abs(slopes) + spreads + WIDER * bends
-        holds = np.all(reach < STRICTLY * WIDER, axis=1)
-        steepest = np.max(np.abs(slopes) + spreads, axis=1)
-        bend = np.where(holds, bends.max(axis=1, initial=0.0), 0.0)
-        spreads = spreads + bends * (steepest / (1.0 - bend))[:, None]
-        return _Slopes(slopes, np.where(holds[:, None], spreads, np.inf))
+    # --- arcs -------------------------------------------------------------------------
 
-    def _solutions(
-        self, boxes: _Boxes, first: np.ndarray, slopes: np.ndarray
-    ) -> np.ndarray:
-        """Solutions (k, 3, n) at `PLACES` of the parameter in boxes with a single arc;
-        ``first`` (k, n - 1) is about where, over the radii, it is in the middle."""
-        others, parameter = boxes.others, boxes.parameter
-        points = np.repeat(boxes.middles[:, None], len(PLACES), axis=1)
-        offsets = first[:, None] + PLACES[:, None] * slopes[:, None]
-        points[:, :, others] += offsets * boxes.radii[:, None, others]
-        points[:, :, parameter] += PLACES * boxes.radii[:, None, parameter]
-        flat = points.reshape(-1, self.problem.n)
-        for _ in range(NEWTON_STEPS):
-            values = self.problem.residuals(flat)
-            matrices = self.problem.jacobians(flat)[:, :, others]
-            flat[:, others] -= np.linalg.solve(matrices, values[:, :, None])[:, :, 0]
-        return flat.reshape(points.shape)
-
-    def _are_known(
-        self, boxes: _Boxes, points: np.ndarray, slopes: _Slopes
-    ) -> np.ndarray:
-        """Of which boxes (k,), with ``points`` (k, 3, n) of a single arc, it is known
-        all along; a solution on each one that is in part inside the bounds and on no
-        branch is found, and settles the box too."""
+    def _are_known(self, arcs: _Arcs) -> np.ndarray:
+        """Which arcs (k,) are known all along; a solution on each one that is in part
+        inside the bounds and on no branch is found, and makes it known too."""
+        points = arcs.points
         flat = points.reshape(-1, points.shape[2])
         sides = self._sides(flat).reshape(points.shape)
         outside = np.any(sides != 0, axis=2)
@@ -358,10 +255,9 @@ class _Division:
         new = np.any(is_new, axis=1)
         self.found.append(points[new, np.argmax(is_new[new], axis=1)])
         # an unknown that rises or falls all along passes a bound once
-        is_steady = np.abs(slopes.middles) > slopes.spreads
-        is_steady = np.insert(is_steady, boxes.parameter, True, axis=1)
+        is_steady = arcs.is_steady
         settled = is_solved.copy()
-        for k in range(len(PLACES) - 1):
+        for k in range(points.shape[1] - 1):
             before, after = sides[:, k], sides[:, k + 1]
             is_covered = self._are_covered(feet, points, k)
             stays = np.any((before == after) & (before != 0) & is_steady, axis=1)
@@ -406,79 +302,12 @@ class _Division:
             feet.s[rest[is_on]] = arclengths[is_on]
         return feet
 
-    # --- bounds -----------------------------------------------------------------------
 
-    def _value_bounds(
-        self, low: np.ndarray, high: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        bounds = self.problem.value_bounds(low, high)
-        assert bounds is not None
-        return bounds
-
-    def _jacobians(
-        self, low: np.ndarray, high: np.ndarray, radii: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The middles (k, m, n) of the bounds on F' in boxes, times ``radii`` (k, n),
-        and half their widths."""
-        bounds = self.problem.jacobian_bounds(low, high)
-        assert bounds is not None
-        lowest, highest = bounds
-        middles = 0.5 * (lowest + highest) * radii[:, None]
-        widths = 0.5 * (highest - lowest) * radii[:, None]
-        return middles, np.where(np.isfinite(middles), widths, np.inf)
-
-
-def _grid(box: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """About `FIRST_BOXES` equal boxes (k, n), (k, n) that fill one (n, 2)."""
+def _grid(box: np.ndarray) -> _Boxes:
+    """About `FIRST_BOXES` equal boxes that fill one (n, 2)."""
     n = len(box)
     count = round(FIRST_BOXES ** (1.0 / n))
     marks = np.linspace(box[:, 0], box[:, 1], count + 1)
     numbers = np.indices((count,) * n).reshape(n, -1).T
     columns = np.arange(n)
-    return marks[numbers, columns], marks[numbers + 1, columns]
-
-
-def _sides_to_cut(slopes: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """The unknown (k,) along which F may change most in each box, by ``slopes`` (k, n)
-    times the radii (k, n), the widest one where that is not bounded, or the box is thin
-    (Kearfott and Novoa 1990)."""
-    steepest, widest = np.argmax(slopes, axis=1), np.argmax(radii, axis=1)
-    rows = np.arange(len(radii))
-    is_thin = THIN * radii[rows, steepest] < radii[rows, widest]
-    is_bounded = np.all(np.isfinite(slopes), axis=1)
-    sides: np.ndarray = np.where(is_thin | ~is_bounded, widest, steepest)
-    return sides
-
-
-def _halves(
-    low: np.ndarray, high: np.ndarray, slopes: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Boxes (2 k, n), (2 k, n): each of k cut in half; and by how much F may change along
-    the unknowns (2 k, n) in them, where that is known of the k boxes."""
-    rows, sides = np.arange(len(low)), _sides_to_cut(slopes, 0.5 * (high - low))
-    cuts = 0.5 * (low[rows, sides] + high[rows, sides])
-    first_high, second_low, slopes = high.copy(), low.copy(), slopes.copy()
-    first_high[rows, sides] = cuts
-    second_low[rows, sides] = cuts
-    slopes[rows, sides] *= 0.5
-    return (
-        np.concatenate([low, second_low]),
-        np.concatenate([first_high, high]),
-        np.concatenate([slopes, slopes]),
-    )
-
-
-def _parameters(jacobians: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The unknown (k,) in which the null vector of each F' (k, n - 1, n) is longest, and
-    where (k,) there is one null vector only."""
-    n = jacobians.shape[2]
-    finite = np.where(np.isfinite(jacobians), jacobians, 0.0)
-    minors = [np.delete(finite, j, axis=2) for j in range(n)]
-    sizes = np.abs(np.column_stack([np.linalg.det(minor) for minor in minors]))
-    return np.argmax(sizes, axis=1), sizes.max(axis=1, initial=0.0) > 0.0
-
-
-def _times(matrices: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Matrices (k, p, m) times vectors (k, m)."""
-    product: np.ndarray = np.einsum("kpm,km->kp", matrices, vectors)
-    return product
+    return _Boxes(marks[numbers, columns], marks[numbers + 1, columns])
