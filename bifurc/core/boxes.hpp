@@ -20,7 +20,7 @@ namespace bifurc {
 
 namespace boxes {
 constexpr double wider = 4.0;  // times as wide as a box is where its arc may run: one that touches a corner, too
-constexpr double thin = 32.0;  // times as wide as in the unknown along which F changes most: there a box is cut
+constexpr double thin = 1e4;  // times as wide as in the unknown along which F bends most: there a box is cut
 constexpr std::array<double, 3> places = {-1.0, 0.0, 1.0};  // of the parameter, at which an arc is looked at
 constexpr int newton_steps = 5;                             // to an arc from its chord
 }  // namespace boxes
@@ -50,7 +50,7 @@ public:
           rates_(n_ - 1),
           middle_(n_),
           radii_(n_),
-          changes_(n_),
+          bends_(n_),
           jacobian_(n_ - 1, n_),
           at_point_(n_ - 1, n_),
           inverse_(n_ - 1, n_ - 1),
@@ -62,7 +62,7 @@ public:
             middle_[j] = box[j].middle();
             at_middle_[j] = middle_[j];
             radii_[j] = (box[j] - at_middle_[j]).magnitude();
-            changes_[j] = infinite;
+            bends_[j] = infinite;
         }
     }
 
@@ -77,12 +77,12 @@ public:
         const auto may_be_zero = [](const Interval& value) { return value.contains(0.0); };
         if (!std::all_of(values_.begin(), values_.end(), may_be_zero)) return Content::nothing;
         if (!linearize(box_)) return Content::open;
-        set_changes();
         if (!frame_.choose(jacobian_, radii_)) return Content::open;
         evaluate(at_middle_);
         frame_.take_values(values_);
         frame_.take_jacobian(jacobian_, radii_);
         if (frame_.leaves_out_zero()) return Content::nothing;
+        for (Index j = 0; j < n_; ++j) bends_[j] = frame_.spread(j);
         // F' in the box itself says first whether the wider one is worth a look
         if (!frame_.reaches_less(1.0, wider_)) return Content::open;
         return has_single_arc() ? Content::arc : Content::open;
@@ -97,15 +97,18 @@ public:
         return arc;
     }
 
-    // Cuts the box twice and calls ``visit`` with its quarters.
+    // Cuts the box twice where F bends most, and calls ``visit`` with its quarters. Cuts where F is steep, as Kearfott
+    // and Novoa (1990) make them, leave needles about singular points.
     template <class Visitor>
     void quarter(Visitor visit) const {
-        halve(box_, radii_, changes_, [&](const IntervalBox& half, Index side) {
-            std::vector<double> radii = radii_, changes = changes_;
-            radii[side] *= 0.5;
-            changes[side] *= 0.5;
-            halve(half, radii, changes, [&](const IntervalBox& quarter, Index) { visit(quarter); });
-        });
+        std::vector<double> radii = radii_, bends = bends_;
+        const Index first = side_to_cut(radii, bends);
+        radii[first] *= 0.5;
+        bends[first] *= 0.5;
+        const Index second = side_to_cut(radii, bends);
+        for (const IntervalBox& half : halves(box_, first)) {
+            for (const IntervalBox& quarter : halves(half, second)) visit(quarter);
+        }
     }
 
 private:
@@ -126,16 +129,6 @@ private:
             }
         }
         return true;
-    }
-
-    // By how much an equation may change along each unknown.
-    void set_changes() {
-        for (Index j = 0; j < n_; ++j) {
-            changes_[j] = 0.0;
-            for (Index row = 0; row + 1 < n_; ++row) {
-                changes_[j] = std::max(changes_[j], jacobian_(row, j).magnitude() * radii_[j]);
-            }
-        }
     }
 
     bool has_single_arc() {
@@ -179,21 +172,20 @@ private:
         return true;
     }
 
-    // Cuts a box where F may change most; where it is widest if it is thin there, or F' has no bound (Kearfott
-    // and Novoa 1990).
-    template <class Visitor>
-    void halve(const IntervalBox& box, const std::vector<double>& radii, const std::vector<double>& changes,
-               Visitor visit) const {
+    // Where F bends most, or where the box is widest if that is not known or the box is thin there.
+    static Index side_to_cut(const std::vector<double>& radii, const std::vector<double>& bends) {
+        const auto most = std::max_element(bends.begin(), bends.end());
         const auto widest = std::max_element(radii.begin(), radii.end());
-        const auto steepest = std::max_element(changes.begin(), changes.end());
-        Index side = steepest - changes.begin();
-        if (*steepest == infinite || boxes::thin * radii[side] < *widest) side = widest - radii.begin();
-        IntervalBox half = box;
-        const double cut = box[side].middle();
-        half[side] = {box[side].low, cut};
-        visit(half, side);
-        half[side] = {cut, box[side].high};
-        visit(half, side);
+        const Index side = most - bends.begin();
+        const bool is_known = *most > 0.0 && *most < infinite;
+        const bool is_thin = boxes::thin * radii[side] < *widest;
+        return is_known && !is_thin ? side : widest - radii.begin();
+    }
+
+    static std::array<IntervalBox, 2> halves(const IntervalBox& box, Index side) {
+        std::array<IntervalBox, 2> halves = {box, box};
+        halves[0][side].high = halves[1][side].low = box[side].middle();
+        return halves;
     }
 
     Index n_;
@@ -202,7 +194,7 @@ private:
     Sweep<double> point_sweep_;
     Preconditioned frame_;
     IntervalBox box_, at_middle_, wide_, values_, rates_;
-    std::vector<double> middle_, radii_, changes_;
+    std::vector<double> middle_, radii_, bends_;
     Matrix<Interval> jacobian_;
     Matrix<double> at_point_, inverse_;
     std::vector<Index> pivots_;

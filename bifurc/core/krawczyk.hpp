@@ -83,6 +83,13 @@ public:
         return (Interval(gap(i).magnitude()) + Interval(slope(i).magnitude()) + others).high;
     }
 
+    // By how much C F (m) may be off a linear function along an unknown.
+    double spread(Index j) const {
+        double most = 0.0;
+        for (Index i = 0; i < rows_; ++i) most = std::max(most, slopes_(i, j).high - slopes_(i, j).low);
+        return most;
+    }
+
     bool reaches_less(double width, double allowed) const {
         for (Index i = 0; i < rows_; ++i) {
             if (!(reach(i, width) < allowed)) return false;

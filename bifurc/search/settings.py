@@ -38,7 +38,7 @@ class SearchSettings:
     budget: float = math.inf
     charts: int = 1500
     prove: bool = True
-    boxes: int = 2000
+    boxes: int = 20_000
     certify: bool = True
     near_motions: bool = True
     tracing: TraceSettings = field(default_factory=TraceSettings)

@@ -41,7 +41,7 @@ def verify_branch(
     """Whether a branch solves the equations all along, by bounds on F and F' about
     stretches of it, but in balls about singular points, ``centers`` (k, n), of radii
     ``reaches`` (k,)."""
-    torn = _torn_at(problem, branch)
+    torn = _torn_at(problem, branch, centers, reaches)
     if torn is not None:
         return Verification(torn, None)
     tape = problem.continuous_tape()
@@ -65,15 +65,21 @@ def verify_branch(
             return Verification(None, _beyond_bounds(problem, branch))
 
 
-def _torn_at(problem: Problem, branch: Branch) -> float | None:
+def _torn_at(
+    problem: Problem, branch: Branch, centers: np.ndarray, reaches: np.ndarray
+) -> float | None:
     """The arclength at which a branch does not hand over from one piece to the next, or
-    from the last one of a closed curve to the first; None where there is none."""
+    from the last one of a closed curve to the first; None where it does, but in the
+    balls about singular points."""
     begins, ends = branch.ends_of_pieces()
     following = np.roll(begins, -1, axis=0)
     gaps = np.linalg.norm(problem.difference(following, ends), axis=1)
     if not branch.closed:
         gaps[-1] = 0.0
     torn = np.flatnonzero(~is_same_point(gaps, problem.scale))
+    offsets = problem.difference(ends[torn, None], centers)  # (j, k, n)
+    is_beside = np.linalg.norm(offsets, axis=2) + gaps[torn, None] < reaches
+    torn = torn[~np.any(is_beside, axis=1)]
     return float(branch.breaks[torn[0] + 1]) if len(torn) else None
 
 

@@ -26,7 +26,7 @@ from bifurc.singular.point import SingularPoint
 __all__ = ["Subdivision", "can_be_subdivided", "subdivide"]
 
 MOST_UNKNOWNS = 4
-FIRST_BOXES = 256
+FIRST_BOXES = 64
 AT_ONCE = (
     1024  # boxes that are looked at before their arcs are held against the branches
 )
