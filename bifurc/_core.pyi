@@ -193,7 +193,6 @@ class Tape:
     def course(
         self,
         curve: Curve,
-        breaks: np.ndarray,
         centers: np.ndarray,
         radii: np.ndarray,
         periods: np.ndarray,

@@ -75,17 +75,16 @@ inline nb::tuple divide_boxes(const Tape& tape, const Table& low, const Table& h
 }
 
 // (course, s): `course_of`.
-inline nb::tuple course_on_tape(const Tape& tape, const Curve& curve, const Doubles& breaks, const Table& centers,
+inline nb::tuple course_on_tape(const Tape& tape, const Curve& curve, const Table& centers,
                                 const Doubles& radii, const Doubles& periods, double residual, double shortest,
                                 Index most) {
     check_division(tape, centers, radii, periods);
     check_unknowns("curve", curve.unknowns(), tape.unknowns());
-    if (!curve.has_all(numpy::view(breaks))) throw nb::value_error("a break is beyond the curve");
     CourseOutcome outcome;
     {
         nb::gil_scoped_release release;
         const Balls balls{numpy::view(centers), numpy::view(radii), numpy::view(periods)};
-        outcome = course_of(tape, curve, numpy::view(breaks), balls, {residual, shortest, most});
+        outcome = course_of(tape, curve, balls, {residual, shortest, most});
     }
     return nb::make_tuple(static_cast<int>(outcome.course), outcome.s);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bifurc/core/arrays.hpp"
+#include "bifurc/core/interval.hpp"
 #include "bifurc/core/periods.hpp"
 
 namespace bifurc {
@@ -42,6 +43,8 @@ public:
     bool is_closed() const { return !travel.empty(); }
     double total() const { return breaks.back(); }
     Index count() const { return static_cast<Index>(radii.size()); }
+    // The arclength at which a piece begins, the curve ends for the one after the last.
+    double begin_of(Index number) const { return breaks[number]; }
     Index order() const { return count() ? pieces.rows() / count() - 1 : 0; }
     Index unknowns() const { return pieces.columns(); }
     View<const double> piece(Index number) const {
@@ -69,6 +72,21 @@ public:
                 const double x = (breaks[number + end] - centers[number]) / radii[number];
                 evaluate_on({0.0, number, x}, derivative, factors, out.row(end * count() + number));
             }
+        }
+    }
+
+    // Bounds on u (n) all along from arclength ``begin`` to ``end`` of one piece: by the mean value.
+    void enclose(Index number, double begin, double end, Vector<Interval> out) const {
+        const View<const double> of = piece(number);
+        const auto coordinate = [&](const Interval& s) { return (s - centers[number]) / Interval(radii[number]); };
+        const Interval x = coordinate({begin, end}), middle = x.middle(), offset = x - middle;
+        for (Index j = 0; j < unknowns(); ++j) {
+            Interval value = 0.0, slope = 0.0;
+            for (Index k = order(); k >= 1; --k) {
+                value = value * middle + Interval(of(k, j));
+                slope = slope * x + Interval(static_cast<double>(k) * of(k, j));
+            }
+            out[j] = value * middle + Interval(of(0, j)) + slope * offset;
         }
     }
 

@@ -1,6 +1,7 @@
 // Whether a traced curve is one of solutions all along: `bifurc.search.stretches`.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <deque>
 
@@ -13,8 +14,10 @@
 namespace bifurc {
 
 namespace stretches {
-constexpr double arclength = 1.001;  // times the distance from the middle, at most, that s is off it
-constexpr double wider = 2.0;        // times as wide as a stretch is where its arc may run
+// Of half a stretch: by how much the boxes about it are wider. A thin one keeps apart from what runs beside it, a thick
+// one holds where F' is known too little for the thin one.
+constexpr std::array<double, 3> margins = {1e-4, 1e-2, 1.0};
+constexpr double wider = 2.0;  // times as wide as that box is where the arc may run
 }  // namespace stretches
 
 // |F| at a point (n).
@@ -42,15 +45,16 @@ struct CourseSettings {
     Index most;       // stretches that are divided
 };
 
-// What is known of a curve with ``breaks`` (k + 1): solved, if next to every stretch of it that is in no ball there
+// What is known of a curve: solved, if next to every stretch of it that is in no ball there
 // runs one single arc.
-inline CourseOutcome course_of(const Tape& tape, const Curve& curve, Vector<const double> breaks, const Balls& balls,
+inline CourseOutcome course_of(const Tape& tape, const Curve& curve, const Balls& balls,
                                const CourseSettings& settings) {
     struct Stretch {
+        Index piece;
         double begin, end;
     };
     std::deque<Stretch> waiting;
-    for (std::size_t k = 0; k + 1 < breaks.size(); ++k) waiting.push_back({breaks[k], breaks[k + 1]});
+    for (Index piece = 0; piece < curve.count(); ++piece) waiting.push_back({piece, curve.begin_of(piece), curve.begin_of(piece + 1)});
     BoxTest test(tape, stretches::wider);
     Sweep<double> sweep(tape);
     Matrix<double> middle(1, tape.unknowns());
@@ -58,22 +62,28 @@ inline CourseOutcome course_of(const Tape& tape, const Curve& curve, Vector<cons
     CourseOutcome outcome{Course::solved, 0.0};
     Index count = 0;
     while (!waiting.empty()) {
-        const auto [begin, end] = waiting.front();
+        const auto [piece, begin, end] = waiting.front();
         waiting.pop_front();
         ++count;
-        const double s = 0.5 * (begin + end), half = 0.5 * (end - begin), reach = stretches::arclength * half;
+        const double s = 0.5 * (begin + end), half = 0.5 * (end - begin);
         curve.evaluate({&s, 1}, 0, middle);
         if (balls.hold(middle.row(0), half)) continue;
-        for (Index j = 0; j < tape.unknowns(); ++j) box[j] = Interval(middle(0, j)) + Interval(-reach, reach);
-        test.take(box);
-        const Content content = test.content();
-        if (content == Content::nothing || !(gap_at(tape, sweep, middle.row(0)) <= settings.residual)) return {Course::missed, s};
+        if (!(gap_at(tape, sweep, middle.row(0)) <= settings.residual)) return {Course::missed, s};
+        Content content = Content::open;
+        for (double margin : stretches::margins) {
+            if (content == Content::arc) break;
+            curve.enclose(piece, begin, end, box);
+            for (Interval& side : box) side += Interval(-margin * half, margin * half);
+            test.take(box);
+            content = test.content();
+        }
+        if (content == Content::nothing) return {Course::missed, s};
         if (content == Content::arc || outcome.course == Course::open) continue;
         if (half < settings.shortest || count > settings.most) {
             outcome = {Course::open, s};
         } else {
-            waiting.push_back({begin, s});
-            waiting.push_back({s, end});
+            waiting.push_back({piece, begin, s});
+            waiting.push_back({piece, s, end});
         }
     }
     return outcome;

@@ -234,7 +234,7 @@ inline void bind_tape(nb::module_& module) {
         .def("jacobian_bounds", &tape_jacobian_bounds, arg("low"), arg("high"))
         .def("divide", &divide_boxes, arg("low"), arg("high"), arg("centers"), arg("radii"), arg("periods"),
              arg("smallest"), arg("most"))
-        .def("course", &course_on_tape, arg("curve"), arg("breaks"), arg("centers"), arg("radii"), arg("periods"),
+        .def("course", &course_on_tape, arg("curve"), arg("centers"), arg("radii"), arg("periods"),
              arg("residual"), arg("shortest"), arg("most"))
         .def("march", &tape_march, arg("units"), arg("weights"), arg("start"), arg("tangent"), arg("order"),
              arg("tolerance"), arg("shortest"), arg("longest"), arg("count"), arg("closing"), arg("misclosure"),

@@ -48,7 +48,6 @@ def verify_branch(
     assert tape is not None
     number, s = tape.course(
         branch.compiled,
-        branch.breaks,
         centers,
         reaches,
         problem.periods,

@@ -132,6 +132,21 @@ def test_crossings_next_to_each_other_are_all_found(apart, seed):
     assert np.allclose(places, [-apart, 0, apart], rtol=0, atol=1e-9)
 
 
+def test_forms_that_touch_are_told_apart_beside_the_contact():
+    atlas = explore(problem(lambda u: [u[1] ** 2 - u[0] ** 6], [(-1, 1.1), (-1.2, 1)]))
+    assert len(atlas.forms) == 2
+    assert atlas.completeness.level is Level.CERTIFIED
+
+
+def test_a_tear_beside_a_cusp_refutes_nothing():
+    def conchoid(u):
+        return [(u[0] - 1) ** 2 * (u @ u) - u[0] ** 2]
+
+    atlas = explore(problem(conchoid, [(-4, 4.1), (-4, 4.2)]))
+    assert len(atlas.forms) == 3
+    assert atlas.completeness.level is Level.CERTIFIED
+
+
 def test_a_branch_that_is_none_is_refuted():
     (form,) = explore(problem(circle)).forms
     other = problem(lambda u: [u[0] ** 2 + 1.02 * u[1] ** 2 - 1])
