@@ -54,7 +54,9 @@ inline CourseOutcome course_of(const Tape& tape, const Curve& curve, const Balls
         double begin, end;
     };
     std::deque<Stretch> waiting;
-    for (Index piece = 0; piece < curve.count(); ++piece) waiting.push_back({piece, curve.begin_of(piece), curve.begin_of(piece + 1)});
+    for (Index piece = 0; piece < curve.count(); ++piece) {
+        waiting.push_back({piece, curve.begin_of(piece), curve.begin_of(piece + 1)});
+    }
     BoxTest test(tape, stretches::wider);
     Sweep<double> sweep(tape);
     Matrix<double> middle(1, tape.unknowns());
