@@ -84,7 +84,7 @@ public:
             Interval value = 0.0, slope = 0.0;
             for (Index k = order(); k >= 1; --k) {
                 value = value * middle + Interval(of(k, j));
-                slope = slope * x + Interval(static_cast<double>(k) * of(k, j));
+                slope = slope * x + Interval(static_cast<double>(k)) * Interval(of(k, j));
             }
             out[j] = value * middle + Interval(of(0, j)) + slope * offset;
         }
