@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.decisions import is_same_point
+from bifurc.decisions import closes_to_rounding, is_same_point
 from bifurc.problem import Problem
 from bifurc.search.stretches import verify_branch
 from bifurc.singular.invariants import CROSSING, LONE_POINT
@@ -27,9 +27,8 @@ __all__ = ["Subdivision", "can_be_subdivided", "subdivide"]
 
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 64
-AT_ONCE = (
-    1024  # boxes that are looked at before their arcs are held against the branches
-)
+# Boxes that are looked at before their arcs are held against the branches.
+AT_ONCE = 1024
 ENOUGH = 30  # solutions on unknown arcs, to trace before boxes are divided further
 MOST_LEFT = 24  # places that are listed of what is not settled
 SMALLEST = 1e-7  # radius of a box, over the scale, that is not divided any more
@@ -91,6 +90,8 @@ def subdivide(
         if is_over():
             break
         boxes = division.open_boxes(boxes, min(AT_ONCE, most - division.count))
+    if division.is_worth_while and division.count:
+        division.look_next_to(boxes.middles)
     division.left.append(boxes.middles)
     return division.result()
 
@@ -237,6 +238,18 @@ class _Division:
         self.left.append(unknown.at(is_small).middles)
         quarters = unknown.at(~is_small).halves().halves()
         return _Boxes(*waiting).and_others(quarters)
+
+    def look_next_to(self, places: np.ndarray) -> None:
+        """Find what Newton's method reaches from ``places`` (k, n) and lies on no
+        branch: boxes that stay open may hold curves smaller than they are."""
+        points, gaps = self.problem.project(places)
+        points = points[closes_to_rounding(gaps)]
+        points = points[self.problem.are_inside(points)]
+        offsets = self.problem.difference(points[:, None], self.centers)
+        is_beside = np.linalg.norm(offsets, axis=2) < self.reaches
+        points = points[~np.any(is_beside, axis=1)]
+        is_new = self._feet(points).branch < 0
+        self.found.append(points[is_new][:ENOUGH])
 
     # --- arcs -------------------------------------------------------------------------
 

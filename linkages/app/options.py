@@ -144,7 +144,7 @@ class SearchOptions:
     tolerance: float = 1e-13
     budget: float = math.inf
     certify: bool = True
-    boxes: int = 2000
+    boxes: int = 20_000
 
     def settings(self) -> SearchSettings:
         """The settings of the search; raises `bifurc.ProblemError`."""

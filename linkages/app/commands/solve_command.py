@@ -43,7 +43,7 @@ __all__ = ["solve_command"]
 )
 @click.option(
     "--boxes",
-    default=2000,
+    default=20_000,
     show_default=True,
     type=click.IntRange(0, 10_000_000),
     help="Divide the bounds of two to four unknowns into so many boxes at most, to prove "

@@ -165,6 +165,20 @@ def test_an_arc_that_is_not_known_is_found_where_it_is():
     assert np.allclose(np.linalg.norm(division.found, axis=1), 1, rtol=0, atol=1e-12)
 
 
+def test_boxes_that_stay_open_show_what_is_smaller_than_they_are():
+    def line_and_oval(u):
+        oval = (u[0] - 0.31) ** 2 + (u[1] + 0.22) ** 2 - 1e-4
+        return [oval * (u[0] - u[1] + 0.7), u[2] - 5.3 + 0.2 * u[0]]
+
+    long = problem(line_and_oval, [(-1, 1), (-1, 1), (-9, 9)])
+    forms = explore(long, settings=PATIENT).forms
+    line = max((form.branch for form in forms), key=lambda branch: branch.length)
+    division = subdivide(long, [line], [], 100)
+    assert len(division.left)
+    from_middle = division.found[:, :2] - (0.31, -0.22)
+    assert np.linalg.norm(from_middle, axis=1) == pytest.approx([0.01] * 4)
+
+
 def test_curves_of_multiplicity_take_too_many_boxes():
     double = problem(lambda u: [(u[0] ** 2 + u[1] ** 2 - 1) ** 2])
     assert can_be_subdivided(double)
