@@ -77,7 +77,7 @@ def assemble_atlas(
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)
-    near_misses = _near_misses(problem, traced, findings.points, periods)
+    near_misses = _near_misses(problem, traced, findings.points, points, periods)
     deflated = findings.components.deflated
     doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
     doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
@@ -304,10 +304,12 @@ def _near_misses(
     problem: Problem,
     traced: Sequence[TracedBranch],
     points: Sequence[SingularPoint],
+    met: Sequence[MeetingPoint],
     periods: np.ndarray,
 ) -> tuple[Event, ...]:
     """The minima of the singular value that are no singular points, nor as near to one
-    of the ``points`` as its place is open, form by form."""
+    of the ``points`` as its place is open, or to where a form meets one of those that
+    are ``met``, form by form."""
     events = []
     for form, branch in enumerate(traced):
         arclengths, values = branch.minima
@@ -319,9 +321,9 @@ def _near_misses(
         rank = branch.profile.rank
         places = wrap(branch.branch(arclengths), periods)
         for k in order_points(places, periods, problem.scale):
-            if _is_at_point(problem, places[k], points):
-                continue
             s = float(arclengths[k])
+            if _is_at_point(problem, places[k], points) or _is_at_pass(form, s, met):
+                continue
             value, error = near_miss_value(problem, branch.branch, rank, s)
             events.append(Event(form, s, places[k], value, error))
     return tuple(events)
@@ -334,6 +336,16 @@ def _is_at_point(
     return any(
         float(np.linalg.norm(problem.difference(place, point.u))) <= point.error
         for point in points
+    )
+
+
+def _is_at_pass(form: int, s: float, met: Sequence[MeetingPoint]) -> bool:
+    """Whether arclength ``s`` of a form is no farther from where it meets a singular
+    point than the error of that: an end that stops short of a cusp is at it."""
+    return any(
+        number == form and abs(s - passed) <= meeting.point.error
+        for meeting in met
+        for number, passed in meeting.passes
     )
 
 
