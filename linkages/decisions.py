@@ -252,6 +252,7 @@ is_near_origin = Decision(
     "rounding of a coordinate is then 1e-15 of the mechanism at most, as that of F; beyond, "
     "coordinates of a file are counted from its first point, and those of a mechanism "
     "that is made otherwise are said to be rounded",
+    third_answer="on either side what rounding of the coordinates explains is in doubt",
 )
 passes_reference = Decision(
     "reference configuration of a form",

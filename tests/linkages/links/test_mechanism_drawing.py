@@ -84,10 +84,11 @@ def test_joints_whose_axes_meet_are_drawn_apart():
 def test_a_joint_of_several_bodies_has_one_name():
     joints = (
         Joint("A", "cylindrical", ("frame", "b", "c"), (0, 0, 0), UP),
-        Joint("B", "revolute", ("b", "c"), (1, 0, 0), (0, 1, 0)),
+        Joint("B", "revolute", ("frame", "c"), (1, 0, 0), (0, 1, 0)),
+        Joint("C", "revolute", ("b", "c"), (0, 1, 0), (1, 0, 0)),
     )
     symbols = draw_symbols(Structure(Mechanism(joints)))
-    assert [symbol["label"] for symbol in symbols] == ["A", "", "B"]
+    assert [symbol["label"] for symbol in symbols] == ["A", "", "B", "C"]
 
 
 @pytest.mark.parametrize("name", ["RSRS", "platform"])
