@@ -87,24 +87,20 @@ def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
     firsts = _signed(twists[0])
     fifths = _signed(twists[4])
     for s, r in itertools.product(firsts, fifths):
-        cubic = _cubic(a, c, s, r)
-        for beta in twists_with(np.roots(cubic.coeffs)):
+        for beta in twists_with(np.roots(_cubic(a, c, s, r))):
             half_delta = np.tan(beta / 2 - np.arctan(r))
             delta = 2 * np.arctan(half_delta)
             yield {"beta": beta, "delta": delta % np.pi}
 
 
-def _cubic(a: float, c: float, s: float, r: float) -> np.poly1d:
-    """The equation for tan(beta/2) by the half tangents of a, c and of the links 12,
-    56."""
-    x = np.poly1d([1.0, 0.0])
-    one = np.poly1d([1.0])
-    # numerator and denominator of tan(delta/2)
-    top = x - r
-    bottom = one + r * x
-    left = (a * c * bottom + x * top) * (a + c) * (one - s * x)
-    right = (x + s) * (a * top + c * x * bottom) * (1 - a * c)
-    return left - right
+def _cubic(a: float, c: float, s: float, r: float) -> np.ndarray:
+    """Coefficients, the highest first, of the equation for x = tan(beta/2) by the half
+    tangents of a, c and of the links 12, 56."""
+    # tan(delta/2) is x - r over 1 + r x
+    left = np.convolve([1.0, r * (a * c - 1.0), a * c], [-s, 1.0])
+    right = np.convolve([c * r, a + c, -a * r], [1.0, s])
+    cubic: np.ndarray = (a + c) * left - (1.0 - a * c) * right
+    return cubic
 
 
 def _signed(twist: float) -> list[float]:
