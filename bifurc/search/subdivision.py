@@ -38,6 +38,7 @@ DETOUR = 2.0  # times as long as its chord a branch may be from one place to the
 # crossings and others, where branches may run very close to each other.
 BESIDE_CROSSING = 1e-5
 BESIDE_OTHER = 0.03
+ROOM = 4.0  # times as wide as a box is where its arc runs, as in `boxes.hpp`
 WIDER = 1e-15  # of a period: the box of a circle is so much wider than one
 
 
@@ -139,10 +140,12 @@ class _Boxes(NamedTuple):
 
 class _Arcs(NamedTuple):
     """Arcs with ``points`` (k, 3, n) where the parameter begins, in the middle and where
-    it ends; an unknown that ``is_steady`` (k, n) rises or falls all along."""
+    it ends; an unknown that ``is_steady`` (k, n) rises or falls all along, one that
+    ``is_within`` (k, n) stays within its bounds."""
 
     points: np.ndarray
     is_steady: np.ndarray
+    is_within: np.ndarray
 
 
 class _Feet(NamedTuple):
@@ -231,8 +234,9 @@ class _Division:
         )
         self.count += count
         self.left.append(_Boxes(*small).middles)
-        is_known = self._are_known(_Arcs(points, is_steady))
-        unknown = _Boxes(*with_arcs).at(~is_known)
+        boxes = _Boxes(*with_arcs)
+        is_within = self._are_within(boxes)
+        unknown = boxes.at(~self._are_known(_Arcs(points, is_steady, is_within)))
         widths = np.max(unknown.high - unknown.low, axis=1, initial=0.0)
         is_small = widths < 2.0 * smallest
         self.left.append(unknown.at(is_small).middles)
@@ -275,7 +279,7 @@ class _Division:
             is_covered = self._are_covered(feet, points, k)
             stays = np.any((before == after) & (before != 0) & is_steady, axis=1)
             leaves = outside[:, k] != outside[:, k + 1]
-            leaves &= np.all(is_steady | (before == after), axis=1)
+            leaves &= np.all(is_steady | arcs.is_within, axis=1)
             settled &= is_covered | stays | leaves
         known: np.ndarray = new | settled
         return known
@@ -294,6 +298,15 @@ class _Division:
         is_one = (numbers[:, k] == numbers[:, k + 1]) & (numbers[:, k] >= 0)
         covered: np.ndarray = is_one & (travelled < DETOUR * chords)
         return covered
+
+    def _are_within(self, boxes: _Boxes) -> np.ndarray:
+        """Which unknowns (k, n) of the arcs in boxes stay within their bounds."""
+        low, high = self.problem.bounds.T
+        reach = 0.5 * ROOM * (boxes.high - boxes.low)
+        is_within: np.ndarray = (boxes.middles - reach >= low) & (
+            boxes.middles + reach <= high
+        )
+        return is_within
 
     def _sides(self, points: np.ndarray) -> np.ndarray:
         """To which side (k, n) of the bounds points (k, n) lie outside, 0 inside."""

@@ -32,15 +32,18 @@ class Settings:
         default_factory=lambda: {MAIN: {}}
     )
 
-    def attributes(self, element: Element, childclass: str | None) -> Element:
-        """The element with the defaults of its class filled in; raises `GeometryError`
-        for a class that is not there."""
+    def attributes(
+        self, element: Element, childclass: str | None, kind: str | None = None
+    ) -> Element:
+        """The element with the defaults of its class filled in, those of its ``kind``,
+        which is its tag as a rule; raises `GeometryError` for a class that is not
+        there."""
         name = element.attributes.get("class", childclass or MAIN)
         if name not in self.defaults:
             classes = ", ".join(self.defaults)
             element.refuse("class", quoted(name), f"one of {classes}")
         tag = "joint" if element.tag == "freejoint" else element.tag
-        default = self.defaults[name].get(tag, {})
+        default = self.defaults[name].get(kind or tag, {})
         own = element.attributes
         if any(key in own for key in ORIENTATIONS):
             default = {k: v for k, v in default.items() if k not in ORIENTATIONS}

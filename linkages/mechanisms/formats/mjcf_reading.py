@@ -234,10 +234,11 @@ def _read_limits(joint: Element, unit: float, settings: Settings) -> Limits | No
     """The limits of a joint, from where it is at qpos0."""
     limited = joint.choice("limited", ("true", "false", "auto"), "auto")
     given = joint.numbers("range", (2,))
-    is_limited = limited == "true" or (limited == "auto" and settings.has_auto_limits)
-    if given is None or not is_limited:
+    if given is None or limited == "false":
         return None
     low, high = given
+    if limited == "auto" and not (settings.has_auto_limits and low < high):
+        return None
     if not low < high:
         joint.refuse("range", [low, high], "a smaller number and a larger one")
     reference = (joint.numbers("ref", (1,)) or [0.0])[0]
@@ -306,7 +307,7 @@ def _read_couplings(equality: Element, model: _Model) -> None:
     """Read what is said of joints: one alone is locked, two are coupled. Raises
     `GeometryError` for a coupling that is not linear."""
     for element in equality.children:
-        element = model.settings.attributes(element, None)
+        element = model.settings.attributes(element, None, "equality")
         if element.tag in COUPLINGS and _is_active(element):
             value = f"<{element.tag}>"
             allowed = "<connect>, <weld> or <joint>"
@@ -339,7 +340,7 @@ def _read_closures(equality: Element, model: _Model) -> None:
     """Read the joints that close loops."""
     groups: dict[tuple[str, str], list[_Anchor]] = {}
     for number, element in enumerate(equality.children, start=1):
-        element = model.settings.attributes(element, None)
+        element = model.settings.attributes(element, None, "equality")
         if element.tag not in ("connect", "weld") or not _is_active(element):
             continue
         name = element.attributes.get("name", f"{element.tag}{number}")

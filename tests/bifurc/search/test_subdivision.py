@@ -240,6 +240,16 @@ def test_a_form_that_leaves_the_bounds_for_a_moment_is_not_proved_to_be_one(bulg
     assert is_right or atlas.completeness.level is Level.ESTIMATED
 
 
+@pytest.mark.parametrize("a", [0.15, 0.18, 0.19, 0.199])
+def test_a_form_that_leaves_twice_close_to_a_corner_is_two_or_not_proved(a):
+    def bend(u):
+        return [u[0] - 0.82 - 0.9 * u[1], u[2] - 1 - 1e-6 + 4 * (u[1] - a) ** 2]
+
+    atlas = explore(problem(bend, [(-1, 1)] * 3), settings=SearchSettings(starts=5))
+    assert len(atlas.forms) == 2
+    assert atlas.completeness.level is Level.PROVED
+
+
 def test_where_an_angle_jumps_nothing_is_proved():
     def ray(u):
         return [np.arctan2(u[1], u[0]) + 3.14]

@@ -466,6 +466,29 @@ def test_limits_that_the_pose_of_the_file_misses_stay_as_they_are(
     assert np.degrees(limits) == pytest.approx(expected)
 
 
+OPEN_CHAINS = """<mujoco><default><equality {default}/></default><worldbody>
+  <body name="a"><joint name="A" type="hinge" axis="0 0 1" range="0 0"/><geom size=".1"/>
+   <body name="b" pos="0 1 0"><joint axis="0 0 1"/><geom size=".1"/></body></body>
+  <body name="c" pos="2 0 0"><joint axis="0 0 1"/><geom size=".1"/></body>
+  </worldbody><equality>
+  <connect name="D.1" body1="b" body2="c" anchor="2 0 0"/>
+  <connect name="D.2" body1="b" body2="c" anchor="2 0 1"/>
+  </equality></mujoco>"""
+
+
+def test_equalities_take_the_defaults_of_equalities(tmp_path):
+    inactive = OPEN_CHAINS.format(default='active="false"')
+    assert not mujoco.MjModel.from_xml_string(inactive).eq_active0.any()
+    with pytest.raises(ValueError, match="without a closed loop"):
+        read(tmp_path, inactive)
+
+
+def test_a_range_without_a_width_is_no_limit(tmp_path):
+    text = OPEN_CHAINS.format(default="")
+    assert not mujoco.MjModel.from_xml_string(text).jnt_limited.any()
+    assert read(tmp_path, text).joint("A").limits == (None,)
+
+
 def test_names_that_mujoco_keeps_apart_are_kept_apart(tmp_path, caplog):
     # bodies, joints and equalities may be called alike in MuJoCo, or not at all
     text = """<mujoco><worldbody>
