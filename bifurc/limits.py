@@ -12,7 +12,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import FrameType, TracebackType
 
 __all__ = ["Deadline", "HeldInterrupt"]
@@ -20,40 +20,17 @@ __all__ = ["Deadline", "HeldInterrupt"]
 SignalHandler = Callable[[int, FrameType | None], object] | int | None
 
 
-@dataclass(frozen=True)
-class Deadline:
-    """The moment at which work has to stop: ``seconds`` after it was made, never where
-    these are infinite."""
-
-    seconds: float = float("inf")
-    began: float = field(default_factory=time.perf_counter)
-
-    @property
-    def is_endless(self) -> bool:
-        """Whether there is time without end."""
-        return self.seconds == float("inf")
-
-    @property
-    def left(self) -> float:
-        """Seconds that are left, 0 once it has passed."""
-        return max(0.0, self.began + self.seconds - time.perf_counter())
-
-    @property
-    def passed(self) -> bool:
-        """Whether the time is over."""
-        return self.left == 0.0
-
-
 class HeldInterrupt:
     """Notes the first Ctrl-C in a ``with`` block, for `check` or the end of the block
     to raise.
 
-    A second one acts at once. Blocks may be nested. Where Ctrl-C is not Python's
+    From then on it ``was_pressed``. A second one acts at once. Blocks may be nested. Where Ctrl-C is not Python's
     business (in a thread, or with a handler of the user's), nothing is changed.
     """
 
     def __init__(self) -> None:
         self.noted = False
+        self.was_pressed = False
         self._former: SignalHandler = None
 
     def __enter__(self) -> HeldInterrupt:
@@ -87,3 +64,36 @@ class HeldInterrupt:
         if self.noted:
             raise KeyboardInterrupt
         self.noted = True
+        self.was_pressed = True
+
+
+@dataclass(frozen=True)
+class Deadline:
+    """The moment at which work has to stop: ``seconds`` after it was made, never where
+    these are infinite, and at once where Ctrl-C was pressed in the block of an
+    ``interrupt``."""
+
+    seconds: float = float("inf")
+    began: float = field(default_factory=time.perf_counter)
+    interrupt: HeldInterrupt | None = None
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether there is time without end."""
+        return self.seconds == float("inf")
+
+    @property
+    def left(self) -> float:
+        """Seconds that are left, 0 once it has passed."""
+        if self.interrupt is not None and self.interrupt.was_pressed:
+            return 0.0
+        return max(0.0, self.began + self.seconds - time.perf_counter())
+
+    def or_at(self, interrupt: HeldInterrupt) -> Deadline:
+        """The same moment, or that of a Ctrl-C."""
+        return replace(self, interrupt=interrupt)
+
+    @property
+    def passed(self) -> bool:
+        """Whether the time is over."""
+        return self.left == 0.0

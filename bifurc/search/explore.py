@@ -50,8 +50,8 @@ def explore(
     random starts drawn with ``seed``) unless given. Every branch is traced whole and
     monitored; from every singular point the directions in which other branches leave
     become further starts. ``progress`` is called with what was found and how many.
-    Ctrl-C ends the search early: the atlas holds what was found, and its provenance
-    says so. When the budget of time is used up, the completeness and the provenance say
+    Ctrl-C ends the search early, once it has begun: the atlas holds what was found,
+    and its provenance says so. When the budget of time is used up, the completeness and the provenance say
     so. With a ``parameter``, the name of an unknown, or ``events``, functions of the
     unknowns, the atlas holds a diagram; see `diagram_of`, also for ``is_flow``. Raises
     `ProblemError` for settings or a seed that cannot be used.
@@ -132,8 +132,7 @@ def _explored(
     began: float,
 ) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
-    deadline = Deadline(settings.budget, began)
-    search = Search(problem, settings, progress, deadline)
+    search = Search(problem, settings, progress, Deadline(settings.budget, began))
     interrupted = False
     try:
         with search.run.interrupt:
@@ -155,9 +154,9 @@ def _explored(
         seed=int(seed),
         settings=settings,
         interrupted=interrupted,
-        out_of_time=search.run.is_over,
+        out_of_time=search.run.is_over and not interrupted,
         derivatives=problem.derivatives,
         equations=problem.equations,
         seconds=time.perf_counter() - began,
     )
-    return assemble_atlas(problem, search.findings, provenance, deadline)
+    return assemble_atlas(problem, search.findings, provenance, search.run.deadline)

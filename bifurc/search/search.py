@@ -107,11 +107,12 @@ class Search:
         self.settings = settings
         self.progress = progress
         self.findings = Findings(problem)
+        interrupt = HeldInterrupt()
         self.run = Run(
             problem=problem,
             settings=settings,
-            deadline=Deadline(settings.budget) if deadline is None else deadline,
-            interrupt=HeldInterrupt(),
+            deadline=(deadline or Deadline(settings.budget)).or_at(interrupt),
+            interrupt=interrupt,
             findings=self.findings,
         )
         self.points = PointSearch(self.run)

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from bifurc.limits import HeldInterrupt
+from bifurc.limits import Deadline, HeldInterrupt
 
 
 @pytest.fixture(autouse=True)
@@ -50,6 +50,15 @@ def test_a_second_interrupt_acts_at_once():
         press()
         done.append("not reached")
     assert not done
+
+
+def test_a_deadline_passes_at_an_interrupt():
+    with pytest.raises(KeyboardInterrupt), HeldInterrupt() as held:
+        deadline = Deadline().or_at(held)
+        assert not deadline.passed
+        press()
+        assert deadline.passed
+    assert deadline.left == 0.0
 
 
 def test_the_inner_of_two_blocks_takes_the_interrupt():
