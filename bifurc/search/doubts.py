@@ -276,6 +276,8 @@ def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
     if point.kind is Kind.UNDECIDED:
         reason = point.note or "sections of two radii disagree"
         return [f"{point.name} is undecided: {reason}"]
+    if point.note:
+        return [f"{point.name} ({point.kind.value}) is not whole: {point.note}"]
     if not point.point.is_confirmed:
         return [f"{point.name} is seen in doubles, and more digits do not show it"]
     return []

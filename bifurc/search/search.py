@@ -649,6 +649,9 @@ class Search:
         for point in division.found:
             if not self.run.is_over:
                 self._branch_off(self._trace(Start(point), is_new=True).starts)
+        for point in division.seeds:
+            if not self.run.is_over:
+                self._branch_off(self._trace(Start(point)).starts)
         findings.forget_covered(refuted)
         values = singular_values(self.problem, division.left)[:, self.problem.n - 2]
         for place in division.left[may_be_crossed(values)]:

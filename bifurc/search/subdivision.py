@@ -46,14 +46,15 @@ WIDER = 1e-15  # of a period: the box of a circle is so much wider than one
 class Subdivision:
     """What became of ``count`` boxes.
 
-    ``found`` (k, n) are solutions on arcs of no known branch, ``left`` (j, n) middles of
-    boxes that are not settled, `MOST_LEFT` at most, ``refuted`` numbers of branches with
-    arclengths at which they solve nothing. Within ``beside`` of singular points, in
-    scales, nothing was looked at.
+    ``found`` (k, n) are solutions on arcs of no known branch, ``seeds`` (i, n) what may
+    be more of them, ``left`` (j, n) middles of boxes that are not settled, `MOST_LEFT`
+    at most, ``refuted`` numbers of branches with arclengths at which they solve nothing.
+    Within ``beside`` of singular points, in scales, nothing was looked at.
     """
 
     count: int
     found: np.ndarray
+    seeds: np.ndarray
     left: np.ndarray
     refuted: tuple[tuple[int, float], ...]
     beside: float
@@ -179,6 +180,7 @@ class _Division:
         self.reaches = problem.scale * np.array(reaches)
         self.count = 0
         self.found: list[np.ndarray] = []
+        self.seeds = np.empty((0, problem.n))
         self.left: list[np.ndarray] = []
         self.refuted: dict[int, float] = {}
 
@@ -202,6 +204,7 @@ class _Division:
         return Subdivision(
             count=self.count,
             found=np.concatenate([nowhere, *self.found]),
+            seeds=self.seeds,
             left=self._apart(np.concatenate([nowhere, *self.left[::-1]])),
             refuted=tuple(self.refuted.items()),
             beside=float(self.reaches.max(initial=0.0)) / self.problem.scale,
@@ -244,8 +247,8 @@ class _Division:
         return _Boxes(*waiting).and_others(quarters)
 
     def look_next_to(self, places: np.ndarray) -> None:
-        """Find what Newton's method reaches from ``places`` (k, n) and lies on no
-        branch: boxes that stay open may hold curves smaller than they are."""
+        """Take as seeds what Newton's method reaches from ``places`` (k, n) and seems to
+        lie on no branch: boxes that stay open may hold curves smaller than they are."""
         points, gaps = self.problem.project(places)
         points = points[closes_to_rounding(gaps)]
         points = points[self.problem.are_inside(points)]
@@ -253,7 +256,7 @@ class _Division:
         is_beside = np.linalg.norm(offsets, axis=2) < self.reaches
         points = points[~np.any(is_beside, axis=1)]
         is_new = self._feet(points).branch < 0
-        self.found.append(points[is_new][:ENOUGH])
+        self.seeds = points[is_new][:ENOUGH]
 
     # --- arcs -------------------------------------------------------------------------
 

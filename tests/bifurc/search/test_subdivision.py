@@ -175,8 +175,19 @@ def test_boxes_that_stay_open_show_what_is_smaller_than_they_are():
     line = max((form.branch for form in forms), key=lambda branch: branch.length)
     division = subdivide(long, [line], [], 100)
     assert len(division.left)
-    from_middle = division.found[:, :2] - (0.31, -0.22)
+    from_middle = division.seeds[:, :2] - (0.31, -0.22)
     assert np.linalg.norm(from_middle, axis=1) == pytest.approx([0.01] * 4)
+
+
+def test_seeds_beside_crossings_make_no_form_twice():
+    def circles_and_line(u):
+        x, y = u
+        circles = (y**2 + (x - 0.5) ** 2 - 0.36) * ((x + 0.4) ** 2 + y**2 - 0.25)
+        return [circles * (x**2 + (y + 0.5) ** 2 - 0.49) * (x - 2 * y + 0.1)]
+
+    few = SearchSettings(boxes=1000)
+    atlas = explore(problem(circles_and_line, [(-2, 2), (-2, 2)]), settings=few)
+    assert len(atlas.forms) == 4
 
 
 def test_curves_of_multiplicity_take_too_many_boxes():
