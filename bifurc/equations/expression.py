@@ -16,7 +16,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -53,11 +53,13 @@ class ExpressionError(BifurcError, ValueError):
 
 
 class _Function(NamedTuple):
-    """A function by its number of arguments, in sympy and in doubles."""
+    """A function by its number of arguments, in sympy and in doubles; ``is_partial``:
+    whether there are arguments for which it is not defined."""
 
     arguments: int
     symbolic: Callable[..., sympy.Expr]
     in_doubles: Callable[..., float]
+    is_partial: bool
 
 
 _OF_ONE = {
@@ -77,11 +79,12 @@ _OF_ONE = {
     "log": math.log,
     "sqrt": math.sqrt,
 }
+_PARTIAL = {"tan", "asin", "acos", "acosh", "atanh", "log", "sqrt"}
 _FUNCTIONS: dict[str, _Function] = {
-    name: _Function(1, getattr(sympy, name), in_doubles)
+    name: _Function(1, getattr(sympy, name), in_doubles, name in _PARTIAL)
     for name, in_doubles in _OF_ONE.items()
 }
-_FUNCTIONS["atan2"] = _Function(2, sympy.atan2, math.atan2)
+_FUNCTIONS["atan2"] = _Function(2, sympy.atan2, math.atan2, True)
 _FUNCTIONS["ln"] = _FUNCTIONS["log"]
 for _name in ("sin", "cos", "tan", "sinh", "cosh", "tanh"):
     _FUNCTIONS[f"arc{_name}"] = _FUNCTIONS[f"a{_name}"]
@@ -103,11 +106,29 @@ WITHOUT_DERIVATIVE = {
 @dataclass(frozen=True)
 class Part:
     """An expression or a part of one, its ``value`` where it is a constant, and of how
-    many numbers, symbols and operations it is made."""
+    many numbers, symbols and operations it is made.
+
+    SymPy simplifies an ``expression``, as sqrt(x)^2 to x, without regard to where it is
+    defined. ``unsimplified`` is what the text says, None where that is defined
+    everywhere.
+    """
 
     expression: sympy.Expr
     value: float | None = None
     size: int = 1
+    unsimplified: sympy.Expr | None = None
+
+    @property
+    def as_written(self) -> sympy.Expr:
+        """The expression, defined where the text is."""
+        return self.expression if self.unsimplified is None else self.unsimplified
+
+    def minus(self, other: Part) -> Part:
+        """The difference to another part, as for the two sides of an equation."""
+        parts = (self, other)
+        written = _unsimplified(_difference, parts, False)
+        expression = self.expression - other.expression
+        return Part(expression, None, self.size + other.size, written)
 
 
 _CONSTANT_PARTS = {
@@ -193,7 +214,15 @@ class _Reader:
             if sign.text == "*":
                 left = _combined(sympy.Mul, lambda a, b: a * b, sign, left, right)
             else:
-                left = _combined(_quotient, lambda a, b: a / b, sign, left, right)
+                is_partial = right.value is None
+                left = _combined(
+                    _quotient,
+                    lambda a, b: a / b,
+                    sign,
+                    left,
+                    right,
+                    is_partial=is_partial,
+                )
         return left
 
     def _signed(self) -> Part:
@@ -223,7 +252,10 @@ class _Reader:
         if _bits_of_power(base.expression, exponent.expression) > MOST_BITS:
             reason = f"the power at column {sign.column} is a number of too many digits"
             raise ExpressionError(reason)
-        return _combined(sympy.Pow, math.pow, sign, base, exponent)
+        is_partial = not _is_power_everywhere(base.value, value)
+        return _combined(
+            sympy.Pow, math.pow, sign, base, exponent, is_partial=is_partial
+        )
 
     def _atom(self) -> Part:
         token = self._take()
@@ -255,7 +287,13 @@ class _Reader:
                 f"{name.text} at column {name.column} has {len(arguments)} arguments; "
                 f"it must have {function.arguments}"
             )
-        return _combined(function.symbolic, function.in_doubles, name, *arguments)
+        return _combined(
+            function.symbolic,
+            function.in_doubles,
+            name,
+            *arguments,
+            is_partial=function.is_partial,
+        )
 
     def _symbol(self, name: _Token) -> Part:
         part = self._symbols.get(name.text) or _CONSTANT_PARTS.get(name.text)
@@ -360,9 +398,10 @@ def _combined(
     in_doubles: Callable[..., float],
     token: _Token,
     *parts: Part,
+    is_partial: bool = False,
 ) -> Part:
     """What a function makes of some parts; its value comes first, so that no constant
-    grows beyond bounds."""
+    grows beyond bounds. ``is_partial``: whether it may not be defined."""
     values = [part.value for part in parts if part.value is not None]
     value = None
     if len(values) == len(parts):
@@ -375,7 +414,34 @@ def _combined(
     if expression.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I):
         reason = f"{token.text} at column {token.column} gives no real number"
         raise ExpressionError(reason)
-    return Part(expression, value, size)
+    if value is not None:
+        return Part(expression, value, size)
+    return Part(expression, value, size, _unsimplified(symbolic, parts, is_partial))
+
+
+def _unsimplified(
+    symbolic: Callable[..., sympy.Expr], parts: Sequence[Part], is_partial: bool
+) -> sympy.Expr | None:
+    """What a function makes of some parts, nothing cancelled; None where that is defined
+    everywhere."""
+    if not is_partial and all(part.unsimplified is None for part in parts):
+        return None
+    written: sympy.Expr = symbolic(*(part.as_written for part in parts), evaluate=False)
+    first = parts[0].unsimplified
+    if first is None or not (written.is_Add or written.is_Mul):
+        return written
+    if first.func is not written.func or written.args[0] is not first:
+        return written
+    # one long sum or product, not one inside the other; real numbers commute
+    together = [*first.args, *written.args[1:]]
+    return written.func._from_args(together, is_commutative=True)
+
+
+def _is_power_everywhere(base: float | None, exponent: float | None) -> bool:
+    """Whether a power is defined for all values of what is no constant (None)."""
+    if exponent is None:
+        return base is not None and base > 0.0
+    return exponent >= 0.0 and exponent.is_integer()
 
 
 def _value(
@@ -403,13 +469,14 @@ def _bits_of_power(base: sympy.Expr, exponent: sympy.Expr) -> int:
     return int(bits * abs(exponent))
 
 
-def _difference(a: sympy.Expr, b: sympy.Expr) -> sympy.Expr:
-    return a - b
+def _difference(a: sympy.Expr, b: sympy.Expr, *, evaluate: bool = True) -> sympy.Expr:
+    return sympy.Add(a, _negative(b, evaluate=evaluate), evaluate=evaluate)
 
 
-def _quotient(a: sympy.Expr, b: sympy.Expr) -> sympy.Expr:
-    return a / b
+def _quotient(a: sympy.Expr, b: sympy.Expr, *, evaluate: bool = True) -> sympy.Expr:
+    reciprocal = sympy.Pow(b, -1, evaluate=evaluate)
+    return sympy.Mul(a, reciprocal, evaluate=evaluate)
 
 
-def _negative(a: sympy.Expr) -> sympy.Expr:
-    return -a
+def _negative(a: sympy.Expr, *, evaluate: bool = True) -> sympy.Expr:
+    return sympy.Mul(-1, a, evaluate=evaluate)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bifurc.equations.tape import Node, Operation, Tape, TapeWriter
+from bifurc.equations.tape import PARTIAL, Node, Operation, Tape, TapeWriter
 
 if TYPE_CHECKING:
     from sympy.polys.rings import (
@@ -194,6 +194,9 @@ def _polynomial_powers(
     polynomial = _expanded(nodes, output, dict(zip(generators, shifts, strict=True)))
     if polynomial is None or not polynomial:
         return None
+    degrees = zip(generators, polynomial.degrees(), strict=True)
+    if any(not degree and nodes[k].operation in PARTIAL for k, degree in degrees):
+        return None  # log(x) - log(x) is zero for positive x only
     _, factors = polynomial.sqf_list()
     shifted = [
         writer.add(slot, writer.constant(-shift)) if shift else slot

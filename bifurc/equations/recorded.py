@@ -128,6 +128,8 @@ class RecordedNumber:
         value = self.writer.value(base)
         if value is not None and not value > 0.0:
             self.writer.refuse(NEGATIVE_BASE)
+        if self.writer.value(exponent) == 0.0:
+            return self.writer.constant(1.0)  # in NumPy of what is no number as well
         return self.writer.power(base, exponent)
 
     def __neg__(self) -> RecordedNumber:

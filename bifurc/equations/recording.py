@@ -58,7 +58,8 @@ def _tape_of(function: Callable[[np.ndarray], Any], n: int) -> Tape:
     unknowns = unknowns_of(writer)
     try:
         value = function(unknowns)
-        tape = writer.tape(_outputs(writer, value))
+        outputs = writer.where_all_is_defined(_outputs(writer, value))
+        tape = writer.tape(outputs)
     except NotRecordable:
         raise
     except TooLong:
@@ -118,6 +119,8 @@ def _difference(
         for point, value, width in zip(points, recorded, high - low, strict=True):
             expected = np.array(function(point.copy()), dtype=float)
             is_known = np.isfinite(expected)
+            if not np.all(is_known):  # the tape may be undefined in another equation
+                is_known &= np.isfinite(value)
             gaps = np.abs(value - expected)[is_known]
             units = _rounding(expected, width)[is_known]
             if not np.all(is_same_function(gaps / units)):

@@ -128,7 +128,7 @@ def _checked_expressions(
             allowed = "a sympy expression"
             raise ProblemError(f"expressions[{i}]", repr(given), allowed) from None
         if isinstance(expression, sympy.Equality):
-            expression = expression.lhs - expression.rhs
+            expression = _difference(expression.lhs, expression.rhs)
         if not isinstance(expression, sympy.Expr):
             raise ProblemError(f"expressions[{i}]", given, "an expression or Eq")
         foreign = sorted(expression.free_symbols - set(unknowns), key=str)
@@ -140,6 +140,13 @@ def _checked_expressions(
     if not checked:
         raise ProblemError("expressions", "[]", "one expression or more")
     return checked
+
+
+def _difference(left: sympy.Expr, right: sympy.Expr) -> sympy.Expr:
+    """left - right; what need not be defined everywhere is not cancelled."""
+    if left.is_polynomial() and right.is_polynomial():
+        return left - right
+    return sympy.Add(left, sympy.Mul(-1, right, evaluate=False), evaluate=False)
 
 
 # --- translation ----------------------------------------------------------------------
@@ -160,7 +167,8 @@ def _tape_of(
         except TooLong:
             allowed = "of fewer operations"
             raise ProblemError(f"expressions[{i}]", "too long", allowed) from None
-    return translation.writer.tape(outputs)
+    writer = translation.writer
+    return writer.tape(writer.where_all_is_defined(outputs))
 
 
 class _Untranslatable(Exception):
@@ -212,14 +220,23 @@ class _Translation:
         return slot
 
     def _product(self, product: sympy.Basic) -> int:
-        number, rest = product.as_coeff_Mul()
-        if number != 1:
-            return self.writer.multiply(self.slot_of(rest), self._constant(number))
-        numerator, denominator = product.as_numer_denom()
-        if denominator == 1 or numerator == product:
-            return self._folded(self.writer.multiply, product.args)
-        above = self.slot_of(numerator)
-        return self.writer.divide(above, self.slot_of(denominator))
+        """A product as it is written: what stands above and below is not cancelled."""
+        number = sympy.Integer(1)
+        above, below = [], []
+        for factor in product.args:
+            if factor.is_Number:
+                number *= factor
+            elif factor.is_Pow and factor.exp.is_Number and factor.exp.is_negative:
+                below.append(_reciprocal(factor))
+            else:
+                above.append(factor)
+        slot = self._folded(self.writer.multiply, above or [sympy.Integer(1)])
+        if below:
+            divisor = self._folded(self.writer.multiply, below)
+            slot = self.writer.divide(slot, divisor)
+        if number == 1:
+            return slot
+        return self.writer.multiply(slot, self._constant(number))
 
     def _function(self, expression: sympy.Basic) -> int:
         name = expression.func.__name__
@@ -234,3 +251,11 @@ class _Translation:
         if is_reciprocal:
             return self.writer.divide(self.writer.constant(1.0), slot)
         return slot
+
+
+def _reciprocal(power: sympy.Pow) -> sympy.Expr:
+    """One over a power with a negative exponent."""
+    exponent = -power.exp
+    if exponent == 1:
+        return power.base
+    return sympy.Pow(power.base, exponent, evaluate=False)

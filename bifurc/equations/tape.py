@@ -18,10 +18,19 @@ import numpy as np
 
 from bifurc import _core
 
-__all__ = ["FUNCTIONS", "Node", "Operation", "Tape", "TapeWriter", "TooLong"]
+__all__ = [
+    "FUNCTIONS",
+    "PARTIAL",
+    "Node",
+    "Operation",
+    "Tape",
+    "TapeWriter",
+    "TooLong",
+]
 
 LONGEST = 200_000  # operations of a tape
 LARGEST_POWER = 64  # whole exponent up to which a power is a chain of products
+NOTHING = 2.0**-100  # factor of y - y: bounds on it are narrow, and none remain none
 
 
 class Operation(IntEnum):
@@ -60,6 +69,23 @@ class Operation(IntEnum):
     ATANH = 27
     ANGLE = 28  # atan2(left, right)
 
+
+# Those that are not defined, or not smooth, for some operands.
+PARTIAL = frozenset(
+    {
+        Operation.DIVIDE,
+        Operation.POWER,
+        Operation.LOG,
+        Operation.LOG1P,
+        Operation.SQRT,
+        Operation.TAN,
+        Operation.ASIN,
+        Operation.ACOS,
+        Operation.ACOSH,
+        Operation.ATANH,
+        Operation.ANGLE,
+    }
+)
 
 # Functions of one number, by their names in the standard library and in mpmath.
 FUNCTIONS = {
@@ -306,6 +332,7 @@ class TapeWriter:
         self._nodes: list[Node] = []
         self._rules: dict[int, int] = {}
         self._slots: dict[Node, int] = {}
+        self._dropped: set[int] = set()  # multiplied by 0, or raised to the power 0
 
     def tape(self, outputs: Sequence[int]) -> Tape:
         """The tape whose equations stand in the slots ``outputs``."""
@@ -325,6 +352,23 @@ class TapeWriter:
             np.array([node.constant for node in self._nodes]),
             np.array(outputs, dtype=np.int64),
         )
+
+    def where_all_is_defined(self, outputs: Sequence[int]) -> list[int]:
+        """The slots ``outputs`` of equations that are defined only where all that was
+        written is: 0 log(x) is 0 for positive x only.
+
+        What was multiplied by 0 and stands in no equation is added to the first one, as
+        a difference from itself.
+        """
+        present = set(self.needed_for(*outputs))
+        first = outputs[0]
+        for slot in reversed(self.needed_for(*self._dropped)):
+            if slot in present or self._nodes[slot].operation not in PARTIAL:
+                continue
+            present.update(self.needed_for(slot))
+            zero = self._slot(Node(Operation.SUBTRACT, slot, slot))
+            first = self.add(first, self._scaled(zero, NOTHING))
+        return [first, *outputs[1:]]
 
     # --- leaves -----------------------------------------------------------------------
 
@@ -346,10 +390,10 @@ class TapeWriter:
             self._write_rule(slot)
         return self._rules[slot]
 
-    def needed_for(self, slot: int) -> list[int]:
-        """The slots that one is made of, and itself, operands first."""
-        needed = {slot}
-        for earlier in range(slot, -1, -1):
+    def needed_for(self, *slots: int) -> list[int]:
+        """The slots that some are made of, and themselves, operands first."""
+        needed = set(slots)
+        for earlier in range(max(slots, default=-1), -1, -1):
             node = self._nodes[earlier]
             if earlier not in needed or node.operation <= Operation.CONSTANT:
                 continue
@@ -446,6 +490,7 @@ class TapeWriter:
             one = self.constant(1.0)
             return self.divide(one, self._whole_power(base, -exponent))
         if exponent == 0:
+            self._dropped.add(base)
             return self.constant(1.0)
         half = self._whole_power(base, exponent // 2)
         square = self.multiply(half, half) if exponent > 1 else half
@@ -458,6 +503,7 @@ class TapeWriter:
 
     def _scaled(self, operand: int, factor: float) -> int:
         if factor == 0.0:
+            self._dropped.add(operand)
             return self.constant(0.0)
         if factor == 1.0:
             return operand

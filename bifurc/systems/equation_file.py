@@ -136,7 +136,7 @@ class _Reading:
             equations.sort(key=lambda one: order.index(one.rate_of))
         symbols = [sympy.Symbol(name) for name in unknowns]
         problem = SymbolicProblem(
-            [equation.part.expression for equation in equations],
+            [equation.part.as_written for equation in equations],
             symbols,
             [(one.low, one.high) for one in unknowns.values()],
             periods=[one.period for one in unknowns.values()],
@@ -298,7 +298,7 @@ class _Reading:
             part = self._part(f"events.{name}", text)
             if not part.expression.free_symbols:
                 raise _Refusal(f"events.{name}: {text!r} holds no unknown")
-            events[name] = SymbolicFunction.of(part.expression, symbols)
+            events[name] = SymbolicFunction.of(part.as_written, symbols)
         return events
 
     # --- entries ----------------------------------------------------------------------
@@ -328,8 +328,7 @@ class _Reading:
             return self._side(label, text, 0, len(text))
         left = self._side(label, text, 0, signs[0].start())
         right = self._side(label, text, signs[0].end(), len(text))
-        size = left.size + right.size
-        return Part(left.expression - right.expression, None, size)
+        return left.minus(right)
 
     def _side(self, label: str, text: str, begin: int, end: int) -> Part:
         """The expression from ``begin`` to ``end`` of a text, in the columns of which an

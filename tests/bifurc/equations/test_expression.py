@@ -135,7 +135,13 @@ def test_random_texts_are_read_or_refused() -> None:
         read += 1
         place = {x: 0.3, y: 0.7}
         value = complex(part.expression.subs(place))
+        assert complex(part.as_written.subs(place)) == pytest.approx(value, rel=1e-12)
         python = text.replace("^", "**").replace("sin", "math.sin")
         names = {"x": 0.3, "y": 0.7, "e": math.e, "math": math}
         assert value == pytest.approx(complex(eval(python, names)), rel=1e-12)
     assert read > 100
+
+
+def test_a_long_sum_is_no_deep_tree() -> None:
+    part = parse_expression("log(x)" + " - sqrt(y)" * 300, SYMBOLS)
+    assert len(part.as_written.args) == 301

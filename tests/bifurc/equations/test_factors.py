@@ -5,6 +5,7 @@ import pytest
 
 import bifurc
 from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.recording import record
 from bifurc.equations.tape import Tape
 
 POINTS = np.random.default_rng(0).uniform(0.5, 1.5, (20, 2))
@@ -117,3 +118,14 @@ def test_a_double_circle_far_from_the_origin_is_one_form():
     assert form.multiplicity == 2
     x, y = form.branch.sample(200).T
     assert np.abs(np.hypot(x - far, y) - 1).max() < 1e-9
+
+
+def test_what_cancels_stays_where_it_need_not_be_defined():
+    def square(u):
+        return np.array([(u[0] - u[1]) ** 2 + np.log(u[0]) - np.log(u[0])])
+
+    tape = record(square, np.ones((1, 2))).tape
+    region = np.array([[-2.0, 2.0]] * 2)
+    factors = polynomial_factors(tape, [0], region)
+    values = factors.tape.compiled.residuals(np.array([[-1.0, -1.0]]))
+    assert np.isnan(values).any()

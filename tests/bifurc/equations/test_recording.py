@@ -266,3 +266,28 @@ def test_what_cannot_be_recorded_says_so_in_a_sentence(name):
     assert recording.tape is None
     assert reason in recording.reason
     assert str(recording) == f"not recorded: {recording.reason}"
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda u: np.array([0 * np.log(u[0]) + u[0] - u[1]]),
+        lambda u: np.array([u[0] - u[1], u[1] + np.sqrt(u[0]) * 0]),
+        lambda u: np.array([[0.0, 1.0]]) @ np.stack([1.0 / (u[0] + 1.0), u[1]]),
+    ],
+)
+def test_zero_times_what_is_not_defined_is_not_zero(function):
+    points = np.array([[-1.0, 0.5], [1.0, 1.0]])
+    with np.errstate(all="ignore"):
+        tape = record(function, points).tape
+    values = tape.compiled.residuals(points)
+    assert not np.isfinite(values[0]).all()
+    np.testing.assert_array_equal(values[1], function(points[1]))
+
+
+def test_zero_times_what_an_equation_holds_leaves_no_operation():
+    def equations(u):
+        roots = np.sqrt(u)
+        return np.eye(2) @ roots
+
+    assert record(equations, np.ones((1, 2))).tape.size == 2

@@ -75,6 +75,13 @@ def test_a_symbolic_problem_is_copied_and_pickled():
         assert np.array_equal(twin.periods, problem.periods)
 
 
+def test_the_sides_of_an_equation_are_not_cancelled_where_they_are_not_defined():
+    equation = sympy.Eq(sympy.log(X) + Y, sympy.log(X) + X)
+    problem = SymbolicProblem([equation], [X, Y], BOX)
+    values = problem.residuals(np.array([[-1.0, -1.0], [1.0, 1.0]]))[:, 0]
+    np.testing.assert_array_equal(values, [np.nan, 0.0])
+
+
 @pytest.mark.parametrize(
     ("expressions", "unknowns", "message"),
     [

@@ -94,6 +94,60 @@ def test_decimals_are_exact(tmp_path) -> None:
     assert system.parameter is None and not system.is_flow
 
 
+OF_POSITIVE_X = [
+    "sqrt(x)^2 = p",
+    "sqrt(x)*sqrt(x) = p",
+    "exp(log(x)) = p",
+    "exp(2*log(x)) = p",
+    "x^1.5/x^0.5 = p",
+    "log(x) - log(x) + p = x",
+    "-log(x) + p + log(x) = x",
+    "log(x) + p = log(x) + x",
+    "0*log(x) + p = x",
+    "sqrt(x)*0 + p = x",
+    "log(x)^0*x = p",
+    "sqrt(x)/sqrt(x)*x = p",
+]
+
+
+def in_x_and_p(path, equation: str):
+    """The system of one equation in x and p."""
+    text = f'equations = ["{equation}"]\n[unknowns]\nx = [-2, 2]\np = [-2, 3]\n'
+    path.write_text(text, encoding="utf-8")
+    return read_equations(path)
+
+
+@pytest.mark.parametrize("equation", OF_POSITIVE_X)
+def test_an_equation_is_defined_where_its_text_is(tmp_path, equation) -> None:
+    problem = in_x_and_p(tmp_path / "one.toml", equation).problem
+    points = np.array([[-1.0, -1.0], [1.0, 1.0]])
+    residuals = problem.residuals(points)[:, 0]
+    np.testing.assert_array_equal(np.isnan(residuals), [True, False])
+    assert residuals[1] == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    "equation",
+    ["sqrt(x)^2 = p", "0*log(x) + p = x", "sin(asin(x)) = p"],
+)
+def test_forms_end_where_the_equation_does(tmp_path, equation) -> None:
+    atlas = in_x_and_p(tmp_path / "one.toml", equation).explore(seed=1)
+    (form,) = atlas.forms
+    # x from 0 to 2, or from -1 to 1
+    assert form.branch.length == pytest.approx(2.0 * math.sqrt(2.0), abs=0.02)
+    assert atlas.completeness.level is not bifurc.Level.PROVED
+
+
+def test_what_is_defined_everywhere_is_simplified(tmp_path) -> None:
+    system = in_x_and_p(tmp_path / "one.toml", "x^2 + p + 0*x = x^2 + x*2/2")
+    assert str(system.problem.expressions[0]) == "p - x"
+
+
+def test_an_equation_that_cancels_holds_no_unknown(tmp_path) -> None:
+    with pytest.raises(bifurc.EquationFileError, match="holds no unknown"):
+        in_x_and_p(tmp_path / "one.toml", "log(x) = log(x)")
+
+
 def test_values_of_parameters_may_be_replaced(path) -> None:
     system = read_equations(path, {"B": 12.0})
     assert system.values["B"] == 12.0
