@@ -35,8 +35,8 @@ class RodReach:
     def shift_of_body(self, pair: FreePair) -> float:
         """How far the center of a free pair can be from where it is in the reference
         configuration: the first of the rods that hold it ends there."""
-        ends = pair.base, pair.moved
-        first = next(rod for rod in self.structure.rods if rod.ends == ends)
+        ends = {pair.base, pair.moved}
+        first = next(rod for rod in self.structure.rods if set(rod.ends) == ends)
         return self._span(first)
 
     def shift_of_point(self, point: FreePoint) -> float:

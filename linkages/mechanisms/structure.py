@@ -277,11 +277,18 @@ class Structure:
         first += len(self.free_points)
         free: dict[int, FreePair] = {}
         for rod in self.rods:
-            base, moved = rod.ends
-            if parts[base] != parts[moved]:
-                parts.union(base, moved)
-                free[first + len(free)] = FreePair(base, moved, rod.centers[1])
+            if parts[rod.ends[0]] != parts[rod.ends[1]]:
+                parts.union(*rod.ends)
+                free[first + len(free)] = self._free_pair(rod)
         return free
+
+    def _free_pair(self, rod: Rod) -> FreePair:
+        """The free pair of the two bodies that a rod joins. What moves is a body: a
+        point at which only rods meet has no rotation."""
+        base, moved = rod.ends
+        if moved >= len(self.mechanism.bodies):
+            return FreePair(moved, base, rod.centers[0])
+        return FreePair(base, moved, rod.centers[1])
 
     @cached_property
     def closures(self) -> tuple[Closure, ...]:

@@ -24,6 +24,7 @@ from tests.linkages.mechanisms.frameworks import (
 from tests.linkages.mechanisms.spatial_mechanisms import ring_with_rods
 
 FEW = SearchSettings(starts=40)
+UP = np.array([0.0, 0.0, 2.0])
 
 
 def freedoms(mechanism):
@@ -203,6 +204,30 @@ def test_a_joint_of_rods_and_two_plates_holds_the_plates(order):
     # the plate turns about P, held by one rod; rods r and q hang on one body each
     assert mobility_at_reference(mechanism) == 2
     assert freedoms(mechanism) == 2 + 3
+
+
+@pytest.mark.parametrize("place", [1, 2, 10])
+def test_a_plate_on_a_point_of_rods_moves_wherever_the_point_is_named(place):
+    """Three rods hold point P; a plate hangs on it by a rod, on the base by four."""
+    rng = np.random.default_rng(0)
+    joints = [Joint("F0", "spherical", ("base", "q0"), tuple(rng.normal(size=3)))]
+    joints.append(
+        Joint("H", "spherical", ("plate", "r"), tuple(rng.normal(size=3) + UP))
+    )
+    for k in range(4):
+        foot, head = tuple(rng.normal(size=3)), tuple(rng.normal(size=3) + UP)
+        joints.append(Joint(f"B{k}", "spherical", (f"s{k}", "base"), foot))
+        joints.append(Joint(f"C{k}", "spherical", ("plate", f"s{k}"), head))
+    point = Joint("P", "spherical", ("r", "q0", "q1", "q2"), (3.0, 1.0, 1.0))
+    joints.insert(place, point)
+    for k in (1, 2):
+        foot = tuple(rng.normal(size=3) + [3.0, 0.0, 0.0])
+        joints.append(Joint(f"F{k}", "spherical", (f"q{k}", "base"), foot))
+    mechanism = Mechanism(tuple(joints))
+    assert mobility_at_reference(mechanism) == 1
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    assert len(atlas.forms) == 2
+    assert {form.certificate.status.value for form in atlas.forms} == {"certified"}
 
 
 def test_bodies_of_a_figure_are_where_their_joints_are():
