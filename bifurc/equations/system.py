@@ -41,6 +41,9 @@ SINGULAR = 1e-12  # a singular value of F', over the magnitude, that is left to 
 SPARSE = 0.25  # share of entries of a larger Jacobian up to which it is sparse
 ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
 PROJECTION_STEPS = 80
+# unit of what is held, over that of the rest: its columns of F' are so small that the
+# damping of a projection, 1e-14 at least, leaves next to nothing of its steps
+HELD = 2.0**-40
 SPHERE_STEPS = 25
 ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
 SAMPLES, BESIDE = 20, 0.3  # places at which it is measured, so far, over the scale, off
@@ -280,18 +283,24 @@ class ScaledTape:
         points, gaps = self.project(low + inner * (high - low))
         return points[gaps <= SOLVED * self._unit]
 
-    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def project(
+        self, starts: np.ndarray, is_held: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the residual (k,), over the
-        magnitude, that is left at each."""
+        magnitude, that is left at each; unknowns that are held (n,) stay where they are
+        but for rounding."""
+        units = self._units
+        if is_held is not None:
+            units = np.where(is_held, HELD * self._unit, self._unit)
         points, gaps = self.tape.compiled.project(
-            self._units,
+            units,
             self._weights,
-            _contiguous(starts) / self._unit,
+            _contiguous(starts) / units,
             ROUNDING,
             PROJECTION_STEPS,
             self.is_factored_sparse,
         )
-        return self._unit * points, self._unit * gaps
+        return units * points, self._unit * gaps
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float

@@ -18,8 +18,12 @@ __all__ = ["kept_out_by_limits"]
 
 @lru_cache(maxsize=2)
 def kept_out_by_limits(atlas: Atlas) -> str:
-    """The sentence on a mechanism that closes nowhere within its limits but does
-    without them; empty for any other."""
+    """The sentence on a mechanism that closes nowhere within its limits, as far as is
+    seen, but does without them; empty for any other.
+
+    Where every variable alone is within its limits in some configurations, all that is
+    known is that none was found.
+    """
     readout = readout_of(atlas)
     if readout is None:
         return ""
@@ -30,10 +34,12 @@ def kept_out_by_limits(atlas: Atlas) -> str:
         return ""
     unit = readout.structure.unit
     words = [_where(variable, unit) for variable in limited]
-    return (
-        "The linkage has no real configuration within its limits. Without them it closes "
-        f"with {', '.join(words)}."
-    )
+    start = "The linkage has no real configuration within its limits."
+    if all(variable.meets_limits for variable in limited):
+        start = (
+            "No configuration of the linkage was found within its limits (estimated)."
+        )
+    return f"{start} Without them it closes with {', '.join(words)}."
 
 
 def _where(variable: LimitedRange, unit: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -33,6 +34,21 @@ class LimitedRange:
     is_turn: bool
     limits: Limits
     ranges: tuple[VariableRange, ...]
+
+    @property
+    def meets_limits(self) -> bool:
+        """Whether some of the ranges and the limits have values in common, angles up to
+        whole turns: then these limits alone do not say why nothing is within them."""
+        return any(self._meets_limits(one) for one in self.ranges)
+
+    def _meets_limits(self, one: VariableRange) -> bool:
+        low, high = self.limits
+        if one.turns:
+            return True
+        if self.is_turn:
+            turns = math.ceil((one.low - high) / (2 * math.pi))
+            low, high = low + 2 * math.pi * turns, high + 2 * math.pi * turns
+        return low <= one.high and one.low <= high
 
 
 def ranges_beyond_limits(mechanism: Mechanism) -> list[LimitedRange]:

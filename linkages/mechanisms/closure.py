@@ -36,6 +36,7 @@ from linkages.mechanisms.whole_turns import (
     starts_at_every_turn,
     turns_that_advance,
 )
+from linkages.mechanisms.within_limits import brought_within_limits
 
 if TYPE_CHECKING:
     import mpmath
@@ -47,8 +48,6 @@ __all__ = ["MechanismClosure"]
 # Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
-MARGIN = 0.25  # of limits, inside which they are brought: closure leads out again
-TIMES_BACK = 4  # that each of them is, to where closure leads beyond them again
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 
 
@@ -192,6 +191,13 @@ class MechanismClosure(NumericalProblem):
             return self._tape.project(starts)
         return super().project(starts)
 
+    def project_with_held(
+        self, starts: np.ndarray, is_held: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What `project` gives, the unknowns that are held (n,) staying as they are in
+        each of the ``starts`` (k, n)."""
+        return self._tape.project(starts, is_held)
+
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
     ) -> SphereProjection:
@@ -225,7 +231,7 @@ class MechanismClosure(NumericalProblem):
             starts.append(starts_at_every_turn(self, turns, rng))
         points, gaps = self.project(np.concatenate(starts))
         solutions = points[is_start_solved(gaps)]
-        solutions = np.concatenate([solutions, self._from_beyond_limits(drawn)])
+        solutions = np.concatenate([solutions, self._from_beyond_limits(drawn, rng)])
         if lattice:
             # what is outside the limits may have a translate inside
             solutions = lattice.homes(solutions)
@@ -236,28 +242,14 @@ class MechanismClosure(NumericalProblem):
             return replace(seeds, audit=WholeTurns(self, turns, lattice))
         return replace(seeds, audit=slices)
 
-    def _from_beyond_limits(self, drawn: Seeds) -> np.ndarray:
-        """Closed configurations (k, n) within limits that are given, next to some that
+    def _from_beyond_limits(self, drawn: Seeds, rng: np.random.Generator) -> np.ndarray:
+        """Closed configurations (k, n) within limits that are given, from some that
         random starts reached beyond them: narrow limits leave few that are reached
         else."""
         if all(one.limits is None for one in self.structure.mechanism.variables):
             return np.empty((0, self.n))
-        low, high = self.bounds.T
-        limited = np.isfinite(self.bounds).all(axis=1)
-        margin = np.zeros(self.n)
-        margin[limited] = MARGIN * (high - low)[limited]
         beyond = drawn.missed[is_start_solved(drawn.gaps)][:MOST_BEYOND]
-        inside = [np.empty((0, self.n))]
-        for _ in range(TIMES_BACK):
-            if not len(beyond):
-                break
-            within = np.clip(beyond, low + margin, high - margin)
-            points, gaps = self.project(within)
-            points = points[is_start_solved(gaps)]
-            is_inside = self.are_inside(points)
-            inside.append(points[is_inside])
-            beyond = points[~is_inside]
-        return np.concatenate(inside)
+        return brought_within_limits(self, beyond, rng)
 
     def _drawn(self, rng: np.random.Generator, count: int) -> Seeds:
         """What is reached from random starts; where whole turns lead to the same again,

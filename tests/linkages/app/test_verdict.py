@@ -7,8 +7,10 @@ from bifurc.search.settings import SearchSettings
 from linkages.app.exit_codes import ExitCode
 from linkages.app.verdict import judge
 from linkages.mapping import map_linkage
+from linkages.mechanisms.beyond_limits import LimitedRange
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.ranges import VariableRange
 
 FEW = SearchSettings(starts=40)
 UPWARDS = (0.0, 0.0, 1.0)
@@ -53,6 +55,36 @@ def test_of_limits_that_exclude_each_other_both_are_said():
     verdict = verdict_of(slider_crank(crank=crank, slide=(1.5, 3.0), height=0.5))
     assert "closes with A at all angles (limits: 80.00 to 100.00)" in verdict.sentence
     assert ", D from " in verdict.sentence
+
+
+def test_of_limits_each_within_its_range_only_what_was_found_is_said():
+    crank = tuple(np.radians((80.0, 100.0)))
+    verdict = verdict_of(slider_crank(crank=crank, slide=(-0.2, 0.0), height=0.5))
+    assert verdict.code is ExitCode.DOES_NOT_MOVE
+    assert verdict.sentence.startswith(
+        "No configuration of the linkage was found within its limits (estimated). "
+        "Without them it closes with A at all angles (limits: 80.00 to 100.00)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("limits", "range_", "meets"),
+    [
+        ((200.0, 220.0), (-170.0, -150.0), True),
+        ((200.0, 220.0), (-130.0, -120.0), False),
+        ((-30.0, 30.0), (340.0, 350.0), True),
+        ((-720.0, -700.0), (10.0, 30.0), True),
+        ((40.0, 50.0), (0.0, 39.0), False),
+    ],
+)
+def test_limits_and_ranges_of_angles_meet_up_to_whole_turns(limits, range_, meets):
+    limited = LimitedRange(
+        "A",
+        True,
+        tuple(np.radians(limits)),
+        (VariableRange("A", *np.radians(range_), 0),),
+    )
+    assert limited.meets_limits is meets
 
 
 @pytest.mark.parametrize("limits", [None, (-1.0, 1.0)])

@@ -25,6 +25,7 @@ from tests.linkages.mechanisms.spatial_mechanisms import ring_with_rods
 
 FEW = SearchSettings(starts=40)
 UP = np.array([0.0, 0.0, 2.0])
+SIDEWAYS = np.array([3.0, 0.0, 0.0])
 
 
 def freedoms(mechanism):
@@ -221,7 +222,7 @@ def test_a_plate_on_a_point_of_rods_moves_wherever_the_point_is_named(place):
     point = Joint("P", "spherical", ("r", "q0", "q1", "q2"), (3.0, 1.0, 1.0))
     joints.insert(place, point)
     for k in (1, 2):
-        foot = tuple(rng.normal(size=3) + [3.0, 0.0, 0.0])
+        foot = tuple(rng.normal(size=3) + SIDEWAYS)
         joints.append(Joint(f"F{k}", "spherical", (f"q{k}", "base"), foot))
     mechanism = Mechanism(tuple(joints))
     assert mobility_at_reference(mechanism) == 1
