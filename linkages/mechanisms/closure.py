@@ -29,6 +29,7 @@ from linkages.mechanisms.curvature import CurvatureBounds
 from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.slices_within_limits import slices_within_limits
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.turn_lattice import TurnLattice, turn_lattice
 from linkages.mechanisms.whole_turns import (
@@ -216,8 +217,8 @@ class MechanismClosure(NumericalProblem):
         return self.structure.reference
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """The closed configuration nearest to the reference, those that dyads build
-        where a joint stands at given values, what is reached from every turn of a joint
+        """The closed configuration nearest to the reference, those that dyads build, or
+        that a loop has, where a joint stands at given values, what is reached from every turn of a joint
         that advances, and from ``count`` random starts or, where these lead beyond
         given limits, from within."""
         drawn = self._drawn(rng, count)
@@ -227,8 +228,10 @@ class MechanismClosure(NumericalProblem):
         slices = slice_by_dyads(self.structure, rng)
         if slices is not None:
             starts.append(slices.points)
-        elif not lattice:
-            starts.append(starts_at_every_turn(self, turns, rng))
+        else:
+            starts.append(slices_within_limits(self.structure, rng))
+            if not lattice:
+                starts.append(starts_at_every_turn(self, turns, rng))
         points, gaps = self.project(np.concatenate(starts))
         solutions = points[is_start_solved(gaps)]
         solutions = np.concatenate([solutions, self._from_beyond_limits(drawn, rng)])

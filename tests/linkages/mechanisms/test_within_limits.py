@@ -11,6 +11,7 @@ from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
+from linkages.mechanisms.slices_within_limits import SLICES, slices_within_limits
 from linkages.mechanisms.within_limits import brought_within_limits
 
 FEW = SearchSettings(starts=60, prove=False, certify=False, near_motions=False)
@@ -108,3 +109,22 @@ def test_nothing_is_brought_from_nowhere():
     problem = MechanismClosure(line_symmetric_loop(R0=(1.0, 1.05)))
     rng = np.random.default_rng(0)
     assert brought_within_limits(problem, np.empty((0, 6)), rng).shape == (0, 6)
+
+
+@pytest.mark.parametrize(("low", "count"), [(-2.5, 2), (1.0 + 2 * np.pi, 2), (-1.0, 0)])
+def test_slices_of_a_joint_within_its_limits_are_complete(low, count):
+    mechanism = line_symmetric_loop(R0=(low, low + 0.05))
+    problem = MechanismClosure(mechanism)
+    points = slices_within_limits(problem.structure, np.random.default_rng(0))
+    assert len(points) == count * SLICES
+    assert np.all(problem.are_inside(points))
+    assert np.abs(problem.residuals(points)).max(initial=0.0) < 1e-12
+
+
+@pytest.mark.parametrize(
+    "mechanism", [line_symmetric_loop(), rccc((-1.0, 1.0))], ids=["free", "slides"]
+)
+def test_what_has_no_limits_or_slides_has_no_slices_within_limits(mechanism):
+    problem = MechanismClosure(mechanism)
+    points = slices_within_limits(problem.structure, np.random.default_rng(0))
+    assert points.shape == (0, problem.n)
