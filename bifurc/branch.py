@@ -93,6 +93,16 @@ class Branch:
         return float(self.breaks[-1])
 
     @property
+    def trusted_length(self) -> float:
+        """Arclength from where the first piece is trusted to where the last one is, which
+        may be beyond the ends of an open curve; 0 without pieces."""
+        if not len(self.pieces):
+            return 0.0
+        begin = self.centers[0] - self.radii[0]
+        end = self.centers[-1] + self.radii[-1]
+        return float(end - begin)
+
+    @property
     def closed(self) -> bool:
         """Whether the curve comes back to its start (modulo the periods)."""
         return self.outcome is Outcome.CLOSED

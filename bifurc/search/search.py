@@ -439,9 +439,20 @@ class Search:
             blur = blur_along(self.problem, branch) * self.problem.scale
             return is_plainly_closed_curve(blur, branch.length)
         unit = self.problem.scale
-        if branch.outcome is not Outcome.STALLED:
-            unit /= LEAVING_STUB
-        return not is_stub(branch.length, unit)
+        if branch.outcome is Outcome.STALLED:
+            return not is_stub(branch.length, unit)
+        unit /= LEAVING_STUB
+        if not is_stub(branch.length, unit):
+            return True
+        # what is short between two bounds is an arc of the longer curve beyond them
+        is_long = not is_stub(branch.trusted_length, unit)
+        return is_long and self._enters_bounds(branch)
+
+    def _enters_bounds(self, branch: Branch) -> bool:
+        """Whether a branch lies within the bounds by more than rounding somewhere, and
+        does not only touch them from outside."""
+        depths = -self.problem.excess(branch.sample(SAMPLES))
+        return float(depths.max()) > self.problem.slack
 
     # --- surfaces ---------------------------------------------------------------------
 

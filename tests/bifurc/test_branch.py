@@ -227,6 +227,24 @@ def test_an_open_curve_ends_on_the_bounds(parabola):
     assert parabola.arclengths(11)[-1] == parabola.length
 
 
+def test_a_curve_is_trusted_beyond_the_bounds_that_cut_it_off():
+    low, high = 0.3, 0.3001
+    circle = FunctionProblem(
+        lambda u: [u[0] ** 2 + u[1] ** 2 - 1], [(low, high), (0, 2)]
+    )
+    short = trace_branch(circle, np.array([low, np.sqrt(1 - low**2)]))
+    assert short.length == pytest.approx(np.arcsin(high) - np.arcsin(low), abs=1e-13)
+    assert short.trusted_length > 100 * short.length
+    assert short.reversed().trusted_length == pytest.approx(short.trusted_length)
+
+
+def test_what_no_piece_is_of_is_trusted_nowhere():
+    circle = FunctionProblem(lambda u: [u[0] ** 2 + u[1] ** 2 - 1], [(-2, 2)] * 2)
+    nothing = trace_branch(circle, np.zeros(2))
+    assert len(nothing.pieces) == 0
+    assert nothing.trusted_length == 0.0
+
+
 def test_an_open_curve_is_cut_off_at_its_ends(parabola):
     distance, s = parabola.nearest(np.array([[2.1, 4.3]]))
     assert s[0] in (0.0, parabola.length)

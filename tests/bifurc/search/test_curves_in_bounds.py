@@ -7,10 +7,17 @@ import numpy as np
 import pytest
 
 from bifurc import FunctionProblem, explore
+from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.diagrams.diagram import BranchingKind
+from bifurc.seeds import Seeds
 
 SEEDS = range(4)
+
+
+def constructed_seeds(points) -> Seeds:
+    points = np.array(points)
+    return Seeds(points, np.zeros(len(points), bool), np.empty(0), points[:0])
 
 
 def lengths(atlas):
@@ -139,3 +146,47 @@ def test_a_curve_that_bulges_out_of_its_bounds_is_two_forms(height: float) -> No
         inner = min(np.abs(form.branch.sample(2)[:, 0]).min() for form in atlas.forms)
         side = math.sqrt(height)
         assert inner == pytest.approx(side, abs=1e-12 / side)
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+@pytest.mark.parametrize("width", [1e-3, 1e-4, 1e-6, 1e-8])
+def test_an_arc_in_a_corner_of_its_bounds_is_a_form_however_short(
+    width: float, is_recorded: bool
+) -> None:
+    bounds = [(0, 0.6 + width), (0, 0.8 + width)]
+    circle = FunctionProblem(
+        lambda u: [u[0] ** 2 + u[1] ** 2 - 1], bounds, is_recorded=is_recorded
+    )
+    atlas = explore(circle, seeds=constructed_seeds([[0.6, 0.8]]))
+    [form] = atlas.forms
+    length = math.asin(0.8 + width) - math.acos(0.6 + width)
+    assert form.branch.length == pytest.approx(length, abs=1e-14)
+    assert form.branch.outcome is Outcome.LEFT_REGION
+    assert form.rank == 1
+    assert len(atlas.points) + len(atlas.rigid) == 0
+
+
+def test_two_short_arcs_next_to_each_other_are_two_forms() -> None:
+    def lines(u):
+        along = u[0] + u[1] - 1.4
+        return [along * (along - 5e-6)]
+
+    problem = FunctionProblem(lines, [(0, 0.6 + 1e-5), (0, 0.8 + 1e-5)])
+    expected = [1.5e-5 * math.sqrt(2), 2e-5 * math.sqrt(2)]
+    assert lengths(explore(problem)) == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("beyond", [0.0, 1e-12])
+def test_a_curve_that_touches_its_bounds_from_outside_is_no_form(beyond: float) -> None:
+    parabola = FunctionProblem(lambda u: [u[1] - u[0] ** 2], [(-2, 2), (-1, beyond)])
+    assert not explore(parabola, seeds=constructed_seeds([[0.0, 0.0]])).forms
+
+
+@pytest.mark.parametrize("beyond", [1e-10, 1e-7])
+def test_an_isolated_solution_next_to_its_bounds_is_no_form(beyond: float) -> None:
+    problem = FunctionProblem(
+        lambda u: [u[0] ** 2, u[1] - u[0]], [(-beyond, 2), (-beyond, 2)]
+    )
+    atlas = explore(problem, seeds=constructed_seeds([[0.0, 0.0]]))
+    assert not atlas.forms
+    assert len(atlas.rigid) + len(atlas.points) == 1
