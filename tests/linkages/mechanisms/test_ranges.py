@@ -90,6 +90,19 @@ def test_ranges_of_a_loop_do_not_hang_on_its_unit():
                 np.testing.assert_allclose(pair, other[label], atol=0.02)
 
 
+@pytest.mark.parametrize("width", [3e-4, 1e-5, 1e-8])
+def test_both_forms_of_a_four_bar_are_found_between_narrow_limits(width):
+    mechanism = four_bar((0.3, 0.3 + width))
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    assert len(atlas.forms) == 2
+    assert len(atlas.points) + len(atlas.rigid) == 0
+    assert atlas.completeness.level.value == "certified"
+    for form in atlas.forms:
+        ends = form.branch(np.array([0.0, form.branch.length]))
+        assert np.abs(ends[1] - ends[0]).max() > 0.99 * width
+        assert form.rank == 3
+
+
 def test_limits_beyond_a_turn_have_the_other_angles_on_both_sides():
     crank = Joint(
         "A",
