@@ -8,7 +8,7 @@ from bifurc.seeds import Level
 from bifurc.singular.point import Kind
 from bifurc.text_tables import count_of
 
-__all__ = ["verdict_of"]
+__all__ = ["has_only_open_points", "verdict_of"]
 
 
 def verdict_of(atlas: Atlas) -> str:
@@ -35,12 +35,26 @@ def verdict_of(atlas: Atlas) -> str:
     if isolated:
         count = count_of(isolated, "isolated solution")
         return f"There is no curve of solutions, but {count}."
+    if has_only_open_points(atlas):
+        count = count_of(len(atlas.points), "singular point")
+        return (
+            f"No curve was found, but {count}; whether one leaves there is not known."
+        )
     if closes_to_rounding(atlas.closure_gap):
         return "There is no solution within the bounds; starts reach some outside."
     return (
         "There is no solution within the bounds: the equations are missed by "
         f"{atlas.closure_gap:.3g} of their magnitude at the median start."
     )
+
+
+def has_only_open_points(atlas: Atlas) -> bool:
+    """Whether all that was found are singular points, none of which is isolated: what
+    leaves them is not known."""
+    found = len(atlas.forms) + len(atlas.surfaces) + len(atlas.near_motions)
+    found += len(atlas.rigid)
+    are_open = [point.kind is not Kind.ISOLATED for point in atlas.points]
+    return not found and bool(are_open) and all(are_open)
 
 
 def _counts(atlas: Atlas) -> str:

@@ -29,7 +29,11 @@ class ExitCode(IntEnum):
     NO_ROUTE = 4, "there is no route"
     NOT_IN_CATALOGUE = 5, "for identify: no linkage of the catalogue has this geometry"
     DOES_NOT_HOLD = 6, "for verify: something does not hold; for sweep: a member failed"
-    NOTHING_KNOWN = 7, "the budget of time ended before anything was known"
+    NOTHING_KNOWN = (
+        7,
+        "the budget of time ended before anything was known, or all that is known are "
+        "singular points",
+    )
     PARTS_MEET = 8, "for export: printed parts would meet on the way"
     INTERRUPTED = 130, "interrupted; what was found is shown and written"
 

@@ -14,6 +14,7 @@ from bifurc.decisions import closes_to_rounding
 from bifurc.search.completeness import IN_DOUBT
 from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
+from bifurc.systems.verdict import has_only_open_points
 from linkages.app.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
 from linkages.app.limits_text import kept_out_by_limits
@@ -44,6 +45,8 @@ def judge(atlas: Atlas) -> Verdict:
         return Verdict(_mobile(atlas) + _remark(atlas), ExitCode.DONE)
     if atlas.completeness.level is Level.OUT_OF_TIME:
         return Verdict(_nothing_known(atlas), ExitCode.NOTHING_KNOWN)
+    if has_only_open_points(atlas):
+        return Verdict(_closed_at_points(atlas), ExitCode.NOTHING_KNOWN)
     return Verdict(_immobile(atlas), ExitCode.DOES_NOT_MOVE)
 
 
@@ -108,6 +111,14 @@ def _nothing_known(atlas: Atlas) -> str:
     return (
         f"The search ended after {seconds:.4g} s, before it found a motion: whether "
         f"the linkage moves is not known ({assemblies} so far)."
+    )
+
+
+def _closed_at_points(atlas: Atlas) -> str:
+    points = count_of(len(atlas.points), "singular point")
+    return (
+        f"The linkage closes at {points}; whether it moves from there within its "
+        "limits is not known."
     )
 
 

@@ -121,12 +121,14 @@ def explore_system(system: EquationSystem, search: SearchOptions) -> Atlas:
 def exit_code_of(atlas: Atlas) -> ExitCode:
     """Whether there are curves, there are none, or nothing is known."""
     from bifurc.seeds import Level
+    from bifurc.systems.verdict import has_only_open_points
 
     if atlas.provenance.interrupted:
         return ExitCode.INTERRUPTED
     if atlas.forms or atlas.surfaces:
         return ExitCode.DONE
-    if atlas.completeness.level is Level.OUT_OF_TIME:
+    is_open = has_only_open_points(atlas)
+    if is_open or atlas.completeness.level is Level.OUT_OF_TIME:
         return ExitCode.NOTHING_KNOWN
     return ExitCode.DOES_NOT_MOVE
 

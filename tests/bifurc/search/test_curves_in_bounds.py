@@ -11,6 +11,7 @@ from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.diagrams.diagram import BranchingKind
 from bifurc.seeds import Seeds
+from bifurc.systems.verdict import verdict_of
 
 SEEDS = range(4)
 
@@ -190,3 +191,16 @@ def test_an_isolated_solution_next_to_its_bounds_is_no_form(beyond: float) -> No
     atlas = explore(problem, seeds=constructed_seeds([[0.0, 0.0]]))
     assert not atlas.forms
     assert len(atlas.rigid) + len(atlas.points) == 1
+
+
+def test_a_crossing_of_which_bounds_leave_almost_nothing_is_no_missing_solution() -> (
+    None
+):
+    def lines(u):
+        x, y = u[0] - 0.6, u[1] - 0.8
+        return [(x + y) * (x + 2 * y)]
+
+    problem = FunctionProblem(lines, [(0, 0.6 + 1e-8), (0, 0.8 + 1e-8)])
+    atlas = explore(problem, seeds=constructed_seeds([[0.6, 0.8]]))
+    assert len(atlas.points) == 1
+    assert "no solution" not in verdict_of(atlas)

@@ -87,6 +87,22 @@ def test_limits_and_ranges_of_angles_meet_up_to_whole_turns(limits, range_, meet
     assert limited.meets_limits is meets
 
 
+def test_a_singular_point_between_limits_next_to_it_is_no_open_loop():
+    places = [(0, 0, 0), (1, 0, 0), (3, 0, 0), (2, 0, 0)]
+    bodies = ["f", "a", "b", "c", "f"]
+    limits = [((-1e-6, 1e-6),), (None,), (None,), (None,)]
+    joints = [
+        Joint(
+            f"J{k}", "revolute", (bodies[k], bodies[k + 1]), place, UPWARDS, limits=own
+        )
+        for k, (place, own) in enumerate(zip(places, limits, strict=True))
+    ]
+    verdict = verdict_of(Mechanism(tuple(joints), "parallelogram, folded flat"))
+    assert "no real configuration" not in verdict.sentence
+    assert "closes at 1 singular point; whether it moves" in verdict.sentence
+    assert verdict.code is ExitCode.NOTHING_KNOWN
+
+
 @pytest.mark.parametrize("limits", [None, (-1.0, 1.0)])
 def test_what_never_closes_stays_open(limits):
     joints = list(slider_crank(height=2.5).joints)
