@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Translates", "translates_of", "with_translates"]
 
-SAMPLES = 64  # of a form, to see from where to where it goes
+SAMPLES = 200  # of a form, to see from where to where it goes
+SLACK = 0.01  # of the distance of samples, by which a curve may be off its arclength
 KEY = "translates"  # in the subject of an atlas
 
 
@@ -50,14 +51,18 @@ class Translates(NamedTuple):
         text = f"{differing} is listed once, nearest to the middle of the limits"
         if self.listed_forms > self.distinct_forms:
             listed = count_of(self.listed_forms, "form")
+            verb = "differs" if self.distinct_forms == 1 else "differ"
             text = (
-                f"{differing} is listed once, or where bifurcations lead there: of "
-                f"{listed} listed here {self.distinct_forms} differ otherwise"
+                f"{differing} is listed once, or again where bifurcations lead there or "
+                f"limits cut it off: of {listed} listed here {self.distinct_forms} "
+                f"{verb} otherwise"
             )
         if counts:
             fewest = "" if self.are_all else "at least "
             text += f"; with these turns what is listed stands for {fewest}"
             text += f"{' and '.join(counts)} within the limits"
+        if self.forms and not self.are_all:
+            text += ", whole or cut off by them"
         return text
 
 
@@ -141,7 +146,12 @@ def _count_of_class(counts: Sequence[Count]) -> Count:
 
 def _count_of_form(lattice: TurnLattice, branch: Branch) -> Count:
     """Of a form that goes to its limits it is not known which translates are itself."""
-    points = branch.sample(SAMPLES)
+    extremes = [branch.turning_points(int(k)) for k in lattice.columns]
+    places = np.unique(np.concatenate([branch.arclengths(SAMPLES), *extremes]))
+    widest = float(np.diff(places, append=branch.length).max())
+    points = branch(places)
+    # no unknown changes by more than the curve is long: the rounding of pieces aside
+    reach = (0.5 + SLACK) * widest
     if not branch.closed:
-        return lattice.fewest_translates(points)
-    return lattice.count_of_translates(points)
+        return lattice.fewest_translates(points, reach)
+    return lattice.count_of_closed(points, reach)

@@ -9,6 +9,7 @@ closed configuration to another one. These shifts form a lattice.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -27,6 +28,7 @@ MOST_SHIFTS = 200_000  # that are listed
 INDEPENDENT = 1e-9  # singular value, of the largest, from which slides are independent
 WITHIN = 1e-9  # by which a shift may pass a limit, rad or characteristic lengths
 ALIKE = 1e-6  # distances from the middle of the limits that differ by less are one
+SHIFTS_AT_ONCE = 100  # after which points are compared with the limits
 PASSED = 1e-6  # weight of an unknown along which a curve goes to its limits
 
 
@@ -157,23 +159,75 @@ class TurnLattice:
                 return shift
         return np.zeros(points.shape[1])
 
-    def fewest_translates(self, points: np.ndarray) -> Count:
-        """How many translates at least pass the limits, of a curve that goes to them
-        and of which ``points`` (k, n) are samples: those that differ in an unknown that
-        stays within them. They are all where no other shift leads within the limits."""
+    def count_of_closed(self, points: np.ndarray, reach: float) -> Count:
+        """How many parts of a closed curve and of its translates are within the limits:
+        as many as `translates` stay within them, and no fewer than show of those that
+        pass them.
+
+        Of the curve ``points`` (k, n) are given in order, with those where an unknown
+        is least or largest; all of it is no farther than ``reach`` from some of them.
+        They are all where no translate passes the limits.
+        """
+        whole = self.translates(points)
+        partial = self._partial(points)
+        shifts = partial.vectors
+        number = len(whole.vectors)
+        are_all = whole.are_all and partial.are_all
+        for excess in self._excesses(points, shifts[~self._are_whole(points, shifts)]):
+            number += _count_of_parts(excess <= WITHIN)
+            are_all = are_all and float(excess.min()) > reach
+        return Count(number, are_all)
+
+    def fewest_translates(self, points: np.ndarray, reach: float) -> Count:
+        """How many translates at least pass the limits, of a curve that goes to them,
+        with ``points`` (k, n) and ``reach`` as in `count_of_closed`: those that differ
+        in an unknown that stays within them. They are all where no other shift leads
+        any part of the curve within the limits."""
         is_passed = self._is_passed(points)
         shifts = self._overlapping(points, is_passed)
         rest = np.round(shifts.vectors[:, ~is_passed] / ALIKE)
         places: set[bytes] = set()
-        is_another = False
         for shift, place in zip(shifts.vectors, rest, strict=True):
             key = place.tobytes()
-            if key in places and is_another:
-                continue
-            if self._is_partly_inside(points + shift):
+            if key not in places and self._is_partly_inside(points + shift):
                 places.add(key)
-                is_another = is_another or bool(np.any(shift))
-        return Count(len(places), shifts.are_all and not is_another)
+        partial = self._partial(points)
+        lengths = np.linalg.norm(partial.vectors, axis=1)
+        # short ones first: they are most likely to lead within the limits
+        others = partial.vectors[np.argsort(lengths)][np.sort(lengths) > 0.0]
+        excesses = self._excesses(points, others)
+        is_another = any(float(excess.min()) <= reach for excess in excesses)
+        are_all = shifts.are_all and partial.are_all and not is_another
+        return Count(len(places), are_all)
+
+    def _partial(self, points: np.ndarray) -> Shifts:
+        """The shifts after which, of each unknown, some of the range that it has in
+        ``points`` (k, n) is within its limits."""
+        low, high = self.limits.T
+        least = low - points.max(axis=0) + 2.0 * WITHIN
+        most = high - points.min(axis=0) - 2.0 * WITHIN
+        return self.shifts_between(least, most)
+
+    def _are_whole(self, points: np.ndarray, shifts: np.ndarray) -> np.ndarray:
+        """Whether all ``points`` (k, n) are within the limits, after each of the
+        ``shifts`` (j, n)."""
+        columns = self.columns
+        low, high = self.limits[columns].T
+        moved = shifts[:, columns]
+        is_above = moved >= low - points[:, columns].min(axis=0) - WITHIN
+        is_below = moved <= high - points[:, columns].max(axis=0) + WITHIN
+        are_whole: np.ndarray = np.all(is_above & is_below, axis=1)
+        return are_whole
+
+    def _excesses(self, points: np.ndarray, shifts: np.ndarray) -> Iterator[np.ndarray]:
+        """How far ``points`` (k, n) are beyond the limits after the ``shifts`` (j, n),
+        less than 0 within them: arrays (i, k) for some shifts after others."""
+        low, high = self.limits[self.columns].T
+        places = points[:, self.columns]
+        for begin in range(0, len(shifts), SHIFTS_AT_ONCE):
+            own = shifts[begin : begin + SHIFTS_AT_ONCE, self.columns]
+            moved = places + own[:, None, :]
+            yield np.maximum(low - moved, moved - high).max(axis=2)
 
     def _is_passed(self, points: np.ndarray) -> np.ndarray:
         """Whether a curve with samples (k, n) goes to limits of an unknown (n,)."""
@@ -203,6 +257,12 @@ class TurnLattice:
         """Points (k, n), each as near as can be to the middle of the limits."""
         shifted = [point + self.home(point[None]) for point in points]
         return np.array(shifted).reshape(points.shape)
+
+
+def _count_of_parts(is_inside: np.ndarray) -> int:
+    """How many runs of points are inside, of closed curves, the rows of (j, k)."""
+    is_begin = is_inside & ~np.roll(is_inside, 1, axis=1)
+    return int(np.count_nonzero(is_begin))
 
 
 def _nearest_first(distances: np.ndarray, places: np.ndarray) -> np.ndarray:
