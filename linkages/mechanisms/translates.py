@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Translates", "translates_of", "with_translates"]
 
-SAMPLES = 200  # of a form, to see from where to where it goes
+# of a form, to see from where to where it goes: fewest, most, and how far apart between
+SAMPLES, MOST_SAMPLES, APART = 200, 1000, 0.5
 SLACK = 0.01  # of the distance of samples, by which a curve may be off its arclength
 KEY = "translates"  # in the subject of an atlas
 
@@ -147,7 +148,8 @@ def _count_of_class(counts: Sequence[Count]) -> Count:
 def _count_of_form(lattice: TurnLattice, branch: Branch) -> Count:
     """Of a form that goes to its limits it is not known which translates are itself."""
     extremes = [branch.turning_points(int(k)) for k in lattice.columns]
-    places = np.unique(np.concatenate([branch.arclengths(SAMPLES), *extremes]))
+    count = int(np.clip(branch.length / APART, SAMPLES, MOST_SAMPLES))
+    places = np.unique(np.concatenate([branch.arclengths(count), *extremes]))
     widest = float(np.diff(places, append=branch.length).max())
     points = branch(places)
     # no unknown changes by more than the curve is long: the rounding of pieces aside

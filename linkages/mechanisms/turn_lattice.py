@@ -181,24 +181,49 @@ class TurnLattice:
     def fewest_translates(self, points: np.ndarray, reach: float) -> Count:
         """How many translates at least pass the limits, of a curve that goes to them,
         with ``points`` (k, n) and ``reach`` as in `count_of_closed`: those that differ
-        in an unknown that stays within them. They are all where no other shift leads
-        any part of the curve within the limits."""
+        in an unknown that stays within them, or, of a curve that a shift brings onto
+        itself, by more than this shift. They are all where no other shift leads any
+        part of the curve within the limits."""
         is_passed = self._is_passed(points)
         shifts = self._overlapping(points, is_passed)
-        rest = np.round(shifts.vectors[:, ~is_passed] / ALIKE)
+        rest = shifts.vectors[:, ~is_passed]
+        own = self._shift_onto_itself(points, reach)
+        if own is not None:
+            times = np.floor(shifts.vectors @ own / (own @ own) + ALIKE)
+            rest = shifts.vectors - times[:, None] * own
         places: set[bytes] = set()
-        for shift, place in zip(shifts.vectors, rest, strict=True):
+        # with 0 added no zero has a sign
+        keys = np.round(rest / ALIKE) + 0.0
+        for shift, place in zip(shifts.vectors, keys, strict=True):
             key = place.tobytes()
             if key not in places and self._is_partly_inside(points + shift):
                 places.add(key)
         partial = self._partial(points)
-        lengths = np.linalg.norm(partial.vectors, axis=1)
-        # short ones first: they are most likely to lead within the limits
-        others = partial.vectors[np.argsort(lengths)][np.sort(lengths) > 0.0]
-        excesses = self._excesses(points, others)
+        excesses = self._excesses(points, _shortest_first(partial.vectors))
         is_another = any(float(excess.min()) <= reach for excess in excesses)
         are_all = shifts.are_all and partial.are_all and not is_another
         return Count(len(places), are_all)
+
+    def _shift_onto_itself(self, points: np.ndarray, reach: float) -> np.ndarray | None:
+        """The shortest shift (n,) that brings a curve with ``points`` (k, n), no place
+        of which is farther than ``reach`` from some of them, onto itself as far as it
+        stays within the limits; None where there is none."""
+        columns = self.columns
+        extent = points.max(axis=0) - points.min(axis=0)
+        shifts = self.shifts_between(-extent, extent).vectors
+        for shift in _shortest_first(shifts):
+            moved = points + shift
+            inside = moved[self._are_inside(moved)]
+            # one of them tells most shifts apart
+            for few in (inside[:1], inside):
+                gaps = few[:, None, columns] - points[None, :, columns]
+                distances = np.linalg.norm(gaps, axis=2).min(axis=1, initial=np.inf)
+                if not len(few) or distances.max() > reach:
+                    break
+            else:
+                own: np.ndarray = shift
+                return own
+        return None
 
     def _partial(self, points: np.ndarray) -> Shifts:
         """The shifts after which, of each unknown, some of the range that it has in
@@ -248,15 +273,28 @@ class TurnLattice:
 
     def _is_partly_inside(self, points: np.ndarray) -> bool:
         """Whether any of the points (k, n) is within the limits."""
+        return bool(np.any(self._are_inside(points)))
+
+    def _are_inside(self, points: np.ndarray) -> np.ndarray:
+        """Whether points (k, n) are within the limits."""
         low, high = self.limits[self.columns].T
         moved = points[:, self.columns]
         is_inside = (moved >= low - WITHIN) & (moved <= high + WITHIN)
-        return bool(np.any(np.all(is_inside, axis=1)))
+        are_inside: np.ndarray = np.all(is_inside, axis=1)
+        return are_inside
 
     def homes(self, points: np.ndarray) -> np.ndarray:
         """Points (k, n), each as near as can be to the middle of the limits."""
         shifted = [point + self.home(point[None]) for point in points]
         return np.array(shifted).reshape(points.shape)
+
+
+def _shortest_first(shifts: np.ndarray) -> np.ndarray:
+    """The shifts (j, n) by their lengths, without that by nothing."""
+    lengths = np.linalg.norm(shifts, axis=1)
+    order = np.argsort(lengths, kind="stable")
+    moving: np.ndarray = shifts[order[lengths[order] > 0.0]]
+    return moving
 
 
 def _count_of_parts(is_inside: np.ndarray) -> int:

@@ -139,3 +139,17 @@ def test_a_curve_across_the_limits_may_be_cut_off_beside_it(high, are_all):
     wave = np.stack([along, np.sin(along)], axis=1)
     up = TurnLattice(np.array([[0.0, 6.0]]), (1,), limits)
     assert up.fewest_translates(wave, 0.05) == Count(1, are_all)
+
+
+def test_a_curve_that_whole_turns_bring_onto_itself_is_counted_once():
+    # two joints that turn fully and opposite: each turn of both leads along the curve
+    limits = np.array([[-10.0, 11.0], [-30.0, 30.0]])
+    along = np.linspace(-10.0, 11.0, 201)
+    line = np.stack([along, 0.3 * np.sin(along) - along], axis=1)
+    turns = 2 * np.pi * np.array([[1.0, -1.0], [0.0, 1.0]])
+    both = TurnLattice(turns[:1], (0,), limits)
+    each = TurnLattice(turns, (0, 1), limits)
+    assert both.fewest_translates(line, 0.1).number == 1
+    # those the second joint of which stays within its limits all along, a turn apart:
+    # no more than 13 lines of slope -1 cross the limits so
+    assert 7 <= each.fewest_translates(line, 0.1).number <= 13
