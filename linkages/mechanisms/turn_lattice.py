@@ -29,7 +29,6 @@ INDEPENDENT = 1e-9  # singular value, of the largest, from which slides are inde
 WITHIN = 1e-9  # by which a shift may pass a limit, rad or characteristic lengths
 ALIKE = 1e-6  # distances from the middle of the limits that differ by less are one
 SHIFTS_AT_ONCE = 100  # after which points are compared with the limits
-PASSED = 1e-6  # weight of an unknown along which a curve goes to its limits
 
 
 class Shifts(NamedTuple):
@@ -148,12 +147,14 @@ class TurnLattice:
         columns = self.columns
         is_passed = self._is_passed(points)
         shifts = self._overlapping(points, is_passed).vectors
-        weights = np.where(is_passed, PASSED, 1.0)[columns]
         center = self.limits[columns].mean(axis=1)
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
         middles = (middle + shifts)[:, columns]
-        distances = np.linalg.norm(weights * (middles - center), axis=1)
-        for k in _nearest_first(distances, middles):
+        beside = middles - center
+        passed = is_passed[columns]
+        distances = np.linalg.norm(beside[:, ~passed], axis=1)
+        passed_distances = np.linalg.norm(beside[:, passed], axis=1)
+        for k in _nearest_first([distances, passed_distances], middles):
             if self._is_partly_inside(points + shifts[k]):
                 shift: np.ndarray = shifts[k]
                 return shift
@@ -303,11 +304,12 @@ def _count_of_parts(is_inside: np.ndarray) -> int:
     return int(np.count_nonzero(is_begin))
 
 
-def _nearest_first(distances: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """The order of places (k, c) by their distances (k,), and of those as far away by
-    their coordinates, so that it is that of the places themselves."""
-    digits = [np.round(place / ALIKE) for place in -places.T[::-1]]
-    order: np.ndarray = np.lexsort([*digits, np.round(distances / ALIKE)])
+def _nearest_first(distances: list[np.ndarray], places: np.ndarray) -> np.ndarray:
+    """The order of places (k, c) by their ``distances`` (k,), the first ones before the
+    next, and of those as far away by their coordinates, so that it is that of the
+    places themselves."""
+    digits = [*-places.T[::-1], *distances[::-1]]
+    order: np.ndarray = np.lexsort([np.round(key / ALIKE) for key in digits])
     return order
 
 

@@ -153,3 +153,13 @@ def test_a_curve_that_whole_turns_bring_onto_itself_is_counted_once():
     # those the second joint of which stays within its limits all along, a turn apart:
     # no more than 13 lines of slope -1 cross the limits so
     assert 7 <= each.fewest_translates(line, 0.1).number <= 13
+
+
+@pytest.mark.parametrize("turns", range(-2, 3))
+def test_a_curve_of_joints_that_turn_fully_is_moved_to_the_middle(turns):
+    limits = np.array([[-10.0, 11.0], [-30.0, 30.0]])
+    each = TurnLattice(2 * np.pi * np.eye(2), (0, 1), limits)
+    along = np.linspace(-10.0, 11.0, 201)
+    line = np.stack([along, 2 * np.pi * turns + 0.3 - along], axis=1)
+    # the second joint turns back, the first one still crosses its limits
+    assert each.home(line) == pytest.approx([0.0, -2 * np.pi * turns])
