@@ -621,6 +621,17 @@ is_hidden_by = Decision(
     "along a contact of high order doubles see singular points up to a few errors apart",
     third_answer="others stay two, with the half-branches that second order gives",
 )
+solves_exactly = Decision(
+    "solution of exact equations",
+    "what is left of F at a singular point in many digits is rounding",
+    "what no move removes of F, over the magnitude and the scale, over the sum of what "
+    "rounded coefficients leave, the square of the error and 1e-26",
+    100.0,
+    "where there is such a point F is of the second order of the error; where branches "
+    "pass each other by 1e-12 of the scale it is 1e-24",
+    third_answer="what misses by more, and by no more than doubles see, is a point in "
+    "doubt; beyond that there is none, and a near miss at most",
+)
 is_precise_enough = Decision(
     "located to rounding",
     "doubles know the place of a singular point, which need not be found in more digits",

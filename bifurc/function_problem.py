@@ -18,6 +18,7 @@ from bifurc.decisions import (
     is_solved_from_afar,
     is_whole_circle,
 )
+from bifurc.equations.constants import rounding_of_constants
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
 from bifurc.equations.tape import Operation, Tape
@@ -364,6 +365,14 @@ class FunctionProblem(NumericalProblem):
             return values
 
         return residual
+
+    def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
+        """How far off F (m,) at a point (n,) is where its coefficients are rounded to
+        doubles; 0 where it is not recorded."""
+        tape = self.recording.tape
+        if tape is None:
+            return super().coefficient_rounding(point)
+        return rounding_of_constants(tape, point)
 
     def continuous_tape(self) -> _core.Tape | None:
         """The recorded equations in compiled form; None where they are not recorded, or

@@ -370,6 +370,12 @@ class Problem(ABC):
         is set when it is called; None where F is known in doubles only."""
         return None
 
+    def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
+        """How far off F (m,) at a point (n,) is where the numbers in it are rounded:
+        by the rounding of the data, unless a class knows better."""
+        rows = len(self.residuals(point[None])[0])
+        return np.full(rows, self.data_rounding * self.magnitude * self.scale)
+
     def curvature_bound(self) -> float | None:
         """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None
         where none is known.

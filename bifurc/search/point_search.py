@@ -47,6 +47,7 @@ class PointSearch:
         self.problem = run.problem
         self.findings = run.findings
         self._germs_missed = 0
+        self._settled: list[tuple[LocatedPoint, LocatedPoint | None]] = []
 
     def near(
         self, near: np.ndarray, nullity: int, reach: float, misclosure: float = 0.0
@@ -67,7 +68,9 @@ class PointSearch:
             if known is not None and known.point.dimension == 1:
                 return known
             if not is_on_surface(problem, located.u):
-                return self.sight(located)
+                sighting = self._sight_exactly(located, misclosure)
+                if sighting is not None:
+                    return sighting
         hidden = self.findings.point_hidden_at(near)
         return self._by_germ(near, reach) if hidden is None else hidden
 
@@ -111,16 +114,31 @@ class PointSearch:
             return None  # beside two that rounding tells apart
         if not is_double_assembly(located.error, self.problem.scale):
             return None  # more than two
-        sighting = self.sight(located)
-        return sighting.number if sighting.point.kind is Kind.ISOLATED else None
+        sighting = self._sight_exactly(located)
+        if sighting is None or sighting.point.kind is not Kind.ISOLATED:
+            return None
+        return sighting.number
 
     def sight(self, located: LocatedPoint) -> PointSighting:
         """The known singular point that a located one is, or a new one, classified."""
+        sighting = self._sight_exactly(located)
+        if sighting is None:
+            return self._record(located._replace(is_confirmed=False), None)
+        return sighting
+
+    def _sight_exactly(
+        self, located: LocatedPoint, misclosure: float = 0.0
+    ) -> PointSighting | None:
+        """The known singular point that a located one is, or a new one, classified;
+        None where the exact equations have none there, beside curves with a
+        ``misclosure``."""
         known = self._known(located)
         if known is not None:
             return known
-        located, germ = self._in_more_digits(located)
-        return self._record(located, germ)
+        if closes_to_rounding(misclosure):
+            misclosure = 0.0
+        exactly, germ = self._in_more_digits(located, misclosure)
+        return None if exactly is None else self._record(exactly, germ)
 
     def _record(self, located: LocatedPoint, germ: Germ | None) -> PointSighting:
         """The known singular point that a located one is, or a new one, classified; its
@@ -139,22 +157,55 @@ class PointSearch:
         known = self.findings.point_at(located.u, located.error)
         if known is not None or is_precise_enough(located.error, self.problem.scale):
             return known
-        return self.findings.point_hidden_at(located.u)
+        hidden = self.findings.point_hidden_at(located.u)
+        if hidden is None or self._is_apart(located):
+            return None
+        return hidden
+
+    def _is_apart(self, located: LocatedPoint) -> bool:
+        """Whether more digits show a located point to be none of those known, though
+        doubles lose there the branches of one."""
+        if not self.problem.is_exact or self.run.is_over:
+            return False
+        exactly = self._settle(located, 0.0)
+        if exactly is None or not exactly.is_confirmed:
+            return False
+        return self.findings.point_at(exactly.u, exactly.error) is None
+
+    def _settle(self, located: LocatedPoint, misclosure: float) -> LocatedPoint | None:
+        """What `precisely_located` says of a located point, or said of one that is the
+        same as far as its error tells."""
+        from bifurc.singular.precise_location import precisely_located
+
+        for before, exactly in self._settled:
+            apart = np.linalg.norm(self.problem.difference(before.u, located.u))
+            same_null_space = before.null_space.shape == located.null_space.shape
+            if same_null_space and apart < min(before.error, located.error):
+                return exactly
+        exactly = precisely_located(self.problem, located, misclosure)
+        self._settled.append((located, exactly))
+        return exactly
 
     def _in_more_digits(
-        self, located: LocatedPoint
-    ) -> tuple[LocatedPoint, Germ | None]:
-        """The located point, in more digits where these tell more, and the germ of the
-        curves there, where the exact equations give it."""
-        is_open = not is_precise_enough(located.error, self.problem.scale)
-        if not (is_open and self.problem.is_exact):
+        self, located: LocatedPoint, misclosure: float
+    ) -> tuple[LocatedPoint | None, Germ | None]:
+        """The located point, in more digits where these tell more, None where they tell
+        that there is none; and the germ of the curves there, where the exact equations
+        give it."""
+        if not self.problem.is_exact:
             return located, None
         # mpmath takes longer to import than an ordinary search
+        from bifurc.singular.precise_location import held_to_exact_equations
+
+        if is_precise_enough(located.error, self.problem.scale):
+            return held_to_exact_equations(self.problem, located, misclosure), None
         from bifurc.singular.germ import germ_at, placed_at
-        from bifurc.singular.precise_location import precisely_located
 
         germ = germ_at(self.problem, located)
         if germ is None and not self.run.is_over:
-            located = precisely_located(self.problem, located)
+            exactly = self._settle(located, misclosure)
+            if exactly is None:
+                return None, None
+            located = exactly
             germ = germ_at(self.problem, located)
         return (located if germ is None else placed_at(located, germ)), germ

@@ -241,6 +241,15 @@ class UnitProblem(FunctionProblem):
 
         return residual
 
+    def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
+        """How far off F (m,) at a point (n,) is, from that of the user's problem."""
+        if self.simplified is not None:
+            return super().coefficient_rounding(point)
+        units = self.own_units
+        own = self.problem.coefficient_rounding(units.outwards(point))
+        rounding: np.ndarray = units.weights * own
+        return rounding
+
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
         if not _has_own(self.problem, "hessian"):

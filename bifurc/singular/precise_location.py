@@ -11,11 +11,13 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 
+from bifurc.curves.misclosure import misclosure_at
+from bifurc.decisions import closes_to_rounding, solves_exactly
 from bifurc.problem import Problem
 from bifurc.singular.confirm import Differences, augmented_system, least_squares
 from bifurc.singular.locate import LocatedPoint
 
-__all__ = ["precisely_located"]
+__all__ = ["held_to_exact_equations", "precisely_located"]
 
 DIGITS = 40  # that are worked to; the derivatives are differences, at three times these
 ITERATIONS = 120
@@ -25,11 +27,45 @@ SLOWEST = 0.95  # rate at which they shrink, at most, where the rest of them is 
 FARTHEST = 4.0  # errors of the point in doubles, and at least this share of the scale:
 NEAREST = 0.02  # no farther away is the point
 ENOUGH = 1e-16  # length of the last step over the scale
+SETTLED = 1e-14  # error of the place then, over the scale
+LEAST = 1e-26  # of F, over the magnitude and the scale, that counts as anything
 
 
-def precisely_located(problem: Problem, located: LocatedPoint) -> LocatedPoint:
-    """A located point as the exact equations have it, where they are known and a
-    singular point of this nullity is there.
+def held_to_exact_equations(
+    problem: Problem, located: LocatedPoint, misclosure: float = 0.0
+) -> LocatedPoint | None:
+    """A located point where the exact equations have a solution of its rank, as far as
+    its error and their rounded coefficients tell; None where they have none. On curves
+    with a ``misclosure`` F = 0 to within that.
+
+    The equations for a singular point and its null space are more than their unknowns:
+    an iteration may settle where they do not hold. The point is not confirmed where
+    they fail by no more than doubles see.
+    """
+    if problem.precise_residual() is None:
+        return located
+    rank = problem.n - located.null_space.shape[1]
+    left = misclosure_at(problem, located.u, rank)
+    try:
+        rounding = problem.coefficient_rounding(located.u)
+    except (ZeroDivisionError, ValueError, OverflowError):
+        return located  # it is at a rim of where the function is defined
+    allowed = float(np.linalg.norm(rounding)) / problem.magnitude + misclosure
+    error = located.error / problem.scale
+    unit = allowed / problem.scale + error**2 + LEAST
+    if solves_exactly(left / problem.scale, unit):
+        return located
+    if closes_to_rounding(left):
+        return located._replace(is_confirmed=False)
+    return None
+
+
+def precisely_located(
+    problem: Problem, located: LocatedPoint, misclosure: float = 0.0
+) -> LocatedPoint | None:
+    """A located point as the exact equations have it, where they are known; None where
+    they have no singular point of this nullity at the place to which the search for
+    it leads.
 
     The error stays what curves in doubles may pass it by, and is at least that by which
     it was amiss. Where the iteration does not settle the point is not confirmed.
@@ -50,8 +86,12 @@ def precisely_located(problem: Problem, located: LocatedPoint) -> LocatedPoint:
         return located._replace(is_confirmed=False)
     u, vectors = end
     null_space, _ = np.linalg.qr(vectors)
+    settled = LocatedPoint(u, null_space, SETTLED * problem.scale)
+    held = held_to_exact_equations(problem, settled, misclosure)
+    if held is None:
+        return None
     moved = float(np.linalg.norm(u - located.u))
-    return LocatedPoint(u, null_space, max(located.error, AMISS * moved))
+    return held._replace(error=max(located.error, AMISS * moved))
 
 
 def _iterate(
