@@ -421,10 +421,12 @@ class Findings:
     def merge_points(self, pairs: Sequence[tuple[int, int]]) -> None:
         """Take each of the ``pairs`` of singular points, by their numbers, for one: that
         which is confirmed, or else which doubles know less well, for they say so only
-        where they see it."""
+        where they see it. Two of which germs are known are two."""
         successors: dict[int, int] = {}
         for one, other in pairs:
             if one in successors or other in successors:
+                continue
+            if self._has_germ(one) and self._has_germ(other):
                 continue
             less, more = sorted((one, other), key=self._standing)
             successors[less] = more
@@ -446,6 +448,12 @@ class Findings:
                 number = successors[number]
             place = renumbered[number]
             self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, place)
+
+    def _has_germ(self, number: int) -> bool:
+        """Whether a singular point, given by its number, is where a germ is: the exact
+        equations tell it from others."""
+        u = self.points[number].u
+        return any(np.array_equal(germ.u, u) for germ in self.germs)
 
     def _standing(self, number: int) -> tuple[bool, float]:
         """What is known of a singular point; that which is more stays."""

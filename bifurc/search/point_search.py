@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -35,6 +35,13 @@ BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may
 MOST_MISSED = 6  # places at which a germ is looked for, and is not there
 
 
+class _Settled(NamedTuple):
+    """A ``located`` point, and where it is ``exactly``, None where there is none."""
+
+    located: LocatedPoint
+    exactly: LocatedPoint | None
+
+
 class PointSearch:
     """The search for singular points in a ``run``.
 
@@ -47,7 +54,7 @@ class PointSearch:
         self.problem = run.problem
         self.findings = run.findings
         self._germs_missed = 0
-        self._settled: list[tuple[LocatedPoint, LocatedPoint | None]] = []
+        self._settled: list[_Settled] = []
 
     def near(
         self, near: np.ndarray, nullity: int, reach: float, misclosure: float = 0.0
@@ -55,6 +62,7 @@ class PointSearch:
         """The singular point of a curve at less than ``reach`` scales from a solution
         ``near`` (n,); ``nullity`` is the most likely one."""
         problem = self.problem
+        is_refuted = False
         nullities = {max(nullity, 2), 2, 3}
         for k in sorted(nullities, key=lambda k: abs(k - nullity)):
             if k > problem.n:
@@ -71,8 +79,11 @@ class PointSearch:
                 sighting = self._sight_exactly(located, misclosure)
                 if sighting is not None:
                     return sighting
+                is_refuted = True
         hidden = self.findings.point_hidden_at(near)
-        return self._by_germ(near, reach) if hidden is None else hidden
+        if hidden is not None or is_refuted:
+            return hidden
+        return self._by_germ(near, reach)
 
     def _by_germ(self, near: np.ndarray, reach: float) -> PointSighting | None:
         """The singular point at less than ``reach`` scales from a place ``near`` (n,) at
@@ -173,18 +184,26 @@ class PointSearch:
         return self.findings.point_at(exactly.u, exactly.error) is None
 
     def _settle(self, located: LocatedPoint, misclosure: float) -> LocatedPoint | None:
-        """What `precisely_located` says of a located point, or said of one that is the
-        same as far as its error tells."""
+        """What `precisely_located` says of a located point, or said before."""
+        before = self._settled_before(located)
+        if before is not None:
+            return before.exactly
         from bifurc.singular.precise_location import precisely_located
 
-        for before, exactly in self._settled:
-            apart = np.linalg.norm(self.problem.difference(before.u, located.u))
-            same_null_space = before.null_space.shape == located.null_space.shape
-            if same_null_space and apart < min(before.error, located.error):
-                return exactly
         exactly = precisely_located(self.problem, located, misclosure)
-        self._settled.append((located, exactly))
+        self._settled.append(_Settled(located, exactly))
         return exactly
+
+    def _settled_before(self, located: LocatedPoint) -> _Settled | None:
+        """What is known of a located point that is this one, as far as its error
+        tells; None where there is none."""
+        for settled in self._settled:
+            before = settled.located
+            is_same_rank = before.null_space.shape == located.null_space.shape
+            apart = np.linalg.norm(self.problem.difference(before.u, located.u))
+            if is_same_rank and apart < min(before.error, located.error):
+                return settled
+        return None
 
     def _in_more_digits(
         self, located: LocatedPoint, misclosure: float
@@ -201,6 +220,9 @@ class PointSearch:
             return held_to_exact_equations(self.problem, located, misclosure), None
         from bifurc.singular.germ import germ_at, placed_at
 
+        before = self._settled_before(located)
+        if before is not None and before.exactly is None:
+            return None, None
         germ = germ_at(self.problem, located)
         if germ is None and not self.run.is_over:
             exactly = self._settle(located, misclosure)
