@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 
 from bifurc.curves.misclosure import misclosure_at
-from bifurc.decisions import closes_to_rounding, solves_exactly
+from bifurc.decisions import misses_by_rounding, solves_exactly
 from bifurc.problem import Problem
 from bifurc.singular.confirm import Differences, augmented_system, least_squares
 from bifurc.singular.locate import LocatedPoint
@@ -55,7 +55,7 @@ def held_to_exact_equations(
     unit = allowed / problem.scale + error**2 + LEAST
     if solves_exactly(left / problem.scale, unit):
         return located
-    if closes_to_rounding(left):
+    if misses_by_rounding(left):
         return located._replace(is_confirmed=False)
     return None
 
