@@ -187,6 +187,7 @@ class Tape:
         tuple[np.ndarray, np.ndarray],
         tuple[np.ndarray, np.ndarray],
         tuple[np.ndarray, np.ndarray],
+        tuple[np.ndarray, np.ndarray],
         np.ndarray,
         np.ndarray,
     ]: ...

@@ -94,8 +94,8 @@ class Branch:
 
     @property
     def trusted_length(self) -> float:
-        """Arclength from where the first piece is trusted to where the last one is, which
-        may be beyond the ends of an open curve; 0 without pieces."""
+        """Arclength from where the first piece is trusted to where the last one is,
+        which may be beyond the ends of an open curve; 0 without pieces."""
         if not len(self.pieces):
             return 0.0
         begin = self.centers[0] - self.radii[0]

@@ -24,8 +24,9 @@ class HeldInterrupt:
     """Notes the first Ctrl-C in a ``with`` block, for `check` or the end of the block
     to raise.
 
-    From then on it ``was_pressed``. A second one acts at once. Blocks may be nested. Where Ctrl-C is not Python's
-    business (in a thread, or with a handler of the user's), nothing is changed.
+    From then on it ``was_pressed``. A second one acts at once. Blocks may be nested.
+    Where Ctrl-C is not Python's business (in a thread, or with a handler of the
+    user's), nothing is changed.
     """
 
     def __init__(self) -> None:

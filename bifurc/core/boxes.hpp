@@ -30,6 +30,7 @@ enum class Content { nothing, arc, open };
 // The single arc in a box.
 struct BoxedArc {
     IntervalBox box;
+    IntervalBox room;             // in which it stays
     Matrix<double> points;        // (3, n) of the arc at `boxes::places` of the parameter, to rounding
     std::vector<char> is_steady;  // whether an unknown rises or falls all along it (n)
 };
@@ -90,7 +91,7 @@ public:
 
     // Of a box that has a single arc.
     BoxedArc arc() {
-        BoxedArc arc{box_, Matrix<double>(boxes::places.size(), n_), std::vector<char>(n_, true)};
+        BoxedArc arc{box_, wide_, Matrix<double>(boxes::places.size(), n_), std::vector<char>(n_, true)};
         for (Index i = 0; i < arc.points.rows(); ++i) follow(boxes::places[i], arc.points.row(i));
         frame_.find_rates(rates_);
         for (Index i = 0; i + 1 < n_; ++i) arc.is_steady[frame_.pivot(i)] = !rates_[i].contains(0.0);

@@ -42,7 +42,7 @@ inline void check_division(const Tape& tape, const Table& centers, const Doubles
 }
 
 // (count, (low, high) of boxes that were not looked at, (low, high) of small ones, (low, high) of those with an arc,
-// points (a, 3, n), is_steady (a, n)) of boxes (k, n): `divide`.
+// (low, high) of where the arcs stay, points (a, 3, n), is_steady (a, n)) of boxes (k, n): `divide`.
 inline nb::tuple divide_boxes(const Tape& tape, const Table& low, const Table& high, const Table& centers,
                               const Doubles& radii, const Doubles& periods, double smallest, Index most) {
     const Index n = tape.unknowns();
@@ -61,17 +61,18 @@ inline nb::tuple divide_boxes(const Tape& tape, const Table& low, const Table& h
     }
     const auto count = static_cast<Index>(division.arcs.size());
     const Index places = boxes::places.size();
-    std::vector<IntervalBox> with_arcs;
+    std::vector<IntervalBox> with_arcs, rooms;
     numpy::Array<double> points({count, places, n});
     numpy::Array<bool> is_steady({count, n});
     for (Index row = 0; row < count; ++row) {
         const BoxedArc& arc = division.arcs[row];
         with_arcs.push_back(arc.box);
+        rooms.push_back(arc.room);
         std::copy_n(arc.points.view().data, places * n, points.entry(row).data);
         std::copy(arc.is_steady.begin(), arc.is_steady.end(), is_steady.matrix().row(row).begin());
     }
     return nb::make_tuple(division.count, ends_of_boxes(division.waiting, n), ends_of_boxes(division.small, n),
-                          ends_of_boxes(with_arcs, n), points.release(), is_steady.release());
+                          ends_of_boxes(with_arcs, n), ends_of_boxes(rooms, n), points.release(), is_steady.release());
 }
 
 // (course, s): `course_of`.

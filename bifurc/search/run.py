@@ -16,8 +16,8 @@ __all__ = ["Run"]
 class Run:
     """A search under way: what is searched, how, until when, and what is known so far.
 
-    It stops at the ``deadline``, and between two steps where ``interrupt`` holds a
-    Ctrl-C.
+    It stops at the ``deadline``. A Ctrl-C that ``interrupt`` holds makes the deadline
+    pass, so that every step soon ends, and is raised between two of them.
     """
 
     problem: Problem

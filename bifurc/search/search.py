@@ -92,8 +92,8 @@ class Search:
     `look_where_starts_stop`, `cover_surfaces`, `separate_points`, `mend_at_germs`,
     `join_branches`, `audit_branches`, `audit_in_boxes`, and `near_motions.look`. Each
     adds to the findings of the ``run``. From the end of the budget on a step does
-    nothing. A Ctrl-C raises `KeyboardInterrupt` between two starts, and the findings
-    hold what is known then.
+    nothing. A Ctrl-C ends the budget, and then raises `KeyboardInterrupt` between two
+    starts or at the end of the block; the findings hold what is known then.
     """
 
     def __init__(

@@ -38,7 +38,6 @@ DETOUR = 2.0  # times as long as its chord a branch may be from one place to the
 # crossings and others, where branches may run very close to each other.
 BESIDE_CROSSING = 1e-5
 BESIDE_OTHER = 0.03
-ROOM = 4.0  # times as wide as a box is where its arc runs, as in `boxes.hpp`
 WIDER = 1e-15  # of a period: the box of a circle is so much wider than one
 
 
@@ -226,7 +225,7 @@ class _Division:
         """What is not settled when ``most`` of the boxes and of their parts were looked
         at."""
         smallest = SMALLEST * self.problem.scale
-        count, waiting, small, with_arcs, points, is_steady = self.tape.divide(
+        count, waiting, small, with_arcs, rooms, points, is_steady = self.tape.divide(
             np.ascontiguousarray(boxes.low),
             np.ascontiguousarray(boxes.high),
             self.centers,
@@ -238,7 +237,7 @@ class _Division:
         self.count += count
         self.left.append(_Boxes(*small).middles)
         boxes = _Boxes(*with_arcs)
-        is_within = self._are_within(boxes)
+        is_within = self._are_within(_Boxes(*rooms))
         unknown = boxes.at(~self._are_known(_Arcs(points, is_steady, is_within)))
         widths = np.max(unknown.high - unknown.low, axis=1, initial=0.0)
         is_small = widths < 2.0 * smallest
@@ -303,12 +302,9 @@ class _Division:
         return covered
 
     def _are_within(self, boxes: _Boxes) -> np.ndarray:
-        """Which unknowns (k, n) of the arcs in boxes stay within their bounds."""
+        """Which unknowns (k, n) are within their bounds all over boxes."""
         low, high = self.problem.bounds.T
-        reach = 0.5 * ROOM * (boxes.high - boxes.low)
-        is_within: np.ndarray = (boxes.middles - reach >= low) & (
-            boxes.middles + reach <= high
-        )
+        is_within: np.ndarray = (boxes.low >= low) & (boxes.high <= high)
         return is_within
 
     def _sides(self, points: np.ndarray) -> np.ndarray:

@@ -33,7 +33,7 @@ def divided(function, n, most=50_000, smallest=1e-6):
     ("function", "n"), [(quartic, 2), (curve_in_space, 3), (curve_of_four, 4)]
 )
 def test_every_solution_lies_in_a_box_with_an_arc(function, n):
-    one, (_, waiting, small, (low, high), _, _) = divided(function, n)
+    one, (_, waiting, small, (low, high), *_) = divided(function, n)
     assert not len(waiting[0]) and not len(small[0])
     starts = np.random.default_rng(0).uniform(-1.5, 1.4, (300, n))
     solutions, gaps = one.project(starts)
@@ -48,7 +48,7 @@ def test_every_solution_lies_in_a_box_with_an_arc(function, n):
 
 @pytest.mark.parametrize(("function", "n"), [(quartic, 2), (curve_in_space, 3)])
 def test_the_points_of_an_arc_solve_the_equations(function, n):
-    one, (_, _, _, (low, high), points, is_steady) = divided(function, n)
+    one, (_, _, _, (low, high), room, points, is_steady) = divided(function, n)
     assert one.gaps(points.reshape(-1, n)).max() < 1e-13
     # one of the unknowns, the parameter, goes from one end of the box to the other
     is_end = np.isclose(points[:, 0], low, rtol=0, atol=1e-12)
@@ -57,6 +57,8 @@ def test_the_points_of_an_arc_solve_the_equations(function, n):
     # what is steady rises or falls from place to place
     steps = np.diff(points, axis=1)
     assert np.all((steps[:, 0] * steps[:, 1] > 0)[is_steady])
+    low, high = room
+    assert np.all((points >= low[:, None] - 1e-12) & (points <= high[:, None] + 1e-12))
 
 
 def test_boxes_that_are_not_looked_at_are_handed_back():
@@ -73,7 +75,7 @@ def test_boxes_that_are_not_looked_at_are_handed_back():
 
 
 def test_small_boxes_about_a_crossing_are_left():
-    _, (_, waiting, small, _, _, _) = divided(lambda u: [u[0] * u[1]], 2, smallest=1e-3)
+    _, (_, waiting, small, *_) = divided(lambda u: [u[0] * u[1]], 2, smallest=1e-3)
     assert not len(waiting[0])
     assert len(small[0])
     assert np.abs(small[0]).max() < 0.01
@@ -85,9 +87,7 @@ def test_balls_are_left_out_modulo_the_periods():
     low, high = np.full((1, 2), -1.53), np.full((1, 2), 1.47)
     centers = np.array([[period, -period]])
     ball = (centers, np.array([0.1]), np.array([period, period]))
-    _, waiting, small, _, _, _ = one.continuous_tape().divide(
-        low, high, *ball, 1e-3, 5000
-    )
+    _, waiting, small, *_ = one.continuous_tape().divide(low, high, *ball, 1e-3, 5000)
     assert not len(waiting[0]) and not len(small[0])
 
 
