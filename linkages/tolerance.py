@@ -1,4 +1,5 @@
-"""A linkage as a workshop makes it: every entry of its table a little off."""
+"""A linkage as a workshop makes it: every entry of its table, or every joint of a
+mechanism on each of its bodies, a little off."""
 
 from __future__ import annotations
 
@@ -6,9 +7,33 @@ from dataclasses import replace
 
 import numpy as np
 
+from bifurc.problem import Problem
+from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import GeometryError, Loop
+from linkages.mechanisms.closure import MechanismClosure
+from linkages.mechanisms.errors import draw_errors
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.readout import Readout
 
-__all__ = ["make_with_errors"]
+__all__ = ["closure_with_errors", "make_with_errors"]
+
+
+def closure_with_errors(
+    linkage: Loop | Mechanism, error: float, rng: np.random.Generator
+) -> Problem:
+    """The closure equations of a linkage made with errors, in the unknowns of its
+    atlas.
+
+    Those of a loop are the errors of `make_with_errors`, those of a mechanism are of
+    `linkages.mechanisms.errors.draw_errors`: out of the plane, too, where it is planar.
+    Raises `GeometryError` for an ``error`` that is negative or not finite.
+    """
+    if isinstance(linkage, Loop):
+        return LoopClosure(make_with_errors(linkage, error, rng))
+    readout = Readout(linkage)
+    if readout.single_loop is not None:
+        return LoopClosure(make_with_errors(readout.single_loop.loop, error, rng))
+    return MechanismClosure(linkage, draw_errors(readout.structure, error, rng))
 
 
 def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop:

@@ -52,8 +52,8 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     if single is None:
         raise CommandError(
             f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, "
-            "`clearance`, `convert` and `export` to .glb and .csv take; this takes "
-            "single loops of 4 to 12 revolute joints so far"
+            "`clearance`, `tolerance`, `convert` and `export` to .glb and .csv take; "
+            "this takes single loops of 4 to 12 revolute joints so far"
         )
     return single.loop
 

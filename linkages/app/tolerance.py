@@ -18,15 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.branch import Branch
 from bifurc.curves.valley import (
     Unfolding,
     ValleyEnd,
     correct_to_valley,
     unfold_crossing,
 )
-from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
-from linkages.tolerance import make_with_errors
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.tolerance import closure_with_errors
 
 __all__ = [
     "Ladder",
@@ -35,13 +36,15 @@ __all__ = [
     "half_branches",
     "is_whole",
     "measure",
+    "room_beside",
     "slope",
 ]
 
 Floats = NDArray[np.float64]
 
 ERRORS = 10.0 ** -np.arange(2.0, 11.0)
-AWAY = 0.3  # rad from a bifurcation along every half-branch, where its unfolding begins
+AWAY = 0.3  # arclength from a bifurcation along half-branches, where unfolding begins
+SHORTEST = 0.01  # of that: a form that ends sooner has no half-branch there
 SAMPLES = 200  # points of a form whose closure gap is measured
 
 
@@ -72,23 +75,36 @@ def half_branches(
     atlas: Atlas, point: MeetingPoint, away: float = AWAY
 ) -> tuple[Floats, list[str]]:
     """Points (h, n) on every half-branch of a bifurcation, ``away`` along the form from
-    it, and their names."""
+    it or where the form ends before, and their names."""
     starts = []
     names = []
     for index, s in point.passes:
         form = atlas.forms[index]
         for sign, side in ((-1, "before"), (1, "after")):
-            offset = form.branch(s + sign * away) - form.branch(s)
+            distance = min(away, room_beside(form.branch, s, sign))
+            if distance < SHORTEST * away:
+                continue
+            offset = form.branch(s + sign * distance) - form.branch(s)
             starts.append(point.point.u + offset)
             names.append(f"{form.name} {side}")
     return np.array(starts), names
 
 
-def measure(atlas: Atlas, loop: Loop, error: float, seed: int) -> Tolerance:
+def room_beside(branch: Branch, s: float, sign: int) -> float:
+    """How far a branch goes on from arclength ``s``, forwards or, with the ``sign`` -1,
+    backwards."""
+    if branch.closed:
+        return np.inf
+    return branch.length - s if sign > 0 else s
+
+
+def measure(
+    atlas: Atlas, linkage: Loop | Mechanism, error: float, seed: int
+) -> Tolerance:
     """The copy number ``seed`` of a linkage, made with ``error``, against its nominal
     atlas."""
-    copy = make_with_errors(loop, error, np.random.default_rng(seed))
-    problem = LoopClosure(copy)
+    rng = np.random.default_rng(seed)
+    problem = closure_with_errors(linkage, error, rng)
     largest = []
     median = []
     for form in atlas.forms:
@@ -103,14 +119,17 @@ def measure(atlas: Atlas, loop: Loop, error: float, seed: int) -> Tolerance:
 
 
 def climb(
-    atlas: Atlas, loop: Loop, seeds: Sequence[int], errors: Floats = ERRORS
+    atlas: Atlas,
+    linkage: Loop | Mechanism,
+    seeds: Sequence[int],
+    errors: Floats = ERRORS,
 ) -> Ladder:
     """The copies ``seeds`` at every one of ``errors``."""
     gaps = []
     widths = []
     weakest = []
     for error in errors:
-        copies = [measure(atlas, loop, float(error), seed) for seed in seeds]
+        copies = [measure(atlas, linkage, float(error), seed) for seed in seeds]
         gaps.append(np.array([copy.largest for copy in copies]))
         widths.append(np.array([_widths(copy) for copy in copies]))
         weakest.append(np.array([_smallest_values(copy) for copy in copies]))

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.curves.valley import Unfolding
-from linkages.app.tolerance import Ladder, Tolerance, half_branches
+from linkages.app.configurations import arclength_unit, unit_of_arclengths
+from linkages.app.tolerance import Ladder, Tolerance, half_branches, room_beside
 
 __all__ = ["draw_tolerance"]
 
@@ -24,7 +25,7 @@ COLOURS = (
     "#997700",
     "#555555",
 )
-ALONG = np.linspace(-0.3, 0.3, 200)  # arclengths from a bifurcation, rad
+ALONG = np.linspace(-0.3, 0.3, 200)  # arclengths from a bifurcation
 
 
 def draw_tolerance(atlas: Atlas, copy: Tolerance, ladder: Ladder) -> Figure:
@@ -59,7 +60,7 @@ def _draw_widths(axes: Axes, atlas: Atlas, ladder: Ladder) -> None:
     names = [point.name for point in atlas.bifurcations]
     _draw_ladder(axes, ladder.errors, ladder.widths, names)
     _draw_power_law(axes, ladder.errors, ladder.widths, 0.5)
-    axes.set(ylabel="width of the near miss (rad)")
+    axes.set(ylabel=f"width of the near miss ({unit_of_arclengths(atlas)})")
     axes.legend(fontsize=8, frameon=False)
 
 
@@ -102,19 +103,20 @@ def _draw_widest(axes: Axes, atlas: Atlas, copy: Tolerance) -> None:
     number = int(np.argmax(np.where(np.isfinite(distances), distances, 0.0)))
     point = atlas.bifurcations[number]
     unfolding = copy.unfoldings[number]
-    plane = point.point.null_space[:, :2]
+    unit = arclength_unit(atlas)
+    plane = unit.factor * point.point.null_space[:, :2]
     _draw_nominal(axes, atlas, point, plane)
     _draw_valleys(axes, unfolding, point.point.u, plane)
     starts, _ = half_branches(atlas, point)
-    reach = 1.2 * np.degrees(np.abs((starts - point.point.u) @ plane).max())
-    errors = f"with errors of {copy.error:g}"
+    reach = 1.2 * np.abs((starts - point.point.u) @ plane).max()
+    width = f"{unfolding.distance:.2g} apart"
     axes.set(
         xlim=(-reach, reach),
         ylim=(-reach, reach),
         aspect="equal",
-        title=f"{point.name} {errors}: {unfolding.distance:.2g} rad apart",
-        xlabel="along the null space, first direction (deg)",
-        ylabel="second direction (deg)",
+        title=f"{point.name} with errors of {copy.error:g}: {width}",
+        xlabel=f"along the null space, first direction ({unit.name})",
+        ylabel=f"second direction ({unit.name})",
     )
     axes.legend(fontsize=8, frameon=False, loc="lower left")
     axes.grid(alpha=0.3)
@@ -126,8 +128,9 @@ def _draw_nominal(
     """The forms that pass a bifurcation, without errors."""
     for k, (index, s) in enumerate(point.passes):
         form = atlas.forms[index]
-        offsets = form.branch(s + ALONG) - form.branch(s)
-        x, y = np.degrees((offsets @ plane).T)
+        back, ahead = (room_beside(form.branch, s, sign) for sign in (-1, 1))
+        along = np.clip(ALONG, -back, ahead)
+        x, y = ((form.branch(s + along) - form.branch(s)) @ plane).T
         colour = COLOURS[(4 + k) % len(COLOURS)]
         label = f"{form.name}, nominal"
         axes.plot(x, y, color=colour, lw=1.2, ls="--", label=label)
@@ -138,5 +141,5 @@ def _draw_valleys(
 ) -> None:
     """The valleys that a linkage as made follows instead."""
     for k, valley in enumerate(unfolding.valleys):
-        x, y = np.degrees(((valley.dense() - centre) @ plane).T)
+        x, y = ((valley.dense() - centre) @ plane).T
         axes.plot(x, y, color="k", lw=1.6, label="as made" if k == 0 else None)

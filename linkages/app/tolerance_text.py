@@ -8,6 +8,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.curves.valley import Unfolding, ValleyEnd
+from linkages.app.configurations import readout_of, unit_of_arclengths
 from linkages.app.texts import count_of, section
 from linkages.app.tolerance import Ladder, Tolerance, half_branches, is_whole, slope
 
@@ -19,9 +20,10 @@ def describe_tolerance(
 ) -> str:
     """Closure gaps of the forms, what became of the bifurcations, and the powers of the
     error with which they grow."""
+    places = "" if readout_of(atlas) is None else " of joints on bodies"
     head = (
-        f"Errors of {copies[0].error:g} (standard deviation; rad, and characteristic "
-        f"lengths) in {count_of(len(copies), 'copy')}"
+        f"Errors{places} of {copies[0].error:g} (standard deviation; rad, and "
+        f"characteristic lengths) in {count_of(len(copies), 'copy')}"
     )
     parts = [head, _gaps(atlas, copies, ladder)]
     if atlas.bifurcations:
@@ -61,7 +63,7 @@ def _unfoldings(atlas: Atlas, copies: Sequence[Tolerance]) -> str:
         "name",
         "copy",
         "joined now",
-        "near miss (rad)",
+        f"near miss ({unit_of_arclengths(atlas)})",
         "smallest s.v.",
         "closure gap",
     )

@@ -28,6 +28,7 @@ from bifurc.seeds import Seeds
 from linkages.mechanisms.curvature import CurvatureBounds
 from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
+from linkages.mechanisms.errors import JointErrors
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.slices_within_limits import slices_within_limits
 from linkages.mechanisms.structure import Structure
@@ -56,14 +57,15 @@ class MechanismClosure(NumericalProblem):
     """The closure equations of a mechanism in the variables of its joints.
 
     Angles are in radians, slides in characteristic lengths. All derivatives are exact:
-    they come from the tape of the equations.
+    they come from the tape of the equations. With ``errors`` it is the mechanism as it
+    is made, in the same unknowns, and need not close anywhere.
     """
 
     curvature_residual = 0.2
     hessian_error = 1e-14
     derivatives = "recorded"
 
-    def __init__(self, mechanism: Mechanism):
+    def __init__(self, mechanism: Mechanism, errors: JointErrors | None = None):
         check_type("mechanism", mechanism, Mechanism)
         self.mechanism = mechanism
         self.structure = Structure(mechanism)
@@ -73,7 +75,7 @@ class MechanismClosure(NumericalProblem):
         self.periods = np.array([unknown.period for unknown in unknowns])
         self.bounds = np.array([[one.low, one.high] for one in unknowns])
         self.data_rounding = mechanism.coordinate_rounding / self.structure.unit
-        self._equations: Equations = write_equations(self.structure)
+        self._equations: Equations = write_equations(self.structure, errors)
         tape = self._equations.tape
         self.equations = f"recorded ({tape.size} operations)"
         self._tape = ScaledTape(

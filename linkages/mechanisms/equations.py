@@ -3,13 +3,14 @@
 A cycle of pairs is closed when the product of the displacements along it is the
 identity (the product of exponentials in the reference configuration, Brockett 1984).
 Where a chain ends in a spherical joint, a point comes back to itself; between two of
-them, two points keep their distance.
+them, two points keep their distance. A mechanism that is made with errors has small
+displacements at both ends of every joint.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from typing import Any
 
@@ -19,6 +20,7 @@ from bifurc.equations.recorded import RecordedNumber, Recorder
 from bifurc.equations.tape import Tape
 from linkages.decisions import is_rounding_of_zero
 from linkages.mechanisms.cycles import Step
+from linkages.mechanisms.errors import JointErrors, no_errors
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.motors import (
     IDENTITY,
@@ -30,6 +32,7 @@ from linkages.mechanisms.motors import (
     slide,
     turn,
 )
+from linkages.mechanisms.placement import Placement
 from linkages.mechanisms.structure import Closure, ClosureKind, Share, Structure
 
 __all__ = ["Equations", "write_equations"]
@@ -43,14 +46,19 @@ class Equations:
     counts: tuple[int, ...]
 
 
-def write_equations(structure: Structure) -> Equations:
-    """The equations of all closures, then those of the embedded spherical joints."""
+def write_equations(
+    structure: Structure, errors: JointErrors | None = None
+) -> Equations:
+    """The equations of all closures, then those of the embedded spherical joints; with
+    ``errors`` those of the mechanism as it is made."""
     writer = Recorder(len(structure.unknowns))
     values = _values(structure, writer)
     outputs: list[int] = []
     counts = []
-    for closure in structure.closures:
-        equations = _ChainWriter(structure, closure, writer, values)
+    if errors is None:
+        errors = no_errors(structure)
+    for number in range(len(structure.closures)):
+        equations = _ChainWriter(structure, number, writer, values, errors)
         slots = _slots(writer, equations.residuals())
         counts.append(len(slots))
         outputs += slots
@@ -122,28 +130,45 @@ def _cross(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
 
 
 class _ChainWriter:
-    """The equations of one closure while they are written."""
+    """The equations of the closure of this ``number`` while they are written."""
 
     def __init__(
         self,
         structure: Structure,
-        closure: Closure,
+        number: int,
         writer: Recorder,
         values: Sequence[Number],
+        errors: JointErrors,
     ):
         self.structure = structure
-        self.closure = closure
+        self.number = number
         self.writer = writer
         self.values = values
-        self.placement = structure.placement(closure)
+        self.errors = errors
+        self.placement = self._placement()
+
+    @property
+    def closure(self) -> Closure:
+        """What has to close."""
+        return self.structure.closures[self.number]
+
+    def _placement(self) -> Placement:
+        """The frame of the equations; made with errors no chain is planar or
+        spherical."""
+        placement = self.structure.placement(self.closure)
+        if self.errors.are_none:
+            return placement
+        return replace(placement, is_planar=False, is_spherical=False)
 
     def residuals(self) -> list[Number]:
         """The equations, 0 where the chain is closed; lengths in the structure's
         unit."""
         if self.closure.kind is ClosureKind.CYCLE:
             return self._of_cycle()
-        first = self.placement.point(self.closure.first)
-        second = self.placement.point(self.closure.second)
+        off_first, off_second = self.errors.points[self.number]
+        axes = self.placement.axes
+        first = self.placement.point(self.closure.first) + axes @ off_first
+        second = self.placement.point(self.closure.second) + axes @ off_second
         arrival = self._moved(list(second))
         gaps = [x - float(c) for x, c in zip(arrival, first, strict=True)]
         if self.closure.kind is ClosureKind.POINT:
@@ -155,7 +180,7 @@ class _ChainWriter:
         distance of its ends."""
         rod = self.closure.rod
         assert rod is not None
-        rest = rod.length / self.structure.unit
+        rest = rod.length / self.structure.unit + float(self.errors.rods[self.number])
         length: Number = rest
         if rod.leg is not None:
             length = rest + rod.leg.sign * self.values[rod.leg.variable]
@@ -166,10 +191,16 @@ class _ChainWriter:
         vector and the translation. It is zero at closure alone, at half turns it is
         not."""
         motor = IDENTITY
-        elements = chain.from_iterable(map(self._elements, self.closure.chain))
-        for motion, value in _joined(elements):
+        steps = map(self._elements_with_errors, self.closure.chain)
+        for motion, value in _joined(chain.from_iterable(steps)):
             motor = product(motor, self._motor(motion, value))
         return [2.0 * number for number in (*motor.real[1:], *motor.dual[1:])]
+
+    def _elements_with_errors(self, step: Step) -> Iterator[tuple[Motion, Number]]:
+        """The same with the errors at both ends of the joint."""
+        yield from self.errors.before(step)
+        yield from self._elements(step)
+        yield from self.errors.after(step)
 
     def _elements(self, step: Step) -> Iterator[tuple[Motion, Number]]:
         """The elementary motions of a step, the last to act first, with their
@@ -202,14 +233,22 @@ class _ChainWriter:
     def _moved(self, point: Point) -> Point:
         """Where the chain takes a ``point`` (3,) of its last body."""
         for step in reversed(self.closure.chain):
+            point = self._moved_by_all(point, self.errors.after(step))
             if step.pair in self.structure.shifts:
                 point = self._carried(point, step)
-                continue
-            if step.pair in self.structure.embedded:
+            elif step.pair in self.structure.embedded:
                 point = self._turned_freely(point, step)
-                continue
-            for motion, value in reversed(list(self._elements(step))):
-                point = self._moved_by(point, motion, value)
+            else:
+                point = self._moved_by_all(point, self._elements(step))
+            point = self._moved_by_all(point, self.errors.before(step))
+        return point
+
+    def _moved_by_all(
+        self, point: Point, elements: Iterable[tuple[Motion, Number]]
+    ) -> Point:
+        """A point moved by elementary motions, the last one first."""
+        for motion, value in reversed(list(elements)):
+            point = self._moved_by(point, motion, value)
         return point
 
     def _moved_by(self, point: Point, motion: Motion, value: Number) -> Point:

@@ -10,8 +10,10 @@ import click
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
     SEED,
+    HoldOptions,
     NumberRange,
     SearchOptions,
+    hold_options,
     out_option,
     param_option,
 )
@@ -50,6 +52,7 @@ MOST_COPIES = 10_000
     show_default=True,
     help="Number of the first copy.",
 )
+@hold_options
 @param_option
 @out_option("tolerance.txt and .png")
 def tolerance_command(
@@ -59,27 +62,34 @@ def tolerance_command(
     seed: int,
     parameters: tuple[str, ...],
     out: Path | None,
+    hold: HoldOptions,
 ) -> None:
     """Show what manufacturing errors make of the forms and bifurcations of a linkage.
 
+    Errors are in every number of a D-H table; in a mechanism every joint is off on each
+    body that it joins.
+
     \b
-    Example:
+    Examples:
       bifurc tolerance special-double-subtractive-goldberg --error 1e-4 --out out
+      bifurc tolerance four-bennett-network --lock 2=40 --lock 6=-75
     """
-    from linkages.app.choice import choose_loop
     from linkages.app.exploration import explore_linkage
+    from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.tolerance import climb, measure
     from linkages.app.tolerance_text import describe_tolerance
+    from linkages.linkage import Linkage
 
     if out is not None:
         require_folder(out)
-    chosen = choose_loop(linkage, parameters)
+    chosen = choose_held(linkage, parameters, hold)
     atlas = explore_linkage(chosen, SearchOptions())
     _require_forms(atlas)
+    nominal = chosen.loop if isinstance(chosen, Linkage) else chosen
     seeds = range(seed, seed + samples)
-    copies = [measure(atlas, chosen.loop, error, number) for number in seeds]
-    ladder = climb(atlas, chosen.loop, seeds)
+    copies = [measure(atlas, nominal, error, number) for number in seeds]
+    ladder = climb(atlas, nominal, seeds)
     text = describe_tolerance(atlas, copies, ladder)
     try:
         say(text)

@@ -7,10 +7,13 @@ from click.testing import CliRunner
 from linkages.app.cli import main
 from linkages.app.tolerance import climb, half_branches, measure, slope
 from linkages.catalogue import entry
+from linkages.closure.loop_closure import LoopClosure
+from linkages.file import read_file
 from linkages.linkage import load
 from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
-from linkages.tolerance import make_with_errors
+from linkages.mechanisms.of_loop import mechanism_of_loop
+from linkages.tolerance import closure_with_errors, make_with_errors
 
 
 @pytest.fixture(scope="module")
@@ -89,3 +92,85 @@ def test_the_command_shows_gaps_and_near_misses_and_draws_them(tmp_path):
     assert "kite form" in result.output and "near miss" in result.output
     assert (tmp_path / "tolerance.png").stat().st_size > 10_000
     assert (tmp_path / "tolerance.txt").read_text() == result.stdout
+
+
+# --- mechanisms -----------------------------------------------------------------------
+
+SLIDER_CRANK = """
+name = "slider-crank"
+[[joints]]
+name = "J1"
+kind = "revolute"
+bodies = ["frame", "crank"]
+point = [0, 0, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "J2"
+kind = "revolute"
+bodies = ["crank", "rod"]
+point = [0.6, 0.8, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "J3"
+kind = "revolute"
+bodies = ["rod", "slider"]
+point = [1.2, 0, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "J4"
+kind = "prismatic"
+bodies = ["frame", "slider"]
+direction = [1, 0, 0]
+"""
+
+
+def test_a_mechanism_is_made_with_errors_of_its_joints(tmp_path):
+    file = tmp_path / "slider_crank.toml"
+    file.write_text(SLIDER_CRANK)
+    out = tmp_path / "out"
+    result = CliRunner().invoke(
+        main, ["tolerance", str(file), "--samples", "1", "--out", str(out)]
+    )
+    assert result.exit_code == 0, result.output
+    assert "Errors of joints on bodies of 0.0001" in result.stdout
+    assert "near miss (rad, lengths over 0.8)" in result.stdout
+    assert (out / "tolerance.txt").read_text() == result.stdout
+    # the crossings open as the root of the error
+    rows = [row.split() for row in result.stdout.splitlines() if row.startswith("  B")]
+    powers = [float(row[1]) for row in rows if row[3:5] == ["0", "of"]]
+    assert powers == pytest.approx([0.5] * len(powers), abs=0.02) and powers
+
+
+def test_a_network_is_made_with_errors_and_joints_locked():
+    network = load("four-bennett-network")
+    locked = network.with_kinks({"2": np.radians(40), "6": np.radians(-75)})
+    made = measure(map_linkage(locked), locked, 1e-4, 0)
+    assert len(made.largest) == 2
+    assert np.all(made.largest > 1e-5) and np.all(made.largest < 1e-2)
+
+
+def test_joints_are_held_on_the_command_line():
+    command = ["tolerance", "four-bennett-network", "--lock", "elbow=40"]
+    result = CliRunner().invoke(main, command)
+    assert result.exit_code == 2
+    assert '"elbow" is not allowed' in result.output
+
+
+def test_a_loop_given_as_a_mechanism_is_made_as_the_loop(parallelogram):
+    atlas, loop = parallelogram
+    mechanism = mechanism_of_loop(loop, atlas.forms[0].branch(0.0))
+    problem = closure_with_errors(mechanism, 1e-3, np.random.default_rng(0))
+    assert isinstance(problem, LoopClosure)
+
+
+def test_a_form_has_no_half_branch_beyond_its_end(tmp_path):
+    file = tmp_path / "limited.toml"
+    file.write_text(SLIDER_CRANK.strip() + "\nlimits = [-1.2, 0.5]\n")
+    atlas = map_linkage(read_file(file))
+    assert len(atlas.bifurcations) == 2
+    for point in atlas.bifurcations:
+        starts, _ = half_branches(atlas, point)
+        distances = np.linalg.norm(starts - point.point.u, axis=1)
+        assert len(starts) == 3
+        assert np.all(distances > 0.0)
+        assert np.all(distances <= 0.3 + 1e-9)
