@@ -99,9 +99,11 @@ def _nearer(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
     ends = np.array([beside, far])
     distances = np.array([_distances(problem, end) for end in ends])
     is_solved = np.array([is_start_solved(gaps), is_start_solved(far_gaps)])
-    best = np.argmin(np.where(is_solved, distances, np.inf), axis=0)
+    distances[~is_solved] = np.inf
+    best = np.argmin(distances, axis=0)
     nearer: np.ndarray = ends[best, np.arange(len(points))]
-    return np.where(is_solved.any(axis=0)[:, None], nearer, points)
+    is_any = np.isfinite(distances.min(axis=0))
+    return np.where(is_any[:, None], nearer, points)
 
 
 def _middles(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:

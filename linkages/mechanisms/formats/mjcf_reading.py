@@ -19,6 +19,7 @@ import numpy as np
 from linkages.decisions import is_one_anchor
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.couplings import Coupling
+from linkages.mechanisms.file import MANY_TURNS
 from linkages.mechanisms.formats.assembly import (
     Assembly,
     BodyJoint,
@@ -220,6 +221,13 @@ def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
         joint.refuse("axis", value, "of a length other than zero")
     unit = model.settings.angle_unit if kind == "hinge" else 1.0
     limits = _read_limits(joint, kind, unit, model.settings)
+    low, high = limits or (0.0, 0.0)
+    is_in_radians = kind == "hinge" and unit == 1.0
+    if is_in_radians and max(-low, high) > MANY_TURNS:
+        model.notes.append(
+            f"joint {name} is limited from {low:g} to {high:g} rad, more than two "
+            'turns; if that is in degrees, write angle="degree"'
+        )
     if kind == "ball" and limits is not None:
         limits = None
         model.notes.append(f"left out: the range of the ball joint {name}")

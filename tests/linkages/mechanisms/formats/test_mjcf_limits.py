@@ -82,3 +82,12 @@ def test_a_range_that_is_not_said_to_limit_is_refused_by_name():
     text = model_of("hinge", COMPILERS[2], "", "", 'name="J" range="-1 2"')
     with pytest.raises(GeometryError, match=r'range of <joint name="J"> .*autolimits'):
         read_mjcf(parse_xml(text.encode()), "model")
+
+
+@pytest.mark.parametrize(("wide", "is_said"), [("-90 90", True), ("-7 7", False)])
+def test_a_range_in_radians_of_more_than_two_turns_is_said(wide, is_said):
+    text = model_of("hinge", COMPILERS[1], "", "", f'name="J" range="{wide}"')
+    notes = read_mjcf(parse_xml(text.encode()), "model").notes
+    assert (
+        any("joint J is limited from -90 to 90 rad" in one for one in notes) is is_said
+    )
