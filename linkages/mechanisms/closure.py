@@ -32,6 +32,7 @@ from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.turn_lattice import TurnLattice, turn_lattice
+from linkages.mechanisms.turned_ends import TurnedEnds
 from linkages.mechanisms.whole_turns import (
     WholeTurns,
     starts_at_every_turn,
@@ -238,9 +239,11 @@ class MechanismClosure(NumericalProblem):
             # what is outside the limits may have a translate inside
             solutions = lattice.homes(solutions)
         seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
-        if lattice:
-            seeds = replace(seeds, home=lattice.home)
-        return replace(seeds, audit=slices or self._audit(turns, count, rng))
+        judge = slices or self._audit(turns, count, rng)
+        if not lattice:
+            return replace(seeds, audit=judge)
+        audit = TurnedEnds(self, lattice, judge)
+        return replace(seeds, home=lattice.home, audit=audit)
 
     def _audit(
         self, turns: dict[int, float], count: int, rng: np.random.Generator

@@ -19,6 +19,7 @@ Classes: TypeAlias = list[list[T]]
 
 SAMPLES = 400  # of a form, beside which points of another one are looked for
 PLACES = 16  # of a form at which it is looked for on another one
+BESIDE = 2.0  # spacings of samples by which others than the nearest may be beside it
 # places that forms have in common where they are one: others meet at singular points
 COMMON = 2
 LENGTHS = 1e-6  # relative, by which lengths of closed forms that are one may differ
@@ -94,7 +95,9 @@ def _passes(
     """Whether whole turns bring a place (n,) onto a branch with these samples
     (k, n)."""
     shifts = lattice.shifts_towards(samples, place)
-    gaps = difference(place, samples + shifts, branch.periods)
-    nearest = int(np.argmin(np.linalg.norm(gaps, axis=1)))
-    distances, _ = branch.nearest(place - shifts[nearest])
-    return bool(is_moved_by_whole_turns(float(distances[0])))
+    gaps = np.linalg.norm(difference(place, samples + shifts, branch.periods), axis=1)
+    # at an end it may be next to samples a turn away from where it lies on the branch
+    spacing = branch.length / len(samples)
+    near = np.unique(shifts[gaps <= gaps.min() + BESIDE * spacing], axis=0)
+    distances, _ = branch.nearest(place - near)
+    return bool(is_moved_by_whole_turns(float(distances.min())))

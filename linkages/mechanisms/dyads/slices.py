@@ -100,7 +100,7 @@ def _slice_by_dyads(
     structure: Structure, rng: np.random.Generator
 ) -> DyadSlices | None:
     geometry = _geometry(structure)
-    if geometry is None:
+    if geometry is None or _follows_many_turns(structure):
         return None
     still = make_plan(structure.mechanism, None)
     if still is not None:
@@ -139,6 +139,19 @@ def _geometry(structure: Structure) -> Geometry | None:
     if is_free or any(not one.is_turn or one.advance for one in motions):
         return None
     return SpaceGeometry(structure.unit)
+
+
+def _follows_many_turns(structure: Structure) -> bool:
+    """Whether something follows an angle that may turn by more than a full turn within
+    its limits: it is elsewhere after each."""
+    columns = list(structure.column_of.values())
+    return any(
+        unknown.is_angle
+        and unknown.period == np.inf
+        and unknown.high - unknown.low > TURN
+        and columns.count(number) > 1
+        for number, unknown in enumerate(structure.unknowns)
+    )
 
 
 def _slices(
