@@ -26,13 +26,14 @@ from bifurc.problem import (
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Seeds
 from linkages.mechanisms.curvature import CurvatureBounds
+from linkages.mechanisms.cut_at_limits import CutMotions, loop_without_limits
 from linkages.mechanisms.dyads.slices import slice_by_dyads
 from linkages.mechanisms.equations import Equations, write_equations
 from linkages.mechanisms.errors import JointErrors
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.slices_within_limits import slices_within_limits
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.turn_lattice import TurnLattice, turn_lattice
+from linkages.mechanisms.turned_ends import TurnedEnds
 from linkages.mechanisms.whole_turns import (
     WholeTurns,
     starts_at_every_turn,
@@ -50,6 +51,7 @@ __all__ = ["MechanismClosure"]
 # Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
+LARGEST_SEED = 2**32
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 
 
@@ -219,10 +221,9 @@ class MechanismClosure(NumericalProblem):
         return self.structure.reference
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """The closed configuration nearest to the reference, those that dyads build, or
-        that a loop has, where a joint stands at given values, what is reached from every turn of a joint
-        that advances, and from ``count`` random starts or, where these lead beyond
-        given limits, from within."""
+        """The closed configuration nearest to the reference, those that dyads build,
+        what is reached from every turn of a joint that advances, and from ``count``
+        random starts or, where these lead beyond given limits, from within."""
         drawn = self._drawn(rng, count)
         lattice = self.lattice
         turns = turns_that_advance(self.structure)
@@ -230,31 +231,46 @@ class MechanismClosure(NumericalProblem):
         slices = slice_by_dyads(self.structure, rng)
         if slices is not None:
             starts.append(slices.points)
-        else:
-            starts.append(slices_within_limits(self.structure, rng))
-            if not lattice:
-                starts.append(starts_at_every_turn(self, turns, rng))
+        elif not lattice:
+            starts.append(starts_at_every_turn(self, turns, rng))
         points, gaps = self.project(np.concatenate(starts))
         solutions = points[is_start_solved(gaps)]
-        solutions = np.concatenate([solutions, self._from_beyond_limits(drawn, rng)])
+        brought = self._from_beyond_limits(solutions, drawn, rng)
+        solutions = np.concatenate([solutions, brought])
         if lattice:
             # what is outside the limits may have a translate inside
             solutions = lattice.homes(solutions)
         seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
-        if lattice:
-            seeds = replace(seeds, home=lattice.home)
-        if slices is None and turns:
-            return replace(seeds, audit=WholeTurns(self, turns, lattice))
-        return replace(seeds, audit=slices)
+        judge = slices or self._audit(turns, count, rng)
+        if not lattice:
+            return replace(seeds, audit=judge)
+        audit = TurnedEnds(self, lattice, judge)
+        return replace(seeds, home=lattice.home, audit=audit)
 
-    def _from_beyond_limits(self, drawn: Seeds, rng: np.random.Generator) -> np.ndarray:
-        """Closed configurations (k, n) within limits that are given, from some that
-        random starts reached beyond them: narrow limits leave few that are reached
-        else."""
+    def _audit(
+        self, turns: dict[int, float], count: int, rng: np.random.Generator
+    ) -> WholeTurns | CutMotions | None:
+        """What can be said of the motions of a mechanism that dyads do not build, with
+        ``turns`` that advance."""
+        if turns:
+            return WholeTurns(self, turns, self.lattice)
+        single = loop_without_limits(self.structure)
+        if single is None:
+            return None
+        seed = int(rng.integers(LARGEST_SEED))
+        return CutMotions(self.structure, single, self.lattice, count, seed)
+
+    def _from_beyond_limits(
+        self, solutions: np.ndarray, drawn: Seeds, rng: np.random.Generator
+    ) -> np.ndarray:
+        """Closed configurations (k, n) within limits that are given, from those of the
+        ``solutions`` (j, n) beyond them and some that random starts reached there:
+        narrow limits leave few that are reached else."""
         if all(one.limits is None for one in self.structure.mechanism.variables):
             return np.empty((0, self.n))
-        beyond = drawn.missed[is_start_solved(drawn.gaps)][:MOST_BEYOND]
-        return brought_within_limits(self, beyond, rng)
+        missed = drawn.missed[is_start_solved(drawn.gaps)]
+        beyond = np.concatenate([solutions[~self.are_inside(solutions)], missed])
+        return brought_within_limits(self, beyond[:MOST_BEYOND], rng)
 
     def _drawn(self, rng: np.random.Generator, count: int) -> Seeds:
         """What is reached from random starts; where whole turns lead to the same again,

@@ -10,6 +10,7 @@ configuration, ``[[loops]]``, tables of Denavit and Hartenberg that share joints
 from __future__ import annotations
 
 import difflib
+import logging
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -26,7 +27,7 @@ from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 from linkages.mechanisms.plane import normal_of_plane
 from linkages.values import check_angle
 
-__all__ = ["FREE", "read_mechanism"]
+__all__ = ["FREE", "MANY_TURNS", "read_mechanism"]
 
 Content: TypeAlias = Mapping[str, Any]
 
@@ -50,6 +51,9 @@ OF_VALUES = ("limits", "locked", "coupled")
 OF_COUPLING = ("to", "ratio", "offset")
 UNITS = {"deg": math.pi / 180, "rad": 1.0}
 FREE = "free"  # in a list of locks: a variable that has none
+MANY_TURNS = 4 * math.pi  # limits of a turn beyond it, rad, may be meant in degrees
+
+log = logging.getLogger(__name__)
 
 
 def read_mechanism(content: Content, name: str) -> Mechanism:
@@ -195,8 +199,21 @@ def _read_limits(
             if low == high:
                 allowed += f"; a joint that stands still has locked = {row[0]}"
             raise GeometryError(what, row, allowed)
+        if motion.is_turn and not motion.advance and unit == 1.0:
+            _warn_of_degrees(what, (low, high))
         limits.append((low, high))
     return tuple(limits)
+
+
+def _warn_of_degrees(what: str, limits: tuple[float, float]) -> None:
+    """Say in the log that limits, rad, are so wide that degrees may be meant."""
+    if max(map(abs, limits)) > MANY_TURNS:
+        log.warning(
+            '%s are [%g, %g] with angles = "rad", more than two turns; if they are in '
+            'degrees, write angles = "deg"',
+            what,
+            *limits,
+        )
 
 
 def _read_locked(

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -326,18 +326,36 @@ def _check_second_direction(joint: Joint) -> None:
 
 def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
     count = len(joint.parts)
-    limits = tuple(joint.limits) or (None,) * count
     what = f"limits of joint {joint.name}"
-    if len(limits) != count:
-        raise GeometryError(f"number of {what}", len(limits), f"{count}")
-    for pair, motion in zip(limits, _motions_of_parts(joint), strict=True):
+    allowed = "a list with [low, high] or None for each variable"
+    given = _listed(what, joint.limits, allowed) or (None,) * count
+    if len(given) != count:
+        raise GeometryError(f"number of {what}", len(given), f"{count}")
+    limits: list[Limits | None] = []
+    for pair, motion in zip(given, _motions_of_parts(joint), strict=True):
         if pair is None:
+            limits.append(None)
             continue
-        for value in pair:
+        ends = _listed(what, pair, allowed)
+        if len(ends) != 2:
+            raise GeometryError(what, list(ends), allowed)
+        for value in ends:
             _check_value(what, value, motion)
-        if not pair[0] < pair[1]:
-            raise GeometryError(what, list(pair), "a smaller number and a larger one")
-    return limits
+        low, high = ends
+        if not low < high:
+            allowed = "a smaller number and a larger one"
+            if low == high:
+                allowed += f"; a joint that stands still has locked = {low}"
+            raise GeometryError(what, list(ends), allowed)
+        limits.append((low, high))
+    return tuple(limits)
+
+
+def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
+    """What is given as a tuple; raises `GeometryError` where it is no list."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise GeometryError(what, quoted(given), allowed)
+    return tuple(given)
 
 
 def _checked_locks(

@@ -12,13 +12,14 @@ from bifurc.torus import difference
 from linkages.decisions import is_moved_by_whole_turns
 from linkages.mechanisms.turn_lattice import TurnLattice
 
-__all__ = ["classes_of_assemblies", "classes_of_forms"]
+__all__ = ["classes_of_assemblies", "classes_of_forms", "passes_but_for_turns"]
 
 T = TypeVar("T")
 Classes: TypeAlias = list[list[T]]
 
 SAMPLES = 400  # of a form, beside which points of another one are looked for
 PLACES = 16  # of a form at which it is looked for on another one
+BESIDE = 2.0  # spacings of samples by which others than the nearest may be beside it
 # places that forms have in common where they are one: others meet at singular points
 COMMON = 2
 LENGTHS = 1e-6  # relative, by which lengths of closed forms that are one may differ
@@ -73,11 +74,30 @@ def _lies_on(one: Branch, other: Branch, lattice: TurnLattice) -> bool:
     fractions = (np.arange(PLACES) + 0.5) / PLACES
     common = 0
     for place in one(fractions * one.length):
-        shifts = lattice.shifts_towards(samples, place)
-        gaps = difference(place, samples + shifts, one.periods)
-        nearest = int(np.argmin(np.linalg.norm(gaps, axis=1)))
-        distances, _ = other.nearest(place - shifts[nearest])
-        common += bool(is_moved_by_whole_turns(float(distances[0])))
+        common += _passes(other, samples, place, lattice)
         if common == COMMON:
             return True
     return False
+
+
+def passes_but_for_turns(
+    branch: Branch, points: np.ndarray, lattice: TurnLattice
+) -> np.ndarray:
+    """Which of the points (k, n) whole turns bring onto a branch (k,)."""
+    samples = branch.sample(SAMPLES)
+    passed = [_passes(branch, samples, point, lattice) for point in points]
+    return np.array(passed, dtype=bool)
+
+
+def _passes(
+    branch: Branch, samples: np.ndarray, place: np.ndarray, lattice: TurnLattice
+) -> bool:
+    """Whether whole turns bring a place (n,) onto a branch with these samples
+    (k, n)."""
+    shifts = lattice.shifts_towards(samples, place)
+    gaps = np.linalg.norm(difference(place, samples + shifts, branch.periods), axis=1)
+    # at an end it may be next to samples a turn away from where it lies on the branch
+    spacing = branch.length / len(samples)
+    near = np.unique(shifts[gaps <= gaps.min() + BESIDE * spacing], axis=0)
+    distances, _ = branch.nearest(place - near)
+    return bool(is_moved_by_whole_turns(float(distances.min())))

@@ -138,27 +138,39 @@ class TurnLattice:
 
     def home(self, points: np.ndarray) -> np.ndarray:
         """The shift (n,) that brings ``points`` (k, n), one or samples of a curve, as
-        near as can be to the middle of the limits.
+        near as can be to the middle of the limits, all of them within these; none where
+        they are within limits nowhere.
 
         Points that are no farther from it than others count as nearer by their
-        coordinates. Of a curve that goes to the limits of some unknowns the others count, and some
-        of it is within the limits afterwards.
+        coordinates. Of a curve that goes to the limits of some unknowns the others
+        count first.
         """
         columns = self.columns
-        is_passed = self._is_passed(points)
-        shifts = self._overlapping(points, is_passed).vectors
+        passed = self._is_passed(points)[columns]
+        shifts = self.translates(points).vectors
+        if not len(shifts):
+            return np.zeros(points.shape[1])
         center = self.limits[columns].mean(axis=1)
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
         middles = (middle + shifts)[:, columns]
         beside = middles - center
-        passed = is_passed[columns]
         distances = np.linalg.norm(beside[:, ~passed], axis=1)
         passed_distances = np.linalg.norm(beside[:, passed], axis=1)
-        for k in _nearest_first([distances, passed_distances], middles):
-            if self._is_partly_inside(points + shifts[k]):
-                shift: np.ndarray = shifts[k]
-                return shift
-        return np.zeros(points.shape[1])
+        nearest = _nearest_first([distances, passed_distances], middles)[0]
+        shift: np.ndarray = shifts[nearest]
+        return shift
+
+    def inmost(self, point: np.ndarray) -> np.ndarray:
+        """The translate (n,) of a point (n,) that is farthest from all limits of the
+        unknowns that shifts change; the point itself where it has none within them."""
+        moved = point + self.translates(point[None]).vectors
+        if not len(moved):
+            return point
+        low, high = self.limits[self.columns].T
+        places = moved[:, self.columns]
+        depths = np.minimum(places - low, high - places).min(axis=1)
+        inmost: np.ndarray = moved[int(np.argmax(depths))]
+        return inmost
 
     def count_of_closed(self, points: np.ndarray, reach: float) -> Count:
         """How many parts of a closed curve and of its translates are within the limits:

@@ -3,7 +3,9 @@
 A configuration that is only moved to within its limits and closed again leaves narrow
 ones again. What was beyond them is held within, at a place drawn there, and the rest
 closes the mechanism, if it can: with more held than the mechanism has freedoms it
-cannot, and fewer are.
+cannot, and fewer are. Where many are limited and others are not, holding one leads
+beyond the next: there the way along the solutions leads back, towards all limits at
+once.
 """
 
 from __future__ import annotations
@@ -17,6 +19,9 @@ from bifurc.decisions import is_start_solved
 __all__ = ["HoldingProblem", "brought_within_limits"]
 
 TIMES_BACK = 4  # that each is brought back, where closure leads beyond other limits
+STEPS = 30  # along the solutions towards the limits
+FARTHER, LONGEST = 8.0, 0.5  # times as far as the next solution, up to so many scales
+TINY = 1e-300  # keeps a length of zero from being divided by
 
 
 class HoldingProblem(Protocol):
@@ -27,8 +32,15 @@ class HoldingProblem(Protocol):
         """How many unknowns there are."""
 
     @property
+    def scale(self) -> float:
+        """The size of the unknowns."""
+
+    @property
     def bounds(self) -> np.ndarray:
         """Their lower and upper limits (n, 2)."""
+
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Solutions (k, n) near starts (k, n) and the residuals (k,)."""
 
     def are_inside(self, points: np.ndarray) -> np.ndarray:
         """Which points (k, n) lie within the limits (k,)."""
@@ -44,7 +56,7 @@ def brought_within_limits(
     problem: HoldingProblem, beyond: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
     """Solutions (k, n) within the limits, from others ``beyond`` (j, n) them."""
-    inside = [np.empty((0, problem.n))]
+    inside = [_led_within(problem, beyond)]
     kept = np.zeros(beyond.shape, dtype=bool)
     for _ in range(TIMES_BACK):
         if not len(beyond):
@@ -54,6 +66,61 @@ def brought_within_limits(
         inside.append(points[is_inside])
         beyond, kept = points[~is_inside], held[~is_inside]
     return np.concatenate(inside)
+
+
+def _led_within(problem: HoldingProblem, beyond: np.ndarray) -> np.ndarray:
+    """Solutions (k, n) within the limits to which the way leads along the solutions,
+    from others ``beyond`` (j, n) them.
+
+    Each step goes to the solution beside the nearest point of the middle half of the
+    limits, or farther that way, by the method of alternating projections (von Neumann
+    1950); it is the last where it leads no nearer to that half.
+    """
+    inside = [np.empty((0, problem.n))]
+    for _ in range(STEPS):
+        if not len(beyond):
+            break
+        points = _nearer(problem, beyond)
+        is_nearer = _distances(problem, points) < _distances(problem, beyond)
+        is_inside = problem.are_inside(points) & is_nearer
+        inside.append(points[is_inside])
+        beyond = points[is_nearer & ~is_inside]
+    return np.concatenate(inside)
+
+
+def _nearer(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
+    """The solutions (k, n) to which one step leads from others (k, n)."""
+    beside, gaps = problem.project(_middles(problem, points))
+    steps = beside - points
+    lengths = np.linalg.norm(steps, axis=1, keepdims=True)
+    longest = np.maximum(LONGEST * problem.scale, lengths)
+    steps *= np.minimum(FARTHER, longest / np.maximum(lengths, TINY))
+    far, far_gaps = problem.project(points + steps)
+    ends = np.array([beside, far])
+    distances = np.array([_distances(problem, end) for end in ends])
+    is_solved = np.array([is_start_solved(gaps), is_start_solved(far_gaps)])
+    distances[~is_solved] = np.inf
+    best = np.argmin(distances, axis=0)
+    nearer: np.ndarray = ends[best, np.arange(len(points))]
+    is_any = np.isfinite(distances.min(axis=0))
+    return np.where(is_any[:, None], nearer, points)
+
+
+def _middles(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
+    """The points (k, n) of the middle half of the limits that are next to points
+    (k, n)."""
+    low, high = problem.bounds.T
+    has_both = np.isfinite(problem.bounds).all(axis=1)
+    margin = np.zeros(problem.n)
+    margin[has_both] = 0.25 * (high - low)[has_both]
+    middles: np.ndarray = np.clip(points, low + margin, high - margin)
+    return middles
+
+
+def _distances(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
+    """How far points (k, n) are from the middle half of the limits (k,)."""
+    distances: np.ndarray = np.linalg.norm(points - _middles(problem, points), axis=1)
+    return distances
 
 
 def _held_within(

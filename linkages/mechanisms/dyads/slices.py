@@ -9,6 +9,8 @@ in a whole curve of configurations.
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -29,6 +31,8 @@ __all__ = ["DyadSlices", "slice_by_dyads"]
 
 SLICES = 36  # of a driver's period, or of its limits
 MOST_DRIVERS = 4
+MOST_POINTS = 20_000  # in the slices of a driver, with whole turns within limits
+TURN = 2 * math.pi
 MOST_TRIED = 16  # variables that are looked at as drivers
 
 
@@ -96,7 +100,7 @@ def _slice_by_dyads(
     structure: Structure, rng: np.random.Generator
 ) -> DyadSlices | None:
     geometry = _geometry(structure)
-    if geometry is None or _has_wide_limits(structure):
+    if geometry is None or _follows_many_turns(structure):
         return None
     still = make_plan(structure.mechanism, None)
     if still is not None:
@@ -137,12 +141,16 @@ def _geometry(structure: Structure) -> Geometry | None:
     return SpaceGeometry(structure.unit)
 
 
-def _has_wide_limits(structure: Structure) -> bool:
-    """Whether limits let an angle turn by more than a full turn: configurations that
-    are the same for dyads are several there."""
+def _follows_many_turns(structure: Structure) -> bool:
+    """Whether something follows an angle that may turn by more than a full turn within
+    its limits: it is elsewhere after each."""
+    columns = list(structure.column_of.values())
     return any(
-        one.is_angle and one.period == np.inf and one.high - one.low > 2 * np.pi
-        for one in structure.unknowns
+        unknown.is_angle
+        and unknown.period == np.inf
+        and unknown.high - unknown.low > TURN
+        and columns.count(number) > 1
+        for number, unknown in enumerate(structure.unknowns)
     )
 
 
@@ -157,6 +165,9 @@ def _slices(
         low, high = unknown.low, unknown.high
         if np.isfinite(unknown.period):
             low, high = 0.0, unknown.period
+        elif unknown.is_angle:
+            # what is a turn away is the same for dyads
+            high = min(high, low + TURN)
         step = (high - low) / SLICES
         places = low + step * (np.arange(SLICES) + rng.uniform())
         builder = Builder(structure, geometry, plan)
@@ -193,20 +204,29 @@ def _points_at(
             point = builder.unknowns(poses)
             if driver is not None:
                 point[driver] = place
-            points.append(_within_limits(builder.structure, point))
-    kept = [point for point in points if point is not None]
-    return np.array(kept).reshape(-1, len(builder.structure.unknowns))
+            points += _within_limits(builder.structure, point)
+            if len(points) > MOST_POINTS:
+                raise TooManyError
+    return np.array(points).reshape(-1, len(builder.structure.unknowns))
 
 
-def _within_limits(structure: Structure, point: np.ndarray) -> np.ndarray | None:
-    """A configuration (n,) with its limited angles within their limits; None where
-    something is beyond them."""
+def _within_limits(structure: Structure, point: np.ndarray) -> list[np.ndarray]:
+    """The configurations (n,) within the limits that are ``point`` (n,) but for whole
+    turns of limited angles, somewhat more of them than are wanted at most."""
+    turning, turns = [], []
     for number, unknown in enumerate(structure.unknowns):
         if np.isfinite(unknown.period) or not np.isfinite(unknown.high):
             continue
+        low, high = unknown.low - point[number], unknown.high - point[number]
         if unknown.is_angle:
-            turns = np.ceil((unknown.low - point[number]) / (2 * np.pi))
-            point[number] += 2 * np.pi * turns
-        if not unknown.low <= point[number] <= unknown.high:
-            return None
-    return point
+            turning.append(number)
+            first, last = math.ceil(low / TURN), math.floor(high / TURN)
+            turns.append(range(first, last + 1))
+        elif not low <= 0.0 <= high:
+            return []
+    points = []
+    for counts in itertools.islice(itertools.product(*turns), MOST_POINTS + 1):
+        moved = point.copy()
+        moved[turning] += TURN * np.array(counts)
+        points.append(moved)
+    return points

@@ -67,8 +67,9 @@ def read_settings(root: Element) -> Settings:
         if len(sequence) != 3 or set(sequence) - set("xyzXYZ"):
             compiler.refuse("eulerseq", quoted(sequence), "three of x, y, z, X, Y, Z")
         settings.euler_sequence = sequence
-        automatic = compiler.choice("autolimits", ("true", "false"), "true")
-        settings.has_auto_limits = automatic == "true"
+        if "autolimits" in compiler.attributes:
+            automatic = compiler.choice("autolimits", ("true", "false"), "true")
+            settings.has_auto_limits = automatic == "true"
     for default in root.all("default"):
         _read_defaults(default, {}, MAIN, settings)
     return settings

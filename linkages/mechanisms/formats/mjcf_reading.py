@@ -19,6 +19,7 @@ import numpy as np
 from linkages.decisions import is_one_anchor
 from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.couplings import Coupling
+from linkages.mechanisms.file import MANY_TURNS
 from linkages.mechanisms.formats.assembly import (
     Assembly,
     BodyJoint,
@@ -219,8 +220,16 @@ def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
         value = quoted(joint.attributes["axis"])
         joint.refuse("axis", value, "of a length other than zero")
     unit = model.settings.angle_unit if kind == "hinge" else 1.0
-    limits = None if kind == "ball" else _read_limits(joint, unit, model.settings)
-    if kind == "ball" and "range" in joint.attributes:
+    limits = _read_limits(joint, kind, unit, model.settings)
+    low, high = limits or (0.0, 0.0)
+    is_in_radians = kind == "hinge" and unit == 1.0
+    if is_in_radians and max(-low, high) > MANY_TURNS:
+        model.notes.append(
+            f"joint {name} is limited from {low:g} to {high:g} rad, more than two "
+            'turns; if that is in degrees, write angle="degree"'
+        )
+    if kind == "ball" and limits is not None:
+        limits = None
         model.notes.append(f"left out: the range of the ball joint {name}")
     is_slide = kind == "slide"
     place_of = model.origin.place_of_slide if is_slide else model.point
@@ -230,16 +239,25 @@ def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
     return axis
 
 
-def _read_limits(joint: Element, unit: float, settings: Settings) -> Limits | None:
-    """The limits of a joint, from where it is at qpos0."""
+def _read_limits(
+    joint: Element, kind: str, unit: float, settings: Settings
+) -> Limits | None:
+    """The limits of a joint, from where it is at qpos0; None where MuJoCo does not
+    limit it. Raises `GeometryError` where MuJoCo refuses the range."""
     limited = joint.choice("limited", ("true", "false", "auto"), "auto")
-    given = joint.numbers("range", (2,))
-    if given is None or limited == "false":
+    # a range that is not given is 0 0 for MuJoCo
+    low, high = joint.numbers("range", (2,)) or (0.0, 0.0)
+    is_limited = limited == "true"
+    if limited == "auto":
+        if (low or high) and not settings.has_auto_limits:
+            allowed = 'with `limited`, as the compiler says autolimits="false"'
+            joint.refuse("range", [low, high], allowed)
+        is_limited = low < high
+    if not is_limited:
         return None
-    low, high = given
-    if limited == "auto" and not (settings.has_auto_limits and low < high):
-        return None
-    if not low < high:
+    if kind == "ball" and low:
+        joint.refuse("range", [low, high], "0 and the largest angle of a ball")
+    if kind != "ball" and not low < high:
         joint.refuse("range", [low, high], "a smaller number and a larger one")
     reference = (joint.numbers("ref", (1,)) or [0.0])[0]
     return (unit * (low - reference), unit * (high - reference))

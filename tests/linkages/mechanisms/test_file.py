@@ -186,3 +186,21 @@ def test_a_point_beyond_all_measure_is_refused(tmp_path):
     path.write_text(four_bar().replace("[0, 1, 0]", "[0, 1e308, 0]"))
     with pytest.raises(LinkageFileError, match="point of joint B"):
         linkages.load(path)
+
+
+@pytest.mark.parametrize(
+    ("unit", "limits", "is_said"),
+    [
+        ("rad", "[-90, 90]", True),
+        ("rad", "[-7, 7]", False),
+        ("deg", "[-900, 9]", False),
+    ],
+)
+def test_limits_in_radians_of_more_than_two_turns_are_said(
+    unit, limits, is_said, tmp_path, caplog
+):
+    path = tmp_path / "m.toml"
+    text = four_bar(f"limits = {limits}\n", f'angles = "{unit}"\n')
+    path.write_text(text, encoding="utf-8")
+    linkages.load(path)
+    assert ("limits of joint D are [-90, 90]" in caplog.text) is is_said

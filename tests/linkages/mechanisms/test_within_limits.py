@@ -7,11 +7,11 @@ import pytest
 
 import linkages
 from bifurc import SearchSettings
+from linkages.mechanisms import within_limits
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
-from linkages.mechanisms.slices_within_limits import SLICES, slices_within_limits
 from linkages.mechanisms.within_limits import brought_within_limits
 
 FEW = SearchSettings(starts=60, prove=False, certify=False, near_motions=False)
@@ -111,20 +111,31 @@ def test_nothing_is_brought_from_nowhere():
     assert brought_within_limits(problem, np.empty((0, 6)), rng).shape == (0, 6)
 
 
-@pytest.mark.parametrize(("low", "count"), [(-2.5, 2), (1.0 + 2 * np.pi, 2), (-1.0, 0)])
-def test_slices_of_a_joint_within_its_limits_are_complete(low, count):
-    mechanism = line_symmetric_loop(R0=(low, low + 0.05))
-    problem = MechanismClosure(mechanism)
-    points = slices_within_limits(problem.structure, np.random.default_rng(0))
-    assert len(points) == count * SLICES
-    assert np.all(problem.are_inside(points))
-    assert np.abs(problem.residuals(points)).max(initial=0.0) < 1e-12
+def test_the_way_along_solutions_leads_within_many_limits(monkeypatch):
+    monkeypatch.setattr(within_limits, "TIMES_BACK", 0)  # nothing is held
+    free = line_symmetric_loop()
+    branch = linkages.map_linkage(free, settings=FEW).forms[0].branch
+    (place,) = Readout(free).values(branch(0.3 * branch.length)[None])
+    limits = {f"R{k}": (place[k] - 0.02, place[k] + 0.03) for k in range(5)}
+    problem = MechanismClosure(line_symmetric_loop(**limits))
+    rng = np.random.default_rng(0)
+    starts = np.column_stack([rng.uniform(*pair, 40) for pair in limits.values()])
+    starts = np.column_stack([starts, rng.uniform(-np.pi, np.pi, 40)])
+    points, gaps = problem.project(starts)
+    beyond = points[(gaps < 1e-12) & ~problem.are_inside(points)]
+    inside = within_limits.brought_within_limits(problem, beyond, rng)
+    assert len(inside) > 0.2 * len(beyond) > 2
+    assert np.all(problem.are_inside(inside))
+    assert np.abs(problem.residuals(inside)).max() < 1e-9
 
 
-@pytest.mark.parametrize(
-    "mechanism", [line_symmetric_loop(), rccc((-1.0, 1.0))], ids=["free", "slides"]
-)
-def test_what_has_no_limits_or_slides_has_no_slices_within_limits(mechanism):
-    problem = MechanismClosure(mechanism)
-    points = slices_within_limits(problem.structure, np.random.default_rng(0))
-    assert points.shape == (0, problem.n)
+@pytest.mark.parametrize("width", [1e-3, 0.1])
+def test_the_form_through_the_reference_is_listed_whatever_the_limits_are(width):
+    rng = np.random.default_rng(1)
+    for _ in range(3):
+        sides = rng.uniform(0.001, 1.0, (6, 2)) * width
+        limits = {f"R{k}": (-a, b) for k, (a, b) in enumerate(sides)}
+        mechanism = line_symmetric_loop(**limits)
+        atlas = linkages.map_linkage(mechanism, settings=FEW)
+        distances = [form.branch.nearest(np.zeros(6))[0][0] for form in atlas.forms]
+        assert min(distances) < 1e-9

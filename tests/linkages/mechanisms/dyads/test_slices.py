@@ -1,5 +1,7 @@
 """Slices built of dyads hold every configuration, and what is said of them is true."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,6 +20,7 @@ from tests.linkages.mechanisms.known_mechanisms import (
     mechanism_of_case,
 )
 from tests.linkages.mechanisms.test_maps import slider_crank
+from tests.linkages.mechanisms.test_translates import revolutes
 
 
 def six_bar_on_sphere():
@@ -202,3 +205,30 @@ def test_a_body_that_turns_freely_is_not_certified_away():
     atlas = linkages.map_linkage(Mechanism(joints), settings=FEW)
     assert len(atlas.forms) == 1
     assert atlas.completeness.level is Level.ESTIMATED
+
+
+def test_slices_hold_every_whole_turn_within_the_limits():
+    turn, low = 2 * np.pi, -3.0
+    counts = []
+    for turns in (1, 2, 5):
+        structure = Structure(revolutes((low, low + turns * turn)))
+        points = slice_by_dyads(structure, np.random.default_rng(0)).points
+        values = points[:, structure.column_of[0]]
+        assert np.all((values >= low) & (values <= low + turns * turn))
+        problem = MechanismClosure(structure.mechanism)
+        assert problem.gaps(points).max() < 1e-9
+        counts.append(len(points))
+    assert counts == [counts[0], 2 * counts[0], 5 * counts[0]]
+
+
+@pytest.mark.parametrize(("high", "is_built"), [(3.0, True), (9.0, False)])
+def test_what_follows_many_turns_is_not_built_by_dyads(high, is_built):
+    joints = geared_five_bar(ratio=0.5).joints
+    leader = next(one.coupled[0].to for one in joints if one.coupled[0] is not None)
+    limited = [
+        replace(joint, limits=((-3.0, high),)) if joint.name == leader else joint
+        for joint in joints
+    ]
+    structure = Structure(Mechanism(tuple(limited)))
+    slices = slice_by_dyads(structure, np.random.default_rng(0))
+    assert (slices is not None) is is_built
