@@ -12,7 +12,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Processes share the cores: threads of BLAS in each would only compete.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: map test test-fragile test-processors lint studies gallery bench docs pages dist viewer viewer-packages chromium clean
+.PHONY: map test test-exhaustive test-fragile test-processors lint studies gallery bench docs pages dist viewer viewer-packages chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -20,13 +20,18 @@ map: .venv/ready  ## the main job: one linkage to its complete transition map
 # Neighbours in a file stay in one process, which makes what they share once.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 
-test: .venv/ready-to-test  ## all tests, the examples of README and docs among them
+test: .venv/ready-to-test  ## the tests, the examples of README and docs among them
 	$(PYTEST)
+
+test-exhaustive: .venv/ready-to-test  ## the cases for which a sample stands in `make test`
+	$(PYTEST) -m exhaustive
 
 # OpenBLAS picks its kernels by the processor; other kernels give other last bits.
 PROCESSORS := Prescott Nehalem Haswell Zen SkylakeX
 FRAGILE := tests/test_literature.py tests/bifurc/curves/test_monitor.py tests/bifurc/surfaces/test_covering.py \
   tests/bifurc/search/test_canonical_order.py tests/studies/test_same_answer.py
+# An area is a sum over charts, of which no last bit decides anything.
+SOUND := area
 
 test-processors: .venv/ready-to-test  ## all tests with the last bits of five processors, with one thread and with two
 	for kernel in $(PROCESSORS); do for threads in 1 2; do \
@@ -40,7 +45,7 @@ test-fragile: $(KERNELS)  ## what once hung on the last bits, and a sample of st
 
 .PHONY: $(KERNELS)
 $(KERNELS): test-fragile-%: .venv/ready-to-test
-	OPENBLAS_CORETYPE=$* $(BIN)/python -m pytest $(FRAGILE)
+	OPENBLAS_CORETYPE=$* $(BIN)/python -m pytest $(FRAGILE) -k 'not $(SOUND)'
 
 lint: .venv/packages  ## ruff and mypy
 	$(BIN)/python -m ruff check .
