@@ -12,7 +12,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Processes share the cores: threads of BLAS in each would only compete.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: map test test-fragile test-processors lint studies gallery bench docs pages dist viewer chromium clean
+.PHONY: map test test-exhaustive test-fragile test-processors lint studies gallery bench docs pages dist viewer viewer-packages chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -20,13 +20,18 @@ map: .venv/ready  ## the main job: one linkage to its complete transition map
 # Neighbours in a file stay in one process, which makes what they share once.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 
-test: .venv/ready-to-test  ## all tests, the examples of README and docs among them
+test: .venv/ready-to-test  ## the tests, the examples of README and docs among them
 	$(PYTEST)
+
+test-exhaustive: .venv/ready-to-test  ## the cases for which a sample stands in `make test`
+	$(PYTEST) -m exhaustive
 
 # OpenBLAS picks its kernels by the processor; other kernels give other last bits.
 PROCESSORS := Prescott Nehalem Haswell Zen SkylakeX
 FRAGILE := tests/test_literature.py tests/bifurc/curves/test_monitor.py tests/bifurc/surfaces/test_covering.py \
   tests/bifurc/search/test_canonical_order.py tests/studies/test_same_answer.py
+# An area is a sum over charts, of which no last bit decides anything.
+SOUND := area
 
 test-processors: .venv/ready-to-test  ## all tests with the last bits of five processors, with one thread and with two
 	for kernel in $(PROCESSORS); do for threads in 1 2; do \
@@ -34,12 +39,15 @@ test-processors: .venv/ready-to-test  ## all tests with the last bits of five pr
 	  OPENBLAS_CORETYPE=$$kernel OPENBLAS_NUM_THREADS=$$threads $(PYTEST) || exit 1; \
 	done; done
 
-test-fragile: .venv/ready-to-test  ## what once hung on the last bits, and a sample of studies.same_answer, under three processors
-	for kernel in Nehalem Haswell SkylakeX; do \
-	  echo "$$kernel"; OPENBLAS_CORETYPE=$$kernel $(PYTEST) $(FRAGILE) || exit 1; \
-	done
+# With --jobs, the processors side by side.
+KERNELS := $(addprefix test-fragile-,Nehalem Haswell SkylakeX)
+test-fragile: $(KERNELS)  ## what once hung on the last bits, and a sample of studies.same_answer, under three processors
 
-lint: .venv/ready-to-test  ## ruff and mypy
+.PHONY: $(KERNELS)
+$(KERNELS): test-fragile-%: .venv/ready-to-test
+	OPENBLAS_CORETYPE=$* $(BIN)/python -m pytest $(FRAGILE) -k 'not $(SOUND)'
+
+lint: .venv/packages  ## ruff and mypy
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m mypy
@@ -73,6 +81,9 @@ dist: .venv/ready  ## sdist and wheel into dist/
 viewer:  ## the script of the pages of `bifurc view`, built anew from viewer/ (needs node and npm)
 	cd viewer && npm install --no-audit --no-fund --silent && node build.js
 
+viewer-packages:  ## what a test needs to build that script anew, where there is npm
+	@(cd viewer && npm install --no-audit --no-fund --silent) || echo "no npm: the viewer is not built anew"
+
 # Tests of the viewer drive a browser; where there is none, and none can be installed, they are skipped and say so.
 chromium:  ## a browser without a window, from Debian's packages, where that is possible
 	@for name in chromium-headless-shell chromium google-chrome; do \
@@ -87,21 +98,33 @@ clean:
 	rm -rf .venv build dist out
 
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard */core/*)
-INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
+# Python compiles a module where it is first imported; most of what is installed never is.
+INSTALL = $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 
 # What the program needs.
 .venv/ready: $(SOURCES)
 	$(require-compiler)
 	$(PYTHON) -m venv .venv
-	$(INSTALL) .
+	$(INSTALL) --editable .
 	touch $@
 
-# What tests, checks and the site need besides.
-.venv/ready-to-test: $(SOURCES)
-	$(require-compiler)
-	$(PYTHON) -m venv .venv
-	$(INSTALL) '.[test]'
+# What tests, checks and the site need besides. With --jobs=2, compiler and pip work side by side.
+.venv/ready-to-test: .venv/compiled .venv/packages
 	touch .venv/ready $@
+
+.venv/compiled: $(SOURCES) | .venv/made
+	$(require-compiler)
+	$(INSTALL) --no-deps --editable .
+	touch $@
+
+.venv/packages: pyproject.toml .ci/requirements.py | .venv/made
+	$(BIN)/python .ci/requirements.py test > .venv/requirements.txt
+	$(INSTALL) --requirement .venv/requirements.txt
+	touch $@
+
+.venv/made:
+	$(PYTHON) -m venv .venv
+	touch $@
 
 define require-compiler
 @command -v c++ > /dev/null || { echo "A C++ compiler is missing (on Debian and Ubuntu: apt install g++)." >&2; exit 1; }

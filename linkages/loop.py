@@ -18,7 +18,13 @@ import numpy as np
 from linkages import kinematics
 from linkages.geometry_table import geometry_rows, geometry_text
 from linkages.kinematics import LinkTable, Number
-from linkages.values import GeometryError, check_angle, check_number, quoted
+from linkages.values import (
+    GeometryError,
+    check_angles,
+    check_number,
+    check_numbers,
+    quoted,
+)
 
 __all__ = [
     "LARGEST",
@@ -70,10 +76,9 @@ class Loop:
             if count != n:
                 allowed = f"{n}, the number of lengths"
                 raise GeometryError(f"number of {column}", count, allowed)
-        for column in ("lengths", "twists", "offsets"):
-            check = check_angle if column == "twists" else check_number
-            for i, value in enumerate(getattr(self, column), start=1):
-                check(f"{column}[{i}]", value)
+        check_numbers("lengths", self.lengths)
+        check_angles("twists", self.twists)
+        check_numbers("offsets", self.offsets)
 
     @property
     def n(self) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +14,10 @@ from bifurc.errors import BifurcError
 __all__ = [
     "GeometryError",
     "check_angle",
+    "check_angles",
     "check_direction",
     "check_number",
+    "check_numbers",
     "quoted",
     "told_apart",
 ]
@@ -87,6 +90,31 @@ def check_angle(name: str, value: object, *, in_degrees: bool = False) -> None:
         shown, bound = told_apart(angle, largest)
         allowed = f"between -{bound} and {bound} {unit}, {MOST_TURNS} turns"
         raise GeometryError(name, f"{shown} {unit}", allowed)
+
+
+def check_numbers(name: str, values: Sequence[object]) -> None:
+    """Raises `GeometryError` as `check_number` for each value; entries are counted from
+    1."""
+    if _are_finite_floats(values):
+        return  # as a rule, and thousands of times when a linkage is identified
+    for i, value in enumerate(values, start=1):
+        check_number(f"{name}[{i}]", value)
+
+
+def check_angles(name: str, values: Sequence[object]) -> None:
+    """Raises `GeometryError` as `check_angle` for each value, rad; entries are counted
+    from 1."""
+    if _are_finite_floats(values, MOST_TURNS * 2 * math.pi):
+        return
+    for i, value in enumerate(values, start=1):
+        check_angle(f"{name}[{i}]", value)
+
+
+def _are_finite_floats(values: Sequence[Any], largest: float = math.inf) -> bool:
+    """Whether all values are floats, not `numpy.float64`, finite and no larger."""
+    if set(map(type, values)) != {float} or not all(map(math.isfinite, values)):
+        return False
+    return bool(max(map(abs, values)) <= largest)
 
 
 def check_direction(name: str, vector: Sequence[float]) -> None:

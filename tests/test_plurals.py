@@ -17,6 +17,6 @@ def test_what_is_counted_is_printed_by_one_function():
         f"{path.relative_to(SOURCES)}:{number}: {line.strip()}"
         for path in sorted(SOURCES.rglob("*.py"))
         for number, line in enumerate(path.read_text("utf-8").splitlines(), start=1)
-        if FIELD.search(line)
+        if "} " in line and FIELD.search(line)  # most lines have no field
     ]
     assert lines == []

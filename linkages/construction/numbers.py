@@ -53,7 +53,10 @@ class Number(Protocol):
 def _library(*values: Number) -> ModuleType:
     """The module whose functions fit the widest type among ``values``: sympy, mpmath,
     exact numbers, math."""
-    if all(type(v) is float for v in values):
+    for value in values:
+        if type(value) is not float:
+            break
+    else:
         return math  # as a rule, and thousands of times when a linkage is identified
     roots = {type(v).__module__.split(".")[0] for v in values}
     for name in ("sympy", "mpmath"):

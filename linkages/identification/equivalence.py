@@ -97,16 +97,16 @@ def readings(n: int) -> tuple[Reading, ...]:
 
 
 def normal_form(values: np.ndarray) -> np.ndarray:
-    """The table with no negative length and every twist in [0, pi), axes and links
-    being reversed as needed.
+    """The tables (..., 3, n) with no negative length and every twist in [0, pi), axes
+    and links being reversed as needed.
 
     Offsets keep their size only. The parity of the axis reversals is lost: use it to
     read off parameters.
     """
-    lengths, twists, offsets = values
+    lengths, twists, offsets = np.moveaxis(values, -2, 0)
     turned = np.mod(np.where(lengths < 0, -twists, twists), np.pi)
     turned = np.where(np.pi - turned < 1e-12, 0.0, turned)
-    return np.array([np.abs(lengths), turned, offsets])
+    return np.stack([np.abs(lengths), turned, offsets], axis=-2)
 
 
 @dataclass(frozen=True)
@@ -118,7 +118,7 @@ class Signs:
 
     def of(self, values: np.ndarray) -> np.ndarray:
         """The table (3, n) with these links and axes reversed."""
-        turns = np.where(self.axes * np.roll(self.axes, -1) < 0, np.pi, 0.0)
+        turns = np.where(_opposite_to_next(self.axes), np.pi, 0.0)
         return np.array(
             [
                 self.links * values[0],
@@ -126,6 +126,13 @@ class Signs:
                 self.axes * values[2],
             ]
         )
+
+
+def _opposite_to_next(signs: np.ndarray) -> np.ndarray:
+    """Whether each of the ``signs`` (n,) is another than the next, the last than the
+    first (n,)."""
+    opposite: np.ndarray = signs != np.concatenate((signs[1:], signs[:1]))
+    return opposite
 
 
 @dataclass(frozen=True)
@@ -175,9 +182,14 @@ def compare(target: np.ndarray, candidates: np.ndarray, unit: float) -> Comparis
 
     Lengths and offsets are measured in ``unit``.
     """
-    k, _, n = candidates.shape
     links = _link_costs(target, candidates, unit).least
     joints = _joint_costs(target, candidates, unit)
+    return _compare_costs(links, joints)
+
+
+def _compare_costs(links: np.ndarray, joints: np.ndarray) -> Comparison:
+    """Distances (k,) from the costs (k, n, 2) of links and of joints."""
+    k, n, _ = links.shape
     choices = _axis_choices(n)
     by_twists = links.reshape(k, 2 * n) @ choices.of_twists
     by_offsets = joints.reshape(k, 2 * n) @ choices.of_offsets
@@ -193,11 +205,12 @@ def find_signs(target: np.ndarray, candidate: np.ndarray, unit: float) -> Signs:
     """The reversals that bring ``candidate`` (3, n) as near to ``target`` (3, n) as
     they can."""
     n = candidate.shape[1]
-    best = compare(target, candidate[None], unit).axes[0]
+    links = _link_costs(target, candidate[None], unit)
+    joints = _joint_costs(target, candidate[None], unit)
+    best = _compare_costs(links.least, joints).axes[0]
     axes = _axis_choices(n).signs[best]
-    turns = (axes * np.roll(axes, -1) < 0).astype(int)
-    is_reversed = _link_costs(target, candidate[None], unit).is_reversed[0]
-    reverse = is_reversed[np.arange(n), turns]
+    turns = _opposite_to_next(axes).astype(int)
+    reverse = links.is_reversed[0][np.arange(n), turns]
     return Signs(np.where(reverse, -1.0, 1.0), axes)
 
 

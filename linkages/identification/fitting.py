@@ -96,9 +96,8 @@ def best_member(entry: Entry, views: Sequence[View], unit: float) -> Member | No
     Lengths are measured in ``unit``. Where all views are far off, the member is the
     best guess, not fitted.
     """
-    candidates: list[Candidate] = []
-    for view in views:
-        candidates += _candidates(entry, view, unit)
+    with np.errstate(all="ignore"):
+        candidates = _candidates(entry, views, unit)
     if not candidates:
         return None
     targets = np.array([candidate.view.values for candidate in candidates])
@@ -133,18 +132,23 @@ def _build(entry: Entry, parameters: Mapping[str, float]) -> np.ndarray | None:
 # --- candidates
 
 
-def _candidates(entry: Entry, view: View, unit: float) -> list[Candidate]:
-    """Parameters that the table suggests in this view, with the members they make."""
-    plain = {**entry.defaults, **plain_guess(entry, view.form)}
-    if entry.guesses is None and not entry.scan:
-        return list(_built(entry, view, [plain]))
-    if not _plain_part_fits(entry, plain, view.form, unit):
-        return []
-    with np.errstate(all="ignore"):
-        if entry.guesses is not None:
+def _candidates(entry: Entry, views: Sequence[View], unit: float) -> list[Candidate]:
+    """Parameters that the table suggests in its views, with the members they make."""
+    plains = [{**entry.defaults, **plain_guess(entry, view.form)} for view in views]
+    has_hidden = entry.guesses is not None or bool(entry.scan)
+    is_near = [True] * len(views)
+    if has_hidden:
+        is_near = _plain_parts_fit(entry, plains, views, unit).tolist()
+    candidates: list[Candidate] = []
+    for view, plain in itertools.compress(zip(views, plains, strict=True), is_near):
+        if not has_hidden:
+            candidates += _built(entry, view, [plain])
+        elif entry.guesses is not None:
             guesses = [{**plain, **guess} for guess in entry.guesses(view.form)]
-            return list(_built(entry, view, guesses))
-        return _scanned_candidates(entry, view, plain, unit)
+            candidates += _built(entry, view, guesses)
+        else:
+            candidates += _scanned_candidates(entry, view, plain, unit)
+    return candidates
 
 
 def _scanned_candidates(
@@ -181,23 +185,30 @@ def _built(
             yield Candidate(view, parameters, values)
 
 
-def _plain_part_fits(
-    entry: Entry, plain: Mapping[str, float], form: np.ndarray, unit: float
-) -> bool:
-    """Whether the numbers that no hidden parameter changes are near those of the table,
-    signs apart."""
-    values = _build(entry, plain)
-    if values is None:
-        return True  # only the hidden parameters can tell
+def _plain_parts_fit(
+    entry: Entry,
+    plains: Sequence[Mapping[str, float]],
+    views: Sequence[View],
+    unit: float,
+) -> np.ndarray:
+    """For each view (v,), whether the numbers that no hidden parameter changes are near
+    those of the table, signs apart; true where only the hidden parameters can tell."""
+    tables = [_build(entry, plain) for plain in plains]
+    is_built = np.array([values is not None for values in tables])
+    fits = np.ones(len(views), dtype=bool)
+    if not is_built.any():
+        return fits
     fixed = _unchanged(entry.construct, entry.parameters)
-    other = normal_form(values)
-    gaps = np.abs(np.abs(form) - np.abs(other)) / unit
-    turn = np.abs(np.sin(form[1] - other[1]))
-    opposite = np.abs(np.sin(form[1] + other[1]))
+    forms = np.array([view.form for view in views])[is_built]  # (k, 3, n)
+    others = normal_form(np.array([values for values in tables if values is not None]))
+    gaps = np.abs(np.abs(forms) - np.abs(others)) / unit
+    turn = np.abs(np.sin(forms[:, 1] - others[:, 1]))
+    opposite = np.abs(np.sin(forms[:, 1] + others[:, 1]))
     # a link of no length may be reversed unseen
-    is_short = np.minimum(form[0], other[0]) < NEAR * unit
-    gaps[1] = np.where(is_short, np.minimum(turn, opposite), turn)
-    return not np.any(gaps[fixed] > NEAR)
+    is_short = np.minimum(forms[:, 0], others[:, 0]) < NEAR * unit
+    gaps[:, 1] = np.where(is_short, np.minimum(turn, opposite), turn)
+    fits[is_built] = ~np.any(gaps[:, fixed] > NEAR, axis=1)
+    return fits
 
 
 @cache

@@ -11,6 +11,8 @@ CASES = json.loads(
     (Path(__file__).parents[2] / "data" / "reference_configurations.json").read_text()
 )
 
+ROUNDING = 1e-14  # rad; no correction after a smaller one changes more than last bits
+
 
 @pytest.fixture(scope="session")
 def reference_cases():
@@ -68,12 +70,11 @@ def _traced(loop, start, step=0.06, limit=3000):
             gap = loop.frames(theta)[-1]
             twist = np.array([gap[2, 1], gap[0, 2], gap[1, 0], *gap[:3, 3]])
             rows = np.vstack([scale * loop.joint_screws(theta), t])
-            theta = (
-                theta
-                - np.linalg.lstsq(
-                    rows, np.append(scale[:, 0] * twist, 0.0), rcond=1e-5
-                )[0]
-            )
+            right = np.append(scale[:, 0] * twist, 0.0)
+            change = np.linalg.lstsq(rows, right, rcond=1e-5)[0]
+            theta = theta - change
+            if np.abs(change).max() < ROUNDING:
+                break
         return theta
 
     points = [np.asarray(start, dtype=float)]

@@ -23,6 +23,7 @@ from linkages.loop import GeometryError, Loop
 ENTRIES = [entry for entry in catalogue().values() if entry.facts.get("mobility") == 1]
 MEMBERS = 6
 STARTS = 40
+ROUNDING = 1e-14  # rad; no step after a smaller one changes more than last bits
 TWISTS = np.radians([35.0, 62.0, 41.0, 22.0])
 
 
@@ -56,6 +57,8 @@ def project(loop: Loop, theta: np.ndarray, steps: int = 40) -> np.ndarray:
             normal, -np.einsum("kij,ki->kj", jacobian, residual)[..., None]
         )[..., 0]
         theta = theta + np.clip(step, -1, 1)
+        if np.abs(step).max() < ROUNDING:
+            break
     return theta[np.abs(closure(loop, theta)[0]).max(axis=1) < 1e-11]
 
 

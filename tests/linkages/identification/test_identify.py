@@ -21,6 +21,7 @@ from linkages.identification.equivalence import (
 )
 from linkages.identification.identify import ALIKE, NEAR, ToleranceError, identify
 from linkages.identification.recovery import plain_parameters
+from tests.samples import one_in
 
 CASES = json.loads(
     (Path(__file__).parents[3] / "data" / "catalogue_cases.json").read_text()
@@ -53,7 +54,9 @@ def off_by_1e_4(values, is_one, rng):
     return values
 
 
-@pytest.mark.parametrize("number", range(len(CASES)), ids=NAMES)
+@pytest.mark.parametrize(
+    "number", one_in(3, range(len(CASES)), lambda number: NAMES[number])
+)
 def test_a_disguised_case_is_named_and_refused_where_it_is_off_by_1e_4(number):
     case, rng = CASES[number], np.random.default_rng(number)
     found = identify(disguised(table_of(case), rng), locking=False)
