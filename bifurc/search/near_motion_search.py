@@ -107,8 +107,8 @@ class NearMotionSearch:
         return points
 
     def _nearly_closed(self, points: np.ndarray) -> np.ndarray:
-        """Points (k, n) in the valleys below points (j, n), where the system is nearly
-        solved, below as many as there is time for."""
+        """Points (k, n) within the bounds in the valleys below points (j, n), where the
+        system is nearly solved, below as many as there is time for."""
         lowest = valley_points(self.problem, points, self.run.deadline)
         is_near = nearly_closes(self.problem.gaps(lowest))
-        return lowest[is_near]
+        return lowest[is_near & self.problem.are_inside(lowest)]

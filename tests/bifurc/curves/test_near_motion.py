@@ -192,3 +192,17 @@ def test_a_near_motion_ends_where_it_bulges_out_of_the_bounds(height):
     assert not near.is_closed
     ends = near.branch(np.array([0.0, near.length]))
     assert ends[:, 1] == pytest.approx([1 - height] * 2, abs=1e-9)
+
+
+def test_what_nearly_moves_beyond_the_bounds_is_no_near_motion():
+    def nearly_a_plane(u):
+        x, y, z = u
+        off = x - 1.5
+        first = off * y + 1e-7 * (y + 3.0)
+        second = off * (z - x + 0.5) + 2e-7
+        return [first, second, off * (y + z - 0.2) + 1e-7]
+
+    within = explore(FunctionProblem(nearly_a_plane, [(-1.0, 1.0)] * 3))
+    beyond = explore(FunctionProblem(nearly_a_plane, [(-2.0, 2.0)] * 3))
+    assert len(within.rigid) == 1 and not within.near_motions
+    assert [near.mobility for near in beyond.near_motions] == [2]
