@@ -41,7 +41,7 @@ from bifurc.search.meeting_points import meeting_points
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap
 
-__all__ = ["assemble_atlas"]
+__all__ = ["assemble_atlas", "near_misses_of"]
 
 # Decades by which the misclosures of two near motions differ that are not alike.
 SAME_MISCLOSURE = 1e-3
@@ -77,7 +77,7 @@ def assemble_atlas(
     rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)
-    near_misses = _near_misses(problem, traced, findings.points, points, periods)
+    near_misses = near_misses_of(problem, traced, findings.points, points, periods)
     deflated = findings.components.deflated
     doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
     doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
@@ -300,7 +300,7 @@ def _is_on_near_motion(findings: Findings, point: SingularPoint) -> bool:
 # --- events ---------------------------------------------------------------------------
 
 
-def _near_misses(
+def near_misses_of(
     problem: Problem,
     traced: Sequence[TracedBranch],
     points: Sequence[SingularPoint],

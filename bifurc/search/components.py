@@ -18,6 +18,7 @@ from bifurc.decisions import (
 from bifurc.limits import Deadline
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.search.singular_curves import SingularCurve, describe_curves
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
@@ -58,6 +59,8 @@ APART, ERRORS = 1e-5, 10
 # how often.
 PROBE, PROBES = 1e-2, 3
 UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
+# the same where curves of singular points were reached by chance
+UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
 
 
 @dataclass
@@ -72,7 +75,8 @@ class Components:
     ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
     is known. ``notes`` say what is known of a part, by its number. ``deflated`` is the
     problem with which surfaces are corrected to along which F' has a lower rank; seeds
-    of dimension 2 lie on such surfaces then.
+    of dimension 2 lie on such surfaces then, and ``curves`` are those of singular points
+    on them, by the part of the charts, -1 where there are no charts.
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
@@ -81,6 +85,7 @@ class Components:
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
     notes: dict[int, str] = field(default_factory=dict)
     deflated: RankDeflated | None = None
+    curves: dict[int, list[SingularCurve]] = field(default_factory=dict)
 
     def cover(
         self, problem: Problem, points: np.ndarray, charts: int, deadline: Deadline
@@ -123,6 +128,28 @@ class Components:
             places = int(np.count_nonzero(part[left_out] == k))
             self.notes[k] = _note(samples, places)
 
+    def parts_through(self, problem: Problem, point: np.ndarray) -> list[int]:
+        """The parts of the charts on which a singular point (n,) lies; -1 alone where
+        there are no charts."""
+        if self.charts is None:
+            return [-1]
+        return [
+            k
+            for k, part in enumerate(self.charts.parts())
+            if len(entrances(problem, part, point))
+        ]
+
+    def _note_of_lower_rank(self, part: int) -> str:
+        """What is known of a part along which F' has a lower rank; -1: of seeds without
+        charts."""
+        parts = [SHAKY]
+        words = describe_curves(self.curves.get(part, []))
+        if words:
+            parts.append(words)
+        if part >= 0:
+            parts.append(UNEXAMINED_ELSE if words else UNEXAMINED)
+        return "; ".join(parts)
+
     def surfaces(self, points: np.ndarray) -> tuple[Surface, ...]:
         """Connected surfaces as far as there are charts, then what none of them is
         known to hold, by dimension."""
@@ -136,7 +163,7 @@ class Components:
                 samples = samples[self.part_of < 0]
             if len(samples):
                 is_shaky = dimension == 2 and self.deflated is not None
-                note = SHAKY if is_shaky else ""
+                note = self._note_of_lower_rank(-1) if is_shaky else ""
                 surfaces.append(Surface(dimension, samples, note=note))
         return tuple(surfaces)
 
@@ -151,7 +178,7 @@ class Components:
                 on_part = part.centers[:1]
             note = self.notes.get(k, "")
             if self.deflated is not None:
-                note = f"{SHAKY}; {UNEXAMINED}"
+                note = self._note_of_lower_rank(k)
             surfaces.append(Surface(2, on_part, charts=part, note=note))
         return surfaces
 

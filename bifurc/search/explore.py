@@ -141,6 +141,7 @@ def _explored(
             search.trace_seeds()
             search.look_where_starts_stop()
             search.cover_surfaces()
+            search.trace_singular_curves()
             search.separate_points()
             search.join_branches()
             search.mend_at_germs()

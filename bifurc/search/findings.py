@@ -449,6 +449,18 @@ class Findings:
             place = renumbered[number]
             self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, place)
 
+    def forget_on_surface(self, number: int) -> None:
+        """Forget a singular point, given by its number, that is one of many of a
+        surface; the seeds at it are on that surface."""
+        del self.points[number]
+        for seed, fate in list(self.fates.items()):
+            if fate.fate is not Fate.AT_SINGULAR_POINT:
+                continue
+            if fate.number == number:
+                self.fates[seed] = SeedFate(Fate.ON_COMPONENT, 2)
+            elif fate.number > number:
+                self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, fate.number - 1)
+
     def _has_germ(self, number: int) -> bool:
         """Whether a singular point, given by its number, is where a germ is: the exact
         equations tell it from others."""

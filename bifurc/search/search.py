@@ -48,6 +48,7 @@ from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
 from bifurc.search.run import Run
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.search.settings import SearchSettings
+from bifurc.search.singular_curves import singular_curve_through
 from bifurc.search.start import Start, half_branch_starts
 from bifurc.search.subdivision import Subdivision, can_be_subdivided, subdivide
 from bifurc.search.subdivision_audit import audit_of, refuted_at
@@ -89,8 +90,9 @@ class Search:
     """The search for all branches and singular points of a ``problem``.
 
     Its steps are called in their order: `gather_seeds`, `sort_seeds`, `trace_seeds`,
-    `look_where_starts_stop`, `cover_surfaces`, `separate_points`, `mend_at_germs`,
-    `join_branches`, `audit_branches`, `audit_in_boxes`, and `near_motions.look`. Each
+    `look_where_starts_stop`, `cover_surfaces`, `trace_singular_curves`,
+    `separate_points`, `join_branches`, `mend_at_germs`, `audit_branches`,
+    `audit_in_boxes`, and `near_motions.look`. Each
     adds to the findings of the ``run``. From the end of the budget on a step does
     nothing. A Ctrl-C ends the budget, and then raises `KeyboardInterrupt` between two
     starts or at the end of the block; the findings hold what is known then.
@@ -471,6 +473,29 @@ class Search:
                 break
             sighting = self.points.sight(located)
             self._branch_off(half_branch_starts(sighting.point))
+
+    def trace_singular_curves(self) -> None:
+        """Trace the curves of singular points on surfaces along which F' has a lower
+        rank; points of them, of which there is no end, are listed no longer."""
+        components = self.findings.components
+        if components.deflated is None:
+            return
+        for number in range(len(self.findings.points) - 1, -1, -1):
+            point = self.findings.points[number]
+            if self.run.is_over or point.kind is not Kind.SURFACE:
+                continue
+            parts = components.parts_through(self.problem, point.u)
+            if len(parts) != 1:
+                continue  # surfaces meet there
+            curves = components.curves.setdefault(parts[0], [])
+            if not any(curve.holds(self.problem, point) for curve in curves):
+                curve = singular_curve_through(
+                    self.problem, point, self.settings.tracing, self.run.deadline
+                )
+                if curve is None:
+                    continue
+                curves.append(curve)
+            self.findings.forget_on_surface(number)
 
     # --- where starts stop ------------------------------------------------------------
 

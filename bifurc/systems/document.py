@@ -29,7 +29,12 @@ def make_document(atlas: Atlas) -> dict[str, Json]:
         "unknowns": _unknowns(atlas),
         "forms": [_form(atlas, form) for form in atlas.forms],
         "surfaces": [
-            {"name": one.name, "dimension": one.dimension, "complete": one.complete}
+            {
+                "name": one.name,
+                "dimension": one.dimension,
+                "complete": one.complete,
+                "note": one.note,
+            }
             for one in atlas.surfaces
         ],
         "singular_points": [_point(atlas, point) for point in atlas.points],

@@ -59,8 +59,8 @@ class AssemblyDocument(PlaceDocument):
 
 
 class FormDocument(PlaceDocument):
-    """A form; or a surface, with None for what makes sense for a curve only. Of a
-    mechanism also what its joints and bodies do."""
+    """A form; or a surface, with None for what makes sense for a curve only and a
+    ``note``. Of a mechanism also what its joints and bodies do."""
 
     name: str
     dimension: int
@@ -75,6 +75,7 @@ class FormDocument(PlaceDocument):
     min_singular_value: float | None
     component: int
     certificate: CertificateDocument | None
+    note: NotRequired[str]
     ranges: NotRequired[dict[str, RangeDocument]]
     still_joints: NotRequired[list[str]]
     bodies_as_one: NotRequired[list[list[str]]]
@@ -317,6 +318,7 @@ def _surface(atlas: Atlas, index: int) -> FormDocument:
         "min_singular_value": None,
         "component": atlas.components + index,
         "certificate": None,
+        "note": surface.note,
     }
     _add_variables(atlas, document, surface.samples[0])
     return document

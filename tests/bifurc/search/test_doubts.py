@@ -15,9 +15,12 @@ from bifurc.search.completeness import IN_DOUBT, judge_completeness
 from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.meeting_points import meeting_points
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Audit, Level
-from bifurc.singular.point import Kind
+from bifurc.singular.classify import classify_singular_point
+from bifurc.singular.locate import LocatedPoint
+from bifurc.singular.point import Kind, SingularPoint
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.four_bar import four_bar, kite
 from linkages.mapping import map_linkage
@@ -120,3 +123,37 @@ def test_forms_that_end_where_no_bounds_are_given_are_in_doubt():
     statement = explore(free).completeness.statement
     assert statement.startswith(IN_DOUBT)
     assert "no bounds on u2" in statement
+
+
+def crossing_of_lines() -> tuple[FunctionProblem, tuple[SingularPoint, list[Branch]]]:
+    """Two lines that cross, the point where they do, and both of them traced."""
+    problem = FunctionProblem(lambda u: [u[0] * u[1]], [(-1, 1)] * 2)
+    place = LocatedPoint(np.zeros(2), np.eye(2), 1e-15)
+    point = classify_singular_point(problem, place)
+    starts = (
+        (np.array([0.5, 0.0]), np.eye(2)[0]),
+        (np.array([0.0, 0.5]), np.eye(2)[1]),
+    )
+    return problem, (point, [trace_branch(problem, *start) for start in starts])
+
+
+def test_a_point_with_fewer_branches_traced_than_seen_is_in_doubt():
+    problem, (point, branches) = crossing_of_lines()
+    periods = np.full(2, np.inf)
+    whole = meeting_points(problem, [point], branches, (), periods)
+    assert whole[0].note == ""
+    assert doubts_of(problem, [], [], whole, ()) == ()
+    lacking = meeting_points(problem, [point], branches[:1], (), periods)
+    (doubt,) = doubts_of(problem, [], [], lacking, ())
+    assert "2 half-branches were traced, the section shows 4" in doubt
+
+
+def test_a_bifurcation_with_another_count_of_branches_is_said_not_to_be_whole():
+    problem, (point, branches) = crossing_of_lines()
+    fewer = replace(point, half_branches=point.half_branches[:2])
+    met = meeting_points(problem, [fewer], branches, (), np.full(2, np.inf))
+    (doubt,) = doubts_of(problem, [], [], met, ())
+    assert doubt == (
+        f"{met[0].name} (bifurcation) is not whole: 4 half-branches were traced, the "
+        "section shows 2"
+    )

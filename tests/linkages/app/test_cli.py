@@ -222,7 +222,7 @@ def test_a_surface_is_a_form_of_dimension_2(write):
     assert result.exit_code == 0
     document = json.loads(result.stdout)
     assert [form["dimension"] for form in document["forms"]] == [2]
-    assert set(document["forms"][0]) == KEYS["forms"]
+    assert set(document["forms"][0]) == KEYS["forms"] | {"note"}
 
 
 DOES_NOT_MOVE = {

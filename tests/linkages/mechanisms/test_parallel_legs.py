@@ -6,6 +6,8 @@ import pytest
 
 import linkages
 from bifurc.search.settings import SearchSettings
+from linkages.app.document import make_document
+from linkages.app.summary import make_summary
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from tests.samples import one_in
@@ -35,3 +37,10 @@ def test_the_translations_are_a_surface_and_the_twist_is_a_form(seed):
     assert form.branch.closed
     assert "misses the equations" not in atlas.completeness.statement
     assert "F' has a lower rank all over it" in surface.note
+    # where all legs lie in the planes of the plates, the rank is lower once more
+    assert "singular points of rank 5 form 1 closed curve" in surface.note
+    assert not atlas.points
+    document = make_document(atlas)
+    assert document["forms"][-1]["note"] == surface.note
+    assert not document["other_singular_points"]
+    assert surface.note in make_summary(atlas)
