@@ -43,16 +43,21 @@ def _children(model, parent):
 
 
 def sdf_text(model):
-    """An SDF text with the links, frames and joints of a model; all axes are along
-    y."""
+    """An SDF text with the links, frames and joints of a model, all about axes of the
+    same coordinates."""
+    attributes, direction = model["axis"]
+    axis = f"<axis><xyz{_attributes(attributes)}>{direction}</xyz></axis>"
     text = f'<sdf version="{model["version"]}"><model name="{model["name"]}">'
-    for name, pose in model["links"].items():
-        text += f'<link name="{name}"><pose>{pose}</pose></link>'
+    for name, own, pose in model["links"]:
+        text += f'<link name="{name}">{_pose(own, pose)}</link>'
     for name, link, pose in model["frames"]:
-        text += f'<frame name="{name}" attached_to="{link}">'
-        text += f'<pose relative_to="{link}">{pose}</pose></frame>'
-    for name, parent, child in model["joints"]:
+        text += f'<frame name="{name}" attached_to="{link}">{_pose({}, pose)}</frame>'
+    for name, parent, child, *pose in model["joints"]:
         text += f'<joint name="{name}" type="revolute">'
-        text += f"<parent>{parent}</parent><child>{child}</child>"
-        text += '<axis><xyz expressed_in="__model__">0 1 0</xyz></axis></joint>'
+        text += _pose(*pose) if pose else ""
+        text += f"<parent>{parent}</parent><child>{child}</child>{axis}</joint>"
     return f"{text}</model></sdf>"
+
+
+def _pose(attributes, numbers):
+    return f"<pose{_attributes(attributes)}>{numbers}</pose>"

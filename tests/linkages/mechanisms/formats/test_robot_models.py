@@ -22,6 +22,8 @@ FACTS = {
     "ten_armature_1_equiv": (1, 2, 0),
     "jdotv_connect_2d": (1, 1, 0),  # but for a body that turns about its joint
     "four_bar_loop": (1, 2, 2),  # a parallelogram
+    "anchored_loop": (1, 1, 0),  # 0.5, 0.5, 0.5 and 1.1: no bar turns fully
+    "closed_loop_four_bar_linkage": (1, 2, 2),  # a parallelogram
 }
 
 
