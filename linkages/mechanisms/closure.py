@@ -15,6 +15,7 @@ from bifurc.checks import check_type, rows_of
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import NumericalProblem
+from bifurc.limits import Deadline
 from bifurc.problem import (
     March,
     MarchSettings,
@@ -245,6 +246,8 @@ class MechanismClosure(NumericalProblem):
             seeds = replace(seeds, home=lattice.home)
         if slices is None and turns:
             return replace(seeds, audit=WholeTurns(self, turns, lattice))
+        if slices is None:
+            return replace(seeds, more=self._drawn)
         return replace(seeds, audit=slices)
 
     def _from_beyond_limits(self, drawn: Seeds, rng: np.random.Generator) -> np.ndarray:
@@ -256,16 +259,20 @@ class MechanismClosure(NumericalProblem):
         beyond = drawn.missed[is_start_solved(drawn.gaps)][:MOST_BEYOND]
         return brought_within_limits(self, beyond, rng)
 
-    def _drawn(self, rng: np.random.Generator, count: int) -> Seeds:
-        """What is reached from random starts; where whole turns lead to the same again,
-        half of them from a region that holds a translate of everything."""
+    def _drawn(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
+    ) -> Seeds:
+        """What is reached from random starts before a deadline; where whole turns lead
+        to the same again, half of them from a region that holds a translate of
+        everything."""
         lattice = self.lattice
         if not lattice:
-            return random_seeds(self, rng, count)
+            return random_seeds(self, rng, count, deadline=deadline)
         region = lattice.region(start_region(self), self.reference)
-        anywhere = random_seeds(self, rng, count // 2, homes=lattice.homes)
+        homes = lattice.homes
+        anywhere = random_seeds(self, rng, count // 2, None, deadline, homes)
         rest = count - count // 2
-        near = random_seeds(self, rng, rest, region, homes=lattice.homes)
+        near = random_seeds(self, rng, rest, region, deadline, homes)
         return anywhere.and_random(near)
 
     @cached_property

