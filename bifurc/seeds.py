@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.limits import Deadline
 
 __all__ = ["Audit", "Completeness", "Level", "Seeds"]
 
@@ -51,7 +52,8 @@ class Seeds:
     where the problem has one, judges the branches of a search, in about as many seconds
     as its second argument says. ``home``, where shifts of the unknowns lead from curves
     to others that are the same but for them, is the shift (n,) that brings samples
-    (k, n) of a curve to the one among them that is to be traced.
+    (k, n) of a curve to the one among them that is to be traced. ``more``, where random
+    starts are all there is, gives what so many further ones reach before a deadline.
     """
 
     points: np.ndarray
@@ -60,6 +62,7 @@ class Seeds:
     missed: np.ndarray
     audit: Callable[[Sequence[Branch], float], Audit] | None = None
     home: Callable[[np.ndarray], np.ndarray] | None = None
+    more: Callable[[np.random.Generator, int, Deadline], Seeds] | None = None
 
     def and_random(self, others: Seeds) -> Seeds:
         """These seeds and ``others``, all of random starts."""

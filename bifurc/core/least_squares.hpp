@@ -157,20 +157,16 @@ inline void solve_by_rank(View<double> matrix, Vector<double> right, Vector<doub
     std::vector<Index> order(columns);
     std::iota(order.begin(), order.end(), Index{0});
     std::fill(solution.begin(), solution.end(), 0.0);
+    std::vector<double> sums(columns);  // one a column, row by row: these lie in one piece
     Index rank = 0;
     double first = 0.0;
     for (Index k = 0; k < std::min(rows, columns); ++k) {
-        Index best = k;
-        double largest = -1.0;
-        for (Index j = k; j < columns; ++j) {
-            double square = 0.0;
-            for (Index i = k; i < rows; ++i) square += matrix(i, j) * matrix(i, j);
-            if (square > largest) {
-                best = j;
-                largest = square;
-            }
+        std::fill(sums.begin() + k, sums.end(), 0.0);
+        for (Index i = k; i < rows; ++i) {
+            for (Index j = k; j < columns; ++j) sums[j] += matrix(i, j) * matrix(i, j);
         }
-        const double norm = std::sqrt(largest);
+        const Index best = std::max_element(sums.begin() + k, sums.end()) - sums.begin();
+        const double norm = std::sqrt(sums[best]);
         first = std::max(first, norm);
         if (norm <= negligible * first) break;
         std::swap(order[k], order[best]);
@@ -180,12 +176,18 @@ inline void solve_by_rank(View<double> matrix, Vector<double> right, Vector<doub
         const double scale = -pivot / diagonal;
         for (Index i = k + 1; i < rows; ++i) matrix(i, k) /= pivot;
         matrix(k, k) = diagonal;
+        for (Index j = k + 1; j < columns; ++j) sums[j] = matrix(k, j);
+        for (Index i = k + 1; i < rows; ++i) {
+            const double entry = matrix(i, k);
+            for (Index j = k + 1; j < columns; ++j) sums[j] += entry * matrix(i, j);
+        }
         for (Index j = k + 1; j < columns; ++j) {
-            double dot = matrix(k, j);
-            for (Index i = k + 1; i < rows; ++i) dot += matrix(i, k) * matrix(i, j);
-            dot *= scale;
-            matrix(k, j) -= dot;
-            for (Index i = k + 1; i < rows; ++i) matrix(i, j) -= dot * matrix(i, k);
+            sums[j] *= scale;
+            matrix(k, j) -= sums[j];
+        }
+        for (Index i = k + 1; i < rows; ++i) {
+            const double entry = matrix(i, k);
+            for (Index j = k + 1; j < columns; ++j) matrix(i, j) -= sums[j] * entry;
         }
         double dot = right[k];
         for (Index i = k + 1; i < rows; ++i) dot += matrix(i, k) * right[i];

@@ -14,6 +14,7 @@ constexpr double least_damping = 1e-14;
 constexpr double smallest_factor = 1e-8;
 constexpr int most_failures = 12;
 constexpr double nothing_left = 1e-14;  // a step on a sphere after which no other is made
+constexpr double settled = 1e-6;        // over the radius: a step so short that does not shrink is rounding
 }  // namespace projection
 
 // Levenberg-Marquardt from every one of ``points`` (k, n), in place, onto the solutions;
@@ -72,6 +73,7 @@ void project_to_sphere(const S& system, View<double> points, Vector<const double
         const Vector<double> point = points.row(start);
         double size = 0.0;
         for (int iteration = 0; iteration < iterations; ++iteration) {
+            const double before = size;
             system.linearize(point, residual, matrix.view().first_rows(m));
             double square = 0.0;
             for (Index j = 0; j < n; ++j) {
@@ -84,7 +86,8 @@ void project_to_sphere(const S& system, View<double> points, Vector<const double
             size = length(step);
             const double cut = std::min(1.0, radius / (3.0 * size + 1e-300));
             for (Index j = 0; j < n; ++j) point[j] += cut * step[j];
-            if (size < projection::nothing_left) break;
+            const bool is_rounding = iteration > 0 && size >= before && size < projection::settled * radius;
+            if (size < projection::nothing_left || is_rounding) break;
         }
         system.residual(point, residual);
         gaps[start] = length(residual);

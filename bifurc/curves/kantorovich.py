@@ -103,11 +103,12 @@ def check_arcs(
     problem: Problem, branch: Branch, arcs: np.ndarray, joints: Joints
 ) -> ArcChecks:
     """Where on the ``arcs`` (a, 2) of arclength, each within one piece, solutions
-    across the curve are unique: by the bound on F'', and where that refuses by F''
-    itself."""
+    across the curve are unique: by the bound on F'', and where that refuses, also on
+    shorter arcs, by F'' itself, which takes many times as long."""
     nodes = _Nodes.on(problem, branch, arcs, joints)
     checks = nodes.checks_by_bound()
     refused = checks.refused
+    refused = refused[~checks.is_promising[refused]]
     if len(refused):
         checks.replace(refused, nodes.part(refused).checks_by_second_derivative())
     return checks

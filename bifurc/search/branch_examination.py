@@ -8,6 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from bifurc.branch import Branch, Outcome
+from bifurc.curves.certificate import Certificate
 from bifurc.curves.lower_rank import ORDINARY, LowerRank, lower_rank_along
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import Profile, profile_branch
@@ -100,8 +101,7 @@ class BranchExaminer:
         self._sight_candidates(branch, candidates, misclosure, sightings)
         certificate = None
         if self.run.settings.certify:
-            passes = sightings.passes
-            certificate = certificate_of(self.problem, branch, profile, passes)
+            certificate = self._certified(branch, profile, misclosure, sightings)
         traced = TracedBranch(
             branch=branch,
             profile=profile,
@@ -115,6 +115,28 @@ class BranchExaminer:
             multiplicity=lower.multiplicity,
         )
         return ExaminedBranch(traced, sightings.starts)
+
+    def _certified(
+        self,
+        branch: Branch,
+        profile: Profile,
+        misclosure: float,
+        sightings: _Sightings,
+    ) -> Certificate | None:
+        """What is certified of a branch with a ``misclosure`` between the singular
+        points seen along it, to which those are added that lie where F' is singular to
+        rounding: dips of the singular value between two nodes show only there."""
+        certificate = certificate_of(self.problem, branch, profile, sightings.passes)
+        if certificate is None:
+            return None
+        known = len(sightings.passes)
+        dark = certificate.blurred.mean(axis=1) % branch.length
+        zero = may_be_crossed.threshold
+        candidates = [_Candidate(s[None], zero) for s in dark]
+        self._sight_candidates(branch, candidates, misclosure, sightings)
+        if len(sightings.passes) == known:
+            return certificate
+        return certificate_of(self.problem, branch, profile, sightings.passes)
 
     def _sight_candidates(
         self,
@@ -136,6 +158,7 @@ class BranchExaminer:
             sightings.located.append(place)
             if self._is_at(branch, place, sighting.point):
                 sightings.passes.append(place)
+                sighting = self.points.seen_on_curve(sighting)
             if sighting.is_new:
                 sightings.starts.extend(half_branch_starts(sighting.point))
 

@@ -139,6 +139,7 @@ def _explored(
             search.gather_seeds(seeds, seed)
             search.sort_seeds()
             search.trace_seeds()
+            search.draw_more_starts(int(seed))
             search.look_where_starts_stop()
             search.cover_surfaces()
             search.trace_singular_curves()

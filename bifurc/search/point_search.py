@@ -15,7 +15,7 @@ from bifurc.decisions import (
 from bifurc.numerics.singular_values import singular_values
 from bifurc.search.findings import PointSighting
 from bifurc.search.run import Run
-from bifurc.singular.classify import classify_singular_point
+from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import (
     MOST_FOR_GERM,
     LocatedPoint,
@@ -33,6 +33,9 @@ __all__ = ["BRANCH_REACH", "SEED_REACH", "PointSearch"]
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie
 MOST_MISSED = 6  # places at which a germ is looked for, and is not there
+# A point that a curve passes is looked at from so many times nearer, until that shows, and
+# from no nearer than so many errors.
+NEARER, NEAREST_ERRORS = 4.0, 1e3
 
 
 class _Settled(NamedTuple):
@@ -129,6 +132,19 @@ class PointSearch:
         if sighting is None or sighting.point.kind is not Kind.ISOLATED:
             return None
         return sighting.number
+
+    def seen_on_curve(self, sighting: PointSighting) -> PointSighting:
+        """A singular point that a curve passes, seen from ever nearer where the sections
+        show nothing that leaves it: other singular points may be about."""
+        point = sighting.point
+        radius = point.radius / NEARER
+        while point.dimension == 0 and radius > NEAREST_ERRORS * point.error:
+            closer = classify_from_nearby(self.problem, point, radius)
+            if closer is not None and len(closer.half_branches):
+                self.findings.points[sighting.number] = closer
+                return sighting._replace(point=closer, is_new=True)
+            radius /= NEARER
+        return sighting
 
     def sight(self, located: LocatedPoint) -> PointSighting:
         """The known singular point that a located one is, or a new one, classified."""

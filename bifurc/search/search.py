@@ -43,6 +43,7 @@ from bifurc.search.components import components_of_seeds, singular_points_of
 from bifurc.search.findings import NO_DOUBT, Findings
 from bifurc.search.joining import joined_through
 from bifurc.search.meeting_points import ends_at
+from bifurc.search.more_starts import asks_for_more_starts
 from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
 from bifurc.search.run import Run
@@ -75,6 +76,7 @@ NULLITY_OF_SHAKY = 3  # all along a curve that one deflation of the rank makes r
 MOST_MOVES = 3  # of a solution to the curve that is listed for its own
 SAMPLES = 256  # of a curve, by which it is told how far it is moved
 ROUNDS_IN_BOXES = 3  # each of them followed up
+MOST_TIMES = 16  # as many random starts as are asked for are drawn
 LOOKS_ALONG = 5  # on a branch, for a rank that is lower all along it
 
 
@@ -90,9 +92,9 @@ class Search:
     """The search for all branches and singular points of a ``problem``.
 
     Its steps are called in their order: `gather_seeds`, `sort_seeds`, `trace_seeds`,
-    `look_where_starts_stop`, `cover_surfaces`, `trace_singular_curves`,
-    `separate_points`, `join_branches`, `mend_at_germs`, `audit_branches`,
-    `audit_in_boxes`, and `near_motions.look`. Each
+    `draw_more_starts`, `look_where_starts_stop`, `cover_surfaces`,
+    `trace_singular_curves`, `separate_points`, `join_branches`, `mend_at_germs`,
+    `audit_branches`, `audit_in_boxes`, and `near_motions.look`. Each
     adds to the findings of the ``run``. From the end of the budget on a step does
     nothing. A Ctrl-C ends the budget, and then raises `KeyboardInterrupt` between two
     starts or at the end of the block; the findings hold what is known then.
@@ -133,6 +135,24 @@ class Search:
                 seeds = with_weak_solutions(self.problem, seeds)
         self._add_seeds(seeds, 0)
         self.run.interrupt.check()
+
+    def draw_more_starts(self, random_seed: int) -> None:
+        """Draw as many random starts again, and trace what they reach, as long as some
+        form or assembly was met by few of them."""
+        more = self.findings.seeds.more
+        if more is None:
+            return
+        drawn = self.settings.starts
+        while drawn < MOST_TIMES * self.settings.starts and not self.run.is_over:
+            if not asks_for_more_starts(self.findings):
+                break
+            rng = np.random.default_rng([random_seed, drawn])
+            others = more(rng, drawn, self.run.deadline)
+            drawn *= 2
+            known = self.findings.seeds
+            self._add_seeds(known.and_random(others), len(known.points))
+            self.sort_seeds()
+            self.trace_seeds()
 
     def _add_seeds(self, seeds: Seeds, known: int) -> None:
         """Add the ``seeds`` after the first ``known`` ones, each as near to its curve

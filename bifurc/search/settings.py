@@ -21,7 +21,8 @@ LOOSEST = 0.1 * is_same_point.threshold
 class SearchSettings:
     """How much a search looks at.
 
-    ``starts``: random starts that are projected onto the solutions. ``budget`` (s): the
+    ``starts``: random starts that are projected onto the solutions, and up to 16 times as
+    many for problems that draw more (`Seeds.more`). ``budget`` (s): the
     search ends when it is used up, but for the step it is in. ``charts``: the most with
     which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
     takes the time to find out if a branch is missing. ``boxes``: into how many the bounds

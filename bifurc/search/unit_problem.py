@@ -310,6 +310,10 @@ class UnitProblem(FunctionProblem):
             shift: np.ndarray = seeds.home(units.outwards(samples)) / units.sizes
             return shift
 
+        def more(rng: np.random.Generator, count: int, deadline: Deadline) -> Seeds:
+            assert seeds.more is not None
+            return self.seeds_inwards(seeds.more(rng, count, deadline))
+
         return replace(
             seeds,
             points=units.inwards(seeds.points),
@@ -317,6 +321,7 @@ class UnitProblem(FunctionProblem):
             missed=units.inwards(seeds.missed),
             audit=None if judge is None else audit,
             home=None if seeds.home is None else home,
+            more=None if seeds.more is None else more,
         )
 
     @property

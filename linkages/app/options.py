@@ -163,7 +163,12 @@ class SearchOptions:
 
 SEARCH_OPTIONS = (
     click.option(
-        "--starts", default=200, type=STARTS, show_default=True, help="Random starts."
+        "--starts",
+        default=200,
+        type=STARTS,
+        show_default=True,
+        help="Random starts; of a mechanism up to 16 times as many where some of what "
+        "it has is met by few.",
     ),
     click.option(
         "--seed",

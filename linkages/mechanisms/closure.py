@@ -15,6 +15,7 @@ from bifurc.checks import check_type, rows_of
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import NumericalProblem
+from bifurc.limits import Deadline
 from bifurc.problem import (
     March,
     MarchSettings,
@@ -242,6 +243,8 @@ class MechanismClosure(NumericalProblem):
             solutions = lattice.homes(solutions)
         seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
         judge = slices or self._audit(turns, count, rng)
+        if judge is None:
+            seeds = replace(seeds, more=self._drawn)
         if not lattice:
             return replace(seeds, audit=judge)
         audit = TurnedEnds(self, lattice, judge)
@@ -272,16 +275,20 @@ class MechanismClosure(NumericalProblem):
         beyond = np.concatenate([solutions[~self.are_inside(solutions)], missed])
         return brought_within_limits(self, beyond[:MOST_BEYOND], rng)
 
-    def _drawn(self, rng: np.random.Generator, count: int) -> Seeds:
-        """What is reached from random starts; where whole turns lead to the same again,
-        half of them from a region that holds a translate of everything."""
+    def _drawn(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
+    ) -> Seeds:
+        """What is reached from random starts before a deadline; where whole turns lead
+        to the same again, half of them from a region that holds a translate of
+        everything."""
         lattice = self.lattice
         if not lattice:
-            return random_seeds(self, rng, count)
+            return random_seeds(self, rng, count, deadline=deadline)
         region = lattice.region(start_region(self), self.reference)
-        anywhere = random_seeds(self, rng, count // 2, homes=lattice.homes)
+        homes = lattice.homes
+        anywhere = random_seeds(self, rng, count // 2, None, deadline, homes)
         rest = count - count // 2
-        near = random_seeds(self, rng, rest, region, homes=lattice.homes)
+        near = random_seeds(self, rng, rest, region, deadline, homes)
         return anywhere.and_random(near)
 
     @cached_property

@@ -1,6 +1,7 @@
 """Maps of mechanisms whose forms and singular points are known."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import linkages
 from bifurc.atlas import Atlas
 from bifurc.branch import Outcome
 from bifurc.search.settings import SearchSettings
+from bifurc.seeds import Level
 from bifurc.singular.point import Kind
 from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
@@ -170,6 +172,47 @@ def test_a_platform_has_assemblies_with_its_legs_locked_and_forms_with_one_free(
     atlas = linkages.map_linkage(one_free, settings=FEW)
     assert {form.rank for form in atlas.forms} == {9}
     assert one_free.gruebler == 7  # of them 6 idle
+
+
+def sarrus(first: float, second: float) -> Mechanism:
+    """A plate on two chains of three parallel turns, the links of each of one length."""
+    joints = []
+    ways = (((1, 0, 0), (0, 1, 0), first), ((0, 1, 0), (1, 0, 0), second))
+    for k, (place, axis, length) in enumerate(ways):
+        foot = np.array(place, dtype=float)
+        knee = foot + length * (0.6 * foot + np.array([0, 0, 0.8]))
+        head = foot + np.array([0, 0, 1.6 * length])
+        bodies = ("base", f"low{k}", f"up{k}", "plate")
+        for letter, point, pair in zip(
+            "abc", (foot, knee, head), pairwise(bodies), strict=True
+        ):
+            joints.append(Joint(f"{letter}{k}", "revolute", pair, tuple(point), axis))
+    return Mechanism(tuple(joints))
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("longer", [1e-2, 1e-3, 1e-5])
+def test_bifurcations_next_to_each_other_are_all_located(longer, seed):
+    """A folded chain turns by itself: four forms, which the two on which the plate moves
+    meet where that chain folds. The other one folds next to it, as the chains are nearly
+    alike, closer than the singular value is sampled."""
+    atlas = linkages.map_linkage(sarrus(0.7, 0.7 + longer), seed=seed)
+    assert len(atlas.forms) == 6
+    assert len(atlas.bifurcations) == 8
+    assert all(len(point.passes) == 2 for point in atlas.bifurcations)
+    assert atlas.completeness.level is Level.PROVED
+
+
+@pytest.mark.parametrize("seed", [1, 2, 4, 6])
+def test_what_a_platform_has_does_not_depend_on_the_seed(seed):
+    """The first 20 random starts meet 4 to 6 of the six assemblies, 5 or 6 of the
+    forms."""
+    settings = SearchSettings(starts=20, certify=False)
+    locked = linkages.map_linkage(platform(), settings=settings, seed=seed)
+    assert len(locked.rigid) == 6
+    one_free = platform((None, *(0.0,) * 5))
+    atlas = linkages.map_linkage(one_free, settings=settings, seed=seed)
+    assert len(atlas.forms) == 6
 
 
 def test_the_smallest_reconfigurable_linkage_with_slides():
