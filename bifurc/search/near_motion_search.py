@@ -111,4 +111,5 @@ class NearMotionSearch:
         system is nearly solved, below as many as there is time for."""
         lowest = valley_points(self.problem, points, self.run.deadline)
         is_near = nearly_closes(self.problem.gaps(lowest))
-        return lowest[is_near & self.problem.are_inside(lowest)]
+        near: np.ndarray = lowest[is_near & self.problem.are_inside(lowest)]
+        return near
