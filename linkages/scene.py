@@ -106,13 +106,17 @@ def _spherical_scene(directions: np.ndarray) -> Scene:
 
 def best_view(scene: Scene) -> View:
     """The view in which joints lie furthest apart and no axis is seen end on."""
-    return clearest_view(lambda look: _clarity(scene, look))
+    looks = _looks()
+    return _view_along(looks[np.argmax(_clarities(scene, looks))])
 
 
 def clearest_view(clarity: Callable[[np.ndarray], float]) -> View:
     """The view along a unit vector (3,), towards the eye, whose ``clarity`` is
     largest."""
-    look = max(_looks(), key=clarity)
+    return _view_along(max(_looks(), key=clarity))
+
+
+def _view_along(look: np.ndarray) -> View:
     elevation = np.degrees(np.arcsin(look[2]))
     azimuth = np.degrees(np.arctan2(look[1], look[0]))
     return View(float(elevation), float(azimuth))
@@ -128,45 +132,62 @@ def _looks() -> np.ndarray:
     return np.column_stack([ring * np.cos(turn), ring * np.sin(turn), z])
 
 
-def _clarity(scene: Scene, look: np.ndarray) -> float:
-    """Projected distances of joints and of joints from links, and how much is seen of
-    every axis."""
-    projection = np.eye(3) - np.outer(look, look)
-    joints = scene.joints @ projection
-    distances = clearance(joints, scene.normals @ projection)
+def _clarities(scene: Scene, looks: np.ndarray) -> np.ndarray:
+    """For each view (k,) projected distances of joints and of joints from links, and
+    how much is seen of every axis."""
+    projections = np.eye(3) - looks[:, :, None] * looks[:, None, :]  # (k, 3, 3)
+    joints = scene.joints @ projections
+    normals = scene.normals @ projections[:, None]
+    apart, off_links = _clearances(joints, normals)
     unit = max(scene.extent, 1e-12)
     axes = scene.axes[:, 1] - scene.axes[:, 0]
-    visible_lengths = np.linalg.norm(axes @ projection, axis=1)
-    visible_share = (visible_lengths / np.linalg.norm(axes, axis=1)).min()
-    spread = 4 * distances.joints + 4 * distances.links + 2 * breadth(joints)
-    return float(spread / unit + min(visible_share, 0.5))
+    visible_lengths = np.linalg.norm(axes @ projections, axis=-1)
+    visible_shares = (visible_lengths / np.linalg.norm(axes, axis=1)).min(axis=-1)
+    spreads = 4 * apart + 4 * off_links + 2 * _breadths(joints)
+    return np.asarray(spreads / unit + np.minimum(visible_shares, 0.5))
 
 
 def clearance(joints: np.ndarray, normals: np.ndarray) -> Clearance:
     """How far the joints (n, k) are from each other, and from the links (n, 2, k) that
     they are not on."""
-    n = len(joints)
+    apart, off_links = _clearances(joints, normals)
+    return Clearance(float(apart), float(off_links))
+
+
+def _clearances(
+    joints: np.ndarray, normals: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The two numbers (...,) of `clearance` for joints (..., n, k) and links
+    (..., n, 2, k)."""
+    n = joints.shape[-2]
     first, second = np.triu_indices(n, 1)
-    between_joints = np.linalg.norm(joints[first] - joints[second], axis=1)
+    gaps = joints[..., first, :] - joints[..., second, :]
     own = np.eye(n, dtype=bool)
     following = np.eye(n, k=-1, dtype=bool) | np.eye(n, k=n - 1, dtype=bool)
-    to_links = _distances_to_segments(joints, normals)[~(own | following)]
-    return Clearance(float(between_joints.min()), float(to_links.min()))
+    to_links = _distances_to_segments(joints, normals)[..., ~(own | following)]
+    return np.linalg.norm(gaps, axis=-1).min(axis=-1), to_links.min(axis=-1)
 
 
 def _distances_to_segments(points: np.ndarray, segments: np.ndarray) -> np.ndarray:
-    """Distances (p, q) of points (p, k) from line segments (q, 2, k)."""
-    starts = segments[:, 0]
-    along = segments[:, 1] - starts
-    squares = np.maximum((along**2).sum(axis=1), 1e-300)
-    to_points = points[:, None] - starts[None]
-    fractions = np.einsum("ijk,jk->ij", to_points, along) / squares
-    feet = np.clip(fractions, 0, 1)[..., None] * along
+    """Distances (..., p, q) of points (..., p, k) from line segments (..., q, 2, k)."""
+    starts = segments[..., 0, :]
+    along = segments[..., 1, :] - starts
+    squares = np.maximum((along**2).sum(axis=-1), 1e-300)
+    to_points = points[..., :, None, :] - starts[..., None, :, :]
+    products = np.einsum("...ijk,...jk->...ij", to_points, along)
+    fractions = products / squares[..., None, :]
+    feet = np.clip(fractions, 0, 1)[..., None] * along[..., None, :, :]
     return np.asarray(np.linalg.norm(to_points - feet, axis=-1))
 
 
 def breadth(points: np.ndarray) -> float:
     """The lesser extent of points (n, k) in the plane in which they spread most: 0 for
     points on one line."""
-    extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    return float(extents[1] / len(points) ** 0.5)
+    return float(_breadths(points))
+
+
+def _breadths(points: np.ndarray) -> np.ndarray:
+    """The `breadth` (...,) of points (..., n, k)."""
+    centers = points.mean(axis=-2, keepdims=True)
+    extents = np.linalg.svd(points - centers, compute_uv=False)
+    return np.asarray(extents[..., 1] / points.shape[-2] ** 0.5)
