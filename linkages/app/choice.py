@@ -51,7 +51,7 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     single = Readout(linkage).single_loop
     if single is None:
         raise CommandError(
-            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, "
+            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, `sweep`, "
             "`clearance`, `tolerance`, `convert` and `export` to .glb and .csv take; "
             "this takes single loops of 4 to 12 revolute joints so far"
         )

@@ -16,9 +16,9 @@ from linkages.networks.network import Network, build_network
 from linkages.networks.plan import Plan
 from linkages.networks.plans import FOUR_BENNETT, L_SHAPE, SERIAL
 
-__all__ = ["NETWORKS", "NetworkEntry"]
+__all__ = ["LENGTHS", "NETWORKS", "NetworkEntry"]
 
-LENGTHS = ("b", "c", "d")
+LENGTHS = ("b", "c", "d")  # that follow from the other parameters
 
 
 @dataclass(frozen=True)
