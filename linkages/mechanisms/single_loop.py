@@ -43,7 +43,8 @@ def as_single_loop(structure: Structure) -> SingleLoop | None:
         return None
     variables, signs = [], []
     for step in closure.chain:
-        for number in mechanism.pairs[step.pair].variables:
+        # against the sense of a joint of several turns the last one comes first
+        for number in mechanism.pairs[step.pair].variables[:: step.sign]:
             if mechanism.variables[number].locked is None:
                 variables.append(number)
                 signs.append(step.sign)
