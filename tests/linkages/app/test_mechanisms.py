@@ -190,7 +190,8 @@ def test_singular_points_are_confirmed_in_many_digits(folder):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("identify", "slider_crank.toml"), "it is a mechanism"),
+        (("identify", "slider_crank.toml"), "a prismatic joint (J4)"),
+        (("identify", "four-bennett-network"), "--without-centre"),
         (("tolerance", "slider_crank.toml"), "it is a mechanism"),
         (("export", "slider_crank.toml", "--to", "x.stl"), "it is a mechanism"),
         (("export", "slider_crank.toml", "--to", "x.sdf"), "it is a mechanism"),
