@@ -23,22 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "choose_linkage",
-    "choose_loop",
     "choose_precisely",
     "read_number",
     "read_parameters",
     "require_loop",
     "split_parameter",
 ]
-
-
-def choose_loop(text: str, parameters: Sequence[str] = ()) -> Linkage:
-    """The single loop that `choose_linkage` finds. Raises `CommandError` for a
-    mechanism as well."""
-    chosen = choose_linkage(text, parameters)
-    if isinstance(chosen, Linkage):
-        return chosen
-    return Linkage(require_loop(text, chosen))
 
 
 def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
