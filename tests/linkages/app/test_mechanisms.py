@@ -192,7 +192,6 @@ def test_singular_points_are_confirmed_in_many_digits(folder):
     [
         (("identify", "slider_crank.toml"), "a prismatic joint (J4)"),
         (("identify", "four-bennett-network"), "--without-centre"),
-        (("tolerance", "slider_crank.toml"), "it is a mechanism"),
         (("export", "slider_crank.toml", "--to", "x.stl"), "it is a mechanism"),
         (("export", "slider_crank.toml", "--to", "x.sdf"), "it is a mechanism"),
         (("verify", "slider_crank.toml"), "slider_crank.toml"),
