@@ -38,6 +38,11 @@ class UnknownLinkageError(BifurcError, KeyError):
     def __str__(self) -> str:
         if self.name.endswith(".toml"):
             return f"{self.name}: a name of the catalogue is needed here, and no file"
+        if self.name in NETWORKS:
+            return (
+                f"{self.name}: it is a network of several loops, and this takes a single "
+                f"loop; `bifurc show {self.name}` shows it"
+            )
         hint = "no name is like it"
         if self.nearest:
             hint = "the nearest names are " + ", ".join(self.nearest)

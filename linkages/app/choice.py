@@ -23,22 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "choose_linkage",
-    "choose_loop",
     "choose_precisely",
     "read_number",
     "read_parameters",
     "require_loop",
     "split_parameter",
 ]
-
-
-def choose_loop(text: str, parameters: Sequence[str] = ()) -> Linkage:
-    """The single loop that `choose_linkage` finds. Raises `CommandError` for a
-    mechanism as well."""
-    chosen = choose_linkage(text, parameters)
-    if isinstance(chosen, Linkage):
-        return chosen
-    return Linkage(require_loop(text, chosen))
 
 
 def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
@@ -51,7 +41,7 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     single = Readout(linkage).single_loop
     if single is None:
         raise CommandError(
-            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, "
+            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, `sweep`, "
             "`clearance`, `tolerance`, `convert` and `export` to .glb and .csv take; "
             "this takes single loops of 4 to 12 revolute joints so far"
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,7 +19,15 @@ from linkages.values import check_angle, told_apart
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["Inputs", "choose_held", "hold_joints", "read_kinks", "without_centre"]
+__all__ = [
+    "Inputs",
+    "check_limits",
+    "choose_held",
+    "hold_joints",
+    "no_network",
+    "read_kinks",
+    "without_centre",
+]
 
 
 @dataclass(frozen=True)
@@ -112,7 +120,7 @@ def without_centre(text: str, linkage: Linkage | Mechanism) -> Inputs:
     from linkages.networks.mechanism import NetworkMechanism
 
     if not isinstance(linkage, NetworkMechanism):
-        raise CommandError(f"--without-centre: it takes a network, and {text} is none")
+        raise no_network(text)
     loop = linkage.without_centre()
     note = (
         "--without-centre: every motion of the network is one of this loop, and the "
@@ -124,6 +132,11 @@ def without_centre(text: str, linkage: Linkage | Mechanism) -> Inputs:
         names = ", ".join(followers)
         notes += (f"--without-centre: replaced as well, for it does not move: {names}",)
     return Inputs(Linkage(loop), notes)
+
+
+def no_network(text: str) -> CommandError:
+    """The error for something that has no centre to be left without."""
+    return CommandError(f"--without-centre: it takes a network, and {text} is none")
 
 
 def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
@@ -139,12 +152,13 @@ def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
             check_angle(f"--lock {label}", number, in_degrees=True)
             number = math.radians(number)
         values[label] = number
-    _check_limits(mechanism, values)
+    check_limits(mechanism, values)
     return values
 
 
-def _check_limits(mechanism: Mechanism, values: dict[str, float]) -> None:
-    """Raise `GeometryError`, in degrees, for a lock outside the limits of a file."""
+def check_limits(mechanism: Mechanism, values: Mapping[str, float]) -> None:
+    """Raise `GeometryError`, in degrees, for a lock, by the label of its variable,
+    outside the limits of a file."""
     for one in mechanism.variables:
         value = values.get(one.label)
         if value is None or one.limits is None:

@@ -35,7 +35,7 @@ def describe_network(entry: NetworkEntry) -> str:
         f"outer loop, whose D-H angles locks hold: {', '.join(plan.ring)}",
         f"bodies: {len(mechanism.bodies)}; "
         f"independent loops: {mechanism.independent_loops}",
-        f"mobility: 3; Grübler's count is {mechanism.gruebler}",
+        f"mobility: {entry.mobility}; Grübler's count is {mechanism.gruebler}",
         "lengths b, c, d follow from the Bennett ratio, and are checked where they are "
         "given",
         *entry.remarks,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from linkages.app.texts import count_of
 from linkages.app.verify import (
@@ -15,14 +15,24 @@ from linkages.app.verify import (
     Verification,
 )
 
-__all__ = ["describe_verification", "make_verification_document"]
+if TYPE_CHECKING:
+    # it imports networkx, which a loop does not need
+    from linkages.app.verify_network import NetworkVerification
+
+__all__ = [
+    "describe_network_verification",
+    "describe_verification",
+    "make_verification_document",
+]
 
 Json: TypeAlias = (
     "bool | int | float | str | Sequence[Json] | Mapping[str, Json] | None"
 )
 
 
-def make_verification_document(verification: Verification) -> dict[str, Json]:
+def make_verification_document(
+    verification: Verification | NetworkVerification,
+) -> dict[str, Json]:
     """The verification as plain values for JSON, where nan becomes None."""
     values = asdict(verification)
     values["failures"] = list(verification.failures)
@@ -55,6 +65,27 @@ def describe_verification(verification: Verification) -> str:
     if real and verification.closed_forms:
         lines.append(_line("distance", _distance(real)))
     lines += [_line("erratum", _erratum(erratum)) for erratum in verification.errata]
+    lines += [_line("FAILED", text) for text in verification.failures]
+    return "\n".join(lines)
+
+
+def describe_network_verification(verification: NetworkVerification) -> str:
+    """The verification of a network as a paragraph for the screen."""
+    lines = [verification.name]
+    lines += [_line("condition", text) for text in verification.conditions]
+    real = [member for member in verification.members if not member.refused]
+    refused = len(verification.members) - len(real)
+    lines.append(_line("members", f"{len(real)} checked, {refused} refused"))
+    if real:
+        by_rank = _alternatives({member.mobility for member in real})
+        by_form = _alternatives({member.by_closed_form for member in real})
+        mobility = f"{by_rank} by rank, {by_form} by closed form"
+        lines.append(_line("mobility", mobility))
+        closure = max(member.closure for member in real)
+        count = sum(member.configurations for member in real)
+        places = count_of(count, "configuration")
+        text = f"{closure:.1e} at most in space, at {places} of the closed form"
+        lines.append(_line("closure", text))
     lines += [_line("FAILED", text) for text in verification.failures]
     return "\n".join(lines)
 

@@ -11,7 +11,7 @@ from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import ClosureKind, Structure
 
-__all__ = ["SingleLoop", "as_single_loop"]
+__all__ = ["SingleLoop", "as_single_loop", "turns_as_loop"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +30,16 @@ def as_single_loop(structure: Structure) -> SingleLoop | None:
     """The mechanism as one loop of 4 to 12 revolute joints; None where it is none, or
     where joints have limits, are coupled or stand locked elsewhere than at 0, or where
     coordinates are known to less than doubles hold."""
+    # the equations of a mechanism say what hangs on the rounding of coordinates
+    if not structure.mechanism.is_known_to_rounding:
+        return None
+    return turns_as_loop(structure)
+
+
+def turns_as_loop(structure: Structure) -> SingleLoop | None:
+    """The same, also where coordinates are known to less."""
     mechanism = structure.mechanism
     if mechanism.independent_loops != 1 or mechanism.is_coupled:
-        return None
-    # the equations of a mechanism say what hangs on the rounding of coordinates
-    if not mechanism.is_known_to_rounding:
         return None
     if not _has_plain_turns_only(mechanism):
         return None
@@ -43,7 +48,8 @@ def as_single_loop(structure: Structure) -> SingleLoop | None:
         return None
     variables, signs = [], []
     for step in closure.chain:
-        for number in mechanism.pairs[step.pair].variables:
+        # against the sense of a joint of several turns the last one comes first
+        for number in mechanism.pairs[step.pair].variables[:: step.sign]:
             if mechanism.variables[number].locked is None:
                 variables.append(number)
                 signs.append(step.sign)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from linkages.construction.basic_links import (
     EQUAL_RATIOS,
     length_a,
@@ -16,15 +18,15 @@ from linkages.networks.network import Network, build_network
 from linkages.networks.plan import Plan
 from linkages.networks.plans import FOUR_BENNETT, L_SHAPE, SERIAL
 
-__all__ = ["NETWORKS", "NetworkEntry"]
+__all__ = ["LENGTHS", "NETWORKS", "NetworkEntry"]
 
-LENGTHS = ("b", "c", "d")
+LENGTHS = ("b", "c", "d")  # that follow from the other parameters
 
 
 @dataclass(frozen=True)
 class NetworkEntry:
     """One network: its ``plan``, its free ``parameters``, conditions in words, further
-    ``remarks``, and misprints of the source.
+    ``remarks``, misprints of the source, and the ``mobility`` that is published.
 
     The lengths b, c, d follow from the Bennett ratio; they may be given as well, and
     are checked then.
@@ -36,6 +38,7 @@ class NetworkEntry:
     conditions: tuple[Condition, ...]
     remarks: tuple[str, ...] = ()
     errata: tuple[str, ...] = ()
+    mobility: int = 3
 
     @property
     def name(self) -> str:
@@ -47,10 +50,19 @@ class NetworkEntry:
         """What the network is, in a few words."""
         return self.plan.title
 
+    @property
+    def defaults(self) -> dict[str, float]:
+        """Default value of every parameter."""
+        return {p.name: p.default for p in self.parameters}
+
+    def draw(self, rng: np.random.Generator) -> dict[str, float]:
+        """Random parameters within their ranges."""
+        return {p.name: float(rng.uniform(p.low, p.high)) for p in self.parameters}
+
     def build(self, **values: Number) -> Network:
         """The member with the given parameters (angles in rad), the others at their
         defaults. Raises `GeometryError` and `UnknownParameterError`."""
-        defaults: dict[str, Number] = {p.name: p.default for p in self.parameters}
+        defaults: dict[str, Number] = dict(self.defaults)
         for name in values:
             if name not in defaults and name not in LENGTHS:
                 raise UnknownParameterError(self.name, name, (*defaults, *LENGTHS))

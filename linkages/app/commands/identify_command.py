@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
-from linkages.app.exit_codes import ExitCode, exit_code_table
-from linkages.app.options import NumberRange, json_option
+from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.options import (
+    HoldOptions,
+    NumberRange,
+    hold_options,
+    json_option,
+    param_option,
+)
+
+if TYPE_CHECKING:
+    from linkages.linkage import Linkage
+    from linkages.loop import Loop
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["identify_command"]
 
@@ -22,26 +35,35 @@ LARGEST_TOLERANCE = 1  # as large as the linkage itself
     help="How far a table may be from the linkage it is.",
 )
 @json_option("; angles in radians")
-def identify_command(linkage: str, tolerance: float, as_json: bool) -> None:
-    """Name the linkages of the catalogue that a table is a case of, whichever way it is
-    read.
+@hold_options
+@param_option
+def identify_command(
+    linkage: str,
+    tolerance: float,
+    as_json: bool,
+    parameters: tuple[str, ...],
+    hold: HoldOptions,
+) -> None:
+    """Name the linkages of the catalogue that a table, or a mechanism that is a single
+    loop of revolute joints, is a case of, whichever way it is read.
 
     Other first joint, direction, sense of axes and links, mirror image and scale make
     no difference. Where none fits, the nearest are shown with the numbers that are off.
 
     \b
-    Example:
+    Examples:
       bifurc identify my_linkage.toml
+      bifurc identify four-bennett-network --lock 2=40 --lock 6=-75 --without-centre
     """
-    from linkages.app.choice import choose_loop
     from linkages.app.identify import (
         describe_identification,
         make_identification_document,
     )
+    from linkages.app.inputs import choose_held
     from linkages.app.output import say, say_json
     from linkages.identification.identify import identify
 
-    loop = choose_loop(linkage).loop
+    loop = _loop_of(choose_held(linkage, parameters, hold))
     identification = identify(loop, tolerance)
     if as_json:
         say_json(make_identification_document(identification))
@@ -49,3 +71,21 @@ def identify_command(linkage: str, tolerance: float, as_json: bool) -> None:
         say(describe_identification(identification))
     if not (identification.matches or identification.locked):
         click.get_current_context().exit(ExitCode.NOT_IN_CATALOGUE)
+
+
+def _loop_of(linkage: Linkage | Mechanism) -> Loop:
+    """The loop of a linkage, or that which a mechanism is; raises `GeometryError`,
+    and `CommandError` for a network."""
+    from linkages.linkage import Linkage
+
+    if isinstance(linkage, Linkage):
+        return linkage.loop
+    from linkages.mechanisms.loop_geometry import loop_geometry
+    from linkages.networks.mechanism import NetworkMechanism
+
+    if isinstance(linkage, NetworkMechanism):
+        raise CommandError(
+            f"{linkage.name}: it is a network, with several loops; --without-centre "
+            "takes the single loop that its outer bars leave under --lock"
+        )
+    return loop_geometry(linkage)

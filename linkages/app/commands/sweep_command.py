@@ -17,7 +17,7 @@ MOST_WORKERS = 10_000
 
 
 @click.command("sweep", epilog=exit_code_table())
-@click.argument("family")
+@click.argument("source", metavar="NAME|FILE.toml")
 @click.option(
     "--param",
     "parameters",
@@ -27,6 +27,22 @@ MOST_WORKERS = 10_000
         "Grid of a parameter, or NAME=VALUE for one value, "
         "or NAME=LOW:HIGH with --random; angles in degrees."
     ),
+)
+@click.option(
+    "--lock",
+    "locks",
+    multiple=True,
+    metavar="JOINT=FIRST:LAST:COUNT",
+    help=(
+        "Grid of values at which a joint of a mechanism or a network is held, or "
+        "JOINT=VALUE, or JOINT=LOW:HIGH with --random; in the units of `bifurc map`."
+    ),
+)
+@click.option(
+    "--without-centre",
+    "is_without_centre",
+    is_flag=True,
+    help="Of a network with locks, take the single loop that its outer bars leave.",
 )
 @click.option(
     "--random",
@@ -70,8 +86,10 @@ MOST_WORKERS = 10_000
     help="Seed of the random starts and members.",
 )
 def sweep_command(
-    family: str,
+    source: str,
     parameters: tuple[str, ...],
+    locks: tuple[str, ...],
+    is_without_centre: bool,
     random: int | None,
     out: Path,
     atlases: Path | None,
@@ -80,8 +98,8 @@ def sweep_command(
     starts: int,
     seed: int,
 ) -> None:
-    """Map many members of a family and write a summary of each over the grid of
-    parameters.
+    """Map many members of a family or a network, or a mechanism with joints held at
+    many values, and write a summary of each over the grid.
 
     A journal beside the dataset (OUT.journal) keeps every finished member: the same
     command run again after an interruption, even a kill, goes on where it stopped.
@@ -91,11 +109,21 @@ def sweep_command(
       bifurc sweep double-subtractive-goldberg --param beta=10:170:36 --param gamma=10:60:11
       bifurc sweep bricard-line-symmetric-zero-offset --random 1000 --out bricard.zarr
       bifurc sweep bennett --random 5000 --scheduler tcp://127.0.0.1:8786
+      bifurc sweep four-bennett-network --lock 2=40 --lock 6=-170:170:35
+      bifurc sweep five_bar.toml --lock A=-180:175:72
     """
     from bifurc.text_tables import count_of
     from linkages.app.sweep.plan import read_plan
 
-    plan = read_plan(family, parameters, random or 0, starts, seed)
+    plan = read_plan(
+        source,
+        parameters,
+        random or 0,
+        starts,
+        seed,
+        locks=locks,
+        is_without_centre=is_without_centre,
+    )
     try:
         from linkages.app.sweep.run import prepare_sweep
         from linkages.app.sweep.store import count_status

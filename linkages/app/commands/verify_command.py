@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import click
 
 from linkages.app.exit_codes import ExitCode, exit_code_table
 from linkages.app.options import SEED, json_option
+
+if TYPE_CHECKING:
+    from linkages.app.verify import Verification
+    from linkages.app.verify_network import NetworkVerification
 
 __all__ = ["verify_command"]
 
@@ -40,8 +46,8 @@ MOST_POINTS = 1_000_000
 def verify_command(
     name: str | None, members: int, points: int, seed: int, as_json: bool
 ) -> None:
-    """Verify a linkage of the catalogue, or all: proofs, mobility, closed forms,
-    misprints.
+    """Verify a linkage or a network of the catalogue, or all linkages: proofs, mobility,
+    closed forms, misprints.
 
     The first member has the default parameters, the others are random. Exit code 6 if
     something does not hold.
@@ -49,14 +55,11 @@ def verify_command(
     \b
     Examples:
       bifurc verify bennett
+      bifurc verify four-bennett-network
       bifurc verify mixed-double-goldberg-type-i --members 50 --json
     """
     from linkages.app.output import say, say_json
-    from linkages.app.verify import verify
-    from linkages.app.verify_text import (
-        describe_verification,
-        make_verification_document,
-    )
+    from linkages.app.verify_text import make_verification_document
     from linkages.catalogue import catalogue
 
     names = list(catalogue()) if name is None else [name]
@@ -64,12 +67,12 @@ def verify_command(
     failures = 0
     try:
         for linkage in names:
-            verification = verify(linkage, members, points, seed)
+            verification, text = _verify(linkage, members, points, seed)
             failures += len(verification.failures)
             if as_json:
                 documents.append(make_verification_document(verification))
             else:
-                say(describe_verification(verification))
+                say(text)
     finally:  # an interruption leaves a document of what was verified by then
         if as_json and name is None:
             say_json(documents)
@@ -77,3 +80,24 @@ def verify_command(
         say_json(documents[0])
     if failures:
         click.get_current_context().exit(ExitCode.DOES_NOT_HOLD)
+
+
+def _verify(
+    name: str, members: int, points: int, seed: int
+) -> tuple[Verification | NetworkVerification, str]:
+    """What was checked of a linkage or a network, and as text."""
+    from linkages.app.verify_text import (
+        describe_network_verification,
+        describe_verification,
+    )
+    from linkages.networks.entries import NETWORKS
+
+    if name in NETWORKS:
+        from linkages.app.verify_network import verify_network
+
+        of_network = verify_network(name, members, seed)
+        return of_network, describe_network_verification(of_network)
+    from linkages.app.verify import verify
+
+    of_linkage = verify(name, members, points, seed)
+    return of_linkage, describe_verification(of_linkage)

@@ -16,7 +16,6 @@ import numpy as np
 from linkages.app.sweep.journal import Journal, JournalError, Line
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Plan
-from linkages.catalogue import entry
 
 __all__ = ["Entry", "FinishedMember", "WrittenBlock", "read_entries"]
 
@@ -39,13 +38,14 @@ class WrittenBlock:
 Entry: TypeAlias = FinishedMember | WrittenBlock
 
 # a value that is no number is left out of a line, others are not
-_ALWAYS = {name for name, field in FIELDS.items() if np.dtype(field.dtype).kind != "f"}
+_COUNTS = {name for name, field in FIELDS.items() if np.dtype(field.dtype).kind != "f"}
+_ALWAYS = _COUNTS - {"mobility"}  # journals of earlier versions are without it
 
 
 def read_entries(journal: Journal, plan: Plan) -> Iterator[Entry]:
     """All entries below the header, one at a time; raises `JournalError` for a line
     that is none of this plan."""
-    joints = entry(plan.family).build().n
+    joints = len(plan.subject.joints)
     lines = enumerate(journal.lines(), start=1)
     next(lines)
     for number, line in lines:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
@@ -17,8 +17,9 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.settings import SearchSettings
+from linkages.app.mobility import mobility_of
+from linkages.app.sweep.subjects import JointName, Member, Subject
 from linkages.app.verdict import is_without_gaps
-from linkages.catalogue import entry
 from linkages.labels import FormLabels
 from linkages.linkage import Linkage
 from linkages.loop import GeometryError
@@ -45,7 +46,7 @@ class Status(IntEnum):
 
     PENDING = -1  # not mapped yet
     MAPPED = 0
-    REFUSED = 1  # the constructor refuses the parameters
+    REFUSED = 1  # its parameters or locks make no member
     FAILED = 2  # mapping raised an error, which the journal keeps
 
 
@@ -82,7 +83,8 @@ def _way(meaning: str) -> Field:
 
 
 FIELDS: Mapping[str, Field] = {
-    "status": _flag("0 mapped, 1 refused by the constructor, 2 failed, -1 not done"),
+    "status": _flag("0 mapped, 1 refused, 2 failed, -1 not done"),
+    "mobility": Field("i2", "", "largest dimension of a component; 0 where rigid"),
     "forms": _count("motion forms"),
     "closed_forms": _count("closed forms"),
     "bifurcations": _count("bifurcations"),
@@ -114,28 +116,30 @@ FIELDS: Mapping[str, Field] = {
 
 
 def map_member(
-    family: str,
-    parameters: Mapping[str, float],
+    subject: Subject,
+    values: Mapping[str, float],
     starts: int,
     seed: int,
     atlas_path: str | None = None,
 ) -> Record:
-    """The summary of one member: values of `FIELDS`, and a ``message`` where it was
-    refused or failed.
+    """The summary of the member of a subject at ``values`` of its quantities (rad for
+    angles): values of `FIELDS`, and a ``message`` where it was refused or failed.
 
     With ``atlas_path`` the whole atlas is written there first.
     """
     began = time.process_time()
     try:
-        linkage = _linkage(family, parameters)
+        member = subject.member(values)
     except (GeometryError, ArithmeticError) as error:
         return {"status": int(Status.REFUSED), "message": str(error)}
     settings = SearchSettings(prove=False, starts=starts)
     try:
-        atlas = map_linkage(linkage, settings=settings, seed=seed)
+        atlas = map_linkage(member.linkage, settings=settings, seed=seed)
+    except GeometryError as error:  # such as for locks that leave nothing to move
+        return {"status": int(Status.REFUSED), "message": str(error)}
     # one bad member must not end a sweep of thousands; the journal keeps the reason
     except Exception as error:
-        log.exception("%s with %s", family, dict(parameters))
+        log.exception("%s with %s", subject.identity, dict(values))
         message = f"{type(error).__name__}: {error}"
         return {"status": int(Status.FAILED), "message": message}
     if atlas.provenance.interrupted:
@@ -146,27 +150,19 @@ def map_member(
         save_atlas(atlas, Path(atlas_path))
     record: Record = {"status": int(Status.MAPPED)}
     record |= summarise(atlas)
+    record["inactive_joints"] = _forms_without(atlas, member, subject.joints)
     record["seconds"] = time.process_time() - began
     return record
 
 
-def _linkage(family: str, parameters: Mapping[str, float]) -> Linkage:
-    """The member of a family, with the forms that its source names; raises
-    `GeometryError`."""
-    source = entry(family)
-    values = source.complete(parameters)
-    loop = source.build(**values)
-    patterns = source.patterns(**values) if source.patterns is not None else ()
-    return Linkage(loop, patterns)
-
-
 def summarise(atlas: Atlas) -> Record:
-    """The values of `FIELDS` but for status and seconds; not-a-number is left out."""
+    """The values of `FIELDS` that an atlas alone tells; not-a-number is left out."""
     lengths = [form.branch.length for form in atlas.forms]
     gaps = [event.value for event in atlas.near_misses]
     residuals = [FormLabels.of(form).max_residual for form in atlas.forms]
     routes = _route_lengths(atlas)
     record: Record = {
+        "mobility": mobility_of(atlas),
         "forms": len(atlas.forms),
         "closed_forms": sum(form.branch.closed for form in atlas.forms),
         "bifurcations": len(atlas.bifurcations),
@@ -175,7 +171,6 @@ def summarise(atlas: Atlas) -> Record:
         "rank_drops": len(atlas.rank_drops),
         "surfaces": len(atlas.surfaces),
         "rigid": len(atlas.rigid),
-        "inactive_joints": _forms_without(atlas),
         "smallest_gap": min(gaps, default=math.nan),
         "total_length": sum(lengths),
         "longest_form": max(lengths, default=math.nan),
@@ -193,13 +188,29 @@ def _is_missing(value: int | float | str | list[int]) -> bool:
     return isinstance(value, float) and not math.isfinite(value)
 
 
-def _forms_without(atlas: Atlas) -> list[int]:
-    """For every joint the number of forms in which it does not turn."""
-    counts = [0] * len(atlas.names)
-    for form in atlas.forms:
-        for joint in FormLabels.of(form).inactive_joints:
-            counts[joint - 1] += 1
-    return counts
+def _forms_without(
+    atlas: Atlas, member: Member, joints: Sequence[JointName]
+) -> list[int]:
+    """For every one of the ``joints`` the number of forms in which it stands still."""
+    of_forms = _still_joints(atlas, member)
+    return [sum(joint in still for still in of_forms) for joint in joints]
+
+
+def _still_joints(atlas: Atlas, member: Member) -> list[set[JointName]]:
+    """For every form the joints that stand still along it."""
+    if isinstance(member.linkage, Linkage):
+        numbers = [FormLabels.of(form).inactive_joints for form in atlas.forms]
+        return [
+            {member.joints[number - 1] for number in of_form} | set(member.replaced)
+            for of_form in numbers
+        ]
+    # they import networkx, which loops do not need
+    from linkages.mechanisms.facts import form_facts
+    from linkages.mechanisms.readout import Readout
+
+    readout = Readout(member.linkage)
+    count = len(atlas.forms)
+    return [set(form_facts(atlas, index, readout).still) for index in range(count)]
 
 
 def _is_one_cycle(atlas: Atlas) -> bool:

@@ -1,5 +1,5 @@
-"""What a sweep runs through: the members of a family, on a grid of parameters or drawn
-at random."""
+"""What a sweep runs through: the members of a family, a network or a mechanism, on a grid
+of parameters and locks or drawn at random."""
 
 from __future__ import annotations
 
@@ -8,33 +8,25 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
-from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linkages.app.choice import read_number, split_parameter
-from linkages.catalogue import entry
-from linkages.entry import Entry, ParameterKind
+from linkages.app.exit_codes import CommandError
+from linkages.app.sweep.subjects import (
+    LOCK,
+    PARAM,
+    Quantity,
+    Subject,
+    choose_subject,
+)
 from linkages.loop import GeometryError
 from linkages.values import check_angle
 
-__all__ = ["Block", "Plan", "PlanDocument", "read_plan"]
+__all__ = ["Block", "Plan", "read_plan"]
 
-MOST_VALUES = 1_000_000  # of one parameter on a grid
-
-
-class PlanDocument(TypedDict):
-    """A plan in plain values, by which journal and dataset know it again."""
-
-    family: str
-    axes: dict[str, list[float]]
-    fixed: dict[str, float]
-    ranges: dict[str, list[float]]
-    random: int
-    starts: int
-    seed: int
-    block: int
+MOST_VALUES = 1_000_000  # of one quantity on a grid
 
 
 @dataclass(frozen=True)
@@ -49,15 +41,15 @@ class Block:
 
 @dataclass(frozen=True)
 class Plan:
-    """The members of a sweep, numbered in row-major order of the grid.
+    """The members of a sweep of a ``subject``, numbered in row-major order of the grid.
 
-    ``axes`` are the values of the varied parameters (rad for angles), ``fixed`` those
-    of one value. With ``random`` > 0 there is no grid: that many members are drawn,
+    ``axes`` are the values of the quantities that vary, by name (rad for angles),
+    ``fixed`` those of one value. With ``random`` > 0 there is no grid: that many members are drawn,
     each from its own random stream, within ``ranges``. ``starts`` and ``seed`` are
     those of `bifurc.search.explore.explore`.
     """
 
-    family: str
+    subject: Subject
     axes: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     fixed: Mapping[str, float] = field(default_factory=dict)
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -68,7 +60,7 @@ class Plan:
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Names of the dimensions: the varied parameters, or "member"."""
+        """Names of the dimensions: the quantities that vary, or "member"."""
         return ("member",) if self.random else tuple(self.axes)
 
     @property
@@ -131,8 +123,8 @@ class Plan:
         corner = [int(along) // step for along, step in pairs]
         return int(np.ravel_multi_index(corner, self._blocks_along))
 
-    def parameters(self, index: int) -> dict[str, float]:
-        """Parameters of one member, rad for angles."""
+    def values(self, index: int) -> dict[str, float]:
+        """The values of one member by the names of the quantities, rad for angles."""
         values = dict(self.fixed)
         if self.random:
             rng = np.random.default_rng([self.seed, index])
@@ -144,10 +136,10 @@ class Plan:
             values[name] = axis[along]
         return values
 
-    def as_dict(self) -> PlanDocument:
-        """The plan in plain values."""
+    def as_dict(self) -> dict[str, object]:
+        """The plan in plain values, by which journal and dataset know it again."""
         return {
-            "family": self.family,
+            **self.subject.identity,
             "axes": {name: list(values) for name, values in self.axes.items()},
             "fixed": dict(self.fixed),
             "ranges": {name: list(bounds) for name, bounds in self.ranges.items()},
@@ -159,88 +151,122 @@ class Plan:
 
 
 def read_plan(
-    family: str, texts: Sequence[str], random: int = 0, starts: int = 200, seed: int = 0
+    source: str,
+    parameters: Sequence[str],
+    random: int = 0,
+    starts: int = 200,
+    seed: int = 0,
+    *,
+    locks: Sequence[str] = (),
+    is_without_centre: bool = False,
 ) -> Plan:
-    """The plan of a sweep from "name=value", "name=first:last:count" (a grid) and
-    "name=low:high" (with ``random``).
+    """The plan of a sweep from ``parameters`` and ``locks``: "name=value",
+    "name=first:last:count" (a grid) and "name=low:high" (with ``random``).
 
-    Angles are in degrees. Parameters not named are at their defaults, or with
-    ``random`` drawn from the catalogue's ranges. Raises `GeometryError` and
-    `linkages.catalogue.UnknownLinkageError`.
+    ``source`` is what `choose_subject` takes; a network can be taken
+    ``is_without_centre``. Angles are in degrees. Parameters not named are at their
+    defaults, or with ``random`` drawn from the catalogue's ranges; joints not named are
+    free. Raises `GeometryError`, and as `choose_subject`.
     """
     if random < 0:
         raise GeometryError("--random", random, "at least 1")
-    linkage = entry(family)
+    subject = choose_subject(source, parameters, is_without_centre)
+    if locks and not _of_option(subject, LOCK):
+        raise CommandError(
+            f"--lock: it takes a network or the file of a mechanism, and {source} is a "
+            "single loop of the catalogue"
+        )
     fixed: dict[str, float] = {}
     spans: dict[str, tuple[float, ...]] = {}
-    for text in texts:
-        name, numbers = _read(linkage, text)
+    texts = [(PARAM, text) for text in parameters] + [(LOCK, text) for text in locks]
+    for option, text in texts:
+        quantity, numbers = _read(subject, option, text)
+        name = quantity.name
         if name in fixed or name in spans:
-            raise GeometryError(f"--param {name}", repr(text), "given only once")
+            what = f"{option} {quantity.key}"
+            raise GeometryError(what, repr(text), "given only once")
         if len(numbers) == 1:
             fixed[name] = numbers[0]
         elif len(numbers) == (2 if random else 3):
             spans[name] = numbers
         else:
-            raise GeometryError(f"--param {name}", repr(text), _form(name, random))
+            allowed = _form(quantity.key, random)
+            raise GeometryError(f"{option} {quantity.key}", repr(text), allowed)
     if random:
-        ranges = _ranges(linkage, fixed, spans)
+        ranges = _ranges(subject, fixed, spans)
+        if not ranges:
+            allowed = "given as name=low:high at least once"
+            raise GeometryError(_options(subject), "no range", allowed)
         return Plan(
-            family, fixed=fixed, ranges=ranges, random=random, starts=starts, seed=seed
+            subject, fixed=fixed, ranges=ranges, random=random, starts=starts, seed=seed
         )
     if not spans:
         raise GeometryError(
-            "--param",
+            _options(subject),
             "no grid",
             "given as name=first:last:count at least once, or use --random",
         )
-    axes = {name: _axis(name, span) for name, span in spans.items()}
-    return Plan(family, axes, fixed, starts=starts, seed=seed)
+    axes = {name: _axis(subject.quantity(name), span) for name, span in spans.items()}
+    return Plan(subject, axes, fixed, starts=starts, seed=seed)
 
 
-def _form(name: str, random: int) -> str:
-    """What a parameter may look like."""
+def _of_option(subject: Subject, option: str) -> dict[str, Quantity]:
+    """The quantities behind an option, by their keys."""
+    return {one.key: one for one in subject.quantities if one.option == option}
+
+
+def _options(subject: Subject) -> str:
+    """The options behind which the quantities of a subject stand."""
+    options = dict.fromkeys(one.option for one in subject.quantities)
+    return " or ".join(options)
+
+
+def _form(key: str, random: int) -> str:
+    """What the text of a quantity may look like."""
     values = (
         "value or low:high with --random" if random else "value or first:last:count"
     )
-    return f"of the form {name}=... with {values}"
+    return f"of the form {key}=... with {values}"
 
 
 def _ranges(
-    linkage: Entry, fixed: Mapping[str, float], spans: Mapping[str, tuple[float, ...]]
+    subject: Subject, fixed: Mapping[str, float], spans: Mapping[str, tuple[float, ...]]
 ) -> dict[str, tuple[float, float]]:
-    """Bounds of the parameters that are drawn: those given, or else the
+    """Bounds of the quantities that are drawn: those given, or else the
     catalogue's."""
     ranges = {}
-    for parameter in linkage.parameters:
-        if parameter.name in spans:
-            low, high = spans[parameter.name]
-            ranges[parameter.name] = (low, high)
-        elif parameter.name not in fixed:
-            ranges[parameter.name] = (parameter.low, parameter.high)
+    for quantity in subject.quantities:
+        if quantity.name in spans:
+            low, high = spans[quantity.name]
+            ranges[quantity.name] = (low, high)
+        elif quantity.name not in fixed and quantity.bounds is not None:
+            ranges[quantity.name] = quantity.bounds
     return ranges
 
 
-def _axis(name: str, span: Sequence[float]) -> tuple[float, ...]:
-    """The values of a parameter on a grid; raises `GeometryError`."""
+def _axis(quantity: Quantity, span: Sequence[float]) -> tuple[float, ...]:
+    """The values of a quantity on a grid; raises `GeometryError`."""
     first, last, count = span
     if count != int(count) or not 1 <= count <= MOST_VALUES:
         allowed = f"a whole number from 1 to {MOST_VALUES}"
-        raise GeometryError(f"number of values of {name}", count, allowed)
+        raise GeometryError(f"number of values of {quantity.key}", count, allowed)
     return tuple(np.linspace(first, last, int(count)).tolist())
 
 
-def _read(linkage: Entry, text: str) -> tuple[str, tuple[float, ...]]:
-    """Name and numbers of "name=number:number:..."; angles turned to rad, the third
-    number left as it is. Raises `GeometryError`."""
-    name, values = split_parameter(text)
-    kinds = {parameter.name: parameter.kind for parameter in linkage.parameters}
-    if name not in kinds:
-        allowed = f"name=... with a name out of {', '.join(kinds)}"
-        raise GeometryError("--param", repr(text), allowed)
-    numbers = [read_number(name, part) for part in values.split(":")]
-    if kinds[name] is ParameterKind.ANGLE:
+def _read(
+    subject: Subject, option: str, text: str
+) -> tuple[Quantity, tuple[float, ...]]:
+    """The quantity and the numbers of "key=number:number:..." behind an option; angles
+    turned to rad, the third number left as it is. Raises `GeometryError`."""
+    key, values = split_parameter(text, option)
+    known = _of_option(subject, option)
+    if key not in known:
+        allowed = f"name=... with a name out of {', '.join(known)}"
+        raise GeometryError(option, repr(text), allowed)
+    quantity = known[key]
+    numbers = [read_number(key, part, option) for part in values.split(":")]
+    if quantity.is_angle:
         for degrees in numbers[:2]:
-            check_angle(f"--param {name}", degrees, in_degrees=True)
+            check_angle(f"{option} {key}", degrees, in_degrees=True)
         numbers[:2] = [math.radians(degrees) for degrees in numbers[:2]]
-    return name, tuple(numbers)
+    return quantity, tuple(numbers)

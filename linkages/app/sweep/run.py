@@ -134,6 +134,8 @@ class Sweep:
         """Map what is missing, block by block, with never more members under way than
         the pool wants in its queue."""
         finished = self._read_journal()
+        if not finished.records:
+            self.store.settle()
         for block in self.plan.blocks():
             if block.number in finished.blocks:
                 progress(len(block.indices))
@@ -149,6 +151,7 @@ class Sweep:
                     self._submit(_Task(index, opened))
         while self.tasks:
             self._collect(progress)
+        self.store.settle()
 
     def _read_journal(self) -> _Finished:
         """What is finished. Where the dataset is new no block is in it, whatever the
@@ -178,8 +181,8 @@ class Sweep:
             atlas_path = str(self.atlases / atlas_name(task.index))
         future = self.pool.executor.submit(
             map_member,
-            plan.family,
-            plan.parameters(task.index),
+            plan.subject,
+            plan.values(task.index),
             plan.starts,
             plan.seed,
             atlas_path,

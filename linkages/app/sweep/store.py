@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +14,7 @@ import numpy as np
 from bifurc.errors import BifurcError
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Block, Plan
-from linkages.catalogue import entry
-from linkages.entry import ParameterKind
+from linkages.app.sweep.subjects import JointName, Quantity
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,9 +36,12 @@ class StoreError(BifurcError):
         super().__init__(f"{path}: {why}")
 
 
+UNSETTLED = "is_being_made"  # an attribute while blocks of the journal may be missing
+
+
 def open_sweep(path: Path | str) -> xr.Dataset:
     """The dataset of a sweep: one variable for each of `FIELDS`, over the varied
-    parameters (rad) or the members."""
+    quantities (rad for angles) or the members."""
     import xarray as xr
 
     dataset: xr.Dataset = xr.open_zarr(
@@ -85,18 +87,32 @@ def _text(plan: Plan) -> str:
 
 class SweepStore:
     """Zarr arrays for the summaries of all members of a plan; values not yet written
-    are missing. It ``is_new`` where arrays were missing, and all
-    were made anew."""
+    are missing.
+
+    It ``is_new`` where arrays were missing, and all were made anew; it stays so,
+    whatever interrupts who writes it, until `settle` says that all is in it which the
+    journal says.
+    """
 
     def __init__(self, path: Path, plan: Plan):
         import zarr
 
         self.plan = plan
-        self.joints = entry(plan.family).build().n
-        self._group: zarr.Group = zarr.open_group(path, mode="a")
-        self.is_new = not all(name in self._group for name in FIELDS)
+        self.joints = len(plan.subject.joints)
+        # what is consolidated is of the arrays that were there before
+        self._group: zarr.Group = zarr.open_group(
+            path, mode="a", use_consolidated=False
+        )
+        is_whole = all(name in self._group for name in FIELDS)
+        self.is_new = not is_whole or UNSETTLED in self._group.attrs
         if self.is_new:
             self._create()
+
+    def settle(self) -> None:
+        """Say that every block that the journal tells of is in the dataset."""
+        if UNSETTLED in self._group.attrs:
+            del self._group.attrs[UNSETTLED]
+            self._consolidate()
 
     def write(self, block: Block, records: Mapping[int, Record]) -> None:
         """Write the summaries of all members of a block, by index."""
@@ -108,7 +124,7 @@ class SweepStore:
             values = np.array(column, dtype=kind.dtype)
             self._array(name)[block.region] = values.reshape(*shape, *values.shape[1:])
         for name in self.plan.ranges:
-            drawn = [self.plan.parameters(index)[name] for index in indices]
+            drawn = [self.plan.values(index)[name] for index in indices]
             self._array(name)[block.region] = np.array(drawn)
 
     def _array(self, name: str) -> zarr.Array[Any]:
@@ -125,26 +141,22 @@ class SweepStore:
     def _create(self) -> None:
         """Make all arrays; what an earlier attempt left half-made is replaced."""
         plan = self.plan
-        self._group.attrs.update(
-            {
-                "family": plan.family,
-                "starts": plan.starts,
-                "seed": plan.seed,
-                "fixed": dict(plan.fixed),
-                "plan": _text(plan),
-            }
-        )
-        parameters = entry(plan.family).parameters
-        units = {}
-        for parameter in parameters:
-            is_angle = parameter.kind is ParameterKind.ANGLE
-            units[parameter.name] = "rad" if is_angle else ""
+        attributes: dict[str, Any] = {
+            **plan.subject.identity,
+            "starts": plan.starts,
+            "seed": plan.seed,
+            "fixed": dict(plan.fixed),
+            "plan": _text(plan),
+            UNSETTLED: True,
+        }
+        self._group.attrs.update(attributes)
         for name, values in plan.axes.items():
-            self._create_axis(name, np.array(values), units[name])
-        self._create_axis("joint", np.arange(1, self.joints + 1), "")
+            self._create_axis(plan.subject.quantity(name), values)
+        self._create_joints(plan.subject.joints)
         for name in plan.ranges:
-            meaning = f"{name} of the member"
-            self._create_field(name, Field("f8", units[name], meaning))
+            quantity = plan.subject.quantity(name)
+            field = Field("f8", quantity.unit, quantity.meaning)
+            self._create_field(name, field)
         for name, kind in FIELDS.items():
             self._create_field(name, kind)
         self._consolidate()
@@ -159,18 +171,31 @@ class SweepStore:
             warnings.filterwarnings("ignore", "Consolidated metadata")
             zarr.consolidate_metadata(self._group.store)
 
-    def _create_axis(self, name: str, values: np.ndarray, unit: str) -> None:
-        """The coordinates along one dimension."""
+    def _create_axis(self, quantity: Quantity, values: Sequence[float]) -> None:
+        """The values of a quantity along its dimension."""
+        array = self._create_coordinates(quantity.name, values, "f8")
+        array.attrs["long_name"] = quantity.meaning
+        if quantity.unit:
+            array.attrs["units"] = quantity.unit
+
+    def _create_joints(self, joints: Sequence[JointName]) -> None:
+        """The names or the numbers of the joints along their dimension."""
+        are_names = any(isinstance(joint, str) for joint in joints)
+        self._create_coordinates("joint", joints, "str" if are_names else "i8")
+
+    def _create_coordinates(
+        self, name: str, values: Sequence[JointName | float], dtype: str
+    ) -> zarr.Array[Any]:
+        """The array of the coordinates along one dimension."""
         array = self._group.create_array(
             name,
-            shape=values.shape,
-            dtype=values.dtype,
+            shape=(len(values),),
+            dtype=dtype,
             dimension_names=(name,),
             overwrite=True,
         )
-        array[:] = values
-        if unit:
-            array.attrs["units"] = unit
+        array[:] = np.array(values)
+        return array
 
     def _create_field(self, name: str, kind: Field) -> None:
         """An array over all members, in chunks of a block, with missing values."""

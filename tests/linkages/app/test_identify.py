@@ -1,13 +1,18 @@
 """The command `bifurc identify`."""
 
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import entry
+from linkages.closure.loop_closure import LoopClosure
+from linkages.mechanisms.of_loop import mechanism_of_loop
+from linkages.mechanisms.toml_text import mechanism_toml
 
 BENNETT = """
 name = "mine"
@@ -59,3 +64,28 @@ def test_a_locked_joint_is_told():
     result = CliRunner().invoke(main, ["identify", "mixed-double-goldberg-type-iii"])
     assert result.exit_code == 0
     assert "With joint 3 locked at 0 deg: goldberg-5r" in result.stdout
+
+
+def test_a_mechanism_of_one_loop_is_named_whatever_its_limits(tmp_path):
+    loop = entry("goldberg-5r").build()
+    seeds = LoopClosure(loop).seeds(np.random.default_rng(0), 4)
+    mechanism = mechanism_of_loop(loop, seeds.points[0])
+    first, *others = mechanism.joints
+    limited = (replace(first, limits=((-0.5, 0.5),)), *others)
+    path = tmp_path / "mechanism.toml"
+    text = mechanism_toml(replace(mechanism, joints=limited))
+    path.write_text(text, encoding="utf-8")
+    result = CliRunner().invoke(main, ["identify", str(path)])
+    assert result.exit_code == 0, result.output
+    assert "goldberg-5r: " in result.stdout
+
+
+def test_the_loop_that_a_network_leaves_is_named():
+    locks = ["--lock", "2=40", "--lock", "6=-75", "--param", "beta=50"]
+    arguments = ["identify", "four-bennett-network", *locks]
+    result = CliRunner().invoke(main, [*arguments, "--without-centre"])
+    assert result.exit_code == 0, result.output
+    assert "generalized-double-goldberg: " in result.stdout
+    refused = CliRunner().invoke(main, arguments)
+    assert refused.exit_code == ExitCode.BAD_INPUT
+    assert "--without-centre takes the single loop" in refused.stderr

@@ -10,8 +10,14 @@ from click.testing import CliRunner
 from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.app.verify import ErratumCheck, verify
-from linkages.app.verify_text import describe_verification
-from linkages.catalogue import catalogue
+from linkages.app.verify_network import verify_network
+from linkages.app.verify_text import (
+    describe_network_verification,
+    describe_verification,
+)
+from linkages.catalogue import catalogue, entry
+from linkages.networks.entries import NETWORKS
+from linkages.networks.network import Network
 
 WITH_CLOSED_FORM = [name for name, found in catalogue().items() if found.closed_forms]
 WITHOUT = [name for name in catalogue() if name not in WITH_CLOSED_FORM]
@@ -73,3 +79,52 @@ def test_command_ends_with_its_own_code_when_something_fails(monkeypatch):
     monkeypatch.setattr("linkages.app.verify.verify", lambda *_: checked)
     result = CliRunner().invoke(main, ["verify", "bennett"])
     assert result.exit_code == ExitCode.DOES_NOT_HOLD
+
+
+# --- networks -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", NETWORKS)
+def test_the_closed_form_of_a_network_closes_in_space_with_its_mobility(name):
+    checked = verify_network(name, members=3, seed=1)
+    assert checked.failures == ()
+    for member in checked.members:
+        assert not member.refused
+        assert (member.mobility, member.by_closed_form) == (3, 3)
+        assert member.configurations > 100
+        # rounding of some thirty products of matrices
+        assert member.closure < 1e-13
+
+
+def test_a_wrong_closed_form_of_a_network_is_a_failure(monkeypatch):
+    factors = Network.factors.func
+    off = property(lambda network: factors(network) * (1.0 + 1e-9))
+    monkeypatch.setattr(Network, "factors", off)
+    checked = verify_network("serial-bennett-network")
+    (failure,) = checked.failures
+    assert "misses closure" in failure
+    assert "FAILED" in describe_network_verification(checked)
+
+
+def test_another_mobility_of_a_network_is_a_failure():
+    checked = dataclasses.replace(verify_network("l-shape-bennett-network"), expected=2)
+    assert checked.failures == (
+        "member 1: mobility 3 by rank, not 2",
+        "member 1: mobility 3 by closed form, not 2",
+    )
+
+
+def test_the_command_takes_a_network():
+    arguments = ["verify", "four-bennett-network", "--members", "2"]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == 0
+    assert "3 by rank, 3 by closed form" in result.stdout
+    document = json.loads(CliRunner().invoke(main, [*arguments, "--json"]).stdout)
+    assert document["failures"] == [] and len(document["members"]) == 2
+
+
+def test_a_network_that_is_asked_for_as_a_loop_is_no_unknown_name():
+    with pytest.raises(KeyError) as error:
+        entry("four-bennett-network")
+    assert "it is a network of several loops" in str(error.value)
+    assert "nearest" not in str(error.value)

@@ -79,3 +79,32 @@ def test_limits_locks_and_coinciding_axes_take_the_general_way():
         )
     )
     assert Readout(doubled).single_loop is None
+
+
+def loop_with_universal(is_turned):
+    """The loop of a mechanism whose universal joint is given in the sense of the loop,
+    or against it."""
+    first, second = (0, 0, 1), (0, 1, 0)
+    bodies = ("a", "b")
+    if is_turned:
+        first, second = second, first
+        bodies = ("b", "a")
+    universal = Joint(
+        "U", "universal", bodies, (1, 0.2, 0.1), first, second_direction=second
+    )
+    joints = [
+        Joint("A", "revolute", ("frame", "a"), (0, 0, 0), (0, 0.3, 1)),
+        universal,
+        Joint("C", "revolute", ("b", "c"), (2, 1, 0.4), (1, 0.2, 0.5)),
+        Joint("D", "revolute", ("c", "d"), (1, 2, 0.7), (0.3, 1, 0.5)),
+        Joint("E", "revolute", ("d", "frame"), (0, 2, 0.2), (0.3, -1, 0.5)),
+    ]
+    return Readout(Mechanism(tuple(joints))).single_loop
+
+
+def test_a_universal_joint_against_the_sense_of_the_loop_has_its_turns_in_order():
+    expected, turned = loop_with_universal(False), loop_with_universal(True)
+    assert np.allclose(turned.loop.arrays, expected.loop.arrays, atol=1e-12)
+    assert expected.variables.tolist() == [0, 1, 2, 3, 4, 5]
+    assert turned.variables.tolist() == [0, 2, 1, 3, 4, 5]
+    assert turned.signs.tolist() == [1, -1, -1, 1, 1, 1]

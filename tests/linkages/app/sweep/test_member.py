@@ -9,6 +9,7 @@ import pytest
 
 from linkages.app.sweep.member import Status, map_member
 from linkages.app.sweep.plan import Plan
+from linkages.app.sweep.subjects import Family
 
 
 @contextmanager
@@ -28,11 +29,12 @@ def traced():
 
 @pytest.mark.parametrize("family", ["bennett", "goldberg-5r"])
 def test_a_worker_keeps_nothing_of_the_members_that_it_mapped(family):
-    plan = Plan(family, random=1000, ranges={"alpha": (0.5, 1.0)})
+    subject = Family(family)
+    plan = Plan(subject, random=1000, ranges={"alpha": (0.5, 1.0)})
     held_after = []
     with traced() as held:
         for index in range(40):
-            map_member(family, plan.parameters(index), 10, 0)
+            map_member(subject, plan.values(index), 10, 0)
             if index % 10 == 9:
                 held_after.append(held())
     # What is kept of every member is kept of every ten; what is made once is not.
@@ -42,7 +44,7 @@ def test_a_worker_keeps_nothing_of_the_members_that_it_mapped(family):
 
 def test_refused_parameters_are_recorded_as_such():
     record = map_member(
-        "double-subtractive-goldberg", {"alpha": 0.5, "gamma": 1.5}, 10, 0
+        Family("double-subtractive-goldberg"), {"alpha": 0.5, "gamma": 1.5}, 10, 0
     )
     assert record["status"] == Status.REFUSED
     assert "length" in record["message"]

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from linkages.app.sweep.plan import Plan, read_plan
+from linkages.app.sweep.subjects import Family
 from linkages.loop import GeometryError
 
 
 def test_blocks_hold_every_member_once():
     plan = Plan(
-        "bennett",
+        Family("bennett"),
         axes={
             "a": tuple(range(1, 6)),
             "alpha": tuple(range(1, 8)),
@@ -30,15 +31,15 @@ def test_blocks_hold_every_member_once():
 def test_degrees_are_read_as_radians_and_lengths_as_they_are():
     plan = read_plan("bennett", ["alpha=10:80:3", "a=2"])
     assert np.allclose(plan.axes["alpha"], np.radians([10, 45, 80]))
-    assert plan.parameters(1) == {"a": 2.0, "alpha": pytest.approx(np.pi / 4)}
+    assert plan.values(1) == {"a": 2.0, "alpha": pytest.approx(np.pi / 4)}
 
 
 def test_a_random_member_does_not_depend_on_how_many_there_are():
     few, many = (
         read_plan("bennett", ["alpha=10:80"], random=n, seed=3) for n in (5, 50)
     )
-    assert few.parameters(4) == many.parameters(4)
-    assert few.parameters(4) != few.parameters(3)
+    assert few.values(4) == many.values(4)
+    assert few.values(4) != few.values(3)
 
 
 @pytest.mark.parametrize(

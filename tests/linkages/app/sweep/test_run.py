@@ -23,10 +23,11 @@ from linkages.app.cli import main
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import journal_path, run_sweep
 from linkages.app.sweep.store import SweepStore, open_sweep
+from linkages.app.sweep.subjects import Family
 from linkages.app.sweep.workers import Pool
 
 PLAN = Plan(
-    "bennett",
+    Family("bennett"),
     axes={
         "alpha": tuple(np.radians(np.linspace(20, 160, 6)).tolist()),
         "beta": tuple(np.radians([15, 40, 65]).tolist()),
@@ -85,7 +86,9 @@ def test_a_sweep_killed_twice_equals_one_that_was_not(tmp_path):
     run_sweep(PLAN, tmp_path / "whole.zarr", workers=1)
     (tmp_path / "script.py").write_text(SCRIPT)
     (tmp_path / "tests_plan.py").write_text(
-        f"from linkages.app.sweep.plan import Plan\nPLAN = {PLAN!r}\n"
+        "from linkages.app.sweep.plan import Plan\n"
+        "from linkages.app.sweep.subjects import Family\n"
+        f"PLAN = {PLAN!r}\n"
     )
     for count in (3, 6):
         assert start_and_kill_after(tmp_path, count) == -signal.SIGKILL
@@ -98,7 +101,7 @@ def test_a_sweep_killed_twice_equals_one_that_was_not(tmp_path):
 
 
 def test_a_finished_sweep_does_nothing_more(tmp_path):
-    plan = Plan("bennett", random=3, ranges={"alpha": (0.5, 1.0)}, starts=10)
+    plan = Plan(Family("bennett"), random=3, ranges={"alpha": (0.5, 1.0)}, starts=10)
     run_sweep(plan, tmp_path / "a.zarr", workers=1)
     before = journal_path(tmp_path / "a.zarr").read_bytes()
     told = []
@@ -111,7 +114,7 @@ def test_atlases_are_written_on_request(tmp_path):
     from bifurc.files.dataset import load_atlas
 
     run_sweep(
-        Plan("bennett", random=2, starts=10),
+        Plan(Family("bennett"), random=2, starts=10),
         tmp_path / "a.zarr",
         workers=1,
         atlases=tmp_path / "atlases",
@@ -185,7 +188,9 @@ def test_a_sweep_holds_no_more_of_many_members_than_of_few(tmp_path, monkeypatch
 
     with traced() as held:
         run_sweep(
-            Plan("bennett", random=1550, block=50), tmp_path / "a.zarr", progress=look
+            Plan(Family("bennett"), random=1550, block=50),
+            tmp_path / "a.zarr",
+            progress=look,
         )
     assert (
         sizes[1500] - sizes[500] < 1000 * 100

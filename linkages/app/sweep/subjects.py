@@ -1,0 +1,263 @@
+"""What is swept: a family or a network of the catalogue, or the mechanism of a file; the
+quantities of it that can be varied, and its members at their values."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
+from urllib.parse import quote
+
+from linkages.app.choice import choose_linkage
+from linkages.app.exit_codes import CommandError
+from linkages.app.inputs import check_limits, no_network
+from linkages.catalogue import entry
+from linkages.entry import Parameter, ParameterKind
+from linkages.linkage import Linkage, is_linkage_file
+from linkages.networks.entries import LENGTHS, NETWORKS
+
+if TYPE_CHECKING:
+    from linkages.mechanisms.mechanism import Mechanism
+
+__all__ = [
+    "LOCK",
+    "PARAM",
+    "Family",
+    "FileMechanism",
+    "JointName",
+    "Member",
+    "NetworkFamily",
+    "Quantity",
+    "Subject",
+    "choose_subject",
+]
+
+JointName: TypeAlias = str | int
+
+PARAM = "--param"
+LOCK = "--lock"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A parameter, or the value at which a joint is locked.
+
+    ``name`` is what it is called in the dataset, ``key`` what behind its ``option`` on
+    the command line. ``bounds`` are those of a random draw (rad for angles), where the
+    catalogue has some.
+    """
+
+    name: str
+    key: str
+    option: str
+    is_angle: bool
+    meaning: str
+    bounds: tuple[float, float] | None = None
+
+    @classmethod
+    def of_parameter(cls, parameter: Parameter) -> Quantity:
+        """The parameter of a family or of a network."""
+        name = parameter.name
+        is_angle = parameter.kind is ParameterKind.ANGLE
+        bounds = (parameter.low, parameter.high)
+        return cls(name, name, PARAM, is_angle, f"{name} of the member", bounds)
+
+    @classmethod
+    def of_lock(cls, joint: str, is_angle: bool) -> Quantity:
+        """The value at which a joint, or one variable of it, is locked."""
+        # any text is the name of a joint; not so of an array and of its folder
+        name = f"lock_{quote(joint, safe='')}"
+        return cls(name, joint, LOCK, is_angle, f"value at which {joint} is locked")
+
+    @property
+    def unit(self) -> str:
+        """The unit of its values in the dataset; none for lengths, which have that of
+        the user."""
+        return "rad" if self.is_angle else ""
+
+
+@dataclass(frozen=True)
+class Member:
+    """A linkage or a mechanism that is mapped.
+
+    ``joints`` are what the joints of a loop are called, in their order; ``replaced``
+    are joints of the subject that it does not have, since they stand still.
+    """
+
+    linkage: Linkage | Mechanism
+    joints: tuple[JointName, ...] = ()
+    replaced: tuple[JointName, ...] = ()
+
+
+class Subject(ABC):
+    """What is swept."""
+
+    @property
+    @abstractmethod
+    def identity(self) -> dict[str, object]:
+        """Plain values by which a journal knows the subject again."""
+
+    @property
+    @abstractmethod
+    def quantities(self) -> Sequence[Quantity]:
+        """All that can be varied."""
+
+    @property
+    @abstractmethod
+    def joints(self) -> tuple[JointName, ...]:
+        """The names, or the numbers from 1, of the joints of every member."""
+
+    @abstractmethod
+    def member(self, values: Mapping[str, float]) -> Member:
+        """The member at values of quantities, by name, in rad for angles; raises
+        `GeometryError` for those that it refuses."""
+
+    def quantity(self, name: str) -> Quantity:
+        """The quantity that has this name in the dataset."""
+        return next(one for one in self.quantities if one.name == name)
+
+    def by_key(self, option: str, values: Mapping[str, float]) -> dict[str, float]:
+        """Those of the values, by name, that stand behind an option, by their keys
+        there."""
+        chosen = [one for one in self.quantities if one.option == option]
+        return {one.key: values[one.name] for one in chosen if one.name in values}
+
+
+@dataclass(frozen=True)
+class Family(Subject):
+    """The family called ``name``; raises `UnknownLinkageError` where it is used and
+    there is none."""
+
+    name: str
+
+    @property
+    def identity(self) -> dict[str, object]:
+        return {"family": self.name}
+
+    @cached_property
+    def quantities(self) -> Sequence[Quantity]:
+        return [Quantity.of_parameter(one) for one in entry(self.name).parameters]
+
+    @cached_property
+    def joints(self) -> tuple[JointName, ...]:
+        return tuple(range(1, entry(self.name).build().n + 1))
+
+    def member(self, values: Mapping[str, float]) -> Member:
+        """The member with the forms that its source names."""
+        source = entry(self.name)
+        complete = source.complete(values)
+        loop = source.build(**complete)
+        patterns = source.patterns(**complete) if source.patterns is not None else ()
+        return Member(Linkage(loop, patterns), tuple(range(1, loop.n + 1)))
+
+
+@dataclass(frozen=True)
+class NetworkFamily(Subject):
+    """The network of Bennett loops called ``name``, with joints locked, or the loop
+    that its outer bars leave."""
+
+    name: str
+    is_without_centre: bool = False
+
+    @property
+    def identity(self) -> dict[str, object]:
+        return {"network": self.name, "without_centre": self.is_without_centre}
+
+    @cached_property
+    def quantities(self) -> Sequence[Quantity]:
+        source = NETWORKS[self.name]
+        drawn = [Quantity.of_parameter(one) for one in source.parameters]
+        # they follow from the others, and are only checked where they are given
+        checked = [
+            Quantity(name, name, PARAM, False, f"{name} of the member")
+            for name in LENGTHS
+        ]
+        locks = [Quantity.of_lock(axis, True) for axis in source.plan.ring]
+        return [*drawn, *checked, *locks]
+
+    @property
+    def joints(self) -> tuple[JointName, ...]:
+        plan = NETWORKS[self.name].plan
+        return plan.ring if self.is_without_centre else plan.axes
+
+    def member(self, values: Mapping[str, float]) -> Member:
+        from linkages.networks.mechanism import lock_network
+
+        network = NETWORKS[self.name].build(**self.by_key(PARAM, values))
+        mechanism = lock_network(network, self.by_key(LOCK, values))
+        if not self.is_without_centre:
+            return Member(mechanism)
+        still = mechanism.still
+        left = tuple(axis for axis in network.plan.ring if axis not in still)
+        return Member(Linkage(mechanism.without_centre()), left, still)
+
+
+@dataclass(frozen=True)
+class FileMechanism(Subject):
+    """The ``mechanism`` that was read from a file, with joints locked."""
+
+    mechanism: Mechanism
+
+    @property
+    def name(self) -> str:
+        """What the mechanism is called."""
+        return self.mechanism.name
+
+    @cached_property
+    def identity(self) -> dict[str, object]:
+        """The name, and a fingerprint of all that the file says."""
+        from linkages.mechanisms.subject import mechanism_subject
+
+        values = mechanism_subject(self.mechanism)["mechanism"]
+        text = json.dumps(values, sort_keys=True)
+        fingerprint = hashlib.sha256(text.encode()).hexdigest()
+        return {"mechanism": self.name, "fingerprint": fingerprint}
+
+    @cached_property
+    def quantities(self) -> Sequence[Quantity]:
+        return [
+            Quantity.of_lock(one.label, one.motion.is_turn)
+            for one in self.mechanism.variables
+        ]
+
+    @property
+    def joints(self) -> tuple[JointName, ...]:
+        return tuple(joint.name for joint in self.mechanism.joints)
+
+    def member(self, values: Mapping[str, float]) -> Member:
+        locks = self.by_key(LOCK, values)
+        check_limits(self.mechanism, locks)
+        return Member(self.mechanism.with_locks(locks))
+
+
+def choose_subject(
+    text: str, parameters: Sequence[str] = (), is_without_centre: bool = False
+) -> Subject:
+    """What is called ``text`` in the catalogue, or is in the file ``text``, which takes
+    no ``parameters``.
+
+    Raises as `choose_linkage`, and `CommandError` for a file with a single loop, and
+    for anything but a network without its centre.
+    """
+    if text in NETWORKS and not is_linkage_file(text):
+        return NetworkFamily(text, is_without_centre)
+    if not is_linkage_file(text):
+        entry(text)
+        if is_without_centre:
+            raise no_network(text)
+        return Family(text)
+    chosen = choose_linkage(text, parameters)
+    if is_without_centre:
+        raise no_network(text)
+    if isinstance(chosen, Linkage):
+        raise CommandError(
+            f"{text}: it is a single loop, a table or axes, without parameters and "
+            "without joints to lock; a sweep takes a family or a network of the "
+            "catalogue with --param, and a network or the file of a mechanism with "
+            "--lock"
+        )
+    return FileMechanism(chosen)
