@@ -17,9 +17,8 @@ from bifurc.search.seed_fates import Fate
 
 __all__ = ["asks_for_more_starts"]
 
-FEWEST = (
-    10  # starts that meet an island: of one as large none comes in 5e-5 of searches
-)
+# Starts that meet an island: of one as large none comes in 5e-5 of searches.
+FEWEST = 10
 # Share of the starts that met what no other one met: of those to come about as many meet
 # something new (Good 1953).
 ENDLESS = 0.25
@@ -27,11 +26,8 @@ ENDLESS = 0.25
 
 def asks_for_more_starts(findings: Findings) -> bool:
     """Whether some island was met by few random starts, and most by more. Islands are
-    forms, joined by singular points, isolated assemblies and near motions; where most
-    starts lie on components of higher dimension, these say nothing of the others."""
-    components = findings.components
-    if components.seeds or components.on_shaky:
-        return False
+    forms, joined by singular points, isolated assemblies and near motions; what lies on
+    components of higher dimension says nothing of them."""
     hits = _hits_of_islands(findings)
     if not len(hits) or hits.min() >= FEWEST:
         return False

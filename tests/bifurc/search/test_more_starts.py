@@ -67,7 +67,10 @@ def test_forms_that_cross_count_as_one():
     assert not asks_for_more_starts(findings)
 
 
-def test_beside_a_surface_none_are_asked_for():
-    findings = findings_with(assemblies(1, 30 * FEWEST))
+def test_starts_that_met_a_surface_say_nothing_of_islands():
+    findings = findings_with(assemblies(1, FEWEST))
     findings.components = Components(seeds={2: [0]})
-    assert not asks_for_more_starts(findings)
+    assert asks_for_more_starts(findings)
+    only_a_surface = findings_with({})
+    only_a_surface.components = Components(seeds={2: [0]})
+    assert not asks_for_more_starts(only_a_surface)

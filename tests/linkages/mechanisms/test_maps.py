@@ -330,3 +330,124 @@ def test_pure_slides_of_four_cylindrical_joints_are_a_surface(seed):
     assert counts(atlas) == (0, [], [2], 0)
     notes = [surface.note for surface in atlas.surfaces]
     assert sorted(notes) == ["", "F' has a lower rank all over it"]
+
+
+def chains_of_sarrus(links):
+    """A plate on chains of three parallel turns, each with two links (k, 2), whose axes
+    point all ways in a plane."""
+    height = 0.9
+    joints = []
+    for k, (low, up) in enumerate(links):
+        angle = 2.0 + 2.0 * np.pi * k / len(links) + 0.1 * k
+        outwards = np.array([np.cos(angle), np.sin(angle), 0.0])
+        across = (-np.sin(angle), np.cos(angle), 0.0)
+        rise = (low**2 - up**2 + height**2) / (2 * height)
+        foot = outwards
+        knee = foot + np.sqrt(low**2 - rise**2) * outwards + np.array([0.0, 0.0, rise])
+        head = foot + np.array([0.0, 0.0, height])
+        bodies = ("base", f"low{k}", f"up{k}", "plate")
+        for letter, point, pair in zip(
+            "abc", (foot, knee, head), pairwise(bodies), strict=True
+        ):
+            name = f"{letter}{k}"
+            joints.append(Joint(name, "revolute", pair, tuple(point), across))
+    return Mechanism(tuple(joints), f"Sarrus linkage of {len(links)} chains")
+
+
+# Sarrus 1853: the plate stands between the heights at which a chain is straight or
+# folded. The chains that are so at neither go on with their knees to one side: a form
+# for each choice, above the base and below.
+@pytest.mark.parametrize(
+    ("links", "forms"),
+    [
+        ([(0.9, 0.6), (1.1, 0.5)], 2),  # straight the first, folded the second
+        ([(0.9, 0.6), (1.1, 0.5), (1.0, 0.7)], 4),
+        ([(0.9, 0.6), (1.1, 0.5), (1.0, 0.7), (1.2, 0.8)], 8),
+        ([(0.9, 0.4), (1.0, 0.8)], 4),  # the first one both
+    ],
+)
+def test_sarrus_linkages_of_two_three_and_four_chains(links, forms):
+    mechanism = chains_of_sarrus(links)
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    assert counts(atlas) == (forms, [], [], 0)
+    assert all(form.branch.closed for form in atlas.forms)
+    plate = mechanism.bodies.index("plate")
+    highest = min(low + up for low, up in links)
+    lowest = max(abs(low - up) for low, up in links)
+    readout = Readout(mechanism)
+    for form in atlas.forms:
+        poses = readout.poses(form.branch.sample(400))[:, plate]
+        # it moves straight up and down
+        assert np.abs(poses[:, :3, :3] - np.eye(3)).max() < 1e-11
+        heights = np.abs(poses[:, 2, 3] + 0.9)
+        assert heights.max() == pytest.approx(highest, abs=1e-3)
+        assert heights.min() == pytest.approx(lowest, abs=1e-3)
+
+
+def planar_platform(base, top, pose):
+    """A triangle on three legs that slide and are locked: points (3, 2) of the base, and
+    of the triangle in its own frame, which stands at ``pose`` (x, y, angle)."""
+    x, y, angle = pose
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    joints = []
+    for k in range(3):
+        foot = np.append(base[k], 0.0)
+        head = np.append(turn @ top[k] + (x, y), 0.0)
+        along = tuple(head - foot)
+        pairs = (("base", f"low{k}"), (f"low{k}", f"up{k}"), (f"up{k}", "plate"))
+        joints += [
+            Joint(f"A{k}", "revolute", pairs[0], tuple(foot), Z),
+            Joint(f"P{k}", "prismatic", pairs[1], direction=along, locked=(0.0,)),
+            Joint(f"B{k}", "revolute", pairs[2], tuple(head), Z),
+        ]
+    return Mechanism(tuple(joints), "3-RPR")
+
+
+def poses_of_platform(base, top, lengths):
+    """How many poses of the triangle have legs of these ``lengths``: those of a sextic
+    (Gosselin and Merlet 1994). Two circles less the first one are lines in x and y, and
+    where these meet has to lie on the first circle."""
+    angles = np.linspace(-np.pi, np.pi, 40_001)
+    cos, sin = np.cos(angles), np.sin(angles)
+    turned = (
+        np.array([cos * p - sin * q for p, q in top]),
+        np.array([sin * p + cos * q for p, q in top]),
+    )
+    # (x + a_k)^2 + (y + b_k)^2 = lengths_k^2
+    a = turned[0] - base[:, :1]
+    b = turned[1] - base[:, 1:]
+    rest = (lengths**2)[:, None] - a**2 - b**2
+    rows = [(2 * (a[k] - a[0]), 2 * (b[k] - b[0]), rest[k] - rest[0]) for k in (1, 2)]
+    (p, q, r), (s, t, u) = rows
+    over = p * t - q * s
+    x, y = r * t - q * u, p * u - r * s
+    missed = (x + a[0] * over) ** 2 + (y + b[0] * over) ** 2 - (lengths[0] * over) ** 2
+    return int(np.count_nonzero(np.diff(np.sign(missed))))
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3])
+def test_a_planar_platform_has_the_assemblies_of_its_sextic(seed):
+    rng = np.random.default_rng(seed)
+    base = np.array([[0.0, 0.0], [2.5, 0.0], [1.0, 1.8]])
+    top = np.array([[0.0, 0.0], [1.7, 0.0], [0.9, 1.5]]) + 0.3 * rng.normal(size=(3, 2))
+    pose = np.append(rng.uniform(-0.5, 1.0, 2), rng.uniform(-3.0, 3.0))
+    mechanism = planar_platform(base, top, pose)
+    turn = np.array(
+        [[np.cos(pose[2]), -np.sin(pose[2])], [np.sin(pose[2]), np.cos(pose[2])]]
+    )
+    legs = np.linalg.norm(top @ turn.T + pose[:2] - base, axis=1)
+    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    assert not atlas.forms
+    assert len(atlas.rigid) == poses_of_platform(base, top, legs) >= 2
+
+
+# Wunderlich 1954: twelve bars as the edges of a cube, with 20 forms beside its surfaces,
+# each met by few random starts
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("seed", range(3))
+def test_every_form_of_the_cube_of_bars_is_met(seed):
+    mechanism = mechanism_of_case(cases()["Wunderlich linkage, faces PPPPPP"])
+    settings = SearchSettings(certify=False)
+    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    assert len(atlas.forms) == 20
+    assert {surface.dimension for surface in atlas.surfaces} == {2}
