@@ -81,11 +81,14 @@ def subject_of(loop: Loop) -> Subject:
 
 def loop_of(atlas: Atlas) -> Loop:
     """The loop that an atlas is of. Raises `NoLinkageError` where it is of something
-    else."""
+    else, also of a mechanism that is a single loop: its unknowns are others."""
     check_type("atlas", atlas, Atlas)
     subject = atlas.subject
-    if "mechanism" in subject and "lengths" not in subject:
-        raise NoLinkageError("it is of a mechanism, no single loop of joints")
+    if "mechanism" in subject:
+        raise NoLinkageError(
+            "it is of a mechanism, no Denavit-Hartenberg table; where that is a single "
+            "loop, `linkages.Readout(mechanism).single_loop` has the table"
+        )
     missing = [key for key in LoopTable.__annotations__ if key not in subject]
     if missing:
         raise NoLinkageError(f"its subject has no {', '.join(missing)}")

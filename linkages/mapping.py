@@ -39,7 +39,8 @@ def map_linkage(
     ``seed`` is that of the random starts; ``progress`` is called with what was found
     and how many. `linkages.labels.FormLabels` reads what a form is,
     `linkages.labels.loop_of` the loop that an atlas is of, and
-    `linkages.mechanisms.readout.Readout` the joint variables of a mechanism. Every form
+    `linkages.mechanisms.readout.Readout` the joint variables of a mechanism, also of
+    one that is a single loop. Every form
     has its ``certificate``, unless the settings say otherwise. Raises `GeometryError`
     for anything but a linkage or a mechanism, and for a loop with lengths whose squares
     leave the range of doubles.
@@ -68,13 +69,13 @@ def _map_mechanism(
     seed: int,
     progress: Callable[[str, int], None] | None,
 ) -> Atlas:
-    """The transition map of a mechanism: that of its loop, where it is a single one of
-    revolute joints."""
+    """The transition map of a mechanism in its own unknowns: solved as that of its loop,
+    where it is a single one of revolute joints."""
     # they import networkx, which a loop does not need
     from linkages.mechanisms.closure import MechanismClosure
     from linkages.mechanisms.labels import label_mechanism
+    from linkages.mechanisms.loop_atlas import in_joint_variables
     from linkages.mechanisms.readout import Readout
-    from linkages.mechanisms.subject import mechanism_subject
     from linkages.networks.mechanism import (
         NetworkClosure,
         NetworkMechanism,
@@ -87,7 +88,7 @@ def _map_mechanism(
         atlas = map_linkage(
             single.loop, settings=settings, seed=seed, progress=progress
         )
-        return replace(atlas, subject={**atlas.subject, **mechanism_subject(mechanism)})
+        return in_joint_variables(atlas, readout)
     if isinstance(mechanism, NetworkMechanism):
         problem: MechanismClosure = NetworkClosure(mechanism)
     else:

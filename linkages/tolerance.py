@@ -13,7 +13,7 @@ from linkages.loop import GeometryError, Loop
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.errors import draw_errors
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.readout import Readout
+from linkages.mechanisms.structure import Structure
 
 __all__ = ["closure_with_errors", "make_with_errors"]
 
@@ -22,7 +22,7 @@ def closure_with_errors(
     linkage: Loop | Mechanism, error: float, rng: np.random.Generator
 ) -> Problem:
     """The closure equations of a linkage made with errors, in the unknowns of its
-    atlas.
+    atlas: of a loop the joint angles, of a mechanism its joint variables.
 
     Those of a loop are the errors of `make_with_errors`, those of a mechanism are of
     `linkages.mechanisms.errors.draw_errors`: out of the plane, too, where it is planar.
@@ -30,10 +30,8 @@ def closure_with_errors(
     """
     if isinstance(linkage, Loop):
         return LoopClosure(make_with_errors(linkage, error, rng))
-    readout = Readout(linkage)
-    if readout.single_loop is not None:
-        return LoopClosure(make_with_errors(readout.single_loop.loop, error, rng))
-    return MechanismClosure(linkage, draw_errors(readout.structure, error, rng))
+    structure = Structure(linkage)
+    return MechanismClosure(linkage, draw_errors(structure, error, rng))
 
 
 def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop:

@@ -177,7 +177,7 @@ function shapeOf({ kind }) {
 }
 
 /** A name for the picture: of a long one the beginning and the end, by which names in a row differ. */
-function shortened(name) {
+export function shortened(name) {
   if (name.length <= LONGEST) return name;
   return `${name.slice(0, LONGEST - 1 - ENDING)}…${name.slice(-ENDING)}`;
 }

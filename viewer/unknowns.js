@@ -13,12 +13,18 @@ const DIGITS = 4; // of numbers that are no angles
  * to 180, however many turns that are: joints that are coupled come back after several.
  */
 export function unknownsOf(scene, tracks) {
-  if (scene.loop) return scene.loop.lengths.map((_, i) => periodicAngle(angleName(i + 1)));
+  if (scene.loop) return namesOfLoop(scene.loop).map((name) => periodicAngle(name));
   return scene.mechanism.unknowns.map((unknown, i) => {
     if (unknown.is_angle && unknown.period !== null) return periodicAngle(unknown.name, unknown.period / TURN);
     const factor = unknown.is_angle ? DEGREES : unknown.factor;
     return openUnknown(unknown, factor, shownRange(tracks, i, factor));
   });
+}
+
+/** The names of the unknowns of a loop: of its joints, in the order of the unknowns, or else of its angles. */
+function namesOfLoop({ lengths, joints }) {
+  if (!joints) return lengths.map((_, i) => angleName(i + 1));
+  return [...joints].sort((a, b) => a.column - b.column).map(({ name }) => name);
 }
 
 function periodicAngle(name, turns = 1) {

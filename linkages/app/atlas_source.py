@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from bifurc.atlas import Atlas
 from linkages.app.atlas_file import open_linkage_atlas
 from linkages.app.choice import require_loop
+from linkages.app.configurations import readout_of
 from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
 from linkages.app.inputs import choose_held
@@ -64,16 +65,23 @@ def loop_atlas_of(
     hold: HoldOptions = NOTHING_HELD,
 ) -> Atlas:
     """The saved atlas, or that of the linkage, called ``source``, where it is a single
-    loop of revolute joints; raises `CommandError` for a mechanism as well."""
+    loop of revolute joints, in the joint angles of this loop; raises `CommandError` for
+    a mechanism as well."""
     if is_atlas_file(source):
         atlas = atlas_of(source, parameters, search, hold)
         mechanism = mechanism_of(atlas)
         if mechanism is not None:
             require_loop(source, mechanism)
+    else:
+        linkage = choose_held(source, parameters, hold)
+        require_loop(source, linkage)
+        atlas = _explored(linkage, search)
+    readout = readout_of(atlas)
+    if readout is None:
         return atlas
-    linkage = choose_held(source, parameters, hold)
-    require_loop(source, linkage)
-    return _explored(linkage, search)
+    from linkages.mechanisms.loop_atlas import in_loop_angles
+
+    return in_loop_angles(atlas, readout)
 
 
 def _explored(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:

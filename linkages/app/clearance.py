@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypedDict
 
 from bifurc.atlas import Atlas, Form
-from linkages.app.configurations import numbers_at, readout_of
+from linkages.app.configurations import loop_angles_of, numbers_at, readout_of
 from linkages.app.texts import link_name
 from linkages.labels import loop_of
 from linkages.links.clearance import Approach, approaches_along
+from linkages.loop import Loop
 
 __all__ = ["FormClearance", "clearance_document", "clearance_of"]
 
@@ -56,16 +57,29 @@ class FormClearanceDocument(TypedDict):
 def clearance_of(atlas: Atlas, form: Form, diameter: float) -> FormClearance:
     """The clearance of links of a diameter along a form."""
     readout = readout_of(atlas)
-    if readout is None or readout.single_loop is not None:
+    if readout is None:
         loop = loop_of(atlas)
-        names = tuple(link_name(link, loop.n) for link in range(loop.n))
-        approaches = approaches_along(loop, form.branch)
+    elif readout.single_loop is not None:
+        loop = readout.single_loop.loop
     else:
         from linkages.links.body_clearance import approaches_of_bodies
 
-        names = readout.mechanism.bodies
-        approaches = approaches_of_bodies(readout.structure, form.branch)
-    return FormClearance(form, diameter, names, tuple(approaches))
+        bodies = readout.mechanism.bodies
+        nearest = approaches_of_bodies(readout.structure, form.branch)
+        return FormClearance(form, diameter, bodies, tuple(nearest))
+    names = tuple(link_name(link, loop.n) for link in range(loop.n))
+    approaches = _approaches_of_links(atlas, form, loop)
+    return FormClearance(form, diameter, names, approaches)
+
+
+def _approaches_of_links(atlas: Atlas, form: Form, loop: Loop) -> tuple[Approach, ...]:
+    """Where the links of the loop that an atlas is of are nearest, in the unknowns of
+    the atlas."""
+    to_angles = loop_angles_of(atlas)
+    return tuple(
+        replace(approach, theta=to_angles.inverse.points(approach.theta))
+        for approach in approaches_along(loop, to_angles.branch(form.branch))
+    )
 
 
 def clearance_document(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from bifurc.atlas import Atlas
 from linkages.app.clearance import FormClearance
 from linkages.app.configurations import (
@@ -14,9 +12,6 @@ from linkages.app.configurations import (
 )
 from linkages.app.texts import table
 from linkages.labels import loop_of
-
-if TYPE_CHECKING:
-    from linkages.mechanisms.structure import Structure
 
 __all__ = ["describe_clearance"]
 
@@ -62,21 +57,17 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
 
 def _word(atlas: Atlas) -> str:
     """What those are called of which the clearance is shown."""
-    return "links" if _structure(atlas) is None else "bodies"
+    readout = readout_of(atlas)
+    is_loop = readout is None or readout.single_loop is not None
+    return "links" if is_loop else "bodies"
 
 
 def _size(atlas: Atlas) -> float:
     """The characteristic length."""
-    structure = _structure(atlas)
-    return loop_of(atlas).characteristic_length if structure is None else structure.unit
-
-
-def _structure(atlas: Atlas) -> Structure | None:
-    """The structure of a mechanism; None for a single loop of revolute joints."""
     readout = readout_of(atlas)
-    if readout is None or readout.single_loop is not None:
-        return None
-    return readout.structure
+    if readout is None:
+        return loop_of(atlas).characteristic_length
+    return readout.structure.unit
 
 
 def _length(length: float, smallest: float) -> str:

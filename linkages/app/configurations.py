@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas
+from bifurc.isometry import Isometry
 from bifurc.torus import wrap
 from linkages.app.texts import in_degrees, in_lengths
 
@@ -22,6 +23,7 @@ __all__ = [
     "arclength_unit",
     "heading",
     "joint_names",
+    "loop_angles_of",
     "network_at",
     "numbers_at",
     "readout_of",
@@ -63,15 +65,28 @@ def unknown_factors(atlas: Atlas) -> NDArray[np.float64]:
     """What the unknowns (n,) of an atlas are multiplied with to be in rad and in the
     user's unit of length."""
     readout = readout_of(atlas)
-    if readout is None or readout.single_loop is not None:
-        return np.ones(len(atlas.names))
-    return readout.structure.scales
+    return np.ones(len(atlas.names)) if readout is None else readout.structure.scales
+
+
+@lru_cache(maxsize=2)
+def loop_angles_of(atlas: Atlas) -> Isometry:
+    """From the unknowns of an atlas to the joint angles of the loop that a mechanism
+    is; to the unknowns as they are where it is none, or the atlas is of a loop."""
+    readout = readout_of(atlas)
+    if readout is None:
+        return Isometry.identity(len(atlas.names))
+    from linkages.mechanisms.loop_atlas import to_loop_angles
+
+    return to_loop_angles(readout)
 
 
 def numbers_at(atlas: Atlas, point: NDArray[np.float64]) -> list[float]:
     """The unknowns (n,) of an atlas, angles between -pi and pi, lengths in the user's
-    unit."""
-    numbers = wrap(point, atlas.periods) * unknown_factors(atlas)
+    unit; of a mechanism that is a single loop the joint angles of this loop."""
+    to_angles = loop_angles_of(atlas)
+    periods = atlas.periods[to_angles.columns]
+    factors = unknown_factors(atlas)[to_angles.columns]
+    numbers = wrap(to_angles.points(point), periods) * factors
     return [float(number) for number in numbers]
 
 
@@ -121,10 +136,6 @@ def unit_of_arclengths(atlas: Atlas) -> str:
 def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:
     """The unknowns (n,) as text: angles in degrees, above -180 and up to 180, lengths
     in the user's unit; those of a mechanism from its reference configuration."""
-    readout = readout_of(atlas)
-    if readout is not None and readout.single_loop is not None:
-        single = readout.single_loop
-        point = single.signs * (point - single.reference)
     angles = wrap(point, atlas.periods, within=SHOWN_SHARE)
     return " ".join(f"{text:>9}" for text in show_travel(atlas, angles))
 

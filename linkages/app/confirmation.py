@@ -25,10 +25,16 @@ def confirm_points(
     """Every singular point of the map of a linkage with its `Confirmation`, the
     geometry at the same precision; that of a mechanism is taken from its doubles."""
     residual: PreciseResidual | None
-    if readout_of(atlas) is None:
+    readout = readout_of(atlas)
+    if readout is None:
         with mpmath.workdps(3 * digits + 30):
             residual = precise_residual(choose_precisely(linkage, parameters))
     else:
+        from linkages.mechanisms.loop_atlas import in_loop_angles
+
+        # the equations in which the points were located: others, as they are rounded,
+        # have their singular points elsewhere
+        atlas = in_loop_angles(atlas, readout)
         residual = equations_of(atlas).precise_residual()
     assert residual is not None
     for meeting in atlas.points:

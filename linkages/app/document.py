@@ -1,5 +1,7 @@
 """An atlas of a linkage or a mechanism as one JSON document: angles in radians, joints
-numbered from 1; for a mechanism also variables by the names of its joints."""
+numbered from 1; for a mechanism also variables by the names of its joints. What goes by
+the numbers of joints is that of the Denavit-Hartenberg table where there is one, also
+for a mechanism that is a single loop."""
 
 from __future__ import annotations
 
@@ -12,7 +14,12 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
-from linkages.app.configurations import network_at, numbers_at, readout_of
+from linkages.app.configurations import (
+    loop_angles_of,
+    network_at,
+    numbers_at,
+    readout_of,
+)
 from linkages.app.mobility import gruebler_of, mobility_of
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels, loop_of
@@ -247,9 +254,12 @@ def _assembly(
 
 def _linkage(atlas: Atlas) -> LinkageDocument:
     readout = readout_of(atlas)
-    if readout is not None and readout.single_loop is None:
+    if readout is None:
+        loop = loop_of(atlas)
+    elif readout.single_loop is not None:
+        loop = readout.single_loop.loop
+    else:
         return {"name": readout.mechanism.name}
-    loop = loop_of(atlas)
     lengths, twists, offsets = loop.arrays
     return {
         "name": loop.name,
@@ -262,14 +272,17 @@ def _linkage(atlas: Atlas) -> LinkageDocument:
 def _form(atlas: Atlas, index: int) -> FormDocument:
     form = atlas.forms[index]
     labels = FormLabels.of(form)
+    to_angles = loop_angles_of(atlas)
+    winding = to_angles.directions(form.branch.winding).astype(int)
+    inactive = [to_angles.index(joint - 1) + 1 for joint in labels.inactive_joints]
     sample = form.branch(_clear_arclength(atlas, index))
     document: FormDocument = {
         "name": form.name,
         "dimension": 1,
         "closed": form.branch.closed,
         "length": form.branch.length,
-        "winding": form.branch.winding.tolist(),
-        "inactive_joints": list(labels.inactive_joints),
+        "winding": winding.tolist(),
+        "inactive_joints": sorted(inactive),
         "symmetry": labels.symmetry.value,
         "sample": numbers_at(atlas, sample),
         "max_residual": labels.max_residual,
@@ -329,7 +342,7 @@ def _bifurcation(atlas: Atlas, point: MeetingPoint) -> BifurcationDocument:
         "theta": numbers_at(atlas, point.point.u),
         "rank": point.point.rank,
         "forms": [atlas.forms[index].name for index, _ in point.passes],
-        "tangents": point.tangents.tolist(),
+        "tangents": loop_angles_of(atlas).directions(point.tangents).tolist(),
         "error": point.point.error,
     }
     _add_variables(atlas, document, point.point.u)
@@ -392,7 +405,7 @@ def _near_motion(atlas: Atlas, near: NearMotion) -> NearMotionDocument:
 def _dead_point(atlas: Atlas, event: Event) -> DeadPointDocument:
     document: DeadPointDocument = {
         "theta": numbers_at(atlas, event.u),
-        "joint": event.index + 1,
+        "joint": loop_angles_of(atlas).index(event.index) + 1,
         "form": atlas.forms[event.form].name,
     }
     _add_variables(atlas, document, event.u)

@@ -51,9 +51,7 @@ def names_of_unknowns(linkage: Linkage | Mechanism) -> list[str]:
     from linkages.mechanisms.readout import Readout
 
     readout = Readout(linkage)
-    single = readout.single_loop
-    count = len(readout.structure.unknowns) if single is None else single.loop.n
-    return [readout.label_of_unknown(index) for index in range(count)]
+    return [unknown.label for unknown in readout.structure.unknowns]
 
 
 def read_numbers(

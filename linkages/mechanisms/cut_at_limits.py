@@ -251,10 +251,7 @@ def _unknowns(
     structure: Structure, single: SingleLoop, angles: np.ndarray
 ) -> np.ndarray:
     """The unknowns (k, n) at joint angles (k, n) of the loop, rad."""
-    columns = [structure.column_of[int(number)] for number in single.variables]
-    points = np.empty_like(angles)
-    points[:, columns] = single.signs * (angles - single.reference)
-    return points
+    return single.to_unknowns(structure).points(angles)
 
 
 def _lie_on(

@@ -51,8 +51,7 @@ class LoopFacts:
 def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
     """What is redundant in every loop at a configuration (n,) of the atlas."""
     problem = MechanismClosure(readout.mechanism)
-    unknowns = readout.unknowns(point[None])
-    jacobian = problem.jacobians(unknowns)[0]
+    jacobian = problem.jacobians(point[None])[0]
     facts = []
     for closure, rows in zip(
         problem.structure.closures, problem.rows_of_closures, strict=True
@@ -105,10 +104,7 @@ def form_facts(atlas: Atlas, index: int, readout: Readout) -> FormFacts:
     places = np.array([0.0, branch.length, *turning])
     samples = branch.sample(SAMPLES)
     points = np.concatenate([branch(places), samples])
-    rounding = 0.0
-    if readout.single_loop is None:
-        problem = MechanismClosure(readout.mechanism)
-        rounding = change_by_rounding(problem, branch)
+    rounding = change_by_rounding(MechanismClosure(readout.mechanism), branch)
     groups = _groups(readout, samples, unit_over_rounding(keeps_angle, rounding))
     ranges = variable_ranges(readout, branch, points)
     return FormFacts(ranges, _still(readout, groups), groups)

@@ -22,8 +22,7 @@ JointVariables: TypeAlias = dict[str, float | list[float]]
 class Readout:
     """The variables of a ``mechanism`` at configurations of its atlas.
 
-    The unknowns of an atlas are those of its `Structure`, or the joint angles of a
-    `SingleLoop` where it is one.
+    The unknowns of an atlas are those of its `Structure`.
     """
 
     def __init__(self, mechanism: Mechanism):
@@ -32,25 +31,13 @@ class Readout:
 
     @cached_property
     def single_loop(self) -> SingleLoop | None:
-        """The loop that the atlas is of; None where it is of a `MechanismClosure`."""
+        """The mechanism as a loop; None where it is no single one of revolute joints."""
         return as_single_loop(self.structure)
 
-    @cached_property
+    @property
     def reference(self) -> np.ndarray:
         """The reference configuration (n,) in the unknowns of the atlas."""
-        single = self.single_loop
-        return self.structure.reference if single is None else single.reference
-
-    def unknowns(self, points: np.ndarray) -> np.ndarray:
-        """Configurations (k, n) of the atlas in the unknowns of the structure."""
-        single = self.single_loop
-        if single is None:
-            return points
-        turned: np.ndarray = single.signs * (points - single.reference)
-        unknowns = np.zeros_like(turned)
-        columns = [self.structure.column_of[number] for number in single.variables]
-        unknowns[:, columns] = turned
-        return unknowns
+        return self.structure.reference
 
     def labels(self) -> list[str]:
         """What every variable is called, in the order of the joints; those of a
@@ -59,20 +46,17 @@ class Readout:
 
     def label_of_unknown(self, index: int) -> str:
         """What the unknown of this index of the atlas is called."""
-        single = self.single_loop
-        if single is None:
-            return self.structure.unknowns[index].label
-        return self.mechanism.variables[int(single.variables[index])].label
+        return self.structure.unknowns[index].label
 
     def values(self, points: np.ndarray) -> np.ndarray:
         """The values (k, v) of all variables at configurations (k, n) of an atlas, rad
         and the user's unit, as they stand, without regard to periods."""
-        unknowns = self.unknowns(np.atleast_2d(points))
+        rows = np.atleast_2d(points)
         columns = [
-            self.structure.values(unknowns, number)
+            self.structure.values(rows, number)
             for number in range(len(self.mechanism.variables))
         ]
-        return np.array(columns, dtype=float).reshape(len(columns), len(unknowns)).T
+        return np.array(columns, dtype=float).reshape(len(columns), len(rows)).T
 
     def wrapped(self, point: np.ndarray) -> np.ndarray:
         """The values (v,) at one configuration (n,), angles between -pi and pi."""
@@ -118,8 +102,7 @@ class Readout:
         (n,)."""
         if not self._spherical:
             return {}
-        unknowns = self.unknowns(point[None])
-        rotations = self._poses.rotations(unknowns, self._spherical)
+        rotations = self._poses.rotations(point[None], self._spherical)
         vectors = rotation_vectors(rotations[:, 0]).tolist()
         return dict(zip(self._spherical, vectors, strict=True))
 
@@ -140,8 +123,7 @@ class Readout:
         of several bodies, "S1.rod"."""
         if not self._spherical:
             return {}
-        unknowns = self.unknowns(np.atleast_2d(points))
-        rotations = self._poses.rotations(unknowns, self._spherical)
+        rotations = self._poses.rotations(np.atleast_2d(points), self._spherical)
         return dict(zip(self._labels_of_spherical, rotations, strict=True))
 
     @property
@@ -158,4 +140,4 @@ class Readout:
     def poses(self, points: np.ndarray) -> np.ndarray:
         """The transforms (k, b, 4, 4) of all bodies at configurations (k, n) of an
         atlas, from the reference configuration, the frame at rest."""
-        return self._poses.at(self.unknowns(np.atleast_2d(points)))
+        return self._poses.at(np.atleast_2d(points))

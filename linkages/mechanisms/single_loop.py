@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bifurc.isometry import Isometry
 from linkages.axes import loop_from_axes
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop
 from linkages.mechanisms.mechanism import Mechanism
@@ -24,6 +25,13 @@ class SingleLoop:
     reference: np.ndarray
     variables: np.ndarray
     signs: np.ndarray
+
+    def to_unknowns(self, structure: Structure) -> Isometry:
+        """From the joint angles of the loop to the unknowns of the ``structure`` that it
+        is the loop of."""
+        columns = [structure.column_of[int(number)] for number in self.variables]
+        joints = np.argsort(columns)
+        return Isometry(joints, self.signs[joints], self.reference[joints])
 
 
 def as_single_loop(structure: Structure) -> SingleLoop | None:

@@ -29,10 +29,16 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
 
 def mechanism_of(atlas: Atlas) -> Mechanism | None:
     """The mechanism that an atlas is of; None where it is of a loop that was given as
-    such, or of something else. Raises `NoLinkageError` where it is damaged."""
+    such, or of something else. Raises `NoLinkageError` where it is damaged, or in the
+    angles of a Denavit-Hartenberg table, as single loops were once."""
     values = atlas.subject.get("mechanism")
     if values is None:
         return None
+    if "lengths" in atlas.subject:
+        raise NoLinkageError(
+            "its unknowns are the angles of a Denavit-Hartenberg table, not the "
+            "variables of the joints of its mechanism; map the mechanism again"
+        )
     try:
         return mechanism_from(values, str(atlas.subject.get("name", "")))
     except GeometryError as error:

@@ -23,8 +23,8 @@ from bifurc.torus import difference
 from linkages.labels import FormLabels, loop_of
 from linkages.links.mechanism_drawing import best_view_of_mechanism
 from linkages.loop import Loop
+from linkages.mechanisms.loop_atlas import to_loop_angles
 from linkages.mechanisms.readout import Readout
-from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_of
 from linkages.scene import View, best_view, make_scene
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
@@ -44,13 +44,25 @@ class PackedArray(TypedDict):
     float64: str
 
 
+class JointDocument(TypedDict):
+    """A joint of a loop that was given as a mechanism: its ``name``, and the joint angle,
+    ``offset`` (rad) plus ``sign`` times the unknown of this ``column``."""
+
+    name: str
+    column: int
+    sign: int
+    offset: float
+
+
 class LoopDocument(TypedDict):
-    """The Denavit-Hartenberg table, and the characteristic length as ``size``."""
+    """The Denavit-Hartenberg table, and the characteristic length as ``size``; the
+    ``joints`` where the unknowns are not the joint angles."""
 
     lengths: list[float]
     twists: list[float]
     offsets: list[float]
     size: float
+    joints: NotRequired[list[JointDocument]]
 
 
 class FormDocument(TypedDict):
@@ -173,11 +185,19 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
 
     Raises `linkages.NoLinkageError` where the atlas is not of a linkage.
     """
-    structure = _structure_of(atlas)
-    if structure is None:
+    readout = _readout_of(atlas)
+    if readout is None:
         loop = loop_of(atlas)
         view = best_view(make_scene(loop, _first(atlas)))
         return _document(atlas, verdict, {"loop": _loop(loop)}, view)
+    if readout.single_loop is not None:
+        loop = readout.single_loop.loop
+        angles = to_loop_angles(readout).points(_first(atlas))
+        view = best_view(make_scene(loop, angles))
+        of_joints = _loop(loop)
+        of_joints["joints"] = _joints(readout)
+        return _document(atlas, verdict, {"loop": of_joints}, view)
+    structure = readout.structure
     points = np.concatenate(_configurations(atlas))
     view = best_view_of_mechanism(structure, _first(atlas))
     motion = describe_motion(structure, points)
@@ -188,15 +208,12 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
     return document
 
 
-def _structure_of(atlas: Atlas) -> Structure | None:
-    """The structure whose unknowns are those of an atlas; None where it is not of a
-    mechanism, or of one that is solved as a single loop."""
+def _readout_of(atlas: Atlas) -> Readout | None:
+    """What reads the joint variables from an atlas; None where it is not of a
+    mechanism."""
     check_type("atlas", atlas, Atlas)
     mechanism = mechanism_of(atlas)
-    if mechanism is None:
-        return None
-    readout = Readout(mechanism)
-    return readout.structure if readout.single_loop is None else None
+    return None if mechanism is None else Readout(mechanism)
 
 
 def _document(
@@ -245,6 +262,23 @@ def _loop(loop: Loop) -> LoopDocument:
         "offsets": table.offsets.tolist(),
         "size": loop.characteristic_length,
     }
+
+
+def _joints(readout: Readout) -> list[JointDocument]:
+    """The joints of the loop that a mechanism is, in loop order."""
+    back = to_loop_angles(readout).inverse
+    joints: list[JointDocument] = []
+    for joint in range(len(back.columns)):
+        column = back.index(joint)
+        joints.append(
+            {
+                "name": readout.label_of_unknown(column),
+                "column": column,
+                "sign": int(back.signs[column]),
+                "offset": float(back.origin[column]),
+            }
+        )
+    return joints
 
 
 def _form(form: Form, index: int) -> FormDocument:

@@ -341,12 +341,18 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
 
 def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:
     """The linkage of an atlas with its motions, to be animated."""
-    from linkages.app.configurations import readout_of
-    from linkages.app.equations import is_of_loop
+    from linkages.app.configurations import loop_angles_of, readout_of
     from linkages.export.model import model_of_loop, model_of_mechanism
     from linkages.labels import loop_of
 
     readout = readout_of(atlas)
-    if readout is None or is_of_loop(atlas):
+    if readout is None:
         return model_of_loop(loop_of(atlas), motions)
-    return model_of_mechanism(readout, motions)
+    if readout.single_loop is None:
+        return model_of_mechanism(readout, motions)
+    to_angles = loop_angles_of(atlas)
+    of_loop = [
+        replace(motion, configurations=to_angles.points(motion.configurations))
+        for motion in motions
+    ]
+    return model_of_loop(readout.single_loop.loop, of_loop)

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bifurc.atlas import Atlas
+    from linkages.linkage import Linkage
+    from linkages.loop import Loop
+    from linkages.mechanisms.mechanism import Mechanism
 
 __all__ = ["tolerance_command"]
 
@@ -66,8 +69,9 @@ def tolerance_command(
 ) -> None:
     """Show what manufacturing errors make of the forms and bifurcations of a linkage.
 
-    Errors are in every number of a D-H table; in a mechanism every joint is off on each
-    body that it joins.
+    Errors are in every number of a D-H table, also of a mechanism that is a single
+    loop of revolute joints; in another one every joint is off on each body that it
+    joins.
 
     \b
     Examples:
@@ -79,14 +83,13 @@ def tolerance_command(
     from linkages.app.output import require_folder, say
     from linkages.app.tolerance import climb, measure
     from linkages.app.tolerance_text import describe_tolerance
-    from linkages.linkage import Linkage
 
     if out is not None:
         require_folder(out)
     chosen = choose_held(linkage, parameters, hold)
     atlas = explore_linkage(chosen, SearchOptions())
     _require_forms(atlas)
-    nominal = chosen.loop if isinstance(chosen, Linkage) else chosen
+    nominal, atlas = as_made(chosen, atlas)
     seeds = range(seed, seed + samples)
     copies = [measure(atlas, nominal, error, number) for number in seeds]
     ladder = climb(atlas, nominal, seeds)
@@ -98,6 +101,25 @@ def tolerance_command(
             from linkages.app.tolerance_figure import draw_tolerance
 
             _write(text, draw_tolerance(atlas, copies[0], ladder), out)
+
+
+def as_made(
+    linkage: Linkage | Mechanism, atlas: Atlas
+) -> tuple[Loop | Mechanism, Atlas]:
+    """What is made with errors, the loop of a linkage or of a mechanism that is a single
+    one of revolute joints, and its atlas in the unknowns of its equations."""
+    from linkages.app.configurations import readout_of
+    from linkages.linkage import Linkage
+
+    if isinstance(linkage, Linkage):
+        return linkage.loop, atlas
+    from linkages.mechanisms.loop_atlas import in_loop_angles
+
+    readout = readout_of(atlas)
+    assert readout is not None
+    if readout.single_loop is None:
+        return linkage, atlas
+    return readout.single_loop.loop, in_loop_angles(atlas, readout)
 
 
 def _require_forms(atlas: Atlas) -> None:

@@ -5,14 +5,16 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
+from linkages.app.mechanism_file import mechanism_text
 from linkages.app.tolerance import climb, half_branches, measure, slope
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
 from linkages.file import read_file
 from linkages.linkage import load
 from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
+from linkages.mechanisms.loop_atlas import in_loop_angles
 from linkages.mechanisms.of_loop import mechanism_of_loop
+from linkages.mechanisms.readout import Readout
 from linkages.tolerance import closure_with_errors, make_with_errors
 
 
@@ -156,11 +158,29 @@ def test_joints_are_held_on_the_command_line():
     assert '"elbow" is not allowed' in result.output
 
 
-def test_a_loop_given_as_a_mechanism_is_made_as_the_loop(parallelogram):
+def test_a_loop_given_as_a_mechanism_is_made_as_the_loop(parallelogram, tmp_path):
     atlas, loop = parallelogram
-    mechanism = mechanism_of_loop(loop, atlas.forms[0].branch(0.0))
-    problem = closure_with_errors(mechanism, 1e-3, np.random.default_rng(0))
-    assert isinstance(problem, LoopClosure)
+    mechanism = mechanism_of_loop(loop, atlas.forms[0].branch(0.4))
+    file = tmp_path / "joints.toml"
+    file.write_text(mechanism_text(mechanism, file))
+    command = ["tolerance", str(file), "--error", "1e-3", "--samples", "1"]
+    result = CliRunner().invoke(main, command)
+    assert result.stdout.startswith("Errors of 0.001 ")
+    readout = Readout(mechanism)
+    of_loop = in_loop_angles(map_linkage(mechanism), readout)
+    made = measure(of_loop, readout.single_loop.loop, 1e-3, 0)
+    rows = [line.split() for line in result.stdout.splitlines()]
+    for form, largest in zip(of_loop.forms, made.largest, strict=True):
+        row = next(row for row in rows if " ".join(row[:2]) == form.name)
+        assert float(row[2]) == pytest.approx(largest, rel=0.01)
+
+
+def test_a_mechanism_is_made_in_the_unknowns_of_its_atlas(parallelogram):
+    atlas, loop = parallelogram
+    mechanism = mechanism_of_loop(loop, atlas.forms[0].branch(0.4))
+    exact = closure_with_errors(mechanism, 0.0, np.random.default_rng(0))
+    for form in map_linkage(mechanism).forms:
+        assert exact.gaps(form.branch.sample(50)).max() < 1e-12
 
 
 def test_a_form_has_no_half_branch_beyond_its_end(tmp_path):

@@ -42,10 +42,7 @@ def test_at_closed_configurations_every_joint_holds(mechanism):
     points, gaps = problem.project(starts)
     points = points[gaps < 1e-13]
     assert len(points)
-    if readout.single_loop is None:
-        poses, values = readout.poses(points), readout.values(points)
-    else:
-        poses, values = readout._poses.at(points), points
+    poses, values = readout.poses(points), readout.values(points)
     for pair in mechanism.pairs:
         base = poses[:, mechanism.bodies.index(pair.base)]
         moved = poses[:, mechanism.bodies.index(pair.moved)]

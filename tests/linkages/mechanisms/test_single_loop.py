@@ -44,8 +44,9 @@ def test_the_atlas_is_that_of_the_loop(name):
     assert np.allclose(lengths, [form.branch.length for form in expected.forms])
     assert [p.kind for p in atlas.points] == [p.kind for p in expected.points]
     assert atlas.completeness.level is expected.completeness.level
-    assert linkages.loop_of(atlas).n == loop.n
     assert linkages.mechanism_of(atlas) is not None
+    with pytest.raises(linkages.NoLinkageError, match="it is of a mechanism"):
+        linkages.loop_of(atlas)
 
 
 def test_variables_are_measured_from_the_reference_configuration():
@@ -54,13 +55,15 @@ def test_variables_are_measured_from_the_reference_configuration():
     mechanism = mechanism_of(loop, points[0], is_turned=True)
     readout = Readout(mechanism)
     single = readout.single_loop
-    assert np.allclose(readout.values(single.reference[None]), 0.0, atol=1e-12)
+    to_unknowns = single.to_unknowns(readout.structure)
+    assert np.abs(to_unknowns.points(single.reference)).max() < 1e-12
     # the general equations of the mechanism hold at the same variables
     problem = MechanismClosure(mechanism)
     others = points[:20] - points[0] + single.reference
     residuals = LoopClosure(single.loop).residuals(others)
     assert np.abs(residuals).max() < 1e-12
-    assert np.abs(problem.residuals(readout.unknowns(others))).max() < 1e-12
+    unknowns = to_unknowns.points(others)
+    assert np.abs(problem.residuals(unknowns)).max() < 1e-12
 
 
 def test_limits_locks_and_coinciding_axes_take_the_general_way():

@@ -22,6 +22,7 @@ from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
 from tests.linkages.mechanisms.frameworks import flexible_octahedron
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.linkages.mechanisms.single_loops import catalogue_loop
 from tests.linkages.mechanisms.spatial_mechanisms import (
     one_of_each,
     platform,
@@ -124,6 +125,7 @@ def case(name):
 
 
 MECHANISMS = {
+    "DSG of joints": lambda: catalogue_loop("special-double-subtractive-goldberg"),
     "slider-crank": slider_crank,
     "Watt": watt,
     "Sarrus": case("Sarrus with a P joint between base and platform"),

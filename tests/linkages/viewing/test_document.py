@@ -11,6 +11,7 @@ from bifurc.figures.planes import choose_plane
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from linkages.labels import NoLinkageError, loop_of
+from linkages.loop import Loop
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.subject import mechanism_subject
@@ -37,6 +38,19 @@ def test_the_pieces_keep_every_digit(atlas_of):
         assert shown["breaks"] == form.branch.breaks.tolist()
         assert shown["name"] == form.name
     assert document["plane"] == list(choose_plane(atlas))
+
+
+def test_joints_of_a_loop_say_what_its_angles_are(atlas_of):
+    atlas = atlas_of("DSG of joints")
+    shown = make_view_document(atlas)["loop"]
+    table = Loop(shown["lengths"], shown["twists"], shown["offsets"])
+    u = atlas.forms[0].branch.sample(50)
+    joints = shown["joints"]
+    angles = [one["offset"] + one["sign"] * u[:, one["column"]] for one in joints]
+    assert table.closure_error(np.transpose(angles)).max() < 1e-12
+    by_column = sorted(joints, key=lambda one: one["column"])
+    assert [one["name"] for one in by_column] == list(atlas.names)
+    assert "joints" not in make_view_document(atlas_of(DSG))["loop"]
 
 
 @pytest.mark.parametrize("name", ["rigid", "too long", "nearly Bennett", "generic 12R"])

@@ -11,6 +11,9 @@ from linkages.app.forms import listed_forms
 from linkages.closure.loop_closure import LoopClosure
 from linkages.labels import loop_of
 from linkages.links.rods import place_links
+from linkages.mechanisms.loop_atlas import to_loop_angles
+from linkages.mechanisms.readout import Readout
+from linkages.mechanisms.subject import mechanism_of
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
 
@@ -79,6 +82,34 @@ def test_the_axes_in_the_browser_are_those_of_python_everywhere(show_shared, nam
         assert np.abs(ends[:, :, :3] - np.eye(3)).max() < 1e-9
         assert np.abs(ends[:, :, 3]).max() < 1e-9 * size
         assert np.abs(values[:, : expected.shape[1]] - expected).max() < 1e-12
+
+
+def test_a_loop_that_is_given_by_joints_has_their_names_and_its_axes(show_shared):
+    shown = show_shared("DSG of joints")
+    readout = Readout(mechanism_of(shown.atlas))
+    loop = readout.single_loop.loop
+    form = shown.atlas.forms[0]
+    places = np.linspace(0.0, form.branch.length, 24)[:-1]
+    theta = to_loop_angles(readout).points(form.branch(places))
+    states = shown.page.evaluate(
+        "([form, places]) => places.map((s) => bifurc.go(form, s))",
+        [form.name, places.tolist()],
+    )
+    frames = loop.frames(theta)
+    axes = np.array([state["axes"] for state in states])
+    angles = np.array([state["angles"] for state in states])
+    values = np.array([state["singular_values"] for state in states])
+    expected = np.linalg.svd(LoopClosure(loop).jacobians(theta))[1]
+    assert np.abs(angles - form.branch(places)).max() < 1e-12
+    size = loop.characteristic_length
+    assert np.abs(axes[:, :, 0] - frames[:, :-1, :3, 3]).max() < 1e-9 * size
+    assert np.abs(axes[:, :, 1] - frames[:, :-1, :3, 2]).max() < 1e-9
+    assert np.abs(values[:, : expected.shape[1]] - expected).max() < 1e-12
+    names = shown.page.locator(".bv-numbers .bv-dial").locator("..").locator("span")
+    assert names.all_inner_texts() == list(shown.atlas.names)
+    in_picture = shown.page.locator(".bv-joint-number").all_inner_texts()
+    assert sorted(in_picture) == sorted(shown.atlas.names)
+    assert shown.messages == []
 
 
 @pytest.mark.parametrize("name", [DSG, "spherical-four-bar", "folded Sarrus"])
