@@ -193,7 +193,8 @@ class Atlas:
     least, and without one the median relative residual that starts are left with; 0
     where there are forms or surfaces. ``provenance`` says
     how the atlas came about. ``subject`` says what was mapped, in values that JSON can
-    hold: whoever maps something more than equations defines it. ``diagram``: what
+    hold: whoever maps something more than equations defines it; a ``scale`` in it is
+    what each unknown is multiplied with to be in the user's unit. ``diagram``: what
     happens as a parameter changes, where one was named or events were asked for.
     """
 

@@ -1,7 +1,8 @@
 // What moves, as the picture and the scripts see it: frames of bodies at a configuration, and what is drawn of them.
 //
 // A figure has the frames of its bodies as the upper three rows of each transform, 12 numbers each, in characteristic
-// lengths. `parts(frames)` are the {symbols, rods, axes, seats, labels} of these frames: rods as {from, to, body}.
+// lengths. `parts(frames)` are the {symbols, rods, panels, axes, seats, labels} of these frames: rods as {from, to,
+// body}, panels as {corners, body}.
 
 import { jointAxes, jointFrames, jointScrews, linkTable } from "./kinematics.js";
 import { linkName } from "./angles.js";
@@ -31,6 +32,7 @@ class LoopFigure {
     this.mostRods = RODS_OF_JOINT * this.n;
     this.shapes = { cylinder: this.n };
     this.mostAxes = this.n;
+    this.panels = [];
     this.fixed = 0;
     this.fixedWord = "fixed link";
     this.valuesWord = this.isNamed ? "joint variables (deg)" : "joint angles (deg)";
@@ -66,7 +68,7 @@ class LoopFigure {
       columns: [this.joints[i].column],
     }));
     const labels = axes.map(([, place]) => ({ place, lift: 0 }));
-    return { symbols, rods, axes, seats: joints.map((joint) => joint.seat), labels };
+    return { symbols, rods, panels: [], axes, seats: joints.map((joint) => joint.seat), labels };
   }
 
   /** What a state says of a configuration. */

@@ -7,16 +7,20 @@ import {
   Color,
   CylinderGeometry,
   DirectionalLight,
+  DoubleSide,
   HemisphereLight,
   InstancedMesh,
   LineDashedMaterial,
   LineSegments,
   Matrix4,
+  Mesh,
   MeshLambertMaterial,
   PerspectiveCamera,
   Quaternion,
   Scene,
+  ShapeUtils,
   SphereGeometry,
+  Vector2,
   Vector3,
   WebGLRenderer,
 } from "three";
@@ -37,6 +41,9 @@ const LEAST_AWAY = 1; // in the radius of all positions: a linkage that is seen 
 const JOINT_LENGTH = 1.7; // of half the cylinder of a joint, in its radius
 const JOINT_REACH = Math.hypot(JOINT_LENGTH, 1); // of its farthest corner from its seat
 const THICKNESS = 0.03; // of a joint, in the size of the linkage
+const PALE = 0.45; // how white panels are beside their outlines
+const LEVELS = 6; // of thickness, so that rods of several bodies are told apart that lie in each other
+const THICKER = 0.06; // a level than the one below: rods have 14 sides, which lie within 0.025 of their radius
 const LETTER = 9; // pixels: the width of a letter of a name
 const NAME_GAP = 17; // pixels between the middles of two names, one above the other
 const BESIDE_JOINT = 9; // pixels between the edge of a joint and the middle of its name
@@ -95,7 +102,20 @@ export class LinkageView {
     lines.setAttribute("position", new BufferAttribute(new Float32Array(6 * mostAxes), 3));
     this.axes = new LineSegments(lines, new LineDashedMaterial({ dashSize: 0.05, gapSize: 0.03 }));
     this.axes.frustumCulled = false;
-    this.scene.add(this.rods, this.elbows, ...this.symbols.map(({ mesh }) => mesh), this.ghostRods, this.axes);
+    this.makePanels();
+    this.scene.add(this.rods, this.elbows, ...this.symbols.map(({ mesh }) => mesh), this.ghostRods, this.axes, this.panels);
+  }
+
+  /** The panels of all bodies as one mesh of triangles, each with its own three vertices. */
+  makePanels() {
+    this.triangles = this.figure.panels.flatMap(({ corners }, panel) => trianglesOf(corners).map((corner) => ({ panel, corner })));
+    const geometry = new BufferGeometry();
+    const count = 9 * this.triangles.length;
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(count), 3));
+    geometry.setAttribute("color", new BufferAttribute(new Float32Array(count), 3));
+    const material = new MeshLambertMaterial({ side: DoubleSide, flatShading: true, vertexColors: true });
+    this.panels = new Mesh(geometry, material);
+    this.panels.frustumCulled = false;
   }
 
   makeLabels() {
@@ -241,6 +261,7 @@ export class LinkageView {
     for (const { shape, mesh } of this.symbols) {
       this.placeSymbols(mesh, parts.symbols.filter((symbol) => symbol.shape === shape));
     }
+    this.placePanels(parts.panels);
     this.placeAxes(parts.axes);
     this.placeGhosts();
     this.labelPlaces = parts.labels.map(({ place, lift }, i) => ({ place: this.scaled(place), seat: this.scaled(parts.seats[i]), lift }));
@@ -252,7 +273,9 @@ export class LinkageView {
   }
 
   placeRods(mesh, rods, first, radius) {
-    rods.forEach((rod, k) => mesh.setMatrixAt(first + k, rodMatrix(this.scaled(rod.from), this.scaled(rod.to), radius)));
+    rods.forEach((rod, k) => {
+      mesh.setMatrixAt(first + k, rodMatrix(this.scaled(rod.from), this.scaled(rod.to), radius * thicknessOf(rod.body)));
+    });
     mesh.instanceMatrix.needsUpdate = true;
   }
 
@@ -273,8 +296,8 @@ export class LinkageView {
 
   placeElbows(rods) {
     const matrix = new Matrix4();
-    const size = new Vector3().setScalar(this.rodRadius);
     rods.forEach((rod, k) => {
+      const size = new Vector3().setScalar(this.rodRadius * thicknessOf(rod.body));
       [rod.from, rod.to].forEach((end, side) => {
         matrix.compose(this.scaled(end), new Quaternion(), size);
         this.elbows.setMatrixAt(2 * k + side, matrix);
@@ -299,6 +322,20 @@ export class LinkageView {
     mesh.count = symbols.length;
     mesh.instanceMatrix.needsUpdate = true;
     mesh.instanceColor.needsUpdate = true;
+  }
+
+  /** The panels, paler than their outlines. */
+  placePanels(panels) {
+    const { position, color } = this.panels.geometry.attributes;
+    const still = this.figure.bodyOf(this.fixed);
+    const white = new Color("#fff");
+    const colors = panels.map(({ body }) => new Color(body === still ? this.colors.fixed : this.colors.link).lerp(white, PALE));
+    this.triangles.forEach(({ panel, corner }, k) => {
+      position.setXYZ(k, ...this.scaled(panels[panel].corners[corner]));
+      color.setXYZ(k, colors[panel].r, colors[panel].g, colors[panel].b);
+    });
+    position.needsUpdate = true;
+    color.needsUpdate = true;
   }
 
   placeAxes(axes) {
@@ -356,7 +393,7 @@ export class LinkageView {
     const { clientWidth: width, clientHeight: height } = this.container;
     const wanted = this.wantedSpots();
     const spots = wanted.map((spot) => ({ ...spot }));
-    pushApart(spots, this.nameWidth, NAME_GAP);
+    if (!this.figure.panels.length) pushApart(spots, this.nameWidth, NAME_GAP); // creases are next to each other
     const shown = [];
     spots.forEach(({ x, y }, i) => {
       const half = (LETTER * this.numbers[i].textContent.length) / 2;
@@ -417,6 +454,23 @@ export class LinkageView {
     this.renderer.dispose();
     this.renderer.forceContextLoss(); // browsers allow but a few of them, and take their time to collect old ones
   }
+}
+
+/** The numbers of the corners of a flat polygon, three for each of the triangles that it is made of. */
+function trianglesOf(corners) {
+  const places = corners.map((corner) => new Vector3(...corner));
+  const normal = new Vector3();
+  for (let k = 1; k + 1 < places.length; k += 1) {
+    normal.add(places[k].clone().sub(places[0]).cross(places[k + 1].clone().sub(places[0])));
+  }
+  const flat = new Quaternion().setFromUnitVectors(normal.normalize(), new Vector3(0, 0, 1));
+  const outline = places.map((place) => place.applyQuaternion(flat)).map(({ x, y }) => new Vector2(x, y));
+  return ShapeUtils.triangulateShape(outline, []).flat();
+}
+
+/** How thick the rods of a body are, over those of others: rods that lie in each other do not flicker. */
+function thicknessOf(body) {
+  return 1 + THICKER * ((body % LEVELS) - (LEVELS - 1) / 2);
 }
 
 function instances(geometry, count) {

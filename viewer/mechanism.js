@@ -20,20 +20,30 @@ export class MechanismFigure {
     this.named = mechanism.symbols.filter(({ label }) => label);
     this.names = this.named.map(({ label }) => shortened(label));
     this.bodies = mechanism.bodies.map(({ name }) => name);
-    this.mostRods = mechanism.bodies.reduce((sum, { lines }) => sum + lines.length, 0);
+    this.panels = mechanism.bodies.flatMap(({ panels }, body) => panels.map((corners) => ({ corners, body })));
+    this.sheets = new Set(this.panels.map(({ body }) => body));
+    this.lines = mechanism.bodies.map((_, body) => this.linesOf(body));
+    this.mostRods = this.lines.reduce((sum, lines) => sum + lines.length, 0);
     this.shapes = {};
     for (const symbol of mechanism.symbols) {
       const shape = shapeOf(symbol);
       if (shape) this.shapes[shape] = (this.shapes[shape] ?? 0) + Math.max(symbol.directions.length, 1);
     }
     this.mostAxes = mechanism.symbols.reduce((sum, { directions }) => sum + directions.length, 0);
-    this.fixed = mechanism.frame;
+    this.fixed = mechanism.held;
     this.fixedWord = "fixed body";
     this.valuesWord = "joint variables";
   }
 
   bodyOf(frame) {
     return frame;
+  }
+
+  /** The lines of a body: the outlines of its panels, where it has any. */
+  linesOf(body) {
+    if (!this.sheets.has(body)) return this.mechanism.bodies[body].lines;
+    const own = this.mechanism.bodies[body].panels;
+    return own.flatMap((corners) => corners.map((corner, k) => [corner, corners[(k + 1) % corners.length]]));
   }
 
   /** The displacements of all bodies from the reference configuration, the frame at rest, at unknowns `u`. */
@@ -54,14 +64,20 @@ export class MechanismFigure {
   parts(frames) {
     const { bodies, symbols } = this.mechanism;
     const poses = bodies.map((_, k) => frames.subarray(12 * k, 12 * k + 12));
-    const rods = bodies.flatMap(({ lines }, body) =>
+    const rods = this.lines.flatMap((lines, body) =>
       lines.map(([from, to]) => ({ from: moved(poses[body], from), to: moved(poses[body], to), body })),
     );
+    const panels = this.panels.map(({ corners, body }) => ({ corners: corners.map((corner) => moved(poses[body], corner)), body }));
     const seats = symbols.map(({ holder, place }) => moved(poses[holder], place));
     const extent = extentOf(seats);
-    const parts = { symbols: [], rods, axes: [], seats: [], labels: [] };
-    symbols.forEach((symbol, k) => addSymbol(parts, symbol, seats[k], poses, REACH * extent));
+    const parts = { symbols: [], rods, panels, axes: [], seats: [], labels: [] };
+    symbols.forEach((symbol, k) => addSymbol(parts, symbol, seats[k], poses, this.isCrease(symbol) ? 0 : REACH * extent));
     return parts;
+  }
+
+  /** Whether the axis of a joint is seen anyway, as the side of two panels. */
+  isCrease({ holder, other }) {
+    return this.sheets.has(holder) && this.sheets.has(other);
   }
 
   /** What a state says of a configuration: three rows of four a body, lengths in the user's unit. */
@@ -190,7 +206,7 @@ function addSymbol(parts, symbol, seat, poses, reach) {
   const turned = directions.map((direction, k) => rotated(poses[bodies[k]], direction));
   if (shape === "ball") parts.symbols.push({ shape, seat, columns });
   else if (shape) for (const direction of turned) parts.symbols.push({ shape, seat, direction, columns });
-  const hasAxis = kind !== "prismatic" && kind !== "planar"; // the rail of a slide is a rod
+  const hasAxis = reach > 0 && kind !== "prismatic" && kind !== "planar"; // the rail of a slide is a rod
   if (hasAxis) for (const d of turned) parts.axes.push([along(seat, d, -reach), along(seat, d, reach)]);
   if (!label) return;
   parts.seats.push(seat);

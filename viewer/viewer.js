@@ -42,7 +42,7 @@ export class Viewer {
     this.smallestByTrack = new Map();
     for (const point of scene.points) point.leaving = leavingBranches(point, this.tracks).length + point.surfaces.length;
     const first = this.listed[0];
-    this.position = new Position(first, isCurve(first) ? middleOf(this.arcs, first) : 0);
+    this.position = new Position(first, this.startOf(first));
     this.passes = (track) => this.passesByTrack.get(track);
     this.player = new Player(this.position, this.passes, () => this.showPlaying());
     this.player.onEnd = () => this.routeBar.say("arrived");
@@ -220,7 +220,13 @@ export class Viewer {
 
   goToTrack(track) {
     if (track === this.position.track) return;
-    this.goTo(track, isCurve(track) ? middleOf(this.arcs, track) : 0);
+    this.goTo(track, this.startOf(track));
+  }
+
+  /** Where a track is first shown: a mechanism where its document says, a loop in the middle of the longest arc. */
+  startOf(track) {
+    if (!isCurve(track)) return 0;
+    return track.form.start ?? middleOf(this.arcs, track);
   }
 
   goToNumber(number) {

@@ -46,6 +46,7 @@ LETTER_SIZE = RC["legend.fontsize"]
 HANDLE_LENGTH = 3.2  # of the line beside a name, over the size of a letter
 HANDLE_GAP = 0.8  # between the two, over the same
 LEGEND_GAP = 0.2  # at both sides of the legend, in inches
+LINE_HEIGHT = 0.18  # of the legend, in inches
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
 
@@ -67,17 +68,20 @@ FLAT = 1e-9  # of the largest unknown: an axis that shows less shows rounding
 FLAT_HALF = 0.1  # of the largest unknown: half of what is shown instead
 
 
-def widen_flat_axes(axes: Axes, atlas: Atlas) -> None:
-    """Show more of an axis along which nothing changes but for rounding."""
+def widen_flat_axes(
+    axes: Axes, atlas: Atlas, factors: tuple[float, float] = (1.0, 1.0)
+) -> None:
+    """Show more of an axis along which nothing changes but for rounding; ``factors``
+    are those of the axes, by which unknowns are multiplied to be shown."""
     samples = [form.branch.sample(FLAT_SAMPLES) for form in atlas.forms]
     largest = max((float(np.abs(one).max(initial=0.0)) for one in samples), default=0.0)
-    half = FLAT_HALF * (largest or 1.0)
-    if np.ptp(axes.get_xlim()) < FLAT * largest:
+    width, height = (factor * (largest or 1.0) for factor in factors)
+    if np.ptp(axes.get_xlim()) < FLAT * width:
         middle = float(np.mean(axes.get_xlim()))
-        axes.set_xlim(middle - half, middle + half)
-    if np.ptp(axes.get_ylim()) < FLAT * largest:
+        axes.set_xlim(middle - FLAT_HALF * width, middle + FLAT_HALF * width)
+    if np.ptp(axes.get_ylim()) < FLAT * height:
         middle = float(np.mean(axes.get_ylim()))
-        axes.set_ylim(middle - half, middle + half)
+        axes.set_ylim(middle - FLAT_HALF * height, middle + FLAT_HALF * height)
 
 
 # --- forms ----------------------------------------------------------------------------
@@ -102,7 +106,7 @@ def draw_forms(
     if horizontal.is_periodic and vertical.is_periodic:
         axes.set_box_aspect(1)
         fix_names_of_axes(axes)
-    widen_flat_axes(axes, atlas)
+    widen_flat_axes(axes, atlas, (horizontal.factor, vertical.factor))
     axes.grid(True)
     for spine in axes.spines.values():
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
@@ -275,14 +279,16 @@ class LegendSize(NamedTuple):
 
 def legend_size(atlas: Atlas) -> LegendSize:
     """Room that the legend of an atlas takes, with the gaps beside it."""
-    lines = [line for name in _wrapped_names(atlas) for line in name.splitlines()]
     letters = FontProperties(size=LETTER_SIZE)
     longest = 0.0
-    for line in [RIGID_LABEL, *lines]:
-        width, _, _ = text_to_path.get_text_width_height_descent(line, letters, False)
-        longest = max(longest, width)
+    height = LINE_HEIGHT
+    for entry in _form_entries(atlas) + _mark_entries(atlas):
+        for line in str(entry.get_label()).splitlines():
+            size = text_to_path.get_text_width_height_descent(line, letters, False)
+            longest = max(longest, size[0])
+            height += LINE_HEIGHT
     points = longest + LETTER_SIZE * (HANDLE_LENGTH + HANDLE_GAP)
-    return LegendSize(points / 72 + 2 * LEGEND_GAP, 0.17 * (len(lines) + 4))
+    return LegendSize(points / 72 + 2 * LEGEND_GAP, height)
 
 
 def _wrapped_names(atlas: Atlas) -> list[str]:

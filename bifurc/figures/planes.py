@@ -11,6 +11,7 @@ import numpy as np
 from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
+from bifurc.figures.quantities import shown_unit
 
 __all__ = [
     "Plane",
@@ -77,15 +78,15 @@ def plane_of(atlas: Atlas, horizontal: int, vertical: int) -> Plane:
 
 
 def scale_of(atlas: Atlas, index: int) -> Scale:
-    """Angles with a period are shown in degrees, everything else as it is."""
+    """Angles are shown in degrees, everything else in its `shown_unit`."""
     name = atlas.names[index]
-    unit = atlas.units[index]
     period = float(atlas.periods[index])
     if name.startswith("theta"):
         name = "θ" + name.removeprefix("theta").translate(SUBSCRIPTS)
-    if unit == "rad" and np.isfinite(period):
+    if atlas.units[index] == "rad":
         return Scale(180.0 / np.pi, 90.0 * period / np.pi, f"{name} (deg)")
-    return Scale(1.0, 0.5 * period, f"{name} ({unit})" if unit else name)
+    factor, unit = shown_unit(atlas, index)
+    return Scale(factor, 0.5 * factor * period, f"{name} ({unit})" if unit else name)
 
 
 def curve_points(branch: Branch) -> np.ndarray:
@@ -199,9 +200,10 @@ def _crossings(
 def choose_plane(atlas: Atlas) -> tuple[int, int]:
     """Indices of the two unknowns whose plane tells the forms apart best.
 
-    Four things count, each with a limit beyond which more of it does not help: the mean
+    Five things count, each with a limit beyond which more of it does not help: the mean
     distance between the two forms that are closest, the extent of the smallest form
-    (none should shrink to a dot), the distance between the two bifurcations that are
+    (none should shrink to a dot), the opening of the narrowest form (none should be a
+    line that goes there and back), the distance between the two bifurcations that are
     closest, and how much of the frame the forms cover.
     """
     n = len(atlas.names)
@@ -221,10 +223,12 @@ def choose_plane(atlas: Atlas) -> tuple[int, int]:
         pick = list(plane)
         smallest_form = extents[:, pick].max(axis=1).min()
         form_distance = _closest_forms(curves[..., pick], periods[pick])
+        openings = [_opening(curve, periods[pick]) for curve in curves[..., pick]]
         point_distance = _closest_points(spots[:, pick], periods[pick])
         merits[plane] = (
             min(form_distance / 0.12, 1.0)
             + min(smallest_form / 0.3, 1.0)
+            + min(min(openings) / 0.05, 1.0)
             + 0.5 * min(point_distance / 0.05, 1.0)
             + 0.5 * _coverage(curves[..., pick])
         )
@@ -246,6 +250,19 @@ def _closest_forms(curves: np.ndarray, periods: np.ndarray) -> float:
         means.append(distances.min(axis=0).mean())
         means.append(distances.min(axis=1).mean())
     return float(min(means, default=1.0))
+
+
+def _opening(curve: np.ndarray, periods: np.ndarray) -> float:
+    """How far a curve (k, 2) stays from itself where it comes back, at most 1: the mean
+    distance of its way there, from one end of its longer extent to the other, and the
+    rest of it. It is 0 of a line that is followed there and back."""
+    across = curve[:, np.argmax(np.ptp(curve, axis=0))]
+    first, last = sorted((int(across.argmin()), int(across.argmax())))
+    there = curve[first : last + 1]
+    back = np.concatenate([curve[last:], curve[: first + 1]])
+    distances = _distances(there, back, periods)
+    mean = max(distances.min(axis=0).mean(), distances.min(axis=1).mean())
+    return float(min(mean, 1.0))
 
 
 def _closest_points(points: np.ndarray, periods: np.ndarray) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -13,12 +13,32 @@ from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
 from bifurc.torus import wrap
 
-__all__ = ["AxisRequest", "Quantity", "quantity_of"]
+__all__ = ["AxisRequest", "Quantity", "ShownUnit", "quantity_of", "shown_unit"]
 
 AxisRequest: TypeAlias = "str | Callable[[np.ndarray], float]"
 NORM = "|u|"
+SIZE = "size"  # the unit of an unknown that counts characteristic lengths
+LENGTHS = "lengths"  # what stands for the user's unit of length
 SAMPLES = 64  # of a form at which it is seen what an axis shows
 ROOM = 0.05  # of a period: how much of it is to be empty where a form is not cut
+
+
+class ShownUnit(NamedTuple):
+    """In what an unknown is shown: times ``factor`` it counts ``name``."""
+
+    factor: float
+    name: str
+
+
+def shown_unit(atlas: Atlas, index: int) -> ShownUnit:
+    """In what the unknown of this index is shown: as it is, or, where it counts
+    characteristic lengths and the subject of the atlas has its ``scale``, in the
+    user's unit of length."""
+    unit = atlas.units[index]
+    scales = atlas.subject.get("scale")
+    if unit != SIZE or scales is None:
+        return ShownUnit(1.0, unit)
+    return ShownUnit(float(scales[index]), LENGTHS)
 
 
 @dataclass(frozen=True)
@@ -56,10 +76,16 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
     names = list(atlas.names)
     if request in names:
         index = names.index(request)
-        label = _with_unit(atlas, index)
+        factor, unit = shown_unit(atlas, index)
+        label = f"{request} ({unit})" if unit else str(request)
         period = float(atlas.periods[index])
         middle = _middle(atlas, index) if np.isfinite(period) else 0.0
-        return Quantity(label, lambda points: points[:, index], period, middle)
+        return Quantity(
+            label,
+            lambda points: factor * points[:, index],
+            factor * period,
+            factor * middle,
+        )
     inner = request[1:-1] if isinstance(request, str) else ""
     if isinstance(request, str) and request == f"|{inner}|" and inner in names:
         index = names.index(inner)
@@ -108,11 +134,6 @@ def _check_is_seen(atlas: Atlas, quantity: Quantity) -> None:
         allowed = "a finite number somewhere on the forms"
         name = f"value of the axis function {quantity.label}"
         raise ProblemError(name, values[0], allowed)
-
-
-def _with_unit(atlas: Atlas, index: int) -> str:
-    name, unit = atlas.names[index], atlas.units[index]
-    return f"{name} ({unit})" if unit else name
 
 
 def _middle(atlas: Atlas, index: int) -> float:

@@ -14,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, NullLocator
 from bifurc.atlas import Atlas, Event, Form
 from bifurc.figures.drawing import draw_curve, note_emptiness
 from bifurc.figures.panels import Margins, fix_names_of_axes, make_panels
+from bifurc.figures.quantities import shown_unit
 from bifurc.figures.style import RC, Style, form_style
 
 __all__ = ["plot_singular_values"]
@@ -62,10 +63,14 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
 
 
 def _unit(atlas: Atlas) -> str:
-    """The unit that all unknowns share, in brackets, if there is one."""
-    if len(set(atlas.units)) == 1 and atlas.units[0]:
-        return f" ({atlas.units[0]})"
-    return ""
+    """The units of the unknowns, in brackets, if all have one."""
+    if not all(atlas.units):
+        return ""
+    names = []
+    for index, unit in enumerate(atlas.units):
+        factor, shown = shown_unit(atlas, index)
+        names.append(unit if shown == unit else f"{shown} over {factor:.4g}")
+    return f" ({', '.join(sorted(set(names), reverse=True))})"
 
 
 def _limits(atlas: Atlas) -> _Range:

@@ -18,8 +18,10 @@ __all__ = [
     "BodyDrawing",
     "SymbolDrawing",
     "best_view_of_mechanism",
+    "breadths_of_mechanism",
     "draw_bodies",
     "draw_symbols",
+    "held_body",
 ]
 
 SAME = 1e-6  # characteristic lengths: places that are closer are drawn as one
@@ -37,10 +39,12 @@ Segment = list[list[float]]
 
 
 class BodyDrawing(TypedDict):
-    """A body, and the lines (from, to) that are drawn of it."""
+    """A body, and the lines (from, to) and ``panels`` that are drawn of it, each a
+    polygon by its corners."""
 
     name: str
     lines: list[Segment]
+    panels: list[list[list[float]]]
 
 
 class SymbolDrawing(TypedDict):
@@ -83,8 +87,13 @@ def draw_bodies(structure: Structure, points: np.ndarray) -> list[BodyDrawing]:
     drawings: list[BodyDrawing] = []
     for body in mechanism.bodies:
         numbers = [k for k, one in enumerate(mechanism.joints) if body in one.bodies]
-        lines = _lines(places[numbers])
-        drawings.append({"name": body, "lines": lines + rails.get(body, [])})
+        lines = _lines(places[numbers]) + rails.get(body, [])
+        panels = [
+            (np.array(panel.corners) / structure.unit).tolist()
+            for panel in mechanism.panels
+            if panel.body == body
+        ]
+        drawings.append({"name": body, "lines": lines, "panels": panels})
     return drawings
 
 
@@ -267,18 +276,50 @@ def _steps_aside(mechanism: Mechanism, places: np.ndarray) -> np.ndarray:
 # --- where to look from ---------------------------------------------------------------
 
 
+def held_body(mechanism: Mechanism) -> str:
+    """The body that is drawn at rest: the frame, or, of a sheet of panels, the one with
+    the panel nearest to their middle, so that the others do not swing far."""
+    if not mechanism.panels:
+        return mechanism.frame
+    middles = np.array([np.mean(one.corners, axis=0) for one in mechanism.panels])
+    away = np.linalg.norm(middles - middles.mean(axis=0), axis=1)
+    nearest = int(np.argmax(away < (1 + SAME) * away.min() + SAME))
+    return mechanism.panels[nearest].body
+
+
+def breadths_of_mechanism(structure: Structure, points: np.ndarray) -> np.ndarray:
+    """The lesser extents (k,) of where joints are at configurations (k, n), in
+    characteristic lengths: small where they are nearly on one line."""
+    poses = Poses(structure).at(points)
+    places = _places(structure)
+    return np.array([breadth(_spots(structure, pose, places)) for pose in poses])
+
+
 def best_view_of_mechanism(structure: Structure, point: np.ndarray) -> View:
-    """From where the joints of a configuration (n,) are seen farthest apart."""
+    """From where the joints of a configuration (n,) are seen farthest apart, the held
+    body at rest."""
     mechanism = structure.mechanism
     poses = Poses(structure).at(point[None])[0]
-    places = _places(structure)
-    spots, axes = [], []
+    held = mechanism.bodies.index(held_body(mechanism))
+    poses = np.linalg.inv(poses[held]) @ poses
+    spots = _spots(structure, poses, _places(structure))
+    axes = []
+    for joint in mechanism.joints:
+        pose = poses[mechanism.bodies.index(joint.bodies[0])]
+        if joint.kind in TURNING:
+            axes.append(pose[:3, :3] @ joint.motions[0].direction)
+    return clearest_view(lambda look: _clarity(spots, axes, look))
+
+
+def _spots(structure: Structure, poses: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Where joints are (k, 3) that are at ``places`` (k, 3) in the reference
+    configuration, with bodies in these poses (b, 4, 4)."""
+    mechanism = structure.mechanism
+    spots = []
     for place, joint in zip(places, mechanism.joints, strict=True):
         pose = poses[mechanism.bodies.index(joint.bodies[0])]
         spots.append(pose[:3, :3] @ place + pose[:3, 3] / structure.unit)
-        if joint.kind in TURNING:
-            axes.append(pose[:3, :3] @ joint.motions[0].direction)
-    return clearest_view(lambda look: _clarity(np.array(spots), axes, look))
+    return np.array(spots)
 
 
 def _clarity(spots: np.ndarray, axes: list[np.ndarray], look: np.ndarray) -> float:

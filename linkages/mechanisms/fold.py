@@ -22,7 +22,7 @@ from linkages.decisions import is_parallel_axis, keeps_angle
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint, JointKind
-from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.mechanism import Mechanism, Panel
 from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
 from linkages.mechanisms.poses import Poses
 
@@ -106,7 +106,11 @@ def read_fold(text: str, name: str) -> Mechanism:
                 angles[joint.name] = np.radians(crease.edge.angle)
     origin = near.origin or (0.0, 0.0, 0.0)
     mechanism = Mechanism(
-        tuple(joints), title or name, origin=origin, rounding=near.rounding
+        tuple(joints),
+        title or name,
+        origin=origin,
+        rounding=near.rounding,
+        panels=_panels(faces, bodies, points),
     )
     if FOLDED in frame.get("frame_classes", []) or not any(angles.values()):
         return mechanism
@@ -137,7 +141,12 @@ def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
         point = pose[:3, :3] @ joint.place + pose[:3, 3]
         direction = pose[:3, :3] @ np.array(joint.direction)
         joints.append(replace(joint, point=tuple(point), direction=tuple(direction)))
-    return replace(mechanism, joints=tuple(joints))
+    panels = []
+    for panel in mechanism.panels:
+        pose = poses[mechanism.bodies.index(panel.body)]
+        corners = np.array(panel.corners) @ pose[:3, :3].T + pose[:3, 3]
+        panels.append(Panel(panel.body, tuple(map(tuple, corners.tolist()))))
+    return replace(mechanism, joints=tuple(joints), panels=tuple(panels))
 
 
 def _check_flat(points: np.ndarray) -> None:
@@ -329,6 +338,17 @@ def _bodies(faces: int, creases: Sequence[_Crease]) -> list[str]:
     for face in range(faces):
         firsts.setdefault(panels[face], face)
     return [f"f{firsts[panels[face]]}" for face in range(faces)]
+
+
+def _panels(
+    faces: Sequence[list[int]], bodies: Sequence[str], points: np.ndarray
+) -> tuple[Panel, ...]:
+    """The outline of every face on its body."""
+    panels = []
+    for face, body in zip(faces, bodies, strict=True):
+        corners = tuple(map(tuple, points[face].tolist()))
+        panels.append(Panel(body, corners))
+    return tuple(panels)
 
 
 def _normal(corners: np.ndarray) -> np.ndarray:

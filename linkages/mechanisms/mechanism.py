@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     # networkx takes long to import
     import networkx as nx
 
-__all__ = ["Mechanism", "Pair", "Variable"]
+__all__ = ["Mechanism", "Pair", "Panel", "Variable"]
 
 MIRROR = np.array([1.0, 1.0, -1.0])  # a vector in the plane z = 0
 FRAMES = ("frame", "ground", "base", "world")  # names of the body that is drawn at rest
@@ -57,6 +57,13 @@ class Pair(NamedTuple):
     center: np.ndarray | None = None
 
 
+class Panel(NamedTuple):
+    """A flat polygon of a body, by its ``corners`` in order."""
+
+    body: str
+    corners: tuple[Vector, ...]
+
+
 @dataclass(frozen=True)
 class Mechanism:
     """Bodies, joined by ``joints`` that are given in one closed configuration.
@@ -64,7 +71,8 @@ class Mechanism:
     ``is_planar``: it was given in a plane, so that a body has three freedoms for
     Grübler's count. ``origin`` is where a file that counts them from elsewhere has the
     origin of the points; nothing that is computed hangs on it. ``rounding``: how far off
-    they may be, where that is more than they are as doubles.
+    they may be, where that is more than they are as doubles. ``panels`` are drawn of
+    bodies that are sheets.
     Raises `GeometryError` where a joint is named twice, a body hangs on one joint only,
     the bodies do not hang together, or joints are coupled in a circle.
     """
@@ -74,6 +82,7 @@ class Mechanism:
     is_planar: bool = False
     origin: Vector = field(default=(0.0, 0.0, 0.0), compare=False)
     rounding: float = field(default=0.0, compare=False)
+    panels: tuple[Panel, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
@@ -264,7 +273,12 @@ class Mechanism:
         x, y, z = self.origin
         origin = (factor * x, factor * y, factor * z)
         scaled = self.with_values_times(joints, factors)
-        return replace(scaled, origin=origin, rounding=factor * self.rounding)
+        return replace(
+            scaled,
+            origin=origin,
+            rounding=factor * self.rounding,
+            panels=_panels_times(self.panels, np.full(3, factor)),
+        )
 
     def mirrored(self) -> Mechanism:
         """The mirror image in the plane z = 0; turns change their sign."""
@@ -273,7 +287,11 @@ class Mechanism:
         for joint, image in zip(self.joints, joints, strict=True):
             signs |= zip(joint.labels, _signs_in_mirror(joint, image), strict=True)
         x, y, z = self.origin
-        return replace(self.with_values_times(joints, signs), origin=(x, y, -z))
+        return replace(
+            self.with_values_times(joints, signs),
+            origin=(x, y, -z),
+            panels=_panels_times(self.panels, MIRROR),
+        )
 
     def with_values_times(
         self, joints: Iterable[Joint], factors: Mapping[str, float]
@@ -310,6 +328,15 @@ def _scaled(joint: Joint, factor: float) -> Joint:
         point=None if point is None else tuple(factor * np.array(point)),
         pitch=None if joint.pitch is None else factor * joint.pitch,
     )
+
+
+def _panels_times(panels: Iterable[Panel], factors: np.ndarray) -> tuple[Panel, ...]:
+    """The panels with their coordinates times ``factors`` (3,)."""
+    changed = []
+    for panel in panels:
+        corners = tuple(map(tuple, (factors * np.array(panel.corners)).tolist()))
+        changed.append(Panel(panel.body, corners))
+    return tuple(changed)
 
 
 def _with_values_times(joint: Joint, factors: Mapping[str, float]) -> Joint:

@@ -10,7 +10,7 @@ from linkages.labels import NoLinkageError
 from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
-from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.mechanism import Mechanism, Panel
 from linkages.mechanisms.origin import origin_of
 
 __all__ = ["joint_values", "mechanism_from", "mechanism_of", "mechanism_subject"]
@@ -24,6 +24,11 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
         values["origin"] = list(mechanism.origin)
     if mechanism.rounding:
         values["rounding"] = mechanism.rounding
+    if mechanism.panels:
+        values["panels"] = [
+            {"body": panel.body, "corners": [list(corner) for corner in panel.corners]}
+            for panel in mechanism.panels
+        ]
     return {"name": mechanism.name, "mechanism": values}
 
 
@@ -94,4 +99,14 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     is_planar = bool(given.get("is_planar", False))
     origin = origin_of(given, None)
     rounding = float(given.get("rounding", 0.0))
-    return Mechanism(tuple(joints), name, is_planar, origin, rounding)
+    panels = tuple(_panel(value) for value in given.get("panels", []))
+    return Mechanism(tuple(joints), name, is_planar, origin, rounding, panels)
+
+
+def _panel(value: Any) -> Panel:
+    """A panel of its values; raises `GeometryError` for what is none."""
+    try:
+        corners = tuple((float(x), float(y), float(z)) for x, y, z in value["corners"])
+        return Panel(str(value["body"]), corners)
+    except (KeyError, TypeError, ValueError):
+        raise GeometryError("panel", repr(value), "a body and its corners") from None

@@ -21,7 +21,10 @@ from bifurc.figures.planes import choose_plane
 from bifurc.figures.style import color_on_dark, form_style
 from bifurc.torus import difference
 from linkages.labels import FormLabels, loop_of
-from linkages.links.mechanism_drawing import best_view_of_mechanism
+from linkages.links.mechanism_drawing import (
+    best_view_of_mechanism,
+    breadths_of_mechanism,
+)
 from linkages.loop import Loop
 from linkages.mechanisms.loop_atlas import to_loop_angles
 from linkages.mechanisms.readout import Readout
@@ -33,6 +36,8 @@ from linkages.viewing.title import title_of
 __all__ = ["ViewDocument", "make_view_document"]
 
 SAMPLES = 72  # places on each form by which the principal plane is found
+BESIDE_A_POINT = 2  # of the spacing of these: a form is first shown farther from points
+ALIKE = 1e-3  # of a breadth: configurations that differ by less show as much
 MOST_SAMPLES = 600  # configurations shown of a surface
 DIGITS = 6  # after the point, of places in the graph (inches)
 
@@ -69,7 +74,8 @@ class FormDocument(TypedDict):
     """A form: its branch as in `bifurc.branch.Branch`, and how it is drawn.
 
     Where the viewer has no equations there is ``smallest`` besides, the smallest
-    regular singular value at places of the form, as [s, value].
+    regular singular value at places of the form, as [s, value]. A mechanism is first
+    shown at ``start``, where joints are seen apart.
     """
 
     name: str
@@ -86,6 +92,7 @@ class FormDocument(TypedDict):
     dark_color: str
     dashes: list[float]
     smallest: NotRequired[list[list[float]]]
+    start: NotRequired[float]
 
 
 class PointDocument(TypedDict):
@@ -199,9 +206,13 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
         return _document(atlas, verdict, {"loop": of_joints}, view)
     structure = readout.structure
     points = np.concatenate(_configurations(atlas))
-    view = best_view_of_mechanism(structure, _first(atlas))
+    starts = [_start(atlas, structure, number) for number in range(len(atlas.forms))]
+    first = atlas.forms[0].branch(starts[0]) if starts else _first(atlas)
+    view = best_view_of_mechanism(structure, first)
     motion = describe_motion(structure, points)
     document = _document(atlas, verdict, {"mechanism": motion}, view)
+    for start, shown in zip(starts, document["forms"], strict=True):
+        shown["start"] = start
     if motion["tape"] is None:
         for form, shown in zip(atlas.forms, document["forms"], strict=True):
             shown["smallest"] = _smallest(form)
@@ -397,6 +408,32 @@ def _first(atlas: Atlas) -> np.ndarray:
     first = _configurations(atlas)[0]
     configuration: np.ndarray = first[len(first) // 2]
     return configuration
+
+
+def _start(atlas: Atlas, structure: Structure, number: int) -> float:
+    """The place on a form, by its number, at which the joints of a mechanism are
+    farthest from one line, and which is not next to a singular point or an end."""
+    branch = atlas.forms[number].branch
+    spacing = branch.length / SAMPLES
+    places = spacing * np.arange(SAMPLES)
+    is_free = np.ones(SAMPLES, dtype=bool)
+    if not branch.closed:
+        is_free[[0, 1, -1]] = False
+    for point in atlas.points:
+        for form, s in point.passes:
+            if form != number:
+                continue
+            gaps = np.abs(places - s)
+            if branch.closed:
+                gaps = np.minimum(gaps, branch.length - gaps)
+            is_free &= gaps > BESIDE_A_POINT * spacing
+    if not is_free.any():
+        is_free[:] = True
+    breadths = np.where(
+        is_free, breadths_of_mechanism(structure, branch(places)), -np.inf
+    )
+    # the first of those that are alike, whatever rounding makes of them
+    return float(places[np.argmax(breadths > (1 - ALIKE) * breadths.max())])
 
 
 def _smallest(form: Form) -> list[list[float]]:

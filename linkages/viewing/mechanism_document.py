@@ -17,6 +17,7 @@ from linkages.links.mechanism_drawing import (
     SymbolDrawing,
     draw_bodies,
     draw_symbols,
+    held_body,
 )
 from linkages.mechanisms.equations import write_equations
 from linkages.mechanisms.poses import Poses, TreeStep
@@ -113,11 +114,13 @@ class TapeDocument(TypedDict):
 
 class MechanismDocument(TypedDict):
     """The mechanism of a page; ``size`` is the characteristic length in the user's
-    unit, ``frame`` the body at rest, and ``tape`` the equations whose singular values
-    are shown, None where unknowns are many."""
+    unit, ``frame`` the body at rest, ``held`` the one that is drawn at rest at first,
+    and ``tape`` the equations whose singular values are shown, None where unknowns are
+    many."""
 
     size: float
     frame: int
+    held: int
     unknowns: list[UnknownDocument]
     steps: list[StepDocument]
     rods: list[RodDocument]
@@ -134,6 +137,7 @@ def describe_motion(structure: Structure, points: np.ndarray) -> MechanismDocume
     return {
         "size": structure.unit,
         "frame": mechanism.bodies.index(mechanism.frame),
+        "held": mechanism.bodies.index(held_body(mechanism)),
         "unknowns": [
             _unknown(unknown, float(factor))
             for unknown, factor in zip(

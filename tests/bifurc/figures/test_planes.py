@@ -3,6 +3,8 @@ that is chosen tells forms apart."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -16,6 +18,7 @@ from bifurc.figures.planes import (
     plane_of,
     scale_of,
 )
+from bifurc.figures.quantities import quantity_of
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
@@ -94,6 +97,34 @@ def test_the_plane_tells_forms_apart_that_look_alike_in_others(circle: Atlas) ->
         FunctionProblem(lines, [[-2, 2]] * 3), settings=SearchSettings(starts=20)
     )
     assert len(atlas.forms) == 2 and 2 in choose_plane(atlas)
+
+
+def test_the_plane_shows_no_form_as_a_line_that_goes_there_and_back() -> None:
+    def closure(u: np.ndarray) -> np.ndarray:
+        x, y, z = u
+        return np.array([x**2 + (3 * z) ** 2 - 1, y + 0.9 * x + 0.05 * x**3])
+
+    atlas = explore(
+        FunctionProblem(closure, [[-2, 2]] * 3), settings=SearchSettings(starts=20)
+    )
+    assert len(atlas.forms) == 1 and 2 in choose_plane(atlas)
+
+
+def test_lengths_are_shown_in_the_unit_of_the_user_where_it_is_known(
+    circle: Atlas,
+) -> None:
+    sized = replace(circle, units=("", "size"))
+    assert scale_of(sized, 1) == Scale(1.0, np.inf, "y (size)")
+    scaled = replace(sized, subject={"scale": [1.0, 0.8]})
+    assert scale_of(scaled, 1) == Scale(0.8, np.inf, "y (lengths)")
+    quantity = quantity_of(scaled, "y")
+    assert quantity.label == "y (lengths)"
+    assert quantity.values(np.array([[7.0, -1.5]])) == pytest.approx([-1.2])
+
+
+def test_angles_without_a_period_are_shown_in_degrees(circle: Atlas) -> None:
+    scale = scale_of(replace(circle, units=("", "rad")), 1)
+    assert scale == Scale(180 / np.pi, np.inf, "y (deg)")
 
 
 def test_angles_are_shown_in_degrees_and_other_units_as_they_are(

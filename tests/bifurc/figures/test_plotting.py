@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, Surface
 from bifurc.curves.certificate import Certificate, CertificateStatus
 from bifurc.errors import ProblemError
 from bifurc.figures.plotting import (
@@ -26,6 +26,7 @@ from bifurc.figures.plotting import (
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
+from bifurc.singular.point import Kind
 
 
 def test_joints_that_are_none_are_refused(parallelogram: Atlas) -> None:
@@ -85,6 +86,23 @@ def test_no_text_sticks_out_of_the_figure(plot, name: str, request) -> None:
     figure.draw_without_rendering()
     box, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
     assert min(box.x0, box.y0, width - box.x1, height - box.y1) > -1e-9
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+@pytest.mark.parametrize("plot", [plot_transition_map, plot_joint_angles])
+def test_no_entry_of_the_legend_sticks_out_of_the_figure(
+    plot, kind: Kind, circle: Atlas
+) -> None:
+    samples = circle.forms[0].branch.sample(5)
+    surface = Surface(2, samples, "surface 1")
+    points = tuple(replace(point, kind=kind) for point in circle.points)
+    atlas = replace(circle, points=points, surfaces=(surface,))
+    figure = plot(atlas)
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    texts = [text.get_text() for text in legend.get_texts()]
+    assert texts == ["Form 1", "Form 2", kind.value, "mobility 2 or more"]
+    assert legend.get_window_extent().x1 <= figure.bbox.x1
 
 
 def test_an_atlas_without_forms_says_so(nothing: Atlas) -> None:

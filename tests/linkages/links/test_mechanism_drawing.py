@@ -5,11 +5,23 @@ import json
 import numpy as np
 import pytest
 
-from linkages.links.mechanism_drawing import draw_bodies, draw_symbols
+import linkages
+from linkages.links.mechanism_drawing import (
+    breadths_of_mechanism,
+    draw_bodies,
+    draw_symbols,
+    held_body,
+)
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
+from linkages.mechanisms.subject import (
+    mechanism_from,
+    mechanism_of,
+    mechanism_subject,
+)
 from linkages.viewing.document import make_view_document
+from studies.miura import miura
 from tests.linkages.viewing.conftest import mapped
 
 UP = (0, 0, 1)
@@ -97,3 +109,53 @@ def test_what_a_cut_spherical_joint_does_is_not_said_to_stand_still(name):
     spherical = [one["columns"] for one in symbols if one["kind"] == "spherical"]
     assert None in spherical
     assert [] not in spherical
+
+
+def test_a_sheet_has_a_panel_for_each_face_and_creases_are_their_sides(tmp_path):
+    path = tmp_path / "pattern.fold"
+    path.write_text(json.dumps(miura(3, 3, 0.8)))
+    mechanism = linkages.load(path)
+    structure = Structure(mechanism)
+    bodies = draw_bodies(structure, structure.reference[None])
+    panels = {one["name"]: structure.unit * np.array(one["panels"]) for one in bodies}
+    assert {name: corners.shape for name, corners in panels.items()} == {
+        f"f{number}": (1, 4, 3) for number in range(9)
+    }
+    for joint in mechanism.joints:
+        for body in joint.bodies:
+            middles = 0.5 * (panels[body][0] + np.roll(panels[body][0], 1, axis=0))
+            gaps = np.linalg.norm(middles - joint.place, axis=1)
+            assert gaps.min() < 1e-12
+    assert held_body(mechanism) == "f4"
+
+
+def test_panels_are_kept_scaled_and_mirrored(tmp_path):
+    path = tmp_path / "pattern.fold"
+    path.write_text(json.dumps(miura(3, 3, 0.8)))
+    mechanism = linkages.load(path)
+    again = mechanism_from(mechanism_subject(mechanism)["mechanism"], "again")
+    assert again.panels == mechanism.panels
+    corners = np.array([panel.corners for panel in mechanism.panels])
+    larger = np.array([panel.corners for panel in mechanism.scaled(2.0).panels])
+    image = np.array([panel.corners for panel in mechanism.mirrored().panels])
+    np.testing.assert_array_equal(larger, 2 * corners)
+    np.testing.assert_array_equal(image, corners * [1, 1, -1])
+
+
+@pytest.mark.parametrize("name", ["slider-crank", "Watt", "Kempe"])
+def test_a_form_is_first_shown_away_from_singular_points_and_from_one_line(name):
+    atlas = mapped(name)
+    structure = Structure(mechanism_of(atlas))
+    document = make_view_document(atlas)
+    for number, form in enumerate(atlas.forms):
+        start = document["forms"][number]["start"]
+        length = form.branch.length
+        for point in atlas.points:
+            for index, s in point.passes:
+                if index == number:
+                    gap = abs(start - s)
+                    assert min(gap, length - gap) > length / 72
+        places = form.branch(np.linspace(0.0, length, 50))
+        breadth = breadths_of_mechanism(structure, form.branch(np.array([start])))[0]
+        # no worse than half of the configurations that it can be in
+        assert breadth > np.median(breadths_of_mechanism(structure, places))
