@@ -106,7 +106,13 @@ def read_sdf(root: Element, name: str) -> Assembly:
     links = [link.attributes["name"] for link in model.element.all("link")]
     joined = {body for joint in joints for body in joint.bodies}
     bodies = tuple(body for body in (WORLD, *links) if body in joined)
-    loose = [link for link in links if link not in joined]
+    # the links inside chains that are one joint have joints in the file
+    in_file = {
+        _body(joint, tag, model)
+        for joint in model.element.all("joint")
+        for tag in ("parent", "child")
+    }
+    loose = [link for link in links if link not in in_file]
     if loose:
         model.notes.append(without_joints(loose))
     return Assembly(
