@@ -6,7 +6,6 @@ each further one is placed by the joints that it shares with those before it.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
@@ -22,6 +21,7 @@ from linkages.mechanisms.joined_names import check_joined_names, joined_name
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.misfits import check_moved
+from linkages.values import check_keys
 
 __all__ = ["read_loops"]
 
@@ -228,11 +228,7 @@ def _check_same(ring: _Ring, joint: str, axis: Axis, placed: Axis) -> None:
 def _read_ring(what: str, table: object, unit: float, known: Sequence[str]) -> _Ring:
     if not isinstance(table, Mapping):
         raise GeometryError(what, quoted(table), "a table")
-    for key in table:
-        if key not in KEYS:
-            near = difflib.get_close_matches(key, KEYS, n=1, cutoff=0.0)[0]
-            value = f"{key!r} (the nearest is {near!r})"
-            raise GeometryError(f"key of {what}", value, "one of " + ", ".join(KEYS))
+    check_keys(f"key of {what}", table, KEYS)
     joints = _names(f"joints of {what}", table.get("joints"))
     rows = {key: _row(f"{key} of {what}", table.get(key), joints) for key in NUMBERS}
     loop = Loop(
