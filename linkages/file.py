@@ -22,7 +22,6 @@ other programs, told by the endings of their names (`linkages.mechanisms.fold`,
 
 from __future__ import annotations
 
-import difflib
 import logging
 import math
 from collections.abc import Callable, Mapping
@@ -45,7 +44,7 @@ from linkages.loop import (
     quoted,
 )
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
-from linkages.values import check_angle
+from linkages.values import check_angle, check_keys
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -210,11 +209,7 @@ def _text(path: Path) -> str:
 
 def _check_keys(content: Content) -> None:
     """Every key is known, and they make one of the two formats, whole."""
-    for key in content:
-        if key not in KEYS:
-            near = difflib.get_close_matches(key, KEYS, n=1, cutoff=0.0)[0]
-            value = f"{key!r} (the nearest is {near!r})"
-            raise GeometryError("key", value, "one of " + ", ".join(KEYS))
+    check_keys("key", content, KEYS)
     of_table = [key for key in TABLE if key in content]
     of_axes = [key for key in AXES if key in content]
     if of_table and of_axes:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import numbers
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ __all__ = [
     "check_angle",
     "check_angles",
     "check_direction",
+    "check_keys",
     "check_number",
     "check_numbers",
     "quoted",
@@ -26,6 +28,8 @@ FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or bec
 # beyond it doubles tell an angle to less than 1e-12 rad, to which loops close
 MOST_TURNS = 1000
 SHORTEST, LONGEST = 1e-100, 1e100  # vectors whose squares are in the range of doubles
+# of a word with a typo to the word; 'lengths' has 0.6 to 'angles', 'turns' 0.9 to 'turn'
+LIKENESS = 0.75
 FEWEST_DIGITS, ALL_DIGITS = 6, 17  # of numbers in errors
 
 
@@ -38,6 +42,16 @@ class GeometryError(BifurcError, ValueError):
         self.value = value
         self.allowed = allowed
         super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
+
+
+def check_keys(what: str, keys: Iterable[object], allowed: Sequence[str]) -> None:
+    """Raises `GeometryError` for a key of a table of a file that is not ``allowed``,
+    with the one that is nearly it, if there is one."""
+    for key in keys:
+        if key not in allowed:
+            near = difflib.get_close_matches(str(key), allowed, n=1, cutoff=LIKENESS)
+            value = f"{key!r} (the nearest is {near[0]!r})" if near else f"{key!r}"
+            raise GeometryError(what, value, "one of " + ", ".join(allowed))
 
 
 def check_number(name: str, value: object) -> None:

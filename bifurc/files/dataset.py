@@ -6,10 +6,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -83,15 +85,24 @@ NEEDED_ATTRIBUTES = (
 # --- files ----------------------------------------------------------------------------
 
 
-def save_atlas(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
+def save_atlas(
+    atlas: Atlas,
+    path: str | os.PathLike[str],
+    more: Mapping[str, Variable] = MappingProxyType({}),
+) -> Path:
     """The path of the NetCDF file just written; an older file is replaced.
 
+    It holds ``more`` variables for the reader, from which no atlas is read.
     There is never a half-written file under ``path``. Raises `OSError` that names
     ``path`` where it cannot be written.
     """
     check_type("atlas", atlas, Atlas)
     frame = atlas_frame(atlas)
     variables = _variables(atlas, frame)
+    twice = sorted(variables.keys() & more.keys())
+    if twice:
+        raise ValueError(f"more: {', '.join(twice)} are variables of the atlas")
+    variables |= more
     attributes = _attributes(atlas, frame)
     now = datetime.now(UTC).isoformat(timespec="seconds")
     attributes["date_created"] = now

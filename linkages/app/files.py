@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
+from linkages.app.configurations import readout_of
 from linkages.app.figure_axes import FigureAxes
 
 if TYPE_CHECKING:
@@ -47,17 +48,35 @@ def remove_empty(folders: Iterable[Path]) -> None:
 
 
 def write_data(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
-    """The paths of atlas.nc, graph.graphml and summary.txt, just written to ``folder``,
-    all or none; raises `OSError`."""
-    from bifurc.files.dataset import save_atlas
+    """The paths of atlas.nc, graph.graphml, of a mechanism mechanism.graphml, and
+    summary.txt, just written to ``folder``, all or none; raises `OSError`."""
     from bifurc.files.graphml import write_graphml
 
     def write(stage: Path) -> None:
-        save_atlas(atlas, stage / "atlas.nc")
+        _write_dataset(atlas, stage / "atlas.nc")
         write_graphml(atlas, stage / "graph.graphml")
+        readout = readout_of(atlas)
+        if readout is not None:
+            from linkages.mechanisms.graphml import write_mechanism_graph
+
+            write_mechanism_graph(readout.mechanism, stage / "mechanism.graphml")
         (stage / "summary.txt").write_text(summary + "\n", encoding="utf-8")
 
     return replace_files(folder, write)
+
+
+def _write_dataset(atlas: Atlas, path: Path) -> None:
+    """Write the dataset of an atlas, of a mechanism with the variables of all joints;
+    raises `OSError`."""
+    from bifurc.files.dataset import save_atlas
+
+    readout = readout_of(atlas)
+    if readout is None:
+        save_atlas(atlas, path)
+        return
+    from linkages.mechanisms.dataset_variables import dataset_variables
+
+    save_atlas(atlas, path, dataset_variables(atlas, readout))
 
 
 USUAL_AXES = FigureAxes()

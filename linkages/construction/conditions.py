@@ -7,6 +7,8 @@ is.
 
 from __future__ import annotations
 
+import math
+
 from linkages.construction.numbers import Number, sin
 from linkages.values import GeometryError, told_apart
 
@@ -86,6 +88,22 @@ def require_different(
         raise GeometryError(name, f"{left:.6g}", allowed)
 
 
+def _require_same_sense(
+    link: str, twist: Number, reference_twist: Number, derived: Number
+) -> None:
+    """Raise `GeometryError` for twists (rad) whose sines have other signs, so that the
+    length ``derived`` of the link is not positive."""
+    length, angle, reference = map(decided, (derived, twist, reference_twist))
+    if length is None or angle is None or reference is None or length > 0:
+        return
+    value = f"{math.degrees(angle):.6g} degrees beside {math.degrees(reference):.6g}"
+    allowed = (
+        "such that the sines of both have one sign, as the length of the link, which "
+        f"follows from them, is positive; here it is {length:.6g}"
+    )
+    raise GeometryError(f"twist of link {link}", f"{value} of the first link", allowed)
+
+
 def bennett_length(
     link: str,
     twist: Number,
@@ -103,9 +121,10 @@ def bennett_length(
     sine = sin(reference_twist)
     require_different("sine of the twist of the first link", sine, 0, "no ratio")
     derived = length * sin(twist) / sine
-    require_positive(f"length of link {link}", derived if given is None else given)
     if given is None:
+        _require_same_sense(link, twist, reference_twist, derived)
         return derived
+    require_positive(f"length of link {link}", given)
     require_equal(
         f"link {link}: sin(twist)/length",
         sin(twist) / given,

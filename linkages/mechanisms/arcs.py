@@ -18,6 +18,7 @@ from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.figure_bodies import (
     Piece,
     bodies_of_figure,
+    check_held,
     check_point,
     read_fixed,
 )
@@ -85,7 +86,9 @@ def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
     fixed = read_fixed(content, known)
     arcs = _read_arcs(content, known, unit)
     system = _Arcs(points, fixed, arcs, on_arcs)
-    return Mechanism(tuple(_joints(system, _assembled(system))), name)
+    joints = _joints(system, _assembled(system))
+    check_held(fixed, joints)
+    return Mechanism(tuple(joints), name)
 
 
 # --- keys -----------------------------------------------------------------------------
@@ -199,6 +202,9 @@ def _normal(what: str, start: np.ndarray, end: np.ndarray) -> np.ndarray:
 def _assembled(system: _Arcs) -> Places:
     """The directions of all points where every arc has its angle."""
     places = _places(system, system.points)
+    for arc in system.arcs:
+        if arc.angle is None:
+            _normal(f"arc {arc.name}", places[arc.start], places[arc.end])
     if not any(arc.angle is not None for arc in system.arcs):
         return places
     angles = [

@@ -17,6 +17,7 @@ from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.figure_bodies import (
     Piece,
     bodies_of_figure,
+    check_held,
     check_point,
     read_fixed,
 )
@@ -86,6 +87,7 @@ def read_bars(content: Content, name: str) -> Mechanism:
     system = _Bars(points, fixed, bars, on_bars)
     places = _assembled(system)
     joints = _joints(system, places)
+    check_held(fixed, joints)
     return Mechanism(
         tuple(joints),
         name,

@@ -3,13 +3,22 @@ sphere."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
 from linkages.loop import GeometryError, quoted
+from linkages.mechanisms.joint import Joint
 
-__all__ = ["FRAME", "Piece", "bodies_of_figure", "check_point", "read_fixed"]
+__all__ = [
+    "FRAME",
+    "Piece",
+    "bodies_of_figure",
+    "check_held",
+    "check_point",
+    "read_fixed",
+]
 
 FRAME = "frame"
 
@@ -31,6 +40,21 @@ def read_fixed(content: Mapping[str, object], known: Sequence[str]) -> tuple[str
         if fixed.count(name) > 1:
             raise GeometryError("fixed", quoted(name), "named once")
     return tuple(fixed)
+
+
+def check_held(fixed: Sequence[str], joints: Sequence[Joint]) -> None:
+    """Raise `GeometryError` where no points are ``fixed`` and a body hangs on one joint
+    for want of a frame."""
+    if fixed:
+        return
+    counts = Counter(body for joint in joints for body in joint.bodies)
+    for body, count in counts.items():
+        if count < 2:
+            allowed = (
+                "given, the names of the points that hold the frame; without a frame "
+                f"{body} hangs on one joint only"
+            )
+            raise GeometryError("fixed", "a missing key or an empty list", allowed)
 
 
 def check_point(what: str, name: object, known: Sequence[str]) -> None:

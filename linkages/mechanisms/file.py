@@ -9,7 +9,6 @@ configuration, ``[[loops]]``, tables of Denavit and Hartenberg that share joints
 
 from __future__ import annotations
 
-import difflib
 import logging
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -25,7 +24,7 @@ from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 from linkages.mechanisms.plane import normal_of_plane
-from linkages.values import check_angle
+from linkages.values import check_angle, check_keys
 
 __all__ = ["FREE", "MANY_TURNS", "read_mechanism"]
 
@@ -63,15 +62,15 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     if not isinstance(given, str):
         raise GeometryError("name", quoted(given), "a text in quotes")
     if "loops" in content and "joints" not in content:
-        _check_keys("key", content, OF_LOOPS)
+        check_keys("key", content, OF_LOOPS)
         return read_loops(content["loops"], given, _angle_unit(content))
     if "arcs" in content and "joints" not in content:
-        _check_keys("key", content, OF_ARCS)
+        check_keys("key", content, OF_ARCS)
         return read_arcs(content, given, _angle_unit(content))
     if "joints" not in content:
-        _check_keys("key", content, OF_BARS)
+        check_keys("key", content, OF_BARS)
         return read_bars(content, given)
-    _check_keys("key", content, OF_FILE)
+    check_keys("key", content, OF_FILE)
     unit = _angle_unit(content)
     tables = content["joints"]
     if not isinstance(tables, list):
@@ -135,14 +134,6 @@ def _angle_unit(content: Content) -> float:
     return UNITS[unit]
 
 
-def _check_keys(what: str, content: Content, allowed: tuple[str, ...]) -> None:
-    for key in content:
-        if key not in allowed:
-            near = difflib.get_close_matches(key, allowed, n=1, cutoff=0.0)[0]
-            value = f"{key!r} (the nearest is {near!r})"
-            raise GeometryError(what, value, "one of " + ", ".join(allowed))
-
-
 # --- one joint ------------------------------------------------------------------------
 
 
@@ -153,7 +144,7 @@ def _read_joint(number: int, table: object, unit: float) -> Joint:
     name = table.get("name")
     if name is None:
         raise GeometryError(f"name of joints[{number}]", "a missing key", "a text")
-    _check_keys(f"key of joint {name}", table, OF_JOINT)
+    check_keys(f"key of joint {name}", table, OF_JOINT)
     for key in ("kind", "bodies"):
         if key not in table:
             what = f"{key} of joint {name}"
@@ -167,6 +158,7 @@ def _read_joint(number: int, table: object, unit: float) -> Joint:
     locked = _read_locked(name, table.get("locked"), motions, unit)
     _check_locked(name, locked, limits, motions, unit)
     coupled = _read_coupled(name, table.get("coupled"), motions, unit)
+    _check_not_locked(name, locked, coupled, motions, unit)
     return replace(joint, limits=limits, locked=locked, coupled=coupled)
 
 
@@ -251,9 +243,32 @@ def _check_locked(
             continue
         factor = unit if motion.is_turn else 1.0
         low, high = (f"{end / factor:.10g}" for end in pair)
-        given = f"{value / factor:.10g}"
+        given = _as_given(value, motion, unit)
         allowed = f"within the limits [{low}, {high}]"
         raise GeometryError(f"locked of joint {name}", given, allowed)
+
+
+def _as_given(value: float, motion: Motion, unit: float) -> str:
+    """A value of a variable as the file gives it, angles with their unit."""
+    if not motion.is_turn:
+        return f"{value:.10g}"
+    word = "rad" if unit == 1.0 else "degrees"
+    return f"{value / unit:.10g} {word}"
+
+
+def _check_not_locked(
+    name: str,
+    locked: Sequence[float | None],
+    coupled: Sequence[Coupling | None],
+    motions: Sequence[Motion],
+    unit: float,
+) -> None:
+    """Raise `GeometryError`, in the units of the file, for a lock of what is coupled."""
+    for value, coupling, motion in zip(locked, coupled, motions, strict=False):
+        if value is not None and coupling is not None:
+            given = _as_given(value, motion, unit)
+            allowed = f"left out, as the variable is coupled to {coupling.to}"
+            raise GeometryError(f"locked of joint {name}", given, allowed)
 
 
 def _read_coupled(
@@ -278,7 +293,7 @@ def _read_coupling(
         raise GeometryError(what, quoted(table), "a table {to, ratio, offset}")
     if not table:
         return None
-    _check_keys(f"key of {what}", table, OF_COUPLING)
+    check_keys(f"key of {what}", table, OF_COUPLING)
     for key in ("to", "ratio"):
         if key not in table:
             raise GeometryError(f"{key} of {what}", "a missing key", "given")

@@ -9,7 +9,6 @@ together there, or at heights that the file gives (Chen, Peng and You 2015).
 from __future__ import annotations
 
 import json
-import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
@@ -18,17 +17,16 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from bifurc.decisions import is_start_solved
-from linkages.decisions import is_parallel_axis, keeps_angle
+from linkages.decisions import is_parallel_axis
 from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism, Panel
+from linkages.mechanisms.misfits import check_moved
 from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
 from linkages.mechanisms.poses import Poses
 
 __all__ = ["read_fold"]
-
-log = logging.getLogger(__name__)
 
 Frame: TypeAlias = Mapping[str, Any]
 Side: TypeAlias = tuple[int, int]
@@ -127,13 +125,11 @@ def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
     problem = MechanismClosure(mechanism)
     start = np.array([angles[name] for name in problem.names])
     points, gaps = problem.project(start[None])
-    change = float(np.abs(points[0] - start).max())
     if not is_start_solved(float(gaps[0])):
         value = f"folded such that a gap of {gaps[0]:.3g} is left"
         raise GeometryError("edges_foldAngle", value, "near a closed state")
-    if not keeps_angle(change):
-        degrees = np.degrees(change)
-        log.warning("fold angles are moved by up to %.3g degrees to close", degrees)
+    gap = float(np.linalg.norm(problem.residuals(start[None])))
+    check_moved("edges_foldAngle", start, points[0], gap, problem.names)
     poses = Poses(problem.structure).at(points)[0]
     joints = []
     for joint in mechanism.joints:
@@ -315,6 +311,11 @@ def _creases(faces: Sequence[list[int]], edges: Mapping[Side, _Edge]) -> list[_C
                 allowed = "oriented alike, so that two faces run along a side opposite"
                 raise GeometryError("faces_vertices", value, f"{allowed} ways")
             owners[start, end] = number
+    for side, edge in edges.items():
+        if edge.letter in HINGES and not {side, side[::-1]} & owners.keys():
+            value = f"{edge.name}, {quoted(edge.letter)},"
+            allowed = "a side of a face, as every crease (M, V, U) is"
+            raise GeometryError("edge", value, allowed)
     creases = []
     for (start, end), left in owners.items():
         right = owners.get((end, start))

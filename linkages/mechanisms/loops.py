@@ -6,8 +6,6 @@ each further one is placed by the joints that it shares with those before it.
 
 from __future__ import annotations
 
-import difflib
-import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
@@ -16,16 +14,16 @@ import numpy as np
 
 from bifurc.decisions import is_start_solved
 from linkages.closure.loop_closure import LoopClosure
-from linkages.decisions import is_parallel_axis, keeps_angle, meets_in_one_point
+from linkages.decisions import is_parallel_axis, meets_in_one_point
 from linkages.loop import GeometryError, Loop, check_number, quoted
 from linkages.mechanisms.displacements import transforms
 from linkages.mechanisms.joined_names import check_joined_names, joined_name
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.misfits import check_moved
+from linkages.values import check_keys
 
 __all__ = ["read_loops"]
-
-log = logging.getLogger(__name__)
 
 Table: TypeAlias = Mapping[str, Any]
 
@@ -138,6 +136,7 @@ def _pose(
 ) -> np.ndarray:
     """The displacement (4, 4) that brings a loop to its place."""
     if not axes:
+        _check_placed(ring, "the first loop stands where it is")
         return np.eye(4)
     shared = [joint for joint in ring.joints if joint in axes]
     if not shared:
@@ -148,6 +147,7 @@ def _pose(
         here = _frame_of(ring.axis(first), ring.axis(second))
         there = _frame_of(axes[first], axes[second])
         if here is not None and there is not None:
+            _check_placed(ring, f"joints {first} and {second} place the loop")
             return _brought(here, there)
     axis = axes[first]
     there = _frame(axis.point, axis.direction, normals[first])
@@ -155,6 +155,16 @@ def _pose(
     own = ring.axis(first)
     normal = _normal(ring, ring.joints.index(first))
     return _brought(_frame(own.point, own.direction, normal), there)
+
+
+def _check_placed(ring: _Ring, reason: str) -> None:
+    """Refuse a turn or a shift of a loop that has its place without them."""
+    turn = float(np.degrees(ring.turn))
+    for key, value, unit in (("turn", turn, " degrees"), ("shift", ring.shift, "")):
+        if value != 0.0:
+            shown = f"{value:.10g}{unit}"
+            what = f"{key} of {ring.what}"
+            raise GeometryError(what, shown, f"left out, as {reason}")
 
 
 def _turned(frame: np.ndarray, axis: Axis, ring: _Ring) -> np.ndarray:
@@ -218,11 +228,7 @@ def _check_same(ring: _Ring, joint: str, axis: Axis, placed: Axis) -> None:
 def _read_ring(what: str, table: object, unit: float, known: Sequence[str]) -> _Ring:
     if not isinstance(table, Mapping):
         raise GeometryError(what, quoted(table), "a table")
-    for key in table:
-        if key not in KEYS:
-            near = difflib.get_close_matches(key, KEYS, n=1, cutoff=0.0)[0]
-            value = f"{key!r} (the nearest is {near!r})"
-            raise GeometryError(f"key of {what}", value, "one of " + ", ".join(KEYS))
+    check_keys(f"key of {what}", table, KEYS)
     joints = _names(f"joints of {what}", table.get("joints"))
     rows = {key: _row(f"{key} of {what}", table.get(key), joints) for key in NUMBERS}
     loop = Loop(
@@ -231,7 +237,7 @@ def _read_ring(what: str, table: object, unit: float, known: Sequence[str]) -> _
         tuple(rows["offsets"]),
         what,
     )
-    angles = _closed(what, loop, unit * np.array(rows["configuration"]))
+    angles = _closed(what, loop, unit * np.array(rows["configuration"]), joints)
     return _Ring(
         what,
         joints,
@@ -243,21 +249,20 @@ def _read_ring(what: str, table: object, unit: float, known: Sequence[str]) -> _
     )
 
 
-def _closed(what: str, loop: Loop, angles: np.ndarray) -> np.ndarray:
-    """The closed configuration (n,) nearest to these angles (n,), rad."""
-    points, gaps = LoopClosure(loop).project(angles[None])
+def _closed(
+    what: str, loop: Loop, angles: np.ndarray, joints: Sequence[str]
+) -> np.ndarray:
+    """The closed configuration (n,) nearest to these angles (n,), rad, of ``joints``;
+    raises `GeometryError` where they were not closed but for rounding."""
+    closure = LoopClosure(loop)
+    points, gaps = closure.project(angles[None])
     if not is_start_solved(float(gaps[0])):
         value = f"{np.degrees(angles).round(6).tolist()} degrees, from which a gap of"
         value += f" {gaps[0]:.3g} is left,"
         raise GeometryError(f"configuration of {what}", value, "near a closed one")
     closed: np.ndarray = points[0]
-    change = float(np.abs(closed - angles).max())
-    if not keeps_angle(change):
-        log.warning(
-            "the configuration of %s is moved by up to %.3g degrees to be closed",
-            what,
-            np.degrees(change),
-        )
+    gap = float(np.linalg.norm(closure.residuals(angles[None])))
+    check_moved(f"configuration of {what}", angles, closed, gap, joints)
     return closed
 
 

@@ -440,9 +440,11 @@ def _check_graph(mechanism: Mechanism) -> None:
     graph = mechanism.graph()
     parts = [sorted(part) for part in nx.connected_components(graph)]
     if len(parts) > 1:
-        parts.sort(key=lambda part: mechanism.bodies.index(part[0]))
+        order = mechanism.bodies.index
+        frame = mechanism.frame
+        parts.sort(key=lambda part: (frame not in part, min(map(order, part))))
         far = ", ".join(parts[1])
-        allowed = f"joined to {parts[0][0]} by a chain of joints"
+        allowed = f"joined to {frame} by a chain of joints"
         raise GeometryError("bodies", far, allowed)
     for body in mechanism.bodies:
         # a joint of several bodies is one, from whichever its angles are measured

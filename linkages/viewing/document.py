@@ -28,6 +28,7 @@ from linkages.links.mechanism_drawing import (
 from linkages.loop import Loop
 from linkages.mechanisms.loop_atlas import to_loop_angles
 from linkages.mechanisms.readout import Readout
+from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_of
 from linkages.scene import View, best_view, make_scene
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion

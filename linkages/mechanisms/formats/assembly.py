@@ -12,7 +12,14 @@ from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import LARGEST, JointKind, Limits, Vector
 
-__all__ = ["Assembly", "BodyJoint", "frame_along", "translation"]
+__all__ = [
+    "Assembly",
+    "BodyJoint",
+    "frame_along",
+    "listed",
+    "translation",
+    "without_joints",
+]
 
 # what the variables of a joint of several are called
 PARTS = {
@@ -141,3 +148,16 @@ def frame_along(
     result = translation(point)
     result[:3, :3] = np.column_stack([first, np.cross(third, first), third])
     return result
+
+
+def without_joints(links: Sequence[str]) -> str:
+    """The note on links of a file that no joint joins to others."""
+    return f"left out, as they have no joints: links {listed(links)}"
+
+
+def listed(names: Sequence[str]) -> str:
+    """The first names, and how many more there are."""
+    most = 6
+    if len(names) <= most:
+        return ", ".join(names)
+    return f"{', '.join(names[:most])} and {len(names) - most} more"

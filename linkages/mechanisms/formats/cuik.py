@@ -20,6 +20,7 @@ from linkages.mechanisms.formats.assembly import (
     BodyJoint,
     frame_along,
     translation,
+    without_joints,
 )
 from linkages.mechanisms.formats.cuik_links import (
     Link,
@@ -80,6 +81,10 @@ def read_world(text: str, name: str, folder: Path) -> Assembly:
     if not world.joints:
         raise GeometryError("[JOINTS]", "missing", "a section with joints")
     bodies = (*world.links, *world.extra_bodies)
+    joined = {body for joint in world.joints for body in joint.bodies}
+    loose = [body for body in bodies if body not in joined]
+    if loose:
+        world.notes.append(without_joints(loose))
     notes = tuple(dict.fromkeys(world.notes))
     return Assembly(name, bodies, tuple(world.joints), notes=notes)
 

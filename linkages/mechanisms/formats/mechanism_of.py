@@ -19,7 +19,7 @@ from linkages.decisions import (
 )
 from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Coupling, leaders
-from linkages.mechanisms.formats.assembly import Assembly, BodyJoint
+from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, listed
 from linkages.mechanisms.formats.closing import ClosedPoses, Closing
 from linkages.mechanisms.formats.starts import Starts
 from linkages.mechanisms.joint import Joint, JointKind, Limits, Vector
@@ -111,7 +111,7 @@ def _without_branches(assembly: Assembly, notes: list[str]) -> Assembly:
     joints = tuple(j for j in assembly.joints if set(j.bodies) <= set(bodies))
     left_out = [joint.name for joint in assembly.joints if joint not in joints]
     if left_out:
-        notes.append(f"left out, as they lie in no loop: joints {_listed(left_out)}")
+        notes.append(f"left out, as they lie in no loop: joints {listed(left_out)}")
     return replace(assembly, bodies=bodies, joints=joints)
 
 
@@ -136,9 +136,9 @@ def _merged_bodies(assembly: Assembly, notes: list[str]) -> dict[str, str]:
             held.append(joint.name)
     inside = [j.name for j in between if names[j.bodies[0]] == names[j.bodies[1]]]
     if held:
-        notes.append(f"held, as they lie in no loop: joints {_listed(held)}")
+        notes.append(f"held, as they lie in no loop: joints {listed(held)}")
     if inside:
-        notes.append(f"left out, as their bodies are one: joints {_listed(inside)}")
+        notes.append(f"left out, as their bodies are one: joints {listed(inside)}")
     return _names_of_parts(graph, assembly.bodies)
 
 
@@ -152,13 +152,6 @@ def _names_of_parts(graph: nx.MultiGraph, order: Iterable[str]) -> dict[str, str
         name = frames[0] if frames else min(part, key=rank.__getitem__)
         names.update(dict.fromkeys(part, name))
     return names
-
-
-def _listed(names: list[str]) -> str:
-    most = 6
-    if len(names) <= most:
-        return ", ".join(names)
-    return f"{', '.join(names[:most])} and {len(names) - most} more"
 
 
 # --- a closed configuration -----------------------------------------------------------

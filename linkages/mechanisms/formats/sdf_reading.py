@@ -14,7 +14,12 @@ import numpy as np
 
 from linkages.decisions import is_one_direction
 from linkages.loop import quoted
-from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, frame_along
+from linkages.mechanisms.formats.assembly import (
+    Assembly,
+    BodyJoint,
+    frame_along,
+    without_joints,
+)
 from linkages.mechanisms.formats.exact_poses import ExactPose, Origin
 from linkages.mechanisms.formats.sdf_chains import with_joints_of_chains
 from linkages.mechanisms.formats.sdf_couplings import (
@@ -57,13 +62,15 @@ class _Posed:
 @dataclass
 class _Model:
     """A model while it is read: what has a pose, by name, and the poses in the model
-    that are known. Places are counted from the ``origin``."""
+    that are known. Places are counted from the ``origin``; ``notes`` say what was left
+    out."""
 
     element: Element
     version: tuple[int, int]
     origin: Origin
     posed: dict[str, _Posed] = field(default_factory=dict)
     poses: dict[str, ExactPose] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
 
     def frame(self, body: str) -> np.ndarray:
         """The frame (4, 4) in which the joints of a body are written."""
@@ -99,6 +106,15 @@ def read_sdf(root: Element, name: str) -> Assembly:
     links = [link.attributes["name"] for link in model.element.all("link")]
     joined = {body for joint in joints for body in joint.bodies}
     bodies = tuple(body for body in (WORLD, *links) if body in joined)
+    # the links inside chains that are one joint have joints in the file
+    in_file = {
+        _body(joint, tag, model)
+        for joint in model.element.all("joint")
+        for tag in ("parent", "child")
+    }
+    loose = [link for link in links if link not in in_file]
+    if loose:
+        model.notes.append(without_joints(loose))
     return Assembly(
         model.element.attributes.get("name", name),
         bodies,
@@ -106,6 +122,7 @@ def read_sdf(root: Element, name: str) -> Assembly:
         {body: model.frame(body) for body in bodies},
         origin=model.origin.vector,
         rounding=rounding,
+        notes=tuple(model.notes),
     )
 
 
@@ -187,10 +204,24 @@ def _pose(name: str, model: _Model, path: tuple[str, ...] = ()) -> ExactPose:
         element.refuse("relative_to", quoted(relative_to), allowed)
     base = relative_to or posed.relative_to
     if base not in model.posed and base not in (MODEL, WORLD):
-        allowed = f"one of {', '.join(model.posed)}"
-        element.refuse("relative_to", quoted(base), allowed)
+        _refuse_base(element, base, is_said=relative_to is not None, model=model)
     model.poses[name] = _pose(base, model, (*path, name)) @ own
     return model.poses[name]
+
+
+def _refuse_base(element: Element, base: str, *, is_said: bool, model: _Model) -> None:
+    """Raise `GeometryError` for what a pose is relative to, as ``relative_to`` says or
+    as it is for a joint or a frame without that, where there is no such thing."""
+    if not is_said and element.tag == "joint":
+        allowed = f"world or one of the links {_listed_links(model)}"
+        element.refuse("<child>", quoted(base), allowed)
+    key = "relative_to" if is_said else "attached_to"
+    names = ", ".join(model.posed)
+    element.refuse(key, quoted(base), f"one of the links, joints and frames {names}")
+
+
+def _listed_links(model: _Model) -> str:
+    return ", ".join(link.attributes["name"] for link in model.element.all("link"))
 
 
 def _own_pose(element: Element) -> tuple[ExactPose, str | None]:
@@ -243,7 +274,7 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
     if kind not in (JointKind.SPHERICAL, JointKind.RIGID):
         axis = _axis(element, "axis", pose, model)
         one = other = frame_along(place[:3, 3], axis)
-        limits = (_limits(element, "axis", word),)
+        limits = (_limits(element, "axis", word, model),)
     cosine = 0.0
     if kind is JointKind.UNIVERSAL:
         second_axis = _axis(element, "axis2", pose, model)
@@ -251,7 +282,7 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
             element.refuse("<axis2>", "along <axis>", "another direction")
         other = frame_along(place[:3, 3], second_axis)
         cosine = float(one[:3, 2] @ other[:3, 2])
-        limits = (*limits, _limits(element, "axis2", word))
+        limits = (*limits, _limits(element, "axis2", word, model))
     frames = (
         np.linalg.inv(model.frame(first)) @ one,
         np.linalg.inv(model.frame(second)) @ other,
@@ -278,10 +309,8 @@ def _body(joint: Element, tag: str, model: _Model) -> str:
     while name != WORLD:
         posed = model.posed.get(name)
         if posed is None or name in seen:
-            links = ", ".join(
-                link.attributes["name"] for link in model.element.all("link")
-            )
-            joint.refuse(f"<{tag}>", quoted(name), f"world or one of the links {links}")
+            allowed = f"world or one of the links {_listed_links(model)}"
+            joint.refuse(f"<{tag}>", quoted(name), allowed)
         if posed.element.tag == "link":
             break
         seen.add(name)
@@ -314,7 +343,7 @@ def _axis(element: Element, tag: str, pose: ExactPose, model: _Model) -> np.ndar
     return turned
 
 
-def _limits(element: Element, tag: str, word: str) -> Limits | None:
+def _limits(element: Element, tag: str, word: str, model: _Model) -> Limits | None:
     """The limits of an axis, None where there are none, or one end is open."""
     axis = element.first(tag)
     limit = None if axis is None else axis.first("limit")
@@ -331,6 +360,11 @@ def _limits(element: Element, tag: str, word: str) -> Limits | None:
     if min(-low, high) >= UNLIMITED or low <= -UNLIMITED or high >= UNLIMITED:
         return None
     if low > high:  # SDF's other word for no limit
+        name = element.attributes["name"]
+        model.notes.append(
+            f"left out: the limits of joint {name}, {low:g} to {high:g}: a lower end "
+            "above the upper one is no limit in SDF"
+        )
         return None
     if low == high:
         element.refuse("<limit>", [low, high], "a smaller number and a larger one")

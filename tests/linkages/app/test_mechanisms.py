@@ -172,6 +172,7 @@ def test_files_of_a_mechanism_can_be_read_again(folder):
     assert [path.name for path in written] == [
         "atlas.nc",
         "graph.graphml",
+        "mechanism.graphml",
         "summary.txt",
     ]
     atlas = load_atlas("out/atlas.nc")

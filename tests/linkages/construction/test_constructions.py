@@ -6,6 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
+from linkages.construction.conditions import bennett_length
 from linkages.construction.constructions import (
     ending_with,
     isomerize,
@@ -354,3 +355,9 @@ def test_equal_kinks_give_a_mavroidis_roth_linkage():
 def test_parallel_outer_axes_are_refused():
     with pytest.raises(GeometryError, match="not parallel"):
         composite_link(Link(1.0, 0.7), Link(1.0, 0.7), np.pi)
+
+
+def test_twists_that_make_a_length_negative_are_named():
+    message = r"twist of link b: 30 degrees beside 200 of the first link .* -"
+    with pytest.raises(GeometryError, match=message):
+        bennett_length("b", np.radians(30), None, 1.0, np.radians(200))

@@ -129,6 +129,13 @@ BAD = {
         content(arcs=[["A", "B", 180], *ARCS[1:]]),
         r"angle of arcs\[1\]",
     ),
+    "an arc between opposite points": (
+        content(
+            points=POINTS | {"C": [-x for x in POINTS["B"]]},
+            arcs=[["A", "B", 25], ["B", "C"], ["C", "D"]],
+        ),
+        "arc B-C: between points .* opposite",
+    ),
     "an arc that cannot fit": (
         content(arcs=[["A", "B", 5], ["B", "C", 5], ["C", "D", 5]]),
         "misses its angle by",

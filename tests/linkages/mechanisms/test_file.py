@@ -204,3 +204,41 @@ def test_limits_in_radians_of_more_than_two_turns_are_said(
     path.write_text(text, encoding="utf-8")
     linkages.load(path)
     assert ("limits of joint D are [-90, 90]" in caplog.text) is is_said
+
+
+@pytest.mark.parametrize(
+    ("head", "value", "shown"),
+    [("", "3", "3 degrees"), ('angles = "rad"\n', "0.5", "0.5 rad")],
+)
+def test_a_lock_of_what_is_coupled_is_shown_as_the_file_has_it(
+    tmp_path, head, value, shown
+):
+    text = four_bar(f'coupled = {{to = "A", ratio = 2.0}}\nlocked = {value}\n', head)
+    with pytest.raises(LinkageFileError, match=f"locked of joint D: {shown} is not"):
+        read(tmp_path, text)
+
+
+@pytest.mark.parametrize(
+    ("key", "hint"),
+    [("limit", "nearest is 'limits'"), ("axis", None), ("stiffness", None)],
+)
+def test_a_key_is_hinted_at_only_where_it_is_nearly_the_one_given(tmp_path, key, hint):
+    with pytest.raises(LinkageFileError) as error:
+        read(tmp_path, four_bar(f"{key} = 1\n"))
+    assert f"key of joint D: '{key}'" in str(error.value)
+    assert ("nearest" in str(error.value)) == (hint is not None)
+    assert hint is None or hint in str(error.value)
+
+
+def test_a_part_without_the_frame_is_what_must_be_joined(tmp_path):
+    apart = "".join(
+        JOINT.format(name=name, bodies='["p", "q"]', point="[9, 0, 0]") for name in "PQ"
+    )
+    with pytest.raises(LinkageFileError, match=r"bodies: p, q .* joined to frame"):
+        read(tmp_path, apart + four_bar())
+
+
+def test_bars_without_fixed_points_that_need_a_frame_ask_for_them(tmp_path):
+    text = BARS.format(length="").replace('fixed = ["A", "B"]\n', "")
+    with pytest.raises(LinkageFileError, match=r"fixed: a missing key .* A-C hangs"):
+        read(tmp_path, text)

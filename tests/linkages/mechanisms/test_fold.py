@@ -153,7 +153,30 @@ def test_fold_angles_that_are_rounded_are_moved_with_a_warning(tmp_path, caplog)
     content["edges_foldAngle"] = [round(a, 1) for a in content["edges_foldAngle"]]
     problem = MechanismClosure(read(tmp_path, content))
     assert np.abs(problem.residuals(problem.reference[None])).max() < 1e-12
-    assert "fold angles are moved by up to 0.0" in caplog.text
+    assert "edges_foldAngle: moved by up to 0.0" in caplog.text
+
+
+def test_fold_angles_that_do_not_close_are_refused_with_what_they_miss(tmp_path):
+    content = miura(3, 3, 0.8)
+    content["edges_foldAngle"] = [abs(a) for a in content["edges_foldAngle"]]
+    with pytest.raises(
+        LinkageFileError, match=r"edges_foldAngle: not closed, by a gap"
+    ):
+        read(tmp_path, content)
+
+
+@pytest.mark.parametrize("letter", ["M", "V", "U"])
+def test_a_crease_that_is_no_side_of_a_face_is_refused_by_name(tmp_path, letter):
+    content = miura(3, 3, 0.8)
+    del content["edges_foldAngle"]
+    ends = content["faces_vertices"][0]
+    content["edges_vertices"].append([ends[0], ends[2]])
+    content["edges_assignment"].append(letter)
+    message = f'edge: {ends[0]}-{ends[2]}, "{letter}", is not allowed'
+    with pytest.raises(LinkageFileError, match=message):
+        read(tmp_path, content)
+    content["edges_assignment"][-1] = "F"  # a line on a panel holds nothing
+    read(tmp_path, content)
 
 
 # --- thick panels ---------------------------------------------------------------------

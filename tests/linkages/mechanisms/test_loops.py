@@ -159,3 +159,27 @@ def test_links_of_different_joints_with_one_name_are_refused(tmp_path):
     ]
     with pytest.raises(LinkageFileError, match='"0-2" to "1" and "0" to "2-1"'):
         read(tmp_path, text_of(called))
+
+
+def test_angles_far_from_closed_ones_are_refused_with_what_they_miss(tmp_path):
+    text = TEXT
+    start = text.rindex("configuration = [")
+    end = text.index("]", start)
+    text = f"{text[:start]}configuration = [0.2, 0.3, 0.5, 0.7{text[end:]}"
+    message = (
+        r"configuration of loops\[2\]: not closed, by a gap of .* is .* degrees off"
+    )
+    with pytest.raises(LinkageFileError, match=message):
+        read(tmp_path, text)
+
+
+@pytest.mark.parametrize("line", ["turn = 0.7", "shift = 0.3"])
+def test_a_turn_or_shift_of_a_loop_that_has_its_place_is_refused(tmp_path, line):
+    key = line.split()[0]
+    first, *others = TEXT.split("[[loops]]")[1:]
+    head = TEXT.split("[[loops]]")[0]
+    tables = [first + line + "\n", *others]
+    with pytest.raises(LinkageFileError, match=rf"{key} of loops\[1\]: .* left out"):
+        read(tmp_path, head + "".join("[[loops]]" + table for table in tables))
+    with pytest.raises(LinkageFileError, match=rf"{key} of loops\[2\]: .* place"):
+        read(tmp_path, TEXT + line + "\n")

@@ -88,6 +88,12 @@ def test_what_hangs_on_no_loop_is_left_out_and_said(tmp_path, caplog):
     assert "left out, as they lie in no loop: joints J5" in caplog.text
 
 
+def test_links_without_joints_are_named(tmp_path, caplog):
+    text = world_text(CASES["FourBars"]).replace("[JOINTS]", "lamp\nhook\n[JOINTS]")
+    read(tmp_path, text)
+    assert "left out, as they have no joints: links lamp, hook" in caplog.text
+
+
 BAD = {
     "an unknown sign": ("[LINKS]\n$", 'line 2: "$"'),
     "no section": ("a := 1", "a section such as"),

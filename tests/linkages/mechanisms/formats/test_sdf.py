@@ -154,6 +154,17 @@ BAD = {
     "a version that is none": (model(version="x"), "from 1.5 to 1.11"),
     "no model": ('<sdf version="1.7"/>', "models with joints"),
     "an unknown link": (model().replace("<child>link_BC", "<child>hook", 1), '"hook"'),
+    "an unknown child": (
+        model().replace("<child>link_BC", "<child>hook", 1),
+        '<child> of <joint name="joint_B"> on line 1: "hook" is not allowed; it must be '
+        "world or one of the links link_AB, link_BC, link_CD",
+    ),
+    "an unknown frame": (
+        model(version="1.9", extra='<frame name="f" attached_to="g"/>').replace(
+            "<pose >0.1", '<pose relative_to="f">0.1', 1
+        ),
+        'attached_to of <frame name="f"> on line 1: "g"',
+    ),
     "no child": (model().replace("<child>link_BC</child>", "", 1), "<child>"),
     "a joint type": (
         model().replace('type="revolute"', 'type="revolute2"', 1),
@@ -192,6 +203,18 @@ def test_a_malformed_model_is_refused_with_its_place(what, tmp_path):
         read(tmp_path, text)
     assert message in str(error.value)
     assert "m.sdf" in str(error.value)
+
+
+def test_reversed_limits_are_none_and_named(tmp_path, caplog):
+    limit = "<limit><lower>2</lower><upper>1</upper></limit></axis>"
+    mechanism = read(tmp_path, model().replace("</axis>", limit, 1))
+    assert mechanism.joint("joint_A").limits == (None,)
+    assert "left out: the limits of joint joint_A, 2 to 1" in caplog.text
+
+
+def test_links_without_joints_are_named(tmp_path, caplog):
+    read(tmp_path, model(extra='<link name="lamp"/>'))
+    assert "left out, as they have no joints: links lamp" in caplog.text
 
 
 # --- joints that follow others --------------------------------------------------------
