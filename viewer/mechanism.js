@@ -22,8 +22,10 @@ export class MechanismFigure {
     this.bodies = mechanism.bodies.map(({ name }) => name);
     this.panels = mechanism.bodies.flatMap(({ panels }, body) => panels.map((corners) => ({ corners, body })));
     this.sheets = new Set(this.panels.map(({ body }) => body));
+    this.legs = mechanism.rods.filter(({ leg, parts }) => leg && parts.every(({ bodies }) => bodies.length === 1));
+    this.legBodies = new Set(this.legs.flatMap(({ parts }) => parts.map(({ bodies }) => bodies[0])));
     this.lines = mechanism.bodies.map((_, body) => this.linesOf(body));
-    this.mostRods = this.lines.reduce((sum, lines) => sum + lines.length, 0);
+    this.mostRods = this.lines.reduce((sum, lines) => sum + lines.length, 2 * this.legs.length);
     this.shapes = {};
     for (const symbol of mechanism.symbols) {
       const shape = shapeOf(symbol);
@@ -39,8 +41,10 @@ export class MechanismFigure {
     return frame;
   }
 
-  /** The lines of a body: the outlines of its panels, where it has any. */
+  /** The lines of a body: the outlines of its panels, where it has any, and none of one of the two parts of a leg, which
+   * are drawn between its ends. */
   linesOf(body) {
+    if (this.legBodies.has(body)) return [];
     if (!this.sheets.has(body)) return this.mechanism.bodies[body].lines;
     const own = this.mechanism.bodies[body].panels;
     return own.flatMap((corners) => corners.map((corner, k) => [corner, corners[(k + 1) % corners.length]]));
@@ -67,8 +71,19 @@ export class MechanismFigure {
     const rods = this.lines.flatMap((lines, body) =>
       lines.map(([from, to]) => ({ from: moved(poses[body], from), to: moved(poses[body], to), body })),
     );
+    const middles = new Map();
+    for (const { ends, centers, parts: own } of this.legs) {
+      const [from, to] = ends.map((body, k) => moved(poses[body], centers[k]));
+      const middle = from.map((x, k) => (x + to[k]) / 2);
+      const [lower, upper] = own.map(({ bodies: [body] }) => body);
+      rods.push({ from, to: middle, body: lower }, { from: middle, to, body: upper });
+      middles.set(lower, middle).set(upper, middle);
+    }
     const panels = this.panels.map(({ corners, body }) => ({ corners: corners.map((corner) => moved(poses[body], corner)), body }));
-    const seats = symbols.map(({ holder, place }) => moved(poses[holder], place));
+    const seats = symbols.map(({ kind, holder, other, place }) => {
+      const isOfLeg = kind === "prismatic" && middles.has(holder) && middles.has(other);
+      return isOfLeg ? middles.get(holder) : moved(poses[holder], place);
+    });
     const extent = extentOf(seats);
     const parts = { symbols: [], rods, panels, axes: [], seats: [], labels: [] };
     symbols.forEach((symbol, k) => addSymbol(parts, symbol, seats[k], poses, this.isCrease(symbol) ? 0 : REACH * extent));

@@ -12,15 +12,15 @@ const ZERO = 1e-18; // rounding of rounding
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 export class Numbers {
-  /** Singular values are shown where the figure has them. */
-  constructor(unknowns, figure) {
-    this.unknowns = unknowns;
+  /** Variables that follow unknowns stand behind these; singular values are shown where the figure has them. */
+  constructor(unknowns, followers, figure) {
+    this.shown = [...unknowns.map((unknown, i) => ({ ...unknown, of: (u) => u[i] })), ...followers];
     this.angles = [];
     this.values = [];
-    const isWide = unknowns.some(({ name }) => name.length > SHORT);
+    const isWide = this.shown.some(({ name }) => name.length > SHORT);
     const angles = element("div", { class: isWide ? "bv-cells bv-wide" : "bv-cells" });
     const values = element("div", { class: "bv-cells" });
-    for (const { name } of unknowns) this.angles.push(cell(angles, name, "bv-dial"));
+    for (const { name } of this.shown) this.angles.push(cell(angles, name, "bv-dial"));
     const count = figure.singularValues(unknowns.map(() => 0)).length;
     this.hidden = Math.max(count - MOST_VALUES, 0);
     for (let i = this.hidden + 1; i <= count; i += 1) this.values.push(cell(values, `σ${angleName(i).slice(1)}`, "bv-level"));
@@ -35,9 +35,10 @@ export class Numbers {
 
   show(angles, singularValues) {
     this.angles.forEach(({ text, mark }, i) => {
-      const unknown = this.unknowns[i];
-      text.textContent = unknown.text(angles[i]).replace("-", "−");
-      mark.style.left = `${100 * unknown.share(angles[i])}%`;
+      const variable = this.shown[i];
+      const value = variable.of(angles);
+      text.textContent = variable.text(value).replace("-", "−");
+      mark.style.left = `${100 * variable.share(value)}%`;
     });
     this.values.forEach(({ text, mark }, i) => {
       const value = singularValues[this.hidden + i];

@@ -27,6 +27,18 @@ function namesOfLoop({ lengths, joints }) {
   return [...joints].sort((a, b) => a.column - b.column).map(({ name }) => name);
 }
 
+/** The joint variables that are coupled to unknowns: each as an unknown, with its value `of(u)` at unknowns u. */
+export function followersOf(scene, tracks) {
+  return (scene.mechanism?.followers ?? []).map((follower) => {
+    const { name, is_angle: isAngle, column, rate, offset } = follower;
+    const of = (u) => rate * u[column] + offset;
+    if (isAngle && scene.mechanism.unknowns[column].period !== null) return { ...periodicAngle(name), of };
+    const factor = isAngle ? DEGREES : follower.factor;
+    const range = shownRange(tracks, column, factor * rate).map((end) => end + factor * offset);
+    return { ...openUnknown(follower, factor, range), of };
+  });
+}
+
 function periodicAngle(name, turns = 1) {
   return {
     name,

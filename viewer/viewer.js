@@ -17,7 +17,7 @@ import { arcsOf, lengthOf, middleOf, placeAlong, shortestRoute } from "./route.j
 import { Strip } from "./strip.js";
 import { header, legend, MapTools, MotionTools, SpaceTools } from "./tools.js";
 import { findTrack, inOrder, isCurve, tracksOf } from "./tracks.js";
-import { unknownsOf } from "./unknowns.js";
+import { followersOf, unknownsOf } from "./unknowns.js";
 
 const GHOST_SPACING = 1 / 30; // of a form, between ghosts
 const CHART_POINTS = 360;
@@ -69,7 +69,7 @@ export class Viewer {
     this.formList = new FormList(this.listed, actions.goToTrack);
     this.choice = new BranchChoice(tracks, this.unknowns, (branch) => this.leave(branch));
     this.routeBar = new RouteBar(this.listed, (name) => this.playRoute(name));
-    this.numbers = new Numbers(this.unknowns, this.figure);
+    this.numbers = new Numbers(this.unknowns, followersOf(scene, tracks), this.figure);
     this.distanceBar = new DistanceBar(scene, this.passes, (_, s) => this.goTo(this.position.track, s));
     this.strip = new Strip(this.passes, (track) => this.smallestAlong(track), (track) => this.missesOn(track), {
       moved: (s) => this.goTo(this.position.track, s),

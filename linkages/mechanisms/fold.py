@@ -108,7 +108,7 @@ def read_fold(text: str, name: str) -> Mechanism:
         title or name,
         origin=origin,
         rounding=near.rounding,
-        panels=_panels(faces, bodies, points),
+        panels=_panels(faces, bodies, points, joints),
     )
     if FOLDED in frame.get("frame_classes", []) or not any(angles.values()):
         return mechanism
@@ -342,11 +342,17 @@ def _bodies(faces: int, creases: Sequence[_Crease]) -> list[str]:
 
 
 def _panels(
-    faces: Sequence[list[int]], bodies: Sequence[str], points: np.ndarray
+    faces: Sequence[list[int]],
+    bodies: Sequence[str],
+    points: np.ndarray,
+    joints: Sequence[Joint],
 ) -> tuple[Panel, ...]:
-    """The outline of every face on its body."""
+    """The outline of every face on its body; a face without a hinge is none."""
+    hinged = {body for joint in joints for body in joint.bodies}
     panels = []
     for face, body in zip(faces, bodies, strict=True):
+        if body not in hinged:
+            continue
         corners = tuple(map(tuple, points[face].tolist()))
         panels.append(Panel(body, corners))
     return tuple(panels)

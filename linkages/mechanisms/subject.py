@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import asdict
 from typing import Any
 
@@ -99,14 +100,21 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     is_planar = bool(given.get("is_planar", False))
     origin = origin_of(given, None)
     rounding = float(given.get("rounding", 0.0))
-    panels = tuple(_panel(value) for value in given.get("panels", []))
+    outlines = given.get("panels", [])
+    if not isinstance(outlines, list):
+        raise GeometryError("panels", repr(outlines), "a list of panels")
+    bodies = {body for joint in joints for body in joint.bodies}
+    panels = tuple(_panel(value, bodies) for value in outlines)
     return Mechanism(tuple(joints), name, is_planar, origin, rounding, panels)
 
 
-def _panel(value: Any) -> Panel:
+def _panel(value: Any, bodies: Collection[str]) -> Panel:
     """A panel of its values; raises `GeometryError` for what is none."""
     try:
         corners = tuple((float(x), float(y), float(z)) for x, y, z in value["corners"])
-        return Panel(str(value["body"]), corners)
+        body = value["body"]
     except (KeyError, TypeError, ValueError):
         raise GeometryError("panel", repr(value), "a body and its corners") from None
+    if body not in bodies:
+        raise GeometryError("body of a panel", repr(body), "a body of the mechanism")
+    return Panel(body, corners)

@@ -40,6 +40,18 @@ class UnknownDocument(TypedDict):
     period: float | None
 
 
+class FollowerDocument(TypedDict):
+    """A variable that is coupled to an unknown: ``rate`` times the one of this
+    ``column``, plus ``offset``; times ``factor`` it is in rad or the user's unit."""
+
+    name: str
+    is_angle: bool
+    factor: float
+    column: int
+    rate: float
+    offset: float
+
+
 class FactorDocument(TypedDict):
     """An elementary motion, as `linkages.mechanisms.joint.Motion`, by ``rate`` times
     the unknown of this ``column``, plus ``offset``; by the offset alone where the
@@ -122,6 +134,7 @@ class MechanismDocument(TypedDict):
     frame: int
     held: int
     unknowns: list[UnknownDocument]
+    followers: list[FollowerDocument]
     steps: list[StepDocument]
     rods: list[RodDocument]
     bodies: list[BodyDrawing]
@@ -144,6 +157,7 @@ def describe_motion(structure: Structure, points: np.ndarray) -> MechanismDocume
                 structure.unknowns, structure.scales, strict=True
             )
         ],
+        "followers": _followers(structure),
         "steps": [_step(structure, step) for step in poses.tree],
         "rods": [_rod(poses, rod) for rod in structure.rods],
         "bodies": draw_bodies(structure, points),
@@ -171,6 +185,26 @@ def _unknown(unknown: Unknown, factor: float) -> UnknownDocument:
         "factor": factor,
         "period": unknown.period if np.isfinite(unknown.period) else None,
     }
+
+
+def _followers(structure: Structure) -> list[FollowerDocument]:
+    followers: list[FollowerDocument] = []
+    for number, variable in enumerate(structure.mechanism.variables):
+        share = structure.share(number)
+        if share is None or variable.leader.number == number:
+            continue
+        is_angle = variable.motion.is_turn
+        followers.append(
+            {
+                "name": variable.label,
+                "is_angle": is_angle,
+                "factor": 1.0 if is_angle else structure.unit,
+                "column": share.column,
+                "rate": share.rate,
+                "offset": share.offset,
+            }
+        )
+    return followers
 
 
 def _step(structure: Structure, step: TreeStep) -> StepDocument:

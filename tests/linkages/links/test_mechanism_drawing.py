@@ -12,6 +12,7 @@ from linkages.links.mechanism_drawing import (
     draw_symbols,
     held_body,
 )
+from linkages.loop import GeometryError
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
@@ -159,3 +160,14 @@ def test_a_form_is_first_shown_away_from_singular_points_and_from_one_line(name)
         breadth = breadths_of_mechanism(structure, form.branch(np.array([start])))[0]
         # no worse than half of the configurations that it can be in
         assert breadth > np.median(breadths_of_mechanism(structure, places))
+
+
+@pytest.mark.parametrize(
+    "panels", [5, [5], [{"body": "f0"}], [{"body": "f9", "corners": []}]]
+)
+def test_panels_that_are_none_are_refused(panels, tmp_path):
+    path = tmp_path / "pattern.fold"
+    path.write_text(json.dumps(miura(2, 2)))
+    values = mechanism_subject(linkages.load(path))["mechanism"]
+    with pytest.raises(GeometryError, match="panel"):
+        mechanism_from(values | {"panels": panels}, "damaged")

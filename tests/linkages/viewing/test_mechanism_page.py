@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from linkages.mechanisms.closure import MechanismClosure
+from linkages.mechanisms.joint import JointKind
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
 from linkages.viewing import mechanism_document
@@ -248,3 +249,32 @@ def test_a_length_of_slides_and_turns_is_not_in_degrees(show_shared, name, is_an
     place = shown.page.inner_text(".bv-place")
     assert " of " in place
     assert ("°" in place) is is_angular
+
+
+def test_a_coupled_joint_has_its_number_beside_the_others(show_shared):
+    shown = show_shared("geared")
+    script = """() => Object.fromEntries([...document.querySelectorAll(".bv-numbers .bv-cell")].map((cell) =>
+      [cell.querySelector("span").textContent, cell.querySelector("b").textContent]))"""
+    texts = shown.page.evaluate(script)
+    first, follower = (float(texts[name].replace("−", "-")) for name in "AE")
+    turns = (follower - 0.5 * first - np.degrees(0.3)) / 180
+    assert turns == pytest.approx(round(turns), abs=1e-3)
+
+
+def test_no_rod_of_a_platform_goes_beyond_the_ends_of_its_leg(show_shared):
+    shown = show_shared("platform")
+    readout = Readout(mechanism_of(shown.atlas))
+    mechanism = readout.mechanism
+    joints = [j for j in mechanism.joints if j.kind is JointKind.SPHERICAL]
+    call = "([f, s]) => { bifurc.go(f, s); return bifurc.rods(); }"
+    for form in shown.atlas.forms:
+        for s in np.linspace(0.0, form.branch.length, 5):
+            ends = np.array(shown.page.evaluate(call, [form.name, s]))
+            poses = readout.poses(form.branch(np.array([s])))[0]
+            places = []
+            for joint in joints:
+                pose = poses[mechanism.bodies.index(joint.bodies[0])]
+                places.append(pose[:3, :3] @ joint.place + pose[:3, 3])
+            low, high = np.min(places, axis=0), np.max(places, axis=0)
+            assert (ends >= low - 1e-9).all()
+            assert (ends <= high + 1e-9).all()
