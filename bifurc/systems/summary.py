@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.branch import Branch, Outcome
 from bifurc.diagrams.diagram import DiagramPoint, PointKind
 from bifurc.systems.verdict import verdict_of
 from bifurc.text_tables import section
@@ -85,12 +86,19 @@ def _forms(atlas: Atlas) -> str:
     return _shown("Forms", heads, rows)
 
 
+def _end(branch: Branch) -> str:
+    """How a branch ends."""
+    if branch.outcome is Outcome.LEFT_REGION:
+        return "leaves the bounds"
+    return branch.outcome.name.lower().replace("_", " ")
+
+
 def _form_row(form: Form, is_periodic: bool) -> list[str]:
     branch = form.branch
     row = [
         form.name,
         f"{branch.length:.6g}",
-        branch.outcome.name.lower().replace("_", " "),
+        _end(branch),
         f"{form.min_singular_value:.3g}",
         f"{branch.max_residual:.1e}",
     ]

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from linkages.networks.mechanism import NetworkMechanism
 
 __all__ = [
+    "SHOWN_SHARE",
     "ArclengthUnit",
     "arclength_unit",
     "heading",

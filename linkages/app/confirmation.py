@@ -9,14 +9,23 @@ import mpmath
 
 from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.problem import PreciseResidual
-from bifurc.singular.confirm import Confirmation, confirm_singular_point
+from bifurc.singular.confirm import (
+    Confirmation,
+    Convergence,
+    confirm_singular_point,
+)
 from linkages.app.choice import choose_precisely
 from linkages.app.configurations import readout_of
 from linkages.app.equations import equations_of
 from linkages.app.texts import table
 from linkages.closure.precise import precise_residual
+from linkages.linkage import is_linkage_file
 
 __all__ = ["confirm_points", "describe_confirmation"]
+
+
+# where rounded numbers leave a gap: the word for how a point was refined
+ROUNDED = "rounded"
 
 
 def confirm_points(
@@ -52,9 +61,18 @@ def describe_confirmation(
     words for convergence mean."""
     rows = []
     endings = {}
+    gap = 0.0
+    is_rounded = readout_of(atlas) is not None or is_linkage_file(linkage)
     for point, confirmation in confirm_points(atlas, linkage, parameters, digits):
-        rows.append(_row(point, confirmation))
+        word = confirmation.convergence.name.lower().replace("_", " ")
+        if is_rounded and confirmation.convergence is Convergence.INCONSISTENT:
+            word = ROUNDED
+        rows.append((*_row(point, confirmation), word))
         endings[confirmation.convergence] = f"  {confirmation.convergence.value}"
+        if confirmation.convergence is Convergence.INCONSISTENT:
+            gap = max(gap, confirmation.residual)
+    if is_rounded and Convergence.INCONSISTENT in endings:
+        endings[Convergence.INCONSISTENT] = _of_rounded_numbers(gap)
     title = f"Confirmation at {digits} digits"
     if not rows:
         return f"{title}: there is no singular point to confirm."
@@ -75,6 +93,15 @@ def describe_confirmation(
     return f"{title}\n{table(heads, rows)}\n\nConvergence\n{explanations}"
 
 
+def _of_rounded_numbers(gap: float) -> str:
+    """The words for points at which rounded numbers leave a ``gap`` |F|."""
+    return (
+        f"  {ROUNDED}: the numbers of the linkage are rounded, and exactly as they are "
+        f"written it does not close there, by up to {gap:.1e} (|F|); these are the "
+        "points that come nearest"
+    )
+
+
 def _row(meeting: MeetingPoint, confirmation: Confirmation) -> tuple[str, ...]:
     stated = meeting.point.error
     within = confirmation.distance <= stated + confirmation.error
@@ -89,7 +116,6 @@ def _row(meeting: MeetingPoint, confirmation: Confirmation) -> tuple[str, ...]:
         _smallest_regular(confirmation),
         f"{confirmation.residual:.0e}",
         f"{confirmation.error:.0e}",
-        confirmation.convergence.name.lower().replace("_", " "),
     )
 
 

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import zip_longest
+
+import numpy as np
+
 from bifurc.atlas import Atlas
+from bifurc.torus import wrap
+from linkages.app.configurations import SHOWN_SHARE
 from linkages.app.forms import listed_numbers
 from linkages.app.mechanism_document import LooseChainDocument, describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
@@ -14,12 +21,23 @@ from linkages.mechanisms.plane import is_on_sphere, normal_of_plane
 from linkages.mechanisms.ranges import VariableRange
 from linkages.mechanisms.readout import Readout
 
-__all__ = ["describe_joints", "describe_loops", "describe_motions"]
+__all__ = [
+    "describe_dead_points",
+    "describe_joints",
+    "describe_loops",
+    "describe_motions",
+]
+
+WIDTH = 72  # of a cell of a list, in characters
+SHOWN = 20  # dead points beyond this number are only counted
+COORDINATE_ROUNDING = 1e-14  # of the largest one: noise of a coordinate that is 0
 
 
 def describe_joints(readout: Readout) -> str:
     """The joints of a mechanism, and the limits within which it is followed."""
-    rows = [_joint_row(joint) for joint in readout.mechanism.joints]
+    joints = readout.mechanism.joints
+    size = max(float(np.abs(joint.place).max()) for joint in joints)
+    rows = [_joint_row(joint, size) for joint in joints]
     heads = ("name", "kind", "bodies", "point", "direction", "locked")
     text = section("Joints", heads, rows) + _coordinates(readout)
     is_turn = {
@@ -76,7 +94,8 @@ def _couplings(mechanism: Mechanism) -> list[str]:
     return equations
 
 
-def _joint_row(joint: Joint) -> tuple[str, ...]:
+def _joint_row(joint: Joint, size: float) -> tuple[str, ...]:
+    """A joint of a mechanism whose largest coordinate is ``size``."""
     motions = joint.motions * (len(joint.bodies) - 1)
     locks = [
         f"{part} {_shown(value, motion.is_turn)}".strip()
@@ -87,16 +106,21 @@ def _joint_row(joint: Joint) -> tuple[str, ...]:
         joint.name,
         joint.kind.value,
         ", ".join(joint.bodies),
-        _vector(joint.point),
-        _vector(joint.direction),
+        _vector(joint.point, size),
+        _vector(joint.direction, float(np.abs(joint.direction or 0.0).max())),
         ", ".join(locks) or "-",
     )
 
 
-def _vector(vector: tuple[float, float, float] | None) -> str:
+def _vector(vector: tuple[float, float, float] | None, size: float) -> str:
+    """Coordinates, 0 for what is rounding beside the largest one, ``size``."""
     if vector is None:
         return "-"
-    return " ".join(f"{coordinate:.6g}" for coordinate in vector)
+    words = []
+    for coordinate in vector:
+        is_noise = abs(coordinate) <= COORDINATE_ROUNDING * size
+        words.append(f"{0.0 if is_noise else coordinate:.6g}")
+    return " ".join(words)
 
 
 def _shown(value: float, is_turn: bool) -> str:
@@ -151,7 +175,7 @@ def _special_count(mechanism: Mechanism) -> str:
 
 def describe_motions(atlas: Atlas, readout: Readout) -> str:
     """What joints and bodies do along each form."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     is_turn = [v.motion.is_turn for v in readout.mechanism.variables]
     for index in listed_numbers(atlas):
         facts = form_facts(atlas, index, readout)
@@ -160,16 +184,60 @@ def describe_motions(atlas: Atlas, readout: Readout) -> str:
             for one, turn in zip(facts.ranges, is_turn, strict=True)
         ]
         groups = [" = ".join(group) for group in facts.groups]
-        rows.append(
-            (
-                atlas.forms[index].name,
-                ", ".join(ranges),
-                ", ".join(facts.still) or "-",
-                ", ".join(groups) or "-",
-            )
-        )
+        columns = [
+            [atlas.forms[index].name],
+            _lines(ranges),
+            _lines(facts.still),
+            _lines(groups),
+        ]
+        rows += list(zip_longest(*columns, fillvalue=""))
     heads = ("form", "ranges", "joints that stand still", "bodies that move as one")
     return section("Motions (deg, lengths in the unit of the file)", heads, rows)
+
+
+def _lines(items: Sequence[str]) -> list[str]:
+    """A list as lines of a cell, "-" for none."""
+    lines: list[str] = []
+    for item in items:
+        if lines and len(lines[-1]) + 2 + len(item) <= WIDTH:
+            lines[-1] += f", {item}"
+        else:
+            if lines:
+                lines[-1] += ","
+            lines.append(item)
+    return lines or ["-"]
+
+
+def describe_dead_points(atlas: Atlas, readout: Readout) -> str:
+    """The values at which joint variables stand still for a moment, by form; of more
+    than `SHOWN` dead points how many there are."""
+    labels = readout.labels()
+    places: dict[tuple[str, str], list[str]] = {}
+    count = 0
+    by_form = {number: k for k, number in enumerate(listed_numbers(atlas))}
+    for event in sorted(
+        atlas.dead_points, key=lambda one: (one.index, by_form[one.form])
+    ):
+        label = readout.label_of_unknown(event.index)
+        if label not in labels:  # an entry of a rotation matrix, or a coordinate
+            continue
+        number = labels.index(label)
+        values = readout.values(event.u[None])[0]
+        value = wrap(values, readout.periods, within=SHOWN_SHARE)[number]
+        if readout.mechanism.variables[number].motion.is_turn:
+            shown = in_degrees(value)
+        else:
+            shown = in_lengths(value, readout.structure.unit)
+        places.setdefault((label, atlas.forms[event.form].name), []).append(shown)
+        count += 1
+    if count > SHOWN:
+        return f"Dead points: {count}, listed with --json."
+    rows: list[tuple[str, ...]] = []
+    for (label, form), shown_values in places.items():
+        columns = [[label], _lines(shown_values), [form]]
+        rows += list(zip_longest(*columns, fillvalue=""))
+    title = "Dead points (deg, lengths in the unit of the file)"
+    return section(title, ("variable", "where it stands still", "form"), rows)
 
 
 def _range(one: VariableRange, is_turn: bool, unit: float) -> str:

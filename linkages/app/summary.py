@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, MeetingPoint, Surface
-from bifurc.branch import Branch
+from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
 from linkages.app.configurations import (
     arclength_unit,
@@ -83,9 +83,9 @@ def _motions(atlas: Atlas) -> list[str]:
     readout = readout_of(atlas)
     if readout is None or not atlas.forms:
         return []
-    from linkages.app.mechanism_text import describe_motions
+    from linkages.app.mechanism_text import describe_dead_points, describe_motions
 
-    parts = [describe_motions(atlas, readout)]
+    parts = [describe_motions(atlas, readout), describe_dead_points(atlas, readout)]
     network = network_at(atlas)
     if network is not None:
         from linkages.app.network_text import describe_ring
@@ -104,7 +104,7 @@ def _forms(atlas: Atlas) -> str:
                 form.name,
                 _closure(form.branch),
                 f"{unit.factor * form.branch.length:.6g}",
-                _winding(form.branch),
+                _winding(atlas, form.branch),
                 _inactive_joints(atlas, labels),
                 labels.symmetry.value or "-",
                 f"{form.min_singular_value:.3g}",
@@ -128,12 +128,21 @@ def _closure(branch: Branch) -> str:
     """Whether a branch is closed, or else how it ends."""
     if branch.closed:
         return "yes"
+    if branch.outcome is Outcome.LEFT_REGION:
+        return "leaves the limits"
     return branch.outcome.name.lower().replace("_", " ")
 
 
-def _winding(branch: Branch) -> str:
-    """How often each joint turns round, with its sign."""
-    return " ".join(f"{turns:+d}" if turns else "0" for turns in branch.winding)
+def _winding(atlas: Atlas, branch: Branch) -> str:
+    """How often each joint turns round, with its sign; "-" for unknowns that do not
+    turn."""
+    words = []
+    for turns, period in zip(branch.winding, atlas.periods, strict=True):
+        if not np.isfinite(period):
+            words.append("-")
+        else:
+            words.append(f"{turns:+d}" if turns else "0")
+    return " ".join(words)
 
 
 def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:

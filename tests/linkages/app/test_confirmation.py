@@ -1,5 +1,7 @@
 """`bifurc map --digits`."""
 
+import re
+
 import mpmath
 from click.testing import CliRunner
 
@@ -9,6 +11,8 @@ from linkages.app.confirmation import confirm_points
 from linkages.catalogue import entry
 from linkages.linkage import load
 from linkages.mapping import map_linkage
+from linkages.mechanisms.toml_text import mechanism_toml
+from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 
 TABLE = 'angles = "deg"\nlengths = [1.0, 0.7, 1.0, 0.7]\ntwists = [0, 90, 0, 0.1]\noffsets = [0, 0, 0, 0]\n'
 
@@ -43,3 +47,15 @@ def test_decimals_of_a_file_are_taken_as_written(tmp_path):
         loop = choose_precisely(str(path))
         assert abs(loop.lengths[1] - mpmath.mpf(7) / 10) < mpmath.mpf(10) ** -49
         assert abs(loop.twists[1] - mpmath.pi / 2) < mpmath.mpf(10) ** -48
+
+
+def test_rounded_numbers_of_a_file_are_no_contradiction(tmp_path):
+    mechanism = mechanism_of_case(cases()["Miura-ori, one vertex (spherical 4R)"])
+    path = tmp_path / "vertex.toml"
+    path.write_text(mechanism_toml(mechanism), encoding="utf-8")
+    result = CliRunner().invoke(main, ["map", str(path), "--digits", "40"])
+    shown = result.output.split("Confirmation at 40 digits")[1]
+    assert "rounded: the numbers of the linkage are rounded" in shown
+    assert "contradict" not in shown
+    gap = re.search(r"does not close there, by up to (\S+) ", shown)
+    assert 0 < float(gap[1]) < 1e-12

@@ -4,10 +4,12 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from bifurc.files.dataset import load_atlas
+from linkages.app import mechanism_text
 from linkages.app.cli import main
 from linkages.app.commands.map_command import write_numbers
 from linkages.app.mechanism_text import describe_joints
@@ -271,3 +273,70 @@ def test_the_summary_says_which_variable_of_a_joint_is_locked():
     text = describe_joints(Readout(locked))
     assert re.search(r"A +revolute .* 0\.0000 deg\n", text)
     assert re.search(r"B +cylindrical .* slide 0\.25\n", text)
+
+
+def rows_of(output, title):
+    """The lines of a table of a summary, without its heads."""
+    lines = output.split(f"{title}\n", 1)[1].split("\n\n", 1)[0].splitlines()
+    return lines[1:]
+
+
+def test_the_summary_lists_dead_points_by_variable_and_form(folder):
+    output = run("map", "slider_crank.toml").stdout
+    rows = rows_of(output, "Dead points (deg, lengths in the unit of the file)")
+    document = json.loads(run("map", "slider_crank.toml", "--json").stdout)
+    expected = {}
+    for point in document["dead_points"]:
+        key = (point["variable"], point["form"])
+        value = point["variables"][point["variable"]]
+        expected.setdefault(key, []).append(value)
+    assert len(rows) == len(expected) > 0
+    for row in rows:
+        label, shown, form = re.split("  +", row.strip())
+        values = expected[label, form]
+        factor = 1.0 if label == "J4" else np.degrees(1.0)
+        assert np.allclose(
+            [float(word) for word in shown.split(", ")],
+            [factor * value for value in values],
+            atol=1e-4,
+        )
+
+
+def test_many_dead_points_are_counted(folder, monkeypatch):
+    monkeypatch.setattr(mechanism_text, "SHOWN", 1)
+    output = run("map", "slider_crank.toml").stdout
+    document = json.loads(run("map", "slider_crank.toml", "--json").stdout)
+    count = len(document["dead_points"])
+    assert f"Dead points: {count}, listed with --json." in output
+
+
+def test_a_slide_has_no_winding_and_limits_are_left(folder):
+    rows = rows_of(run("map", "slider_crank.toml").stdout, "Forms")
+    windings = [re.split("  +", row.strip())[3].split() for row in rows]
+    assert {words[3] for words in windings} == {"-"}
+    assert all(word != "-" for words in windings for word in words[:3])
+    text = Path("slider_crank.toml").read_text()
+    text = text.replace('name = "J1"', 'name = "J1"\nlimits = [-20, 30]', 1)
+    Path("limited.toml").write_text(text)
+    output = run("map", "limited.toml").stdout
+    assert "leaves the limits" in output
+    assert "left region" not in output
+
+
+def test_rounding_noise_of_coordinates_is_shown_as_zero(folder):
+    text = Path("slider_crank.toml").read_text()
+    text = text.replace("[60, 80, 0]", "[60, 80, -4.6e-18]", 1)
+    text = text.replace("direction = [1, 0, 0]", "direction = [1, 1e-31, 0]", 1)
+    Path("noise.toml").write_text(text)
+    rows = rows_of(run("map", "noise.toml").stdout, "Joints")
+    cells = [re.split("  +", row.strip()) for row in rows]
+    assert cells[1][3] == "60 80 0"
+    assert cells[3][4] == "1 0 0"
+
+
+def test_long_lists_of_motions_are_broken_into_lines():
+    items = [f"J{number} turns once" for number in range(20)]
+    lines = mechanism_text._lines(items)
+    assert len(lines) > 1
+    assert all(len(line) <= mechanism_text.WIDTH + 1 for line in lines)
+    assert ", ".join(items) == " ".join(lines)

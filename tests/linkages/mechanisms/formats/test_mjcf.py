@@ -94,7 +94,7 @@ def test_forms_close_in_mujoco_and_its_jacobian_has_the_mobility(name):
             set_configuration(model, data, mechanism, readout, point)
             mujoco.mj_forward(model, data)
             residuals, jacobian = equality(data)
-            assert np.abs(residuals).max() < 1e-9
+            assert np.abs(residuals).max() < 1e-11
             singular = np.linalg.svd(jacobian, compute_uv=False)
             rank = int((singular > 1e-6 * singular[0]).sum())
             nullities.append(model.nv - rank)
@@ -155,7 +155,7 @@ def test_coupled_joints_have_their_values_in_mujoco():
         for point in form.branch.sample(CONFIGURATIONS):
             set_configuration(model, data, mechanism, readout, point)
             mujoco.mj_forward(model, data)
-            assert np.abs(equality(data)[0]).max() < 1e-9
+            assert np.abs(equality(data)[0]).max() < 1e-11
 
 
 def four_bar_and_gears(*couplings):
