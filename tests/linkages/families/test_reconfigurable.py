@@ -39,7 +39,7 @@ def test_a_length_c_with_another_bennett_ratio_is_refused():
 
 
 def test_a_kink_that_needs_a_negative_length_is_refused():
-    with pytest.raises(GeometryError, match="length of link 34"):
+    with pytest.raises(GeometryError, match="twist of link 34"):
         reconfigurable_bricard_1(**{**DEFAULTS, "kink": -2.0, "r2": -3.0})
 
 
