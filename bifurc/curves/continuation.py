@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.checks import check_number, check_type, check_whole
-from bifurc.curves.bridges import bridge_from
+from bifurc.curves.bridges import MOST_ROOM, bridge_from
 from bifurc.curves.ends import end_of_curve, same_place
 from bifurc.curves.track import CAUTIOUS, End, Place, Track
 from bifurc.decisions import is_solution
@@ -39,6 +40,27 @@ ORDINARY = 3e-4
 HIGHEST_ORDER = 30
 # Outcomes after which a curve is not followed the other way.
 WHOLE = (Outcome.CLOSED, Outcome.OPEN, Outcome.STEP_LIMIT, Outcome.TIME_LIMIT)
+
+
+class _Ways(NamedTuple):
+    """A curve followed ``forward`` from its start and, where that is not the whole of
+    it, ``backward``."""
+
+    forward: Branch
+    backward: Branch | None
+
+    @property
+    def branch(self) -> Branch:
+        """The whole curve."""
+        forward, backward = self
+        if backward is None or not len(backward.pieces):
+            return forward
+        if not len(forward.pieces):
+            return backward.reversed()
+        if backward.outcome is Outcome.CLOSED:
+            # it came through where the other way stalled
+            return backward.reversed()
+        return joined_branch(backward.reversed(), forward)
 
 
 @dataclass(frozen=True)
@@ -125,19 +147,60 @@ def trace_branch(
         if not np.any(direction):
             raise ProblemError("direction", direction, "a vector other than zero")
     tangent = null_vector(problem, start, direction)
-    forward = follow_curve(problem, Place(start, tangent), settings, closing, deadline)
+    place = Place(start, tangent)
+    ways = _followed_both_ways(problem, place, settings, closing, deadline)
+    branch = ways.branch
+    for farther, is_backward in _places_with_room(problem, ways):
+        again = _followed_both_ways(problem, farther, settings, closing, deadline)
+        if _goes_farther(again.branch, branch):
+            branch = again.branch.reversed() if is_backward else again.branch
+    return branch
+
+
+def _followed_both_ways(
+    problem: Problem,
+    start: Place,
+    settings: TraceSettings,
+    closing: float,
+    deadline: Deadline | None,
+) -> _Ways:
+    """The ways that a curve goes from ``start``; none backward where the one forward is
+    the whole of it."""
+    forward = follow_curve(problem, start, settings, closing, deadline)
     if forward.outcome in WHOLE:
-        return forward
-    back = Place(start, -tangent)
-    backward = follow_curve(problem, back, settings, closing, deadline)
-    if not len(backward.pieces):
-        return forward
-    if not len(forward.pieces):
-        return backward.reversed()
-    if backward.outcome is Outcome.CLOSED:
-        # it came through where the other way stalled
-        return backward.reversed()
-    return joined_branch(backward.reversed(), forward)
+        return _Ways(forward, None)
+    back = Place(start.point, -start.tangent)
+    return _Ways(forward, follow_curve(problem, back, settings, closing, deadline))
+
+
+def _places_with_room(problem: Problem, ways: _Ways) -> list[tuple[Place, bool]]:
+    """Places to follow a curve from once more, towards where it stalled so near to its
+    start that bridges had no room to begin, and whether that is backward.
+
+    A start on a half-branch beside a singular point is as far from it as a piece is
+    wide, and a step may end at the point.
+    """
+    forward, backward = ways
+    if backward is None or ways.branch.closed:
+        return []
+    room = MOST_ROOM * problem.scale
+    places = []
+    for way, other in ((forward, backward), (backward, forward)):
+        if way.outcome is not Outcome.STALLED or way.length > room:
+            continue
+        if len(way.pieces) and len(other.pieces):
+            s = min(room, 0.5 * other.length)
+            slope = other(s, 1)
+            place = Place(other(s), -slope / np.linalg.norm(slope))
+            places.append((place, way is backward))
+    return places
+
+
+def _goes_farther(branch: Branch, other: Branch) -> bool:
+    """Whether a branch is more of a curve than the ``other`` one."""
+    if branch.closed or other.closed:
+        return branch.closed and not other.closed
+    return branch.length > other.length
 
 
 def follow_curve(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -14,6 +15,7 @@ from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
     hangs_on_data,
     is_known_curve,
+    is_same_line,
     is_same_point,
     is_stub,
     may_be_null,
@@ -63,6 +65,7 @@ def doubts_of(
             doubts.append(f"form {index + 1} {_refusal(form.certificate)}")
     for point in points:
         doubts += _doubts_of_point(problem, point)
+        doubts += _doubts_of_halves(traced, point)
     doubts += _doubts_of_double_solutions(problem, points)
     return tuple(doubts)
 
@@ -257,6 +260,29 @@ def _doubts_of_double_solutions(
     return [
         f"rounding does not tell a double solution from two, or none: {', '.join(double)}"
     ]
+
+
+def _doubts_of_halves(traced: Sequence[TracedBranch], point: MeetingPoint) -> list[str]:
+    """Whether forms that stall at a point in opposite directions are one, which goes on
+    through it."""
+    ends: list[tuple[int, np.ndarray]] = []
+    for (index, s), tangent in zip(point.passes, point.tangents, strict=True):
+        branch = traced[index].branch
+        if branch.outcome is Outcome.STALLED and s in (0.0, branch.length):
+            inward = tangent if s == 0.0 else -tangent
+            ends.append((index, inward / np.linalg.norm(inward)))
+    doubts = []
+    for (one, along), (other, back) in itertools.combinations(ends, 2):
+        if not is_same_line(1.0 + float(along @ back)):
+            continue
+        names = f"the ends of form {one + 1}"
+        if one != other:
+            names = f"forms {one + 1} and {other + 1}"
+        doubts.append(
+            f"{names} stall at {point.name} in opposite directions and may be one curve "
+            "through it"
+        )
+    return doubts
 
 
 def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:

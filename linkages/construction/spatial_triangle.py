@@ -60,8 +60,9 @@ def composite_link(
 
     The spatial triangle of the three axes. A numeric kink gives a twist between 0 and
     pi; the two collinear kinks without offset give sum and difference of lengths and of
-    twists as they are. Raises `GeometryError` when the outer axes are parallel, for
-    then offset and angle at their ends are not determined. Source: Waldron (1968),
+    twists as they are. Of the common normals of parallel outer axes it is the one
+    at the last end of the second link. Raises `GeometryError` when both are one axis.
+    Source: Waldron (1968),
     Baker (1993a); formulas derived from the closure of the triangle.
     """
     if isinstance(kink, Kink) and offset == 0:
@@ -95,7 +96,8 @@ def _triangle(
     after_x = ck * s1 * c2 + c1 * s2
     after_y = sk * s1
     sine = sqrt(before_x**2 + before_y**2)
-    _refuse_parallel(sine, kink)
+    if _is_parallel(sine):
+        return _between_parallel_axes(first, second, kink, offset)
     p = first.length
     q = second.length
     length = (p * before_x + q * after_x - offset * s1 * s2 * sk) / sine
@@ -116,7 +118,35 @@ def _cosine_and_sine(kink: KinkAngle) -> tuple[Number, Number]:
     return cos(kink), sin(kink)
 
 
-def _refuse_parallel(sine: Number, kink: KinkAngle) -> None:
+def _is_parallel(sine: Number) -> bool:
+    """Whether outer axes are parallel whose angle has a ``sine``."""
     size = decided(sine)
-    if size is not None and size < PARALLEL:
-        raise GeometryError("kink", kink, "such that the outer axes are not parallel")
+    return size is not None and size < PARALLEL
+
+
+def _between_parallel_axes(
+    first: Link, second: Link, kink: KinkAngle, offset: Number
+) -> CompositeLink:
+    """The link between parallel outer axes, its end on the last one where the second
+    link has its own."""
+    c1, s1 = cos(first.twist), sin(first.twist)
+    ck, sk = _cosine_and_sine(kink)
+    # the last end of the second link, seen from the first axis and the first link
+    x = first.length + second.length * ck
+    y = second.length * c1 * sk - offset * s1
+    z = second.length * s1 * sk + offset * c1
+    length = sqrt(x**2 + y**2)
+    reach = sqrt(first.length**2 + second.length**2 + offset**2)
+    excess = decided(length - PARALLEL * reach)
+    if excess is not None and excess <= 0:
+        raise GeometryError("kink", kink, "such that the outer axes are not the same")
+    before = atan2(y, x)
+    along = atan2(c1 * sk, ck)  # the second link, seen from the first one
+    cosine = decided(c1 * cos(second.twist) - ck * s1 * sin(second.twist))
+    if cosine is not None and cosine < 0:
+        twist = pi_like(first.twist, second.twist)
+        after = before - along
+    else:
+        twist = 0 * first.twist
+        after = along - before
+    return CompositeLink(Link(length, twist), EndGain(z, before), EndGain(0, after))

@@ -56,8 +56,15 @@ def _with_locks(mechanism: Mechanism, single: SingleLoop) -> Loop:
         if values[joint - 1] is None:
             continue
         kink = float(theta[joint - 1])
-        theta = locked_angles(loop, joint, kink, theta)
-        loop = lock(loop, joint, kink)
+        try:
+            theta = locked_angles(loop, joint, kink, theta)
+            loop = lock(loop, joint, kink)
+        except GeometryError as error:
+            number = int(single.variables[joint - 1])
+            name = next(p.joint for p in mechanism.pairs if number in p.variables)
+            value = f"{np.degrees(turned[joint - 1]):g} degrees"
+            allowed = "such that the axes beside it are not the same"
+            raise GeometryError(f"lock of {name}", value, allowed) from error
     rounding = max(loop.rounding, mechanism.rounding)
     return replace(loop, name=mechanism.name, rounding=rounding)
 

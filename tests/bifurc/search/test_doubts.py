@@ -11,6 +11,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.blur import blur_along
+from bifurc.search.branch_parts import part_of
 from bifurc.search.completeness import IN_DOUBT, judge_completeness
 from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
@@ -142,9 +143,10 @@ def test_a_point_with_fewer_branches_traced_than_seen_is_in_doubt():
     periods = np.full(2, np.inf)
     whole = meeting_points(problem, [point], branches, (), periods)
     assert whole[0].note == ""
-    assert doubts_of(problem, [], [], whole, ()) == ()
+    lines = [traced(problem, branch) for branch in branches]
+    assert doubts_of(problem, lines, [], whole, ()) == ()
     lacking = meeting_points(problem, [point], branches[:1], (), periods)
-    (doubt,) = doubts_of(problem, [], [], lacking, ())
+    (doubt,) = doubts_of(problem, lines[:1], [], lacking, ())
     assert "2 half-branches were traced, the section shows 4" in doubt
 
 
@@ -152,8 +154,27 @@ def test_a_bifurcation_with_another_count_of_branches_is_said_not_to_be_whole():
     problem, (point, branches) = crossing_of_lines()
     fewer = replace(point, half_branches=point.half_branches[:2])
     met = meeting_points(problem, [fewer], branches, (), np.full(2, np.inf))
-    (doubt,) = doubts_of(problem, [], [], met, ())
+    lines = [traced(problem, branch) for branch in branches]
+    (doubt,) = doubts_of(problem, lines, [], met, ())
     assert doubt == (
         f"{met[0].name} (bifurcation) is not whole: 4 half-branches were traced, the "
         "section shows 2"
+    )
+
+
+def test_halves_of_a_curve_that_stall_at_a_bifurcation_are_in_doubt():
+    problem, (point, (line, other)) = crossing_of_lines()
+    middle = 0.5 * line.length
+    halves = [
+        replace(part_of(line, *ends), outcome=Outcome.STALLED)
+        for ends in ((0.0, middle), (middle, line.length))
+    ]
+    branches = [*halves, other]
+    met = meeting_points(problem, [point], branches, (), np.full(2, np.inf))
+    assert met[0].note == ""
+    forms = [traced(problem, branch) for branch in branches]
+    (doubt,) = doubts_of(problem, forms, [], met, ())
+    assert doubt == (
+        f"forms 1 and 2 stall at {met[0].name} in opposite directions and may be one "
+        "curve through it"
     )

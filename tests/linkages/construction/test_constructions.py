@@ -352,9 +352,20 @@ def test_equal_kinks_give_a_mavroidis_roth_linkage():
     assert same(made, wanted)
 
 
-def test_parallel_outer_axes_are_refused():
-    with pytest.raises(GeometryError, match="not parallel"):
-        composite_link(Link(1.0, 0.7), Link(1.0, 0.7), np.pi)
+@pytest.mark.parametrize("lengths", [(1.0, 1.0), (0.0, 0.0)])
+def test_outer_axes_that_are_the_same_are_refused(lengths):
+    first, second = (Link(length, 0.7) for length in lengths)
+    with pytest.raises(GeometryError, match="not the same"):
+        composite_link(first, second, np.pi)
+
+
+def test_two_links_of_a_plane_are_one_link_between_parallel_axes():
+    links = composite_link(Link(1.0, 0.0), Link(0.7, 0.0), -1.2, 0.3)
+    end = 1.0 + 0.7 * np.exp(-1.2j)
+    assert links.link.length == pytest.approx(abs(end), abs=1e-15)
+    assert links.link.twist == 0.0
+    assert links.before == pytest.approx((0.3, np.angle(end)), abs=1e-15)
+    assert links.after == pytest.approx((0.0, -1.2 - np.angle(end)), abs=1e-15)
 
 
 def test_twists_that_make_a_length_negative_are_named():

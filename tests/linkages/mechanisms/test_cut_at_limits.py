@@ -8,7 +8,10 @@ import pytest
 
 import linkages
 from bifurc import SearchSettings
+from bifurc.branch import Outcome
+from bifurc.curves.continuation import trace_branch
 from bifurc.seeds import Level
+from linkages.families.four_bar import four_bar
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.cut_at_limits import (
     CutMotions,
@@ -128,3 +131,33 @@ def test_each_combination_of_whole_turns_has_its_stretches():
 )
 def test_what_has_no_limits_or_slides_is_no_loop_to_be_cut(mechanism):
     assert loop_without_limits(MechanismClosure(mechanism).structure) is None
+
+
+def kite_within_limits():
+    """A kite but for the last bits of its lengths, as files give it, in a configuration
+    in which it is not flat, its joints turned by less than 2.9 rad from there."""
+    loop = four_bar(1.0, 2.0, 2.0 + 2e-15, 1.0)
+    atlas = linkages.map_linkage(loop, settings=PLAIN)
+    branches = [form.branch for form in atlas.forms]
+    branch = max(branches, key=lambda branch: np.ptp(branch.sample(50)[:, 0]))
+    joints = mechanism_of_loop(loop, branch(0.3 * branch.length)).joints
+    return Mechanism(tuple(replace(joint, limits=((-2.9, 2.9),)) for joint in joints))
+
+
+# A step from some of these ends at the point, where bridges before it have no room.
+DISTANCES = np.geomspace(1e-4, 0.3, 12)
+
+
+def test_a_form_is_followed_through_a_bifurcation_from_however_near_it():
+    mechanism = kite_within_limits()
+    atlas = linkages.map_linkage(mechanism, settings=PLAIN)
+    assert {form.branch.outcome for form in atlas.forms} == {Outcome.LEFT_REGION}
+    assert len(atlas.bifurcations) == 2
+    problem = MechanismClosure(mechanism)
+    for bifurcation in atlas.bifurcations:
+        for tangent in bifurcation.point.tangents:
+            steps = np.outer(DISTANCES, tangent)
+            starts, _ = problem.project(bifurcation.point.u + steps)
+            for start in starts:
+                branch = trace_branch(problem, start, -tangent)
+                assert branch.outcome is Outcome.LEFT_REGION

@@ -94,3 +94,41 @@ def platform_leg():
 def test_other_mechanisms_are_refused_with_the_reason(mechanism, reason):
     with pytest.raises(GeometryError, match=reason):
         loop_geometry(mechanism)
+
+
+def planar_five_bar(points):
+    """Five revolute joints with parallel axes through points (5, 2)."""
+    joints = [
+        Joint(
+            f"J{k + 1}",
+            "revolute",
+            (f"body {k}", f"body {(k + 1) % 5}"),
+            point=(*point, 0.0),
+            direction=(0.0, 0.0, 1.0),
+        )
+        for k, point in enumerate(points)
+    ]
+    return Mechanism(tuple(joints))
+
+
+def test_a_locked_joint_of_a_planar_five_bar_leaves_a_four_bar():
+    points = np.array([[0, 0], [0.3, 1.0], [1.2, 1.7], [2.4, 1.1], [2.0, 0]])
+    geometry = loop_geometry(planar_five_bar(points).with_locks({"J3": 0.4}))
+    before, after = points[2] - points[1], points[3] - points[2]
+    turn = np.array([[np.cos(0.4), -np.sin(0.4)], [np.sin(0.4), np.cos(0.4)]])
+    ends = [turn @ after + before, np.linalg.inv(turn) @ after + before]
+    lengths = np.array([float(value) for value in geometry.lengths])
+    assert geometry.n == 4
+    gaps = [np.abs(lengths - np.linalg.norm(end)).min() for end in ends]
+    assert min(gaps) < 1e-14
+
+
+@pytest.mark.parametrize("middle", [0.0, 0.5])
+def test_a_lock_that_makes_two_axes_one_is_named(middle):
+    # the links beside J3 are equally long and fold onto each other one of both ways
+    five_bar = planar_five_bar([[0, 0], [1, 0], [2, 0], [2, 1], [1 - middle, 1]])
+    with pytest.raises(
+        GeometryError, match=r"lock of J3: -?90 degrees .* not the same"
+    ):
+        for value in (90.0, -90.0):
+            loop_geometry(five_bar.with_locks({"J3": np.radians(value)}))
