@@ -36,7 +36,7 @@ from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
 from bifurc.search.components import Components
-from bifurc.search.doubts import doubts_of, doubts_of_near_misses
+from bifurc.search.doubts import doubts_of, doubts_of_near_misses, doubts_of_others
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
 from bifurc.singular.point import Kind, SingularPoint
@@ -83,6 +83,8 @@ def assemble_atlas(
     deflated = findings.components.deflated
     doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
     doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
+    others = [other for germ in findings.germs for other in germ.others]
+    doubts = (*doubts, *doubts_of_others(problem, others, located))
     near_motions = _near_motions(problem, findings, periods)
     if near_motions:
         doubts = (*doubts, *_doubts_of_near_motions(findings), NEAR_ASSEMBLIES)

@@ -157,3 +157,19 @@ def test_a_bifurcation_with_another_count_of_branches_is_said_not_to_be_whole():
         f"{met[0].name} (bifurcation) is not whole: 4 half-branches were traced, the "
         "section shows 2"
     )
+
+
+@pytest.mark.parametrize("distance", [1e-3, 3e-4])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_crossings_that_doubles_do_not_tell_apart_are_in_doubt(distance, seed):
+    def function(u):
+        x, y = u
+        return [y * (y - x * (x**2 - distance**2))]
+
+    problem = FunctionProblem(function, [(-2, 2)] * 2)
+    atlas = explore(problem, settings=FEW, seed=seed)
+    missing = 3 - len(atlas.bifurcations)
+    assert (IN_DOUBT in atlas.completeness.statement) == (missing > 0)
+    if missing:
+        more = f"the exact equations have {missing} more singular point"
+        assert more in atlas.completeness.statement
