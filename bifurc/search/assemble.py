@@ -35,10 +35,12 @@ from bifurc.search.canonical_order import (
 from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
-from bifurc.search.doubts import doubts_of, doubts_of_near_misses
+from bifurc.search.components import Components
+from bifurc.search.doubts import doubts_of, doubts_of_near_misses, doubts_of_others
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
 from bifurc.singular.point import Kind, SingularPoint
+from bifurc.text_tables import count_of
 from bifurc.torus import wrap
 
 __all__ = ["assemble_atlas", "near_misses_of"]
@@ -81,10 +83,13 @@ def assemble_atlas(
     deflated = findings.components.deflated
     doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
     doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
+    others = [other for germ in findings.germs for other in germ.others]
+    doubts = (*doubts, *doubts_of_others(problem, others, located))
     near_motions = _near_motions(problem, findings, periods)
     if near_motions:
         doubts = (*doubts, *_doubts_of_near_motions(findings), NEAR_ASSEMBLIES)
     doubts = (*doubts, *_doubts_of_assemblies(problem, findings))
+    doubts = (*doubts, *_doubts_of_uncharted(findings.components))
     if findings.gaps_of_stops:
         doubts = (*doubts, _doubt_of_stops(findings.gaps_of_stops))
     gap = 0.0
@@ -224,6 +229,17 @@ def _near_motions(
             NearMotion(trace.misclosure, trace.length, trace.is_closed, sample)
         )
     return tuple(near_motions)
+
+
+def _doubts_of_uncharted(components: Components) -> list[str]:
+    """Whether there may be surfaces without charts beside those that are covered."""
+    if not components.off_charts:
+        return []
+    starts = count_of(components.off_charts, "start")
+    return [
+        f"no charted surface is known to hold {starts}, at which no chart fits: there "
+        "may be more surfaces, or small parts of them"
+    ]
 
 
 def _doubt_of_stops(gaps: Sequence[float]) -> str:

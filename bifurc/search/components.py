@@ -150,9 +150,17 @@ class Components:
             parts.append(UNEXAMINED_ELSE if words else UNEXAMINED)
         return "; ".join(parts)
 
+    @property
+    def off_charts(self) -> int:
+        """How many seeds of dimension 2 lie on none of the charts, nor are joined to
+        any, although all surfaces on which charts fit are covered."""
+        if self.charts is None or not self.charts.complete:
+            return 0
+        return int(np.count_nonzero(self.part_of < 0))
+
     def surfaces(self, points: np.ndarray) -> tuple[Surface, ...]:
         """Connected surfaces as far as there are charts, then what none of them is
-        known to hold, by dimension."""
+        known to hold, by dimension; seeds `off_charts` show no surface."""
         surfaces: list[Surface] = []
         if self.on_shaky:
             surfaces.append(Surface(2, points[self.on_shaky], note=SHAKY))
@@ -160,7 +168,7 @@ class Components:
             samples = self._samples(points, dimension)
             if dimension == 2 and self.charts is not None:
                 surfaces += self._charted_surfaces(self.charts, samples)
-                samples = samples[self.part_of < 0]
+                samples = samples[(self.part_of < 0) & (not self.charts.complete)]
             if len(samples):
                 is_shaky = dimension == 2 and self.deflated is not None
                 note = self._note_of_lower_rank(-1) if is_shaky else ""
@@ -189,9 +197,9 @@ def _parts_of(
     """Numbers (k,) of the parts of the charts that samples (k, n) belong to, -1 where
     none is known."""
     chart = charts.chart_at(samples)
-    if not charts.complete:
-        beside = chart < 0
-        chart[beside] = reached_charts(problem, charts, samples[beside], deadline)
+    # also beside charts that are complete: where surfaces cross they leave out slivers
+    beside = chart < 0
+    chart[beside] = reached_charts(problem, charts, samples[beside], deadline)
     return np.where(chart >= 0, charts.part[chart], -1)
 
 

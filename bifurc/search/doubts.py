@@ -32,10 +32,10 @@ from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
-from bifurc.singular.point import Kind
+from bifurc.singular.point import Kind, SingularPoint
 from bifurc.text_tables import count_of
 
-__all__ = ["doubts_of", "doubts_of_near_misses"]
+__all__ = ["doubts_of", "doubts_of_near_misses", "doubts_of_others"]
 
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
@@ -91,6 +91,27 @@ def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> list[str
         f"{count_of(len(hanging), 'near miss')} may be at bifurcations: the numbers of "
         f"the geometry are known to {problem.data_rounding:.1e} only, which explains a "
         f"singular value of {smallest:.1e}"
+    ]
+
+
+def doubts_of_others(
+    problem: Problem, others: Sequence[np.ndarray], points: Sequence[SingularPoint]
+) -> list[str]:
+    """Whether the ``others``, singular points (n,) that the exact equations have beside
+    ``points``, are not among these: doubles do not tell them apart."""
+    places = np.array([point.u for point in points]).reshape(-1, problem.n)
+    hidden: list[np.ndarray] = []
+    for other in others:
+        known = np.concatenate([places, np.array(hidden).reshape(-1, problem.n)])
+        distances = np.linalg.norm(problem.difference(known, other), axis=1)
+        if not np.any(is_same_point(distances, problem.scale)):
+            hidden.append(other)
+    if not hidden:
+        return []
+    return [
+        f"the exact equations have {count_of(len(hidden), 'more singular point')} beside "
+        "those listed, where the same branches meet again: doubles do not tell them "
+        "apart"
     ]
 
 

@@ -54,6 +54,10 @@ SETTLING = 4  # steps for a power series beyond its degree
 FARTHEST = 4.0  # errors of the point in doubles, and at least this share of the scale:
 NEAREST = 0.02  # no farther away is the place
 AMISS = 2.0  # times the distance from the place in doubles is its error
+# Distance, over the scale, up to which crossings beside a point of two branches are
+# looked for, so that the terms left out count nothing; and a share of the terms of f
+# there that is 0: at crossings it is 1e-15 and less.
+BESIDE, VANISHING = 0.01, 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +65,16 @@ class Germ:
     """The exact point ``u`` (n,), the tangents ``directions`` (h, n) of its
     half-branches, the numbers of the two halves of each of its ``branches``, these
     themselves, in the ``neighbourhood`` in which doubles lose them, and its
-    ``invariants``, None where the terms known do not tell its complex branches apart."""
+    ``invariants``, None where the terms known do not tell its complex branches apart.
+    ``others`` (k, n) are singular points beside it: where both of two branches meet
+    again."""
 
     u: np.ndarray
     directions: np.ndarray
     branches: tuple[tuple[int, int], ...]
     neighbourhood: Neighbourhood
-    invariants: Invariants | None = None
+    invariants: Invariants | None
+    others: np.ndarray
 
     @property
     def radius(self) -> float:
@@ -134,7 +141,38 @@ def _germ(
         )
         equation = reduction.lifted(straight)
         around = neighbourhood_of(problem, place, equation, halves, pairs)
-        return Germ(place, directions, pairs, around, invariants)
+        offsets = [equation.offset(x, mpmath.mpf(0)) for x in _meet_again(straight)]
+        others = place + np.array(offsets).reshape(-1, problem.n)
+        return Germ(place, directions, pairs, around, invariants, others)
+
+
+def _meet_again(straight: _Straightened) -> list[mpmath.mpf]:
+    """The x, other than 0, at which two branches about y = 0 meet next to the point.
+
+    f has no term with y alone then, and is A(x) + C(x) y^2 + ...: they cross where A and
+    its derivative vanish. None where f is of a higher order.
+    """
+    terms = straight.terms
+    zero = mpmath.mpf(0)
+    series = [terms.get((k, 0), zero) for k in range(DEGREE + 1)]
+    powers = [k for k, value in enumerate(series) if value]
+    if not powers or not terms.get((0, 2), zero):
+        return []
+    rates = [k * series[k] for k in range(powers[0], powers[-1] + 1)]
+    try:
+        roots = mpmath.polyroots(rates[::-1], maxsteps=200, extraprec=200)
+    except mpmath.libmp.NoConvergence:
+        return []
+    crossings = []
+    for root in roots:
+        x = mpmath.re(root)
+        is_real = abs(mpmath.im(root)) < VANISHING * abs(x)
+        if not is_real or abs(x) * straight.unit > BESIDE:
+            continue
+        values = [value * x**k for k, value in enumerate(series)]
+        if abs(mpmath.fsum(values)) < VANISHING * max(map(abs, values)):
+            crossings.append(x)
+    return crossings
 
 
 def _directions(

@@ -169,6 +169,37 @@ def test_the_halves_of_a_cone_are_two_surfaces_and_nothing_is_left_over_at_the_t
     assert [surface.note for surface in atlas.surfaces] == ["", ""]
 
 
+def cylinder_and_plane() -> Problem:
+    def function(u: np.ndarray) -> np.ndarray:
+        return np.array([(u[0] ** 2 + u[1] ** 2 - 1.0) * (u[2] - 1 / 3)])
+
+    return FunctionProblem(function, [(-2, 2)] * 3)
+
+
+def test_seeds_between_the_charts_of_complete_surfaces_belong_to_these() -> None:
+    # a disk of the plane is inside the cylinder; charts leave out slivers at its rim
+    for seed in (0, 3):
+        atlas = explore(cylinder_and_plane(), seed=seed)
+        assert len(atlas.surfaces) == 2
+        samples = sum(len(surface.samples) for surface in atlas.surfaces)
+        assert samples == atlas.provenance.settings.starts
+        assert "no charted surface" not in atlas.completeness.statement
+
+
+def test_seeds_that_come_to_no_chart_are_no_surface_but_a_doubt(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("bifurc.surfaces.walk.WALKS", 0)
+    atlas = explore(cylinder_and_plane(), seed=0)
+    assert all(surface.complete for surface in atlas.surfaces)
+    on_charts = sum(len(surface.samples) for surface in atlas.surfaces)
+    left = atlas.provenance.settings.starts - on_charts
+    assert left > 0
+    assert f"no charted surface is known to hold {left} start" in (
+        atlas.completeness.statement
+    )
+
+
 def test_a_surface_says_which_singular_points_are_samples_of_curves() -> None:
     atlas = explore(crossing_planes(), settings=SearchSettings(starts=40))
     assert len(atlas.points) > 1

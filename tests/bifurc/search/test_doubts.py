@@ -178,3 +178,19 @@ def test_halves_of_a_curve_that_stall_at_a_bifurcation_are_in_doubt():
         f"forms 1 and 2 stall at {met[0].name} in opposite directions and may be one "
         "curve through it"
     )
+
+
+@pytest.mark.parametrize("distance", [1e-3, 3e-4])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_crossings_that_doubles_do_not_tell_apart_are_in_doubt(distance, seed):
+    def function(u):
+        x, y = u
+        return [y * (y - x * (x**2 - distance**2))]
+
+    problem = FunctionProblem(function, [(-2, 2)] * 2)
+    atlas = explore(problem, settings=FEW, seed=seed)
+    missing = 3 - len(atlas.bifurcations)
+    assert (IN_DOUBT in atlas.completeness.statement) == (missing > 0)
+    if missing:
+        more = f"the exact equations have {missing} more singular point"
+        assert more in atlas.completeness.statement

@@ -98,7 +98,9 @@ def test_seeds_at_points_that_a_germ_replaces_are_at_its_point():
     findings.rigid_assembly(np.array([0.0, 0.0]))
     findings.fates[2] = SeedFate(Fate.RIGID, 0)
     neighbourhood = Neighbourhood(0.01, ())
-    germ = Germ(np.zeros(2), np.empty((0, 2)), (), neighbourhood)
+    germ = Germ(
+        np.zeros(2), np.empty((0, 2)), (), neighbourhood, None, np.empty((0, 2))
+    )
     findings.add_germ(germ)
     number = findings.add_point(point_at(germ.u)).number
     assert findings.points[:1] == [far]

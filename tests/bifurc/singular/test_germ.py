@@ -80,3 +80,20 @@ def test_a_germ_does_not_hang_on_the_axes_of_the_null_space(angle):
     assert germ.is_through
     assert np.abs(germ.directions[:, 0]).max() < 1e-12
     assert germ.radius > 0.01  # so that its branches are known beside it
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-9])
+def test_a_germ_knows_where_its_two_branches_meet_again(gap):
+    def function(u):
+        x, y = u
+        return np.array([y * (y - x * ((x - 0.001) ** 2 * (x + 0.002) + gap * x))])
+
+    problem = FunctionProblem(function, [(-1, 1)] * 2)
+    germ = germ_at(problem, LocatedPoint(np.zeros(2), np.eye(2), 1e-4))
+    assert germ is not None
+    others = germ.others[np.argsort(germ.others[:, 0])]
+    roots = np.roots([1.0, 0.0, gap - 3e-6, 2e-9])
+    expected = np.sort(roots[np.abs(roots.imag) < 1e-12].real)
+    assert np.abs(others[:, 1]).max() < 1e-14
+    assert np.abs(others[0] - [expected[0], 0.0]).max() < 1e-9
+    assert len(others) == (2 if gap == 0.0 else 1)
