@@ -20,35 +20,11 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
 from linkages.mechanisms.toml_text import mechanism_toml
+from tests.linkages.app.slider_cranks import slider_crank_text
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import platform
 
-SLIDER_CRANK = """
-name = "slider-crank"
-[[joints]]
-name = "J1"
-kind = "revolute"
-bodies = ["frame", "crank"]
-point = [0, 0, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J2"
-kind = "revolute"
-bodies = ["crank", "rod"]
-point = [60, 80, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J3"
-kind = "revolute"
-bodies = ["rod", "slider"]
-point = [120, 0, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J4"
-kind = "prismatic"
-bodies = ["frame", "slider"]
-direction = [1, 0, 0]
-"""
+SLIDER_CRANK = slider_crank_text((60, 80), 120)
 FIVE_BAR = """
 fixed = ["A", "E"]
 bars = [["A", "B"], ["B", "C"], ["C", "D"], ["D", "E"]]

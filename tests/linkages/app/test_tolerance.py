@@ -16,6 +16,7 @@ from linkages.mechanisms.loop_atlas import in_loop_angles
 from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.mechanisms.readout import Readout
 from linkages.tolerance import closure_with_errors, make_with_errors
+from tests.linkages.app.slider_cranks import slider_crank_text
 
 
 @pytest.fixture(scope="module")
@@ -98,32 +99,7 @@ def test_the_command_shows_gaps_and_near_misses_and_draws_them(tmp_path):
 
 # --- mechanisms -----------------------------------------------------------------------
 
-SLIDER_CRANK = """
-name = "slider-crank"
-[[joints]]
-name = "J1"
-kind = "revolute"
-bodies = ["frame", "crank"]
-point = [0, 0, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J2"
-kind = "revolute"
-bodies = ["crank", "rod"]
-point = [0.6, 0.8, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J3"
-kind = "revolute"
-bodies = ["rod", "slider"]
-point = [1.2, 0, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J4"
-kind = "prismatic"
-bodies = ["frame", "slider"]
-direction = [1, 0, 0]
-"""
+SLIDER_CRANK = slider_crank_text((0.6, 0.8), 1.2)
 
 
 def test_a_mechanism_is_made_with_errors_of_its_joints(tmp_path):

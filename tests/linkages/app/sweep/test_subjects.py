@@ -28,38 +28,13 @@ from linkages.app.sweep.subjects import (
 from linkages.loop import GeometryError
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from tests.linkages.app.slider_cranks import slider_crank_text
 
 NETWORK = "four-bennett-network"
 CASE_4 = ["2=40", "6=-75:90:2"]
 
 # a crank of length 1, a rod of length 2, and the slide counted from x = 3
-SLIDER_CRANK = """
-name = "slider-crank"
-[[joints]]
-name = "A-7"
-kind = "revolute"
-bodies = ["frame", "crank"]
-point = [0, 0, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J2"
-kind = "revolute"
-bodies = ["crank", "rod"]
-point = [1, 0, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "J3"
-kind = "revolute"
-bodies = ["rod", "slider"]
-point = [3, 0, 0]
-direction = [0, 0, 1]
-[[joints]]
-name = "S/4"
-kind = "prismatic"
-bodies = ["frame", "slider"]
-direction = [1, 0, 0]
-limits = [-5, 5]
-"""
+SLIDER_CRANK = slider_crank_text((1, 0), 3, "A-7", "S/4") + "limits = [-5, 5]\n"
 BENNETT = """
 angles = "deg"
 lengths = [0.65270364, 1, 0.65270364, 1]
