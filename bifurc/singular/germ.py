@@ -55,8 +55,9 @@ FARTHEST = 4.0  # errors of the point in doubles, and at least this share of the
 NEAREST = 0.02  # no farther away is the place
 AMISS = 2.0  # times the distance from the place in doubles is its error
 # Distance, over the scale, up to which crossings beside a point of two branches are
-# looked for, so that the terms left out count nothing; and a share of the terms of f
-# there that is 0: at crossings it is 1e-15 and less.
+# looked for, and a share of the terms of f there that is 0. What is left out begins with
+# degree 14: where coefficients are alike it is 0.01^(14 - d) of a first term of degree d,
+# 1e-12 of one of degree 8. Where it is more crossings may be overlooked.
 BESIDE, VANISHING = 0.01, 1e-10
 
 
