@@ -14,7 +14,7 @@ import numpy as np
 
 from linkages.app.document import MapDocument
 
-__all__ = ["differences"]
+__all__ = ["differences", "values_differ"]
 
 Json: TypeAlias = Any  # a value that JSON can hold
 
@@ -35,9 +35,8 @@ def differences(one: MapDocument, other: MapDocument) -> list[str]:
     for key in one:
         if key in OF_THE_RUN:
             continue
-        closeness = NEAR_MISS if key == "near_misses" else CLOSE
         left, right = _of_the_linkage(key, one), _of_the_linkage(key, other)
-        lines += _differences(key, left, right, closeness)
+        lines += values_differ(key, left, right)
     return lines
 
 
@@ -62,8 +61,13 @@ def _without_random_sample(form: Mapping[str, Json]) -> Json:
     return {**form, "sample": None}
 
 
-def _differences(path: str, one: Json, other: Json, closeness: float) -> list[str]:
-    """Where two values at ``path`` differ by more than ``closeness``."""
+def values_differ(
+    path: str, one: Json, other: Json, closeness: float = CLOSE
+) -> list[str]:
+    """Where two values at ``path`` differ by more than ``closeness``, one line for each
+    place."""
+    if path.rpartition(".")[2] == "near_misses":
+        closeness = NEAR_MISS
     if isinstance(one, Mapping) and isinstance(other, Mapping):
         return _in_mappings(path, one, other, closeness)
     if _is_numbers(one) and _is_numbers(other) and len(one) == len(other):
@@ -81,8 +85,12 @@ def _in_mappings(
     errors = (one.get("error", 0.0), other.get("error", 0.0))
     closeness = max(closeness, ERRORS * max(errors))
     lines: list[str] = []
-    for key in one.keys() - OF_THE_RUN:
-        lines += _differences(f"{path}.{key}", one[key], other[key], closeness)
+    for key in sorted({*one, *other} - OF_THE_RUN):
+        place = f"{path}.{key}"
+        if key in one and key in other:
+            lines += values_differ(place, one[key], other[key], closeness)
+        else:
+            lines.append(f"{place}: only in the {'first' if key in one else 'second'}")
     return lines
 
 
@@ -93,7 +101,7 @@ def _in_lists(
         return [f"{path}: {len(one)} and {len(other)} of them"]
     lines: list[str] = []
     for i, (left, right) in enumerate(zip(one, other, strict=True)):
-        lines += _differences(f"{path}[{i}]", left, right, closeness)
+        lines += values_differ(f"{path}[{i}]", left, right, closeness)
     return lines
 
 
@@ -101,14 +109,17 @@ def _in_numbers(
     path: str, one: Sequence[float], other: Sequence[float], closeness: float
 ) -> list[str]:
     left, right = np.array(one, dtype=float), np.array(other, dtype=float)
-    gaps = left - right
+    with np.errstate(invalid="ignore"):  # infinite ones are equal or not
+        gaps = left - right
     key = path.rpartition(".")[2]
     if key in ANGLES or path.startswith("rigid_assemblies"):
         gaps -= 2 * np.pi * np.round(gaps / (2 * np.pi))
     allowed = closeness * np.maximum(1.0, np.abs(left))
     if key == "singular_value":
         allowed = closeness * np.abs(left)
-    if np.all(np.abs(gaps) <= allowed):
+    are_the_same: np.ndarray = (np.abs(gaps) <= allowed) | (left == right)
+    are_the_same |= np.isnan(left) & np.isnan(right)
+    if np.all(are_the_same):
         return []
     return [f"{path}: off by {np.abs(gaps).max():.2g}"]
 
