@@ -20,17 +20,6 @@ from bifurc.seeds import Completeness
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = [
-    "Atlas",
-    "Event",
-    "Form",
-    "JsonObject",
-    "MeetingPoint",
-    "NearMotion",
-    "Provenance",
-    "Surface",
-]
-
 # Values that JSON can hold, nested to any depth, by their names.
 JsonObject: TypeAlias = Mapping[str, Any]
 

@@ -15,8 +15,6 @@ from bifurc.decisions import hides_turning, jumps_at_turning
 from bifurc.errors import ProblemError
 from bifurc.torus import whole_turns
 
-__all__ = ["Branch", "Outcome", "Turning"]
-
 SLIVER = 1e-3  # of its radius: so little of a piece is left to the next one
 SAME_PASS = 1e-6  # arclength: feet no farther apart are one
 

@@ -10,17 +10,6 @@ from numpy.typing import ArrayLike
 
 from bifurc.errors import ProblemError
 
-__all__ = [
-    "check_callable",
-    "check_distance",
-    "check_finite",
-    "check_number",
-    "check_type",
-    "check_whole",
-    "floats_of",
-    "rows_of",
-]
-
 
 def check_type(name: str, value: object, kind: type) -> None:
     """Raises `ProblemError` for a ``value`` that is no ``kind``."""

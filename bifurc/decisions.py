@@ -23,16 +23,6 @@ from typing import TypeAlias, overload
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = [
-    "TABLE",
-    "Decision",
-    "Margins",
-    "Role",
-    "decisions_in",
-    "record_margins",
-    "unit_over_rounding",
-]
-
 Floats: TypeAlias = NDArray[np.float64]
 
 # Names of decisions, with the quantities that each was taken on.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["BifurcError", "ProblemError", "RouteError"]
-
 
 class BifurcError(Exception):
     """Base of all errors that `bifurc` and `linkages` raise."""

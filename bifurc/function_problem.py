@@ -47,8 +47,6 @@ if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import sparray
 
-__all__ = ["FunctionProblem", "NumericalProblem"]
-
 PROBES = 7  # points at which a function is tried out and its derivatives are measured
 MOST_TRIALS = (
     2000  # points at which it is tried where it is defined on little of the box

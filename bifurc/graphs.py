@@ -13,8 +13,6 @@ from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.checks import check_type
 from bifurc.torus import wrap
 
-__all__ = ["ArcAttributes", "arc_attributes", "arc_graph", "transition_graph"]
-
 # Two arclengths of an open form closer than this share of its length are one node.
 SAME_STOP = 1e-6
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from html import escape
 
-__all__ = ["html_paragraph", "html_table"]
-
 
 def html_table(
     title: str, heads: Sequence[str], rows: Iterable[Sequence[str]], most: int

@@ -19,8 +19,6 @@ from bifurc.singular.point import SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.torus import whole_turns, wrap
 
-__all__ = ["Isometry", "recount_atlas"]
-
 
 @dataclass(frozen=True, eq=False)
 class Isometry:

@@ -15,8 +15,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from types import FrameType, TracebackType
 
-__all__ = ["Deadline", "HeldInterrupt"]
-
 SignalHandler = Callable[[int, FrameType | None], object] | int | None
 
 

@@ -28,8 +28,6 @@ from bifurc.seeds import Seeds
 if TYPE_CHECKING:
     from scipy.sparse import sparray
 
-__all__ = ["RoundingNoise", "with_rounding_noise"]
-
 ULPS = 2.0  # the largest error, in units of the last place of a number about 1
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["point_and_slope", "points_on_piece", "points_on_pieces"]
-
 
 def points_on_piece(piece: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Points (k, n) of one piece (order + 1, n) at coordinates x (k,) in [-1, 1]."""

@@ -24,18 +24,6 @@ if TYPE_CHECKING:
     # SciPy takes a second to import, and only sparse problems need it
     from scipy.sparse import sparray
 
-__all__ = [
-    "CurveNodes",
-    "March",
-    "MarchSettings",
-    "MarchStatus",
-    "NodeCorrector",
-    "Piece",
-    "Problem",
-    "Solver",
-    "SphereProjection",
-]
-
 
 # Maps a right-hand side to the solution (n,) of one linear system.
 Solver: TypeAlias = Callable[[np.ndarray], np.ndarray]

@@ -13,8 +13,6 @@ from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 from bifurc.torus import wrap
 
-__all__ = ["missed_probability", "random_seeds", "start_region"]
-
 AT_ONCE = 10  # starts between two looks at the clock
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 

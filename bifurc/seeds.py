@@ -11,8 +11,6 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.limits import Deadline
 
-__all__ = ["Audit", "Completeness", "Level", "Seeds"]
-
 
 class Level(StrEnum):
     """How sure it is that no branch is missing."""

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["difference", "into_box", "tree_box", "whole_turns", "wrap"]
-
 SEAM = 1e-12  # share of a period: what lies nearer to an end of it lies at the end
 
 

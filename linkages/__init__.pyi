@@ -10,7 +10,6 @@ from .labels import loop_of as loop_of
 from .linkage import Linkage as Linkage
 from .linkage import load as load
 from .linkage import load_linkage as load_linkage
-from .loop import GeometryError as GeometryError
 from .loop import Loop as Loop
 from .mapping import map_linkage as map_linkage
 from .mechanisms.closure import MechanismClosure as MechanismClosure
@@ -21,4 +20,5 @@ from .mechanisms.readout import Readout as Readout
 from .mechanisms.subject import mechanism_of as mechanism_of
 from .slices.assemblies import Assemblies as Assemblies
 from .slices.assemblies import isolated_assemblies as isolated_assemblies
+from .values import GeometryError as GeometryError
 from .viewing.notebook import view as view

@@ -4,14 +4,6 @@ from __future__ import annotations
 
 from bifurc.search.completeness import IN_DOUBT
 
-__all__ = [
-    "ALL_BUILT",
-    "ALL_FOLLOWED",
-    "MISSING_ASSEMBLIES",
-    "RANDOM_ASSEMBLIES",
-    "has_all_assemblies",
-]
-
 ALL_FOLLOWED = (
     "no isolated assembly of full rank is missing: the 16 paths that lead to all of "
     "them were followed"

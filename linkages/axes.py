@@ -15,17 +15,8 @@ from typing import TypeAlias
 import numpy as np
 
 from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
-from linkages.loop import (
-    MAX_JOINTS,
-    MIN_JOINTS,
-    GeometryError,
-    Loop,
-    check_number,
-    quoted,
-)
-from linkages.values import check_direction
-
-__all__ = ["Vectors", "loop_from_axes"]
+from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
+from linkages.values import GeometryError, check_direction, check_number, quoted
 
 # n points or directions, (n, 3), as lists or as an array
 Vectors: TypeAlias = Iterable[Iterable[float]]

@@ -21,8 +21,6 @@ from bifurc.errors import BifurcError
 from linkages.entry import Entry
 from linkages.networks.entries import NETWORKS
 
-__all__ = ["UnknownLinkageError", "catalogue", "entry", "families"]
-
 NEAREST = 5  # names that are shown where there is none of that name
 
 

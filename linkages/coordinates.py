@@ -6,8 +6,6 @@ import numpy as np
 
 from linkages.decisions import is_near_origin
 
-__all__ = ["are_near_origin", "is_fine", "rounding_of_doubles", "spread_of"]
-
 EPSILON = float(np.finfo(float).eps)
 
 

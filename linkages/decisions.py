@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from bifurc.decisions import Decision, decisions_in
 
-__all__ = ["TABLE"]
-
 matches_pattern = Decision(
     "form of a source",
     "a form satisfies the equations by which a source tells it",

@@ -17,20 +17,6 @@ from linkages.closed_forms.closed_form import ClosedForm
 from linkages.construction.numbers import Number
 from linkages.loop import Loop
 
-__all__ = [
-    "BY_IDENTIFICATION",
-    "Condition",
-    "Entry",
-    "FormPattern",
-    "Guesses",
-    "Parameter",
-    "ParameterKind",
-    "Relation",
-    "RelationKind",
-    "Term",
-    "UnknownParameterError",
-]
-
 Guesses: TypeAlias = Callable[[np.ndarray], Iterable[Mapping[str, float]]]
 Term: TypeAlias = Callable[[np.ndarray], float]
 BY_IDENTIFICATION = "found by identification"  # the source of a relation without one

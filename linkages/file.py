@@ -35,28 +35,12 @@ import numpy as np
 from bifurc.errors import BifurcError
 from bifurc.files.text_file import TextFileError, read_text, read_toml
 from linkages.axes import Vectors, loop_from_axes
-from linkages.loop import (
-    MAX_JOINTS,
-    MIN_JOINTS,
-    GeometryError,
-    Loop,
-    check_number,
-    quoted,
-)
+from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
-from linkages.values import check_angle, check_keys
+from linkages.values import GeometryError, check_angle, check_keys, check_number, quoted
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = [
-    "FOLD",
-    "FOREIGN_ENDINGS",
-    "LinkageFileError",
-    "read_file",
-    "read_linkage",
-    "read_precisely",
-]
 
 log = logging.getLogger(__name__)
 

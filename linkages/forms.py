@@ -27,9 +27,8 @@ from linkages.decisions import (
 from linkages.entry import FormPattern
 from linkages.families.four_bar import form_patterns
 from linkages.labels import FormLabels, Symmetry
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["FormIdentity", "identify_form", "name_forms"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 OF_SAMPLES = 1e-4  # what the choice of samples makes of a mean along a form
 LETTERS = "abcdefghijklmnopqrstuvwxyz"

@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 from linkages.kinematics import Number
 
-__all__ = ["GeometryRow", "geometry_html", "geometry_rows", "geometry_text"]
-
 
 class GeometryRow(NamedTuple):
     """One joint and the link that follows it, as texts."""

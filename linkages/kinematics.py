@@ -11,16 +11,6 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-__all__ = [
-    "Direction",
-    "LinkTable",
-    "Number",
-    "joint_frames",
-    "joint_screws",
-    "link_geometry",
-    "link_transform",
-]
-
 # a float, an array of floats, an mpmath number, a sympy expression or an exact number:
 # two of these libraries have no types to name
 Number: TypeAlias = Any

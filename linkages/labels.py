@@ -18,16 +18,8 @@ from bifurc.branch import Branch
 from bifurc.checks import check_type
 from bifurc.errors import BifurcError
 from bifurc.problem import Problem
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "FormLabels",
-    "NoLinkageError",
-    "Symmetry",
-    "largest_residual",
-    "loop_of",
-    "subject_of",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 # where on every piece of a form its closure is checked
 CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)

@@ -11,13 +11,12 @@ from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import FormPattern
 from linkages.file import FOLD, FOREIGN_ENDINGS, LinkageFileError, read_file
 from linkages.geometry_table import geometry_html, geometry_rows
-from linkages.loop import GeometryError, Loop, check_number
+from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
+from linkages.values import GeometryError, check_number
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = ["Linkage", "is_linkage_file", "load", "load_linkage"]
 
 
 @dataclass(frozen=True)

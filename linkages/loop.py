@@ -21,21 +21,9 @@ from linkages.kinematics import LinkTable, Number
 from linkages.values import (
     GeometryError,
     check_angles,
-    check_number,
     check_numbers,
     quoted,
 )
-
-__all__ = [
-    "LARGEST",
-    "MAX_JOINTS",
-    "MIN_JOINTS",
-    "SMALLEST",
-    "GeometryError",
-    "Loop",
-    "check_number",
-    "quoted",
-]
 
 MIN_JOINTS = 4
 MAX_JOINTS = 12

@@ -14,12 +14,11 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.forms import FormIdentity, name_forms
 from linkages.labels import largest_residual, subject_of
 from linkages.linkage import Linkage
-from linkages.loop import LARGEST, SMALLEST, GeometryError, Loop
+from linkages.loop import LARGEST, SMALLEST, Loop
+from linkages.values import GeometryError
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = ["map_linkage", "name_atlas"]
 
 DEFAULT_SEARCH = SearchSettings()
 

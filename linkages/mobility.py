@@ -13,8 +13,6 @@ from bifurc.search.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
-__all__ = ["Survey", "held_gap", "survey"]
-
 STEPS = 60  # of damped Gauss-Newton
 LONGEST_STEP = 1.0  # rad, of one joint
 # damping, over the squared residual, while that is large, and at the end

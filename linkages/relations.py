@@ -17,8 +17,6 @@ import networkx as nx
 from linkages.catalogue import catalogue, entry
 from linkages.entry import Relation, RelationKind
 
-__all__ = ["Relation", "RelationKind", "relation_graph", "relations_of"]
-
 
 def relation_graph() -> nx.MultiDiGraph:
     """Every linkage as a node with its ``title``, every relation as an edge from the

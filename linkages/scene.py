@@ -11,17 +11,6 @@ import numpy as np
 
 from linkages.loop import Loop
 
-__all__ = [
-    "Clearance",
-    "Scene",
-    "View",
-    "best_view",
-    "breadth",
-    "clearance",
-    "clearest_view",
-    "make_scene",
-]
-
 REACH = 0.22  # of the extent: half the drawn length of an axis beyond its links
 DIRECTIONS = 400  # from which a scene is looked at
 CONCURRENT = 1e-12  # feet that are closer are one: the axes meet in a point

@@ -9,13 +9,12 @@ import numpy as np
 
 from bifurc.problem import Problem
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.errors import draw_errors
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
-
-__all__ = ["closure_with_errors", "make_with_errors"]
+from linkages.values import GeometryError
 
 
 def closure_with_errors(

@@ -12,18 +12,6 @@ import numpy as np
 
 from bifurc.errors import BifurcError
 
-__all__ = [
-    "GeometryError",
-    "check_angle",
-    "check_angles",
-    "check_direction",
-    "check_keys",
-    "check_number",
-    "check_numbers",
-    "quoted",
-    "told_apart",
-]
-
 FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or become one
 # beyond it doubles tell an angle to less than 1e-12 rad, to which loops close
 MOST_TURNS = 1000

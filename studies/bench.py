@@ -36,8 +36,6 @@ from linkages.mapping import map_linkage
 from linkages.slices.elimination import slice_configurations
 from studies.methods.cases import bratu
 
-__all__ = ["Machine", "benchmarks", "machine", "median_time"]
-
 LINKAGE = "special-double-subtractive-goldberg"
 UNPROVED = SearchSettings(prove=False, certify=False)
 CPU_INFO = Path("/proc/cpuinfo")

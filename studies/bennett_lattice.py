@@ -19,8 +19,6 @@ from linkages.networks.network import Network
 from linkages.networks.placement import PlacedNetwork
 from linkages.networks.plan import Cell, Plan
 
-__all__ = ["lattice", "lattice_kinks", "locked_lattice"]
-
 # twists (degrees) of columns and rows, the first one and the spread of the others
 COLUMN_TWISTS, ROW_TWISTS = (35.0, 10.0), (70.0, 10.0)
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # its multiples, modulo 1, are spread

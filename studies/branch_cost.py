@@ -32,10 +32,9 @@ from linkages.app.options import FOLDER
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import MAX_JOINTS, GeometryError, Loop
+from linkages.loop import MAX_JOINTS, Loop
+from linkages.values import GeometryError
 from studies.bench import median_time
-
-__all__ = ["Cost", "cost_against_gap", "cost_of_loops"]
 
 
 @dataclass(frozen=True)

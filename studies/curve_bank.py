@@ -30,8 +30,6 @@ import numpy as np
 from bifurc import Atlas, FunctionProblem, Kind, Level, SearchSettings, explore
 from bifurc.search.completeness import IN_DOUBT
 
-__all__ = ["Answer", "Change", "Curve", "Verdict", "changes_of", "judge", "load_curves"]
-
 BANK = Path(__file__).parent.parent / "data" / "curves.json"
 SCALES = (1e-6, 1e-3, 10.0, 1e3, 1e6)
 SLOW = 5.0  # s, from which on an answer is listed

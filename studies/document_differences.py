@@ -14,8 +14,6 @@ import numpy as np
 
 from linkages.app.document import MapDocument
 
-__all__ = ["differences", "values_differ"]
-
 Json: TypeAlias = Any  # a value that JSON can hold
 
 OF_THE_RUN = frozenset(

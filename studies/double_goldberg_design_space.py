@@ -34,8 +34,6 @@ from linkages.entry import ParameterKind
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["PLANES", "Plane", "classes", "shares"]
-
 
 @dataclass(frozen=True)
 class Plane:

@@ -7,8 +7,6 @@ from __future__ import annotations
 from linkages.errata.misprints import ERRATA
 from linkages.errata.words import WORDS
 
-__all__ = ["HEAD", "errata_page"]
-
 HEAD = """# Misprints in the sources
 
 Each row is measured by the program: by how much the printed equation fails, and what the corrected one leaves. For

@@ -14,8 +14,6 @@ from linkages.networks.network import Network, build_network
 from linkages.networks.plans import FOUR_BENNETT
 from linkages.source_figures.table import Agreement, Kind, SourceFigure, source_figures
 
-__all__ = ["PAGE", "figures_page", "lock_kind", "moving_joints"]
-
 PAGE = Path(__file__).parents[1] / "docs" / "figures.md"
 
 SOURCES = {

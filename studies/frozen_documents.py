@@ -45,8 +45,6 @@ from studies.document_differences import values_differ
 from studies.known_mechanisms import known_mechanisms
 from studies.textbook.problems import load_problems
 
-__all__ = ["Case", "cases", "compare_folders", "documents_of"]
-
 Json: TypeAlias = Any  # a value that JSON can hold
 
 BUDGET = 600.0  # s of a search: none is to be ended by the time

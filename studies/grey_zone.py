@@ -24,24 +24,11 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas, NearMotion
 from bifurc.decisions import closes_to_rounding, is_solution
+from bifurc.text_tables import table
 from linkages.app.options import FOLDER
-from linkages.app.texts import table
 from linkages.catalogue import entry
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
-
-__all__ = [
-    "CHANGES",
-    "ERRORS",
-    "Answer",
-    "Change",
-    "Verdict",
-    "answer",
-    "draw",
-    "faults",
-    "hangs_on_seed",
-    "off_condition",
-]
 
 # Powers of ten of the errors, in half decades.
 ERRORS = 10.0 ** -np.arange(3.0, 16.25, 0.5)

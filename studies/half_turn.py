@@ -22,8 +22,6 @@ from scipy.optimize import brentq
 from bifurc.branch import Branch
 from linkages.loop import Loop
 
-__all__ = ["SHIFT", "HalfTurn", "never_at", "samples"]
-
 Floats: TypeAlias = NDArray[np.float64]
 Quaternion: TypeAlias = list[mpmath.mpf]
 Table: TypeAlias = list[list[mpmath.mpf]]

@@ -17,15 +17,6 @@ from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
-__all__ = [
-    "Crossing",
-    "Ladder",
-    "crossings",
-    "ladders",
-    "near_parallelogram",
-    "pitchfork",
-]
-
 Test = Callable[[np.ndarray], bool]
 
 

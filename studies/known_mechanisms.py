@@ -20,17 +20,6 @@ from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
 
-__all__ = [
-    "WAYS",
-    "KnownMechanism",
-    "cases",
-    "known_mechanisms",
-    "mechanism_of_case",
-    "moved",
-    "rebased",
-    "relabelled",
-]
-
 DATA = Path(__file__).parents[1] / "data" / "mechanisms.json"
 SCALES = (1e-3, 1e3)
 FRAME_SEED = 8  # of another frame of coordinates

@@ -33,8 +33,6 @@ from linkages.mechanisms.mechanism import Mechanism
 from studies.bennett_lattice import locked_lattice
 from studies.miura import miura
 
-__all__ = ["FAMILIES", "FormCost", "cost_of_form"]
-
 FOLD = 0.8  # rad, along the zigzags
 PLACES = 2000  # along a form, at which it is checked
 FEWEST = 9  # loops from which on the exponent is taken

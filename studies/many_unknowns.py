@@ -44,8 +44,6 @@ from studies.methods.fields import (
     fast_poisson,
 )
 
-__all__ = ["FoldCost", "cost_of_fold", "crossing_errors", "richardson"]
-
 # Inner points a side of the square: halves of the step, and 10,000 unknowns, whose sine
 # transforms are of a length that is no product of small primes, and slow.
 HALVED, TEN_THOUSAND = (15, 31, 63, 127, 255, 511, 1023), 100

@@ -31,8 +31,6 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import Linkage, load_linkage
 from linkages.mapping import map_linkage
 
-__all__ = ["Share", "budget", "process_times", "series_operations"]
-
 LINKAGE = "special-double-subtractive-goldberg"
 MAPS = 20
 RUNS = 7  # of a process, of which the least counts

@@ -38,7 +38,7 @@ from linkages.app.document import make_document
 from linkages.catalogue import catalogue
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.joint import Joint
@@ -47,23 +47,10 @@ from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.lock_routes import NetworkPlace, find_lock_route
 from linkages.networks.network import Network
+from linkages.values import GeometryError
 from studies.hard_cases import crossings
 from studies.near_misses import near_misses
 from studies.near_something_larger import FAMILIES
-
-__all__ = [
-    "DECISIONS",
-    "GAP",
-    "PAGE",
-    "Margin",
-    "heading",
-    "histogram",
-    "is_clear",
-    "margin_of",
-    "nearest",
-    "page",
-    "random_curve",
-]
 
 Floats: TypeAlias = NDArray[np.float64]
 

@@ -24,12 +24,11 @@ from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
-from linkages.app.texts import table
+from bifurc.text_tables import table
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["linkages", "same_motions"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 FIRST = SearchSettings(starts=1, prove=True)
 SECOND = SearchSettings(starts=1500)

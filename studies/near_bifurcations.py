@@ -26,17 +26,8 @@ from bifurc.curves.certificate import CertificateStatus, certify_branch
 from bifurc.curves.continuation import TraceSettings, trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.singular.locate import locate_singular_point
-from linkages.app.texts import table
+from bifurc.text_tables import table
 from studies.near_misses import NearMiss, near_misses
-
-__all__ = [
-    "STEPS",
-    "Trace",
-    "certify_trace",
-    "describe",
-    "describe_certificates",
-    "follow",
-]
 
 STEPS = (0.1, 0.5)
 

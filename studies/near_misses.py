@@ -31,10 +31,9 @@ from numpy.typing import NDArray
 from bifurc.branch import Branch
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 from studies.half_turn import HalfTurn, never_at, samples
-
-__all__ = ["FAMILIES", "NearMiss", "near_misses"]
 
 Floats: TypeAlias = NDArray[np.float64]
 Test: TypeAlias = Callable[[Branch], bool]

@@ -26,26 +26,14 @@ from matplotlib.patches import Patch
 from bifurc.atlas import Atlas
 from bifurc.search.completeness import IN_DOUBT
 from bifurc.search.settings import SearchSettings
+from bifurc.text_tables import table
 from linkages.app.options import NamedPath
-from linkages.app.texts import table
 from linkages.catalogue import entry
 from linkages.families.bennett import bennett
 from linkages.families.four_bar import four_bar, kite, parallelogram
 from linkages.linkage import Linkage, load_linkage
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
-
-__all__ = [
-    "FAMILIES",
-    "HALF_DECADES",
-    "Answer",
-    "Family",
-    "Verdict",
-    "answers",
-    "describe",
-    "draw",
-    "judge",
-]
 
 HALF_DECADES = tuple(0.5 * k for k in range(2, 29))  # -log10 e, from 1 to 14
 BUDGET = 60.0  # s for one map

@@ -18,8 +18,6 @@ from linkages.catalogue import catalogue
 from linkages.loop import Loop
 from linkages.mobility import survey
 
-__all__ = ["BREAK", "Control", "break_conditions", "controls", "controls_page"]
-
 SAME = 1e-9  # difference below which two entries are of equal size
 BREAK = 1e-3  # of the characteristic length, or rad
 TYPES = (("lengths", "a"), ("twists", "alpha"), ("offsets", "R"))

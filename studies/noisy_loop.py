@@ -9,8 +9,6 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.kinematics import LinkTable, link_geometry
 from linkages.loop import Loop
 
-__all__ = ["noisy_closure"]
-
 
 class NoisyLoop(Loop):
     """A loop whose lengths, twists and offsets are off by two units in the last place,

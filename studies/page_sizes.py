@@ -17,16 +17,14 @@ from typing import NamedTuple
 
 import click
 
+from bifurc.text_tables import table
 from linkages.app.options import FOLDER
-from linkages.app.texts import table
 from linkages.app.verdict import judge
 from linkages.catalogue import catalogue
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import LARGEST, make_page, viewer_script
-
-__all__ = ["PAGE", "PageSize", "describe", "measure"]
 
 PAGE = Path("docs/page_sizes.md")
 

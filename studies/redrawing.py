@@ -17,8 +17,6 @@ from linkages.app.files import write_data, write_figures
 from linkages.app.options import FOLDER
 from linkages.app.summary import make_summary
 
-__all__ = ["Claim", "Redrawing", "angles_along", "judge", "largest"]
-
 HOLDS = 1e-9  # rad
 
 

@@ -20,9 +20,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 
 from linkages.app.options import FOLDER
-from linkages.relations import RelationKind, relation_graph
-
-__all__ = ["draw_relations"]
+from linkages.entry import RelationKind
+from linkages.relations import relation_graph
 
 
 class Line(NamedTuple):

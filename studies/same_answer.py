@@ -26,11 +26,9 @@ from typing import TextIO
 
 import click
 
+from bifurc.text_tables import section
 from linkages.app.options import FOLDER
-from linkages.app.texts import section
 from studies.same_answer_maps import Comparison
-
-__all__ = ["KERNELS", "Batch", "compare", "describe", "write_reference"]
 
 KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
 HEADS = ("kernel", "linkage", "seed", "draw", "seconds", "differences")

@@ -25,8 +25,6 @@ from linkages.mapping import map_linkage, name_atlas
 from studies.document_differences import differences
 from studies.noisy_loop import noisy_closure
 
-__all__ = ["Comparison", "compare_maps", "map_document", "noisy_document"]
-
 
 @dataclass(frozen=True)
 class Comparison:

@@ -28,14 +28,12 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.search.settings import SearchSettings
 from bifurc.singular.dimension import local_dimensions
+from bifurc.text_tables import count_of, section
 from linkages.app.options import FOLDER
-from linkages.app.texts import count_of, section
 from linkages.mapping import map_linkage
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.mechanism import Mechanism
 from studies.known_mechanisms import WAYS, KnownMechanism, known_mechanisms
-
-__all__ = ["Answer", "Run", "answer_of", "compare_ways", "differences", "fact_misses"]
 
 CLOSE = 1e-6  # of lengths of forms, over 1 or their size
 CLOSED = 1e-14  # relative residual of the reference configuration

@@ -30,15 +30,13 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
+from bifurc.text_tables import section
 from linkages.app.options import FOLDER
-from linkages.app.texts import section
 from studies.hard_cases import crossings, ladders
 from studies.stability_arcs import STEPS, follow_ladder, followers
 from studies.stability_figure import draw_stability
 from studies.stability_points import report_points, reporters
 from studies.stability_runs import Run, Verdict
-
-__all__ = ["describe", "run_all"]
 
 IMPERFECTIONS = 10.0 ** -np.arange(1.0, 13.0)
 NOTE_LENGTH = 60  # characters of a note that are shown

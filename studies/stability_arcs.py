@@ -24,8 +24,6 @@ from studies.methods.counted import Counted
 from studies.methods.curve import Curve, MethodFailure
 from studies.stability_runs import Run, Verdict
 
-__all__ = ["STEPS", "FollowedCurve", "follow_ladder", "followers", "tolerance_for"]
-
 Floats: TypeAlias = NDArray[np.float64]
 
 STEPS = {"fine": 0.02, "medium": 0.1, "coarse": 0.5}

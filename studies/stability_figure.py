@@ -12,8 +12,6 @@ from matplotlib.lines import Line2D
 
 from studies.stability_runs import Run
 
-__all__ = ["draw_stability"]
-
 
 class Look(NamedTuple):
     """How a verdict is marked, and its words in the legend."""

@@ -21,8 +21,6 @@ from studies.methods.detection import by_determinant, by_singular_value
 from studies.stability_arcs import FAILURES, tolerance_for
 from studies.stability_runs import Run, Verdict
 
-__all__ = ["report_points", "reporters"]
-
 Reporter: TypeAlias = Callable[[Crossing, Problem], int]
 Floats: TypeAlias = NDArray[np.float64]
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
-__all__ = ["Run", "Verdict"]
-
 
 class Verdict(StrEnum):
     """What a method's answer is worth."""

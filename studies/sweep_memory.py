@@ -30,8 +30,6 @@ from linkages.app.options import FOLDER
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import run_sweep
 
-__all__ = ["Watch", "watch_sweep"]
-
 MEBIBYTE = 2.0**20
 LOOKS = 100
 

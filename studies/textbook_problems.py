@@ -20,8 +20,6 @@ import numpy as np
 from studies.textbook.comparison import Comparison, Verdict, compare
 from studies.textbook.problems import TextbookProblem, load_problems
 
-__all__ = ["run_problem"]
-
 
 def run_problem(problem: TextbookProblem, seed: int, budget: float) -> Comparison:
     """How the atlas of a problem, from one random seed, compares with its source."""

@@ -26,8 +26,6 @@ from studies.textbook.problems import TextbookProblem, load_problems
 from studies.work_precision import least_in_turn, measure
 from studies.work_precision_runs import Run
 
-__all__ = ["case_of", "fastest_within"]
-
 ORDER = 16
 TOLERANCES = [10.0**-k for k in range(2, 13)]
 ERRORS = (1e-6, 1e-8)

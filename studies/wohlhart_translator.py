@@ -32,8 +32,6 @@ from linkages.source_figures.draw import draw_source_figure
 from linkages.source_figures.table import figure_named
 from studies.redrawing import Claim, judge
 
-__all__ = ["claims", "main", "stroke_table"]
-
 TWISTS = (75, 90, 105, 120, 150)
 FIGURES = range(3, 13)
 COUNT = 361

@@ -40,8 +40,6 @@ from studies.work_precision_figures import draw_case, draw_ratios
 from studies.work_precision_findings import TOLERANCES, ratios, summarise
 from studies.work_precision_runs import Run
 
-__all__ = ["CaseRuns", "least_in_turn", "measure", "measure_case"]
-
 log = logging.getLogger(__name__)
 
 FAILURES = (MethodFailure, ArithmeticError, ValueError, np.linalg.LinAlgError)

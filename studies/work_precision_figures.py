@@ -13,9 +13,6 @@ from matplotlib.figure import Figure
 
 from studies.work_precision_runs import Run
 
-__all__ = ["draw_case", "draw_ratios", "unbeaten"]
-
-
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
 

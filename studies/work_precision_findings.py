@@ -10,17 +10,6 @@ import numpy as np
 
 from studies.work_precision_runs import Run
 
-__all__ = [
-    "TOLERANCES",
-    "Advice",
-    "RatioRow",
-    "fastest",
-    "points_in_our_time",
-    "ratios",
-    "recommend",
-    "summarise",
-]
-
 TOLERANCES = tuple(10.0**-k for k in range(3, 15))
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 DEFAULT_ORDER = 16

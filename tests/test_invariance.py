@@ -14,7 +14,7 @@ from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 NAMES = [
     "special-double-subtractive-goldberg",

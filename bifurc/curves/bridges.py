@@ -14,8 +14,6 @@ from bifurc.pieces import points_on_piece
 from bifurc.problem import Piece, Problem
 from bifurc.singular.locate import locate_singular_point
 
-__all__ = ["MOST_ROOM", "bridge_from"]
-
 REACHES = (0.1, 0.2, 0.05, 0.4, 0.02)  # half widths of bridges, in scales,
 MOST_ROOM = max(REACHES)  # that a bridge needs before the point, in scales
 BLURRED_REACHES = (0.1, 0.2, 0.4, 0.8)  # and across points that are missed

@@ -44,15 +44,6 @@ from bifurc.curves.monitor import Profile
 from bifurc.numerics.chebyshev import NODE_COUNT
 from bifurc.problem import Problem
 
-__all__ = [
-    "HANDOVER",
-    "Certificate",
-    "CertificateStatus",
-    "CertificateValues",
-    "certify_branch",
-    "is_certifiable",
-]
-
 # distance, in scales, at which an arc is handed over to a located singular point
 HANDOVER = 1e-3
 SHORTEST = 1e-9  # arc, in scales, that is not divided any more

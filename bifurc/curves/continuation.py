@@ -19,15 +19,6 @@ from bifurc.limits import Deadline
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Anchor, March, MarchSettings, MarchStatus, Problem
 
-__all__ = [
-    "DEFAULT_SETTINGS",
-    "TraceSettings",
-    "follow_curve",
-    "joined_branch",
-    "lowest_order",
-    "trace_branch",
-]
-
 # Pieces made before the end of the curve is looked for: beside a bend, at least, and at
 # most.
 AT_A_BEND, AT_ONCE, MOST_AT_ONCE = 14, 40, 1000

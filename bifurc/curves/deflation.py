@@ -26,8 +26,6 @@ from bifurc.numerics.singular_values import factors_of, singular_values, values_
 from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
 from bifurc.singular.sphere import section
 
-__all__ = ["Deflated", "deflated_singular_values", "lower_rank_direction"]
-
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales
 

@@ -16,8 +16,6 @@ from bifurc.numerics.roots import bracketed_roots
 from bifurc.pieces import points_on_piece, points_on_pieces
 from bifurc.problem import Problem
 
-__all__ = ["end_of_curve", "same_place"]
-
 GRID = np.linspace(0.0, 1.0, 33)  # of a piece, where it is held against its region
 LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
 NEAR = 1e-9  # distance, over the scale, within which a curve is back in any case

@@ -26,8 +26,6 @@ from bifurc.decisions import (
 )
 from bifurc.problem import Problem
 
-__all__ = ["changes_of_course", "kinks", "repeats_itself"]
-
 # shares of its length at which a curve is looked at again
 PLACES = np.array([0.07, 0.23, 0.41, 0.61, 0.83])
 SEVERAL = 2  # of these places: a curve may touch itself at one

@@ -27,8 +27,6 @@ from bifurc.decisions import is_closed_to_rounding, is_unique
 from bifurc.numerics.chebyshev import CELL_EDGES, CHEBYSHEV, NODE_COUNT, NODES
 from bifurc.problem import Problem
 
-__all__ = ["ArcChecks", "Joints", "check_arcs"]
-
 PROMISING = 0.05  # omega |G| at a node: shorter arcs about it may hold
 LONG = 1e-4  # arc, in scales, on which interpolation may be what is in the way
 CAUCHY_REACH = 0.5  # of the scale: from F'' so far into the complex follows F'''

@@ -17,8 +17,6 @@ from bifurc.curves.monitor import Profile
 from bifurc.decisions import is_zero_along, may_be_crossed
 from bifurc.problem import Problem
 
-__all__ = ["ORDINARY", "LowerRank", "lower_rank_along"]
-
 DIP = 0.5  # of the typical value, below which a minimum at the nodes is looked at
 NARROWER, ROUNDS = 4.0, 16  # by which the places about a minimum close in on it
 STEPS = (

@@ -21,8 +21,6 @@ from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
-__all__ = ["Minima", "singular_value_minima", "stand_out"]
-
 FINE = 96  # intervals of a piece on which the interpolants are compared
 DIFFERENCE = 1e-5  # step, over the scale, of the central difference of F'
 # Rise of a singular value, relative and not, that is none.

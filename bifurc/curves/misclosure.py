@@ -24,14 +24,6 @@ from bifurc.problem import PreciseResidual, Problem
 if TYPE_CHECKING:
     import mpmath
 
-__all__ = [
-    "largest_misclosure",
-    "largest_of",
-    "misclosure_at",
-    "misclosures",
-    "visible_misclosure",
-]
-
 HIGHEST = 48  # points with the largest residuals at which a misclosure is looked for
 # misclosures that doubles give to four digits and better
 PLAIN = 1e-11

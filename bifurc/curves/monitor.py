@@ -17,15 +17,6 @@ from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
-__all__ = [
-    "NODES",
-    "Profile",
-    "dead_points",
-    "largest_rates",
-    "profile_branch",
-    "roots_along",
-]
-
 COUNT = 16
 SAMPLES = 64  # of a curve at which rates are seen
 # Chebyshev nodes of a piece, from 0 where it begins to 1 where it ends.

@@ -11,8 +11,6 @@ from bifurc.curves.precise_near_miss import precise_near_miss
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
 from bifurc.problem import Problem
 
-__all__ = ["NearMissValue", "near_miss_value"]
-
 # Rounding of F and of the singular values of F', over the magnitude.
 RESIDUAL_ROUNDING, VALUE_ROUNDING = 2e-15, 4e-15
 # Step, over the scale, that is longer than anything rounding explains.

@@ -35,8 +35,6 @@ from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
-__all__ = ["NearMotionTrace", "trace_near_motion"]
-
 LONGEST = 200.0  # scales along which a near motion is followed
 # Of the misclosure: tolerance of the pieces, within these bounds. Pieces that may miss as
 # much as the near motion itself pass a crossing straight on, which has opened.

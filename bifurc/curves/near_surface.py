@@ -16,8 +16,6 @@ from bifurc.decisions import is_flat, nearly_closes
 from bifurc.numerics.null_spaces import decompose
 from bifurc.problem import Problem
 
-__all__ = ["NearSurface", "near_surfaces"]
-
 STEPS = 6  # of Newton's method across a surface
 FAR = 0.2  # of the scale: so far beside a point it is seen whether the surface goes on
 STAYS = 0.5  # share of that which correction must leave

@@ -21,8 +21,6 @@ from bifurc.problem import PreciseResidual, Problem
 if TYPE_CHECKING:
     import mpmath
 
-__all__ = ["PreciseNearMiss", "precise_near_miss"]
-
 DIGITS = 40
 STEP = "1e-10"  # of differences, over the scale: they are exact to its square
 CORRECTIONS = 40  # Gauss-Newton steps, at most, onto the curve,

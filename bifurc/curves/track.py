@@ -12,8 +12,6 @@ from bifurc.branch import Branch, Outcome
 from bifurc.pieces import point_and_slope
 from bifurc.problem import March, Piece
 
-__all__ = ["CAUTIOUS", "Bridge", "BridgeRule", "Caution", "End", "Place", "Track"]
-
 
 class BridgeRule(Enum):
     """Where a bridge is tried when no step is left."""

@@ -29,15 +29,6 @@ from bifurc.numerics.null_spaces import decompose
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
-__all__ = [
-    "Unfolding",
-    "Valley",
-    "ValleyEnd",
-    "correct_to_valley",
-    "follow_valley",
-    "unfold_crossing",
-]
-
 # corrections of one point; convergence is linear with a rate of about the gap over
 # sigma
 ROUNDS = 40

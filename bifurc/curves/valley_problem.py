@@ -40,8 +40,6 @@ from bifurc.numerics.null_spaces import Decomposition, decompose
 from bifurc.pieces import points_on_piece
 from bifurc.problem import March, MarchSettings, NodeCorrector, Piece, Problem
 
-__all__ = ["ValleyProblem"]
-
 TINY = 1e-30  # keeps a difference of squared singular values from being zero
 # Places on a piece, from -1 to 1, at which it is seen whether there is a valley.
 LOOKS = np.linspace(-1.0, 1.0, 9)

@@ -9,8 +9,6 @@ from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.diagrams.diagram import BranchingKind, Stretch
 from bifurc.singular.point import Kind
 
-__all__ = ["TurningPass", "branching_kind"]
-
 SAME_CUT = 1e-12  # of a length: a stretch ends at the very arclength of a pass
 
 

@@ -15,8 +15,6 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.polynomial import chebyshev
 
-__all__ = ["NARROWEST", "AlongCurve", "Cell", "CellKind", "cells_along"]
-
 AlongCurve: TypeAlias = Callable[[np.ndarray], np.ndarray]
 
 COUNT = 20  # nodes of a part, both ends among them

@@ -7,16 +7,6 @@ from enum import Enum
 
 import numpy as np
 
-__all__ = [
-    "Branching",
-    "BranchingKind",
-    "Diagram",
-    "DiagramPoint",
-    "PointKind",
-    "Stability",
-    "Stretch",
-]
-
 
 class PointKind(Enum):
     """What happens at one arclength of a form."""

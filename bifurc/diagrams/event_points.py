@@ -15,8 +15,6 @@ from bifurc.problem import Problem
 from bifurc.search.canonical_course import wrapped_periods
 from bifurc.torus import wrap
 
-__all__ = ["events_along"]
-
 SAMPLES = 16  # places on each form at which a function is seen round the circles
 SHOWN = 3  # jumps that a remark names
 

@@ -19,15 +19,6 @@ from bifurc.diagrams.zeros import Zeros, zeros_along
 from bifurc.errors import ProblemError
 from bifurc.torus import wrap
 
-__all__ = [
-    "CircleCut",
-    "EventFunction",
-    "EventRequests",
-    "event_zeros",
-    "events_of",
-    "on_circles",
-]
-
 SAMPLES, BESIDE = 32, 0.1  # places on a branch, so far, over their sizes, off it
 LOST = 1e-14  # of the values of a function: what rounding makes of them
 FINEST = 1e-3  # of the largest gain: turns that have a common part have a larger one

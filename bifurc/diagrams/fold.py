@@ -12,8 +12,6 @@ import numpy as np
 
 from bifurc.problem import Problem
 
-__all__ = ["Fold", "refined_fold"]
-
 STEPS = (
     60  # at a fold of higher order a step is no shorter than a part of the one before
 )

@@ -32,8 +32,6 @@ from bifurc.problem import Problem
 from bifurc.search.canonical_course import wrapped_periods
 from bifurc.torus import wrap
 
-__all__ = ["diagram_of", "parameter_index"]
-
 INITIALS = {
     PointKind.FOLD: "F",
     PointKind.HOPF: "H",

@@ -11,8 +11,6 @@ from bifurc.branch import Branch
 from bifurc.decisions import is_on_axis
 from bifurc.problem import Problem
 
-__all__ = ["SMALLEST", "Counts", "Eigenvalues", "Spectrum"]
-
 RESIDUAL = 1e-12  # over F' along a form: how well F = 0 holds there
 LARGEST_ERROR = 1e-6  # of the sizes: a double curve is known to half of the digits
 PROBE = 1e-6  # of the sizes: how far off a form entries of F' are compared

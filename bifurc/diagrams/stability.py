@@ -22,14 +22,6 @@ from bifurc.diagrams.spectrum import SMALLEST, Spectrum
 from bifurc.diagrams.zeros import zeros_along
 from bifurc.problem import Problem
 
-__all__ = [
-    "FormStability",
-    "HopfPlace",
-    "has_square_rest",
-    "stability_along",
-    "unknown_stability",
-]
-
 CLEAR_OF_CUTS = 1e-4  # of a stretch: nearer to its ends an eigenvalue may be about zero
 INNER = np.linspace(0.1, 0.9, 9)  # places at which a short stretch is looked at as well
 HALVINGS = 70  # of a bracket, down to rounding

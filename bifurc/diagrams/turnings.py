@@ -17,8 +17,6 @@ from bifurc.diagrams.fold import Fold, refined_fold
 from bifurc.problem import Problem
 from bifurc.singular.point import Kind
 
-__all__ = ["Turnings", "turnings_of", "unknown_sizes"]
-
 
 class Turnings(NamedTuple):
     """Where a parameter turns back: ``folds``, and passes of singular points by the

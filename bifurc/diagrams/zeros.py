@@ -14,8 +14,6 @@ from bifurc.decisions import is_event
 from bifurc.diagrams.cells import NARROWEST, AlongCurve, Cell, CellKind, cells_along
 from bifurc.numerics.roots import bracketed_roots
 
-__all__ = ["Zero", "ZeroKind", "Zeros", "zeros_along"]
-
 BESIDE = 1e-9  # of the length: how far from a zero of a steep function it is compared
 
 

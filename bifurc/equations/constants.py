@@ -6,8 +6,6 @@ import numpy as np
 
 from bifurc.equations.tape import Tape
 
-__all__ = ["rounding_of_constants"]
-
 DIGITS = 40
 DRAWS = 8  # times that all constants are moved, each up or down at random
 MOST = 4.0  # times the largest change that is seen is the largest one there is

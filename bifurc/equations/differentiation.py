@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 from bifurc.equations.tape import Node, Operation, Tape, TapeWriter
 
-__all__ = ["with_gradients"]
-
 
 def with_gradients(tape: Tape, rows: Sequence[int]) -> Tape:
     """The tape with, for every one of the ``rows``, its n partial derivatives as

@@ -24,14 +24,6 @@ import sympy
 
 from bifurc.errors import BifurcError
 
-__all__ = [
-    "CONSTANTS",
-    "FUNCTION_NAMES",
-    "ExpressionError",
-    "Part",
-    "parse_expression",
-]
-
 LONGEST_TEXT = 20_000  # characters
 LARGEST = 20_000  # numbers, symbols and operations, those of definitions written out
 DEEPEST = 100  # brackets, signs and powers inside one another

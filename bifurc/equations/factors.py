@@ -24,8 +24,6 @@ if TYPE_CHECKING:
         PolyElement,
     )  # SymPy takes longer to import than a search
 
-__all__ = ["Factors", "polynomial_factors", "written_factors"]
-
 MOST_TERMS = 400  # of a polynomial whose factors are looked for
 
 

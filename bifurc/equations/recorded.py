@@ -15,14 +15,6 @@ import numpy as np
 
 from bifurc.equations.tape import Operation, TapeWriter
 
-__all__ = [
-    "NotRecordable",
-    "RecordedArray",
-    "RecordedNumber",
-    "Recorder",
-    "unknowns_of",
-]
-
 BRANCHES = "it branches on the value of an unknown"
 PLAIN = (
     "it turns an unknown into a plain number, by float(), a function of math or an "

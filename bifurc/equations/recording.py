@@ -19,8 +19,6 @@ from bifurc.equations.recorded import (
 )
 from bifurc.equations.tape import LONGEST, Tape, TooLong
 
-__all__ = ["Recording", "record"]
-
 SENTENCE = 160  # characters of a foreign error that are quoted
 SMALLEST = 1e-300  # difference that counts where the value is 0 and exact
 

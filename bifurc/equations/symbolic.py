@@ -17,8 +17,6 @@ from bifurc.function_problem import FunctionProblem
 if TYPE_CHECKING:
     from bifurc.problem import PreciseResidual
 
-__all__ = ["SymbolicFunction", "SymbolicProblem"]
-
 # of one number, by their names in sympy
 _RECIPROCALS = {
     "sec": Operation.COS,

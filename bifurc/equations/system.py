@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import csc_array
 
-__all__ = ["LARGEST_DENSE", "ScaledTape"]
-
 LARGEST_DENSE = 100  # unknowns up to which dense matrices are factored
 LARGEST_FACTORED_DENSE = 40  # the same, in compiled code
 # up to which pieces of a curve are made in compiled code: the factors of a net of more

@@ -18,16 +18,6 @@ import numpy as np
 
 from bifurc import _core
 
-__all__ = [
-    "FUNCTIONS",
-    "PARTIAL",
-    "Node",
-    "Operation",
-    "Tape",
-    "TapeWriter",
-    "TooLong",
-]
-
 LONGEST = 200_000  # operations of a tape
 LARGEST_POWER = 64  # whole exponent up to which a power is a chain of products
 NOTHING = 2.0**-100  # factor of y - y: bounds on it are narrow, and none remain none

@@ -20,8 +20,6 @@ from bifurc.figures.quantities import AxisRequest, Quantity, quantity_of
 from bifurc.figures.style import COLORS, RC, Dashes
 from bifurc.singular.point import Kind
 
-__all__ = ["plot_diagram"]
-
 PIECE_POINTS = 16  # drawn on each piece of a form, at least
 STRETCH_POINTS = 200  # and on each stretch
 LINE_WIDTH = 1.6

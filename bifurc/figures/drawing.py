@@ -28,19 +28,6 @@ from bifurc.figures.planes import (
 )
 from bifurc.figures.style import RC, Mark, Style, form_style, mark_of
 
-__all__ = [
-    "LegendSize",
-    "PanelSettings",
-    "draw_curve",
-    "draw_forms",
-    "draw_legend",
-    "draw_legend_outside",
-    "draw_marks",
-    "legend_size",
-    "note_emptiness",
-    "widen_flat_axes",
-]
-
 NAME_WIDTH = 24  # letters of a line of the legend
 LETTER_SIZE = RC["legend.fontsize"]
 HANDLE_LENGTH = 3.2  # of the line beside a name, over the size of a letter

@@ -14,8 +14,6 @@ from bifurc.figures.drawing import note_emptiness
 from bifurc.figures.graph_layout import GraphEdge, lay_out_graph
 from bifurc.figures.style import RC, Style, form_style
 
-__all__ = ["plot_form_graph"]
-
 SURFACE = Style("0.6", "-")
 MARGIN = 0.9  # around the forms, in inches
 NAME_WIDTH = 16  # letters of a line in a box

@@ -13,8 +13,6 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.graphs import transition_graph
 
-__all__ = ["GraphEdge", "GraphLayout", "lay_out_graph"]
-
 REACH = 1.9  # distance between neighbouring forms, in inches
 BOW = 0.34  # between neighbouring edges of the same two forms, in inches
 EDGE_POINTS = 41

@@ -13,8 +13,6 @@ from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.figures.planes import Plane, copies_in_frame
 
-__all__ = ["label_points", "label_spots"]
-
 REACH = 11.0  # from a mark to its name
 REACH_FACTORS = (1.0, 1.5, 2.2)
 DIRECTIONS = [

@@ -17,8 +17,6 @@ from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
 from bifurc.figures.style import RC
 
-__all__ = ["atlas_page", "load_ipython_extension"]
-
 
 class _Formatter(Protocol):
     """What turns objects into one kind of text."""

@@ -12,8 +12,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.transforms import ScaledTranslation
 
-__all__ = ["Margins", "fix_names_of_axes", "make_panels"]
-
 # In inches, from the frame to the name of an axis; between them are the ticks.
 NAME_BELOW = 0.27
 NAME_LEFT = 0.46

@@ -13,18 +13,6 @@ from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 from bifurc.figures.quantities import shown_unit
 
-__all__ = [
-    "Plane",
-    "Scale",
-    "choose_plane",
-    "copies_in_frame",
-    "curve_points",
-    "cut_to_frame",
-    "place_in_frame",
-    "plane_of",
-    "scale_of",
-]
-
 SAMPLES = 72  # points on each form by which planes are compared
 PIECE_POINTS = 12  # points drawn on each piece of a branch, at least
 BRANCH_POINTS = 400  # points drawn on each branch, at least

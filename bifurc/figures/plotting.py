@@ -38,15 +38,6 @@ from bifurc.figures.singular_values import plot_singular_values
 from bifurc.figures.style import RC
 from bifurc.files.atomic import replace_file
 
-__all__ = [
-    "plot_form_graph",
-    "plot_joint_angles",
-    "plot_singular_values",
-    "plot_transition_map",
-    "save_figure",
-    "save_figures",
-]
-
 SMALL_PANEL = PanelSettings(line_width=1.4, mark_size=3.5)
 RESOLUTION = 140  # dots per inch of the files
 

@@ -13,8 +13,6 @@ from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
 from bifurc.torus import wrap
 
-__all__ = ["AxisRequest", "Quantity", "ShownUnit", "quantity_of", "shown_unit"]
-
 AxisRequest: TypeAlias = "str | Callable[[np.ndarray], float]"
 NORM = "|u|"
 SIZE = "size"  # the unit of an unknown that counts characteristic lengths

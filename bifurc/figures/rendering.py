@@ -20,8 +20,6 @@ from matplotlib.text import Text
 from matplotlib.transforms import Affine2D, Bbox, Transform, TransformedPath
 from PIL import Image
 
-__all__ = ["Rendering", "render"]
-
 POINTS = 72  # of an inch, the unit of SVG
 # No dates, no names of programs, so that the same figure gives the same bytes.
 NO_METADATA = {"Date": None, "Creator": None}

@@ -17,8 +17,6 @@ from bifurc.figures.panels import Margins, fix_names_of_axes, make_panels
 from bifurc.figures.quantities import shown_unit
 from bifurc.figures.style import RC, Style, form_style
 
-__all__ = ["plot_singular_values"]
-
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MARGINS = Margins(0.85, 0.2, 0.6, 0.45, between_columns=0.3, between_rows=0.75)
 STEEP = 1.3  # values of neighbours over each other, above which points are put between

@@ -14,8 +14,6 @@ from bifurc.figures.drawing import note_emptiness
 from bifurc.figures.planes import Scale, place_in_frame, scale_of
 from bifurc.figures.style import RC, form_style
 
-__all__ = ["plot_singular_values_against"]
-
 LOWEST = 1e-16  # of the largest value: what is drawn of a zero
 DECADES = 5  # at least, on the vertical axis
 PLAIN = Scale(1.0, np.inf, "")

@@ -18,8 +18,6 @@ from bifurc.figures.drawing import draw_legend_outside, legend_size
 from bifurc.figures.planes import Scale, curve_points, scale_of
 from bifurc.figures.style import RC, form_style, mark_of
 
-__all__ = ["plot_map_in_space"]
-
 
 def plot_map_in_space(
     atlas: Atlas, unknowns: Sequence[int], figure: Figure | None = None

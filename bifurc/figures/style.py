@@ -6,8 +6,6 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 from bifurc.singular.point import Kind
 
-__all__ = ["RC", "Dashes", "Mark", "Style", "color_on_dark", "form_style", "mark_of"]
-
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
 # Settings of matplotlib for all figures, which the user's own must not disturb. Their

@@ -8,8 +8,6 @@ from matplotlib.figure import Figure
 
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = ["plot_charts"]
-
 
 def plot_charts(
     charts: ChartAtlas,

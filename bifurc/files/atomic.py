@@ -9,8 +9,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["replace_file", "replace_files", "require_replaceable"]
-
 HIDDEN = ".writing-"  # how the names of the temporary folders begin
 Writer = Callable[[Path], object]
 

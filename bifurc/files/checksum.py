@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-__all__ = ["checksum"]
-
 
 def checksum(
     values: Mapping[str, np.ndarray],

@@ -62,8 +62,6 @@ from bifurc.seeds import Completeness, Level
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["AtlasFileError", "from_dataset", "load_atlas", "save_atlas", "to_dataset"]
-
 FORMAT = "bifurc atlas"
 FORMAT_VERSION = 8
 CHECKSUM = "checksum"  # an attribute of files

@@ -14,17 +14,6 @@ from bifurc.diagrams.diagram import (
 )
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
 
-__all__ = [
-    "BRANCHINGS",
-    "DIAGRAM_POINTS",
-    "REMARKS",
-    "STRETCHES",
-    "read_branching",
-    "read_diagram_point",
-    "read_remark",
-    "read_stretch",
-]
-
 NOTHING = Diagram("", (), (), ())
 
 

@@ -6,8 +6,6 @@ from collections.abc import Iterable
 
 from bifurc.errors import BifurcError
 
-__all__ = ["AtlasFileError"]
-
 
 class AtlasFileError(BifurcError, ValueError):
     """A dataset or file that holds no atlas.

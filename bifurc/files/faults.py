@@ -12,8 +12,6 @@ from bifurc.files.table import Column, Frame, Record, Table, count_name
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["missing_variables", "table_faults"]
-
 # The kinds of numpy's types that are read as the type of a column.
 READABLE_KINDS = {float: "f", int: "iu", bool: "biu", str: "OTU"}
 

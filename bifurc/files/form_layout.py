@@ -13,8 +13,6 @@ from bifurc.curves.monitor import Profile
 from bifurc.files.json_values import mapping_from_text, to_text
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
 
-__all__ = ["FORMS", "read_form"]
-
 
 def _samples(form: Form) -> np.ndarray:
     """Points (k, n) at which the singular values were taken."""

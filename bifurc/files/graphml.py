@@ -14,8 +14,6 @@ from bifurc.diagrams.diagram import Stretch
 from bifurc.files.atomic import replace_file
 from bifurc.graphs import arc_graph, transition_graph
 
-__all__ = ["plain_graph", "write_graphml"]
-
 
 def write_graphml(atlas: Atlas, path: str | os.PathLike[str]) -> Path:
     """The path of the GraphML file just written, with both graphs of the atlas; see

@@ -8,8 +8,6 @@ from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-__all__ = ["from_text", "mapping_from_text", "to_text"]
-
 JsonValue: TypeAlias = (
     "bool | int | float | str | list[JsonValue] | dict[str, JsonValue] | None"
 )

@@ -17,8 +17,6 @@ from bifurc.files.table import JOINT, UNIT, Column, Frame, Table
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["ASSEMBLIES", "TABLES", "UNKNOWNS", "atlas_frame", "dataset_frame"]
-
 
 class Unknown(NamedTuple):
     """One unknown of the problem."""

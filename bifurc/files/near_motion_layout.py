@@ -5,8 +5,6 @@ from __future__ import annotations
 from bifurc.atlas import NearMotion
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
 
-__all__ = ["NEAR_MOTIONS", "read_near_motion"]
-
 NEAR_MOTIONS: Table[NearMotion] = Table(
     "near_motion",
     lambda atlas: atlas.near_motions,

@@ -15,8 +15,6 @@ import numpy as np
 
 from bifurc.files.variable import Attribute, Variable
 
-__all__ = ["write_netcdf"]
-
 
 def write_netcdf(
     path: Path, variables: Mapping[str, Variable], attributes: Mapping[str, Attribute]

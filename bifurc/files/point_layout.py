@@ -8,15 +8,6 @@ from bifurc.files.table import JOINT, UNIT, Column, Row, Table
 from bifurc.singular.invariants import Invariants
 from bifurc.singular.point import Kind, SingularPoint
 
-__all__ = [
-    "DEAD_POINTS",
-    "NEAR_MISSES",
-    "POINTS",
-    "read_dead_point",
-    "read_near_miss",
-    "read_point",
-]
-
 POINTS: Table[MeetingPoint] = Table(
     "point",
     lambda atlas: atlas.points,

@@ -11,8 +11,6 @@ import struct
 import zlib
 from pathlib import Path
 
-__all__ = ["append_seal", "is_seal_broken"]
-
 MARK = b"bifurc seal "
 SEAL = struct.Struct(f"<{len(MARK)}sI")
 

@@ -10,8 +10,6 @@ from bifurc.atlas import Surface
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 
-__all__ = ["SURFACES", "read_surface"]
-
 
 def _of_charts(
     take: Callable[[ChartAtlas], np.ndarray],

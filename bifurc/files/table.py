@@ -22,17 +22,6 @@ from bifurc.files.variable import Variable
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = [
-    "JOINT",
-    "UNIT",
-    "Column",
-    "Frame",
-    "Row",
-    "Table",
-    "count_name",
-    "make_variable",
-]
-
 Record = TypeVar("Record")
 Row = Mapping[str, np.ndarray]  # what a record has in each column, by its name
 

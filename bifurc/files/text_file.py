@@ -9,8 +9,6 @@ from typing import Any
 
 from bifurc.errors import BifurcError
 
-__all__ = ["TextFileError", "read_text", "read_toml"]
-
 ENCODING = "utf-8-sig"  # editors of Windows begin a file with a mark, which is no text
 
 

@@ -8,8 +8,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-__all__ = ["Attribute", "Variable"]
-
 Attribute: TypeAlias = str | int | float
 
 

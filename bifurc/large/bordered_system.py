@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array, csr_array
     from scipy.sparse.linalg import SuperLU
 
-__all__ = ["EXACT", "ROUGH", "BorderedSystem", "Inverse", "bordered_system"]
-
 # largest entry of the borders of a factored matrix, over the median one of the matrix
 BORDER = 1e-3
 # What is left of a system by GMRES, in the unit of solutions and as a share of this one:

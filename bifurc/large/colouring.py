@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import csr_array
 
-__all__ = ["column_groups"]
-
 
 def column_groups(pattern: csr_array) -> np.ndarray:
     """The number of the group (n,) of each column of a pattern (m, n), from 0 on.

@@ -30,8 +30,6 @@ from bifurc.numerics.binary_forms import lines_of_binary_form, monomials
 from bifurc.numerics.directions import unit_vectors
 from bifurc.singular.second_order import lines_of_form
 
-__all__ = ["CrossingTangents", "null_vectors_across", "tangents_at"]
-
 # Angles on a half circle at which a cubic map of the plane is taken.
 ANGLES = np.pi * np.array([0.05, 0.3, 0.55, 0.8])
 

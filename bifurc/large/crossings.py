@@ -11,8 +11,6 @@ import numpy as np
 from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.smallest_singular_values import SingularTriple
 
-__all__ = ["LocatedCrossing", "locate_crossing"]
-
 STEPS = 12
 SETTLED = 1e-9  # a step after which the next one, its square, would be rounding
 STAGNANT = 0.5  # times the step before: a short step that is no shorter is rounding

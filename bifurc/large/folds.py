@@ -8,8 +8,6 @@ import numpy as np
 
 from bifurc.large.scaled_problem import ScaledProblem
 
-__all__ = ["LocatedFold", "locate_fold"]
-
 STEPS = 12
 SETTLED = 1e-9  # a step after which the next one, its square, would be rounding
 STAGNANT = 0.5  # times the step before: a short step that is no shorter is rounding

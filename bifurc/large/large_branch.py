@@ -10,8 +10,6 @@ from bifurc.branch import Branch, Outcome
 from bifurc.large.large_point import LargeKind, LargePoint
 from bifurc.units import Units
 
-__all__ = ["LargeBranch"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LargeBranch:

@@ -8,8 +8,6 @@ from enum import Enum
 
 import numpy as np
 
-__all__ = ["LargeKind", "LargePoint"]
-
 
 class LargeKind(Enum):
     """What a special point is."""

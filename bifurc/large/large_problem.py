@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
     from bifurc.equations.tape import Tape
 
-__all__ = ["InverseMaker", "LargeProblem"]
-
 Function: TypeAlias = Callable[[np.ndarray], "Sequence[float] | np.ndarray"]
 # From a point (n,) to what maps a right-hand side (n - 1,) to the solution (n - 1,), or
 # to an approximation of it.

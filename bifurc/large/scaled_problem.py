@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import csr_array
 
-__all__ = ["ScaledProblem"]
-
 DIFFERENCE = 1e-5  # length of the step of a difference of F'
 SECOND_DIFFERENCE = 3e-3  # the same of a second difference
 ROUNDS = 3  # of inverse iteration, by which the size of F' is seen

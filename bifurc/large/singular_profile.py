@@ -13,8 +13,6 @@ from bifurc.large.smallest_singular_values import (
     smallest_singular_triples,
 )
 
-__all__ = ["SingularProfile", "singular_profile", "triples_at", "unit_tangent"]
-
 
 @dataclass(frozen=True, eq=False)
 class SingularProfile:

@@ -15,8 +15,6 @@ import numpy as np
 from bifurc.large.bordered_system import BorderedSystem
 from bifurc.large.scaled_problem import ScaledProblem
 
-__all__ = ["SingularTriple", "smallest_singular_triples", "smallest_triples_by"]
-
 # of singular values, over the largest of their inverse squares: minima are located from
 # them, and singular points by Newton's method
 TOLERANCE = 1e-6

@@ -21,8 +21,6 @@ from bifurc.large.singular_profile import SingularProfile, triples_at, unit_tang
 from bifurc.large.smallest_singular_values import SingularTriple
 from bifurc.large.vanishing_group import vanishing_group, zero_ahead
 
-__all__ = ["crossings_on", "folds_on", "near_misses_on"]
-
 BEYOND = 1.5  # distances to the next place within which a zero is looked for
 FOOT_STEPS = 5  # of Newton's method to the foot of a point
 SAME = 1e-4  # arclength: crossings of one curve no farther apart may be one

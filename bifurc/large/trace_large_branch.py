@@ -26,8 +26,6 @@ from bifurc.large.singular_profile import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
 from bifurc.numerics.null_spaces import null_vector
 
-__all__ = ["LargeSettings", "trace_large_branch"]
-
 NEWTON_STEPS = 12
 RESIZINGS = 4  # tracings at most, each with the size that was seen by the one before
 SAMPLES = 40  # of a curve at which the size of its field is seen

@@ -9,8 +9,6 @@ from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_profile import unit_tangent
 from bifurc.large.smallest_singular_values import SingularTriple, smallest_triples_by
 
-__all__ = ["vanishing_group", "zero_ahead"]
-
 # Shares of the distance to the next place of a profile: how far beside a zero values are
 # taken, so that no matrix is singular, and how near to each other zeros are one for a
 # first try. What comes of the try decides.

@@ -10,8 +10,6 @@ from bifurc.decisions import is_multiple_line
 from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.roots import bracketed_roots
 
-__all__ = ["lines_of_binary_form", "monomials"]
-
 # Angles on a half circle, between two of which there is one root of a form of low degree
 # whose roots are apart; none of them is special.
 ANGLES = 0.0123 + np.linspace(0.0, np.pi, 721)

@@ -17,17 +17,6 @@ from bifurc.numerics.null_spaces import decompose
 from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 
-__all__ = [
-    "ROUNDING",
-    "blur_along",
-    "change_by_blur",
-    "change_by_rounding",
-    "distance_to_singular",
-    "known_to",
-    "rounding_unit",
-    "same_reach",
-]
-
 ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
 # Step, over the scale, after which F differs by its slope and rounding, and how far from
 # a point that is seen.

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import csc_array, sparray
 
-__all__ = ["Bordered", "as_dense", "bordered_at", "bordered_matrix", "sparse_bordered"]
-
 FEW = 16  # unknowns of a small matrix
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
 # largest entry of the border of a sparse matrix, over the median one of the matrix

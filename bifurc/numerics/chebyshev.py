@@ -17,8 +17,6 @@ import numpy as np
 
 from bifurc._core import Chebyshev
 
-__all__ = ["CELL_EDGES", "CHEBYSHEV", "ERRORS", "NODES", "NODE_COUNT", "RHOS"]
-
 NODE_COUNT = 32  # more than the degree of any piece
 # parts of [-1, 1], shorter towards its ends, on which interpolants are judged
 CELLS = 192

@@ -30,13 +30,6 @@ from bifurc.problem import (
     Problem,
 )
 
-__all__ = [
-    "bridge_by_collocation",
-    "march_by_collocation",
-    "piece_through",
-    "reparametrised",
-]
-
 PREDICT_FROM = 10  # nodes through which the next one is predicted
 LOOSE = 30  # times the tolerance: the residual that a piece may have between its nodes
 TAIL = 4.0  # times the distance to which points are known: last coefficients

@@ -11,16 +11,6 @@ import numpy as np
 from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
 from bifurc.problem import Problem, SphereProjection
 
-__all__ = [
-    "Correction",
-    "correct_across",
-    "correct_normal",
-    "last_step",
-    "limited",
-    "project_by_least_squares",
-    "project_to_sphere_by_newton",
-]
-
 ACROSS_STEPS = 30  # of one point onto a curve
 NORMAL_STEPS = 10  # of points onto a surface
 LEAST_SQUARES_STEPS = 80  # of one random start

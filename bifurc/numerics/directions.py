@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["cosines_between_planes", "unit_vectors"]
-
 
 def unit_vectors(angles: np.ndarray) -> np.ndarray:
     """Unit vectors (k, 2) of the plane at angles (k,)."""

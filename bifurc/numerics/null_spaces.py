@@ -16,15 +16,6 @@ from bifurc.numerics.bordered import bordered_at
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
-__all__ = [
-    "LARGE",
-    "Decomposition",
-    "decompose",
-    "null_spaces",
-    "null_vector",
-    "tangent_planes",
-]
-
 # unknowns beyond which tangents come from bordered systems instead of an SVD
 LARGE = 64
 # stands in a denominator where a singular value is zero: the square of what comes out

@@ -8,8 +8,6 @@ import numpy as np
 
 from bifurc import _core
 
-__all__ = ["bracketed_roots"]
-
 STEPS = 100
 
 

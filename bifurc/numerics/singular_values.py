@@ -13,8 +13,6 @@ import numpy as np
 from bifurc import _core
 from bifurc.problem import Problem
 
-__all__ = ["Factors", "factors_of", "singular_values", "values_of"]
-
 # Unknowns up to which compiled code takes them by Jacobi's method, which knows small ones
 # to more digits than LAPACK: of more unknowns that takes twenty times as long.
 FEW = 100

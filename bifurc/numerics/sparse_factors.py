@@ -11,8 +11,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import SuperLU
 
-__all__ = ["sparse_factors"]
-
 # Share of the largest entry of a column from which on the diagonal one is the pivot: the
 # first keeps the factors sparse, the second bounds their growth as far as can be.
 PIVOTS = (0.1, 1.0)

@@ -14,8 +14,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
 
-__all__ = ["one_thread"]
-
 # Unknowns up to which no matrix is shared between threads. Those that locate a singular
 # point have several times as many columns: of 16 unknowns 112 at a nullity of 6.
 SMALL = 8

@@ -16,8 +16,6 @@ from bifurc.problem import Problem
 from bifurc.routes.surface_legs import foot_on, middle_of
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = ["Place", "RouteSearch", "begin_search", "place_of", "sampled_components"]
-
 # Distance below which a configuration lies on a form or a surface.
 ON = 1e-6
 

@@ -25,8 +25,6 @@ from bifurc.routes.ways import GOAL, START, Stage, WayGraph
 from bifurc.surfaces.geodesic import resample
 from bifurc.torus import wrap
 
-__all__ = ["Leg", "Route", "find_route"]
-
 NO_WAY = 1e-9  # length below which a leg is none
 
 

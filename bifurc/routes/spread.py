@@ -14,8 +14,6 @@ from bifurc.routes.places import begin_search
 from bifurc.routes.route import Leg, Route
 from bifurc.surfaces.geodesic import place_at
 
-__all__ = ["SpreadRoute", "spread_route"]
-
 
 class SpreadRoute(NamedTuple):
     """Configurations (k, n) without jumps, at ``arclengths`` (k,) from 0 to the length

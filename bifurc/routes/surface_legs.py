@@ -20,8 +20,6 @@ from bifurc.surfaces.geodesic import (
     shortest_path,
 )
 
-__all__ = ["Crossing", "Foot", "foot_on", "measure", "middle_of"]
-
 # Spacing of the paths whose lengths are compared, over the median radius of the charts.
 FINE = 0.15
 # Relative residual above which a point has no foot on a surface.

@@ -16,8 +16,6 @@ from bifurc.routes.places import Place, RouteSearch
 from bifurc.routes.surface_legs import Crossing, measure
 from bifurc.surfaces.geodesic import SurfacePathError
 
-__all__ = ["GOAL", "START", "Stage", "WayGraph"]
-
 # Nodes of their own: those of the arcs are strings.
 START, GOAL = ("start",), ("goal",)
 

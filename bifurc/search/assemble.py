@@ -43,8 +43,6 @@ from bifurc.singular.point import Kind, SingularPoint
 from bifurc.text_tables import count_of
 from bifurc.torus import wrap
 
-__all__ = ["assemble_atlas", "near_misses_of"]
-
 # Decades by which the misclosures of two near motions differ that are not alike.
 SAME_MISCLOSURE = 1e-3
 NEAR_ASSEMBLIES = (

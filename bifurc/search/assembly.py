@@ -22,8 +22,6 @@ from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 
-__all__ = ["IsolatedSolution", "polished"]
-
 # Of Newton's method: at a solution of order k each step leaves (1 - 1 / k) of the way.
 STEPS = 60
 FLOOR = 1e-20  # over the largest singular value: steps stay finite

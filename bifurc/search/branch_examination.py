@@ -29,8 +29,6 @@ from bifurc.search.start import Start, half_branch_starts
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import SingularPoint
 
-__all__ = ["BranchExaminer", "ExaminedBranch"]
-
 ABOUT = 16  # nodes before and after a deep place that are not lower: those of a piece
 BESIDE = 3 * ABOUT  # and among which some are far higher, as a whole piece may be flat
 BESIDE_END = np.array([0.0, 0.01, 0.02])  # of a stalled branch: starts for a cusp

@@ -11,8 +11,6 @@ from bifurc.decisions import is_same_point, is_solution
 from bifurc.numerics.collocation import reparametrised
 from bifurc.problem import Problem
 
-__all__ = ["followed_by", "joined_outcome", "part_of", "with_piece_between"]
-
 WITHIN = np.linspace(-1.0, 1.0, 17)  # of the piece between, where it is checked
 
 

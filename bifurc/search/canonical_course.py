@@ -18,8 +18,6 @@ from bifurc.decisions import is_slow_at_start, is_unclear_start
 from bifurc.problem import Problem
 from bifurc.torus import wrap
 
-__all__ = ["canonical_course", "wrapped_periods"]
-
 FUNCTIONS = 8  # that are tried
 # By how much a maximum stands above all others, over the range of the function.
 CLEAR_MARGIN = 1e-3

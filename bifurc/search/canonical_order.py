@@ -13,14 +13,6 @@ from bifurc.decisions import is_tied
 from bifurc.problem import Problem
 from bifurc.torus import wrap
 
-__all__ = [
-    "order_branches",
-    "order_points",
-    "order_rows",
-    "order_surfaces",
-    "order_values",
-]
-
 OF_CHARTS = 0.1  # what the layout of charts makes of a mean, and a share of the area
 COARSEST = 0.1  # what a large error adds to it at most
 # The rule of Gauss and Legendre on every piece, for means along a branch.

@@ -22,8 +22,6 @@ from bifurc.numerics.blur import known_to
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
 
-__all__ = ["certificate_of", "finer_settings", "may_be_mended"]
-
 CUSP_REACH = 0.2  # of a cusp, in scales: so far from it a branch may end
 FINEST = 1e-14  # tolerance with which a refused branch is traced again
 LONGEST = 0.1  # trusted radius, in scales

@@ -10,8 +10,6 @@ from bifurc.curves.certificate import certify_branch
 from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 
-__all__ = ["certify_atlas"]
-
 
 def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
     """The atlas with a certificate on every form, from singular point to singular

@@ -11,8 +11,6 @@ from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
-__all__ = ["closure_gap", "valley_points"]
-
 STEPS = 12
 LONGEST = 0.5  # step, over the problem's scale
 # Singular value, over the largest, below which no step is taken along its direction.

@@ -13,8 +13,6 @@ from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeding import missed_probability
 from bifurc.seeds import Completeness, Level
 
-__all__ = ["IN_DOUBT", "judge_completeness"]
-
 IN_DOUBT = "in doubt: "  # how the statement on an answer begins that is not decided
 
 NO_SOLUTION = SeedFate(Fate.NO_SOLUTION)

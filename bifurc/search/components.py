@@ -27,13 +27,6 @@ from bifurc.surfaces.crossing_sheets import is_on_singular_curve
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.walk import reached_charts
 
-__all__ = [
-    "Components",
-    "components_of_seeds",
-    "singular_points_of",
-    "surfaces_through",
-]
-
 SHAKY = "F' has a lower rank all over it"
 RADIUS = 0.7  # of the largest charts, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked

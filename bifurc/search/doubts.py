@@ -35,8 +35,6 @@ from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.text_tables import count_of
 
-__all__ = ["doubts_of", "doubts_of_near_misses", "doubts_of_others"]
-
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
 

@@ -24,8 +24,6 @@ from bifurc.search.settings import SearchSettings
 from bifurc.search.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.seeds import Seeds
 
-__all__ = ["explore"]
-
 DEFAULT_SEARCH = SearchSettings()
 
 log = logging.getLogger(__name__)

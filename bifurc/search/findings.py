@@ -33,8 +33,6 @@ from bifurc.singular.point import SingularPoint
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
 
-__all__ = ["NO_DOUBT", "Doubt", "Findings", "PointSighting", "TracedBranch"]
-
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
 SHARPER = 1e-2  # times the distance of two assemblies: where they are weak

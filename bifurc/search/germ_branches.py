@@ -24,8 +24,6 @@ from bifurc.search.branch_parts import followed_by, joined_outcome, part_of
 from bifurc.search.local_curves import curve_through, half_curve
 from bifurc.singular.germ import Germ
 
-__all__ = ["branches_of_germs", "ends_of", "passes_inside"]
-
 INSIDE = 0.98  # of the radius of a neighbourhood: nearer than its ends
 LEAVING = 1e-3  # of that radius: a curve that leaves is not there again so soon
 

@@ -24,8 +24,6 @@ from bifurc.search.start import Start
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import LocalBranch
 
-__all__ = ["GermMender"]
-
 log = logging.getLogger(__name__)
 
 PLACES = (np.arange(8) + 0.5) / 8  # of every piece, at which branches are compared

@@ -15,8 +15,6 @@ from bifurc.problem import Problem
 from bifurc.search.branch_parts import joined_outcome, part_of, with_piece_between
 from bifurc.singular.point import SingularPoint
 
-__all__ = ["joined_through"]
-
 BEYOND = 1.5  # times the farther end: so far from the point both branches are cut
 LOOKS = 400  # along a branch for the place of the cut
 

@@ -14,8 +14,6 @@ from bifurc.search.branch_parts import with_piece_between
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import LocalBranch
 
-__all__ = ["curve_through", "half_curve"]
-
 PARTS = 8  # of a branch that is smooth at the point, each a piece
 # Towards a point at which it is not every piece is shorter by this factor, down to a
 # share of the way to the end.

@@ -17,8 +17,6 @@ from bifurc.search.canonical_order import order_points
 from bifurc.search.components import surfaces_through
 from bifurc.singular.point import Kind, SingularPoint
 
-__all__ = ["ends_at", "meeting_points"]
-
 INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R", Kind.DIMENSION_CHANGE: "D"}
 OTHER_INITIAL = "S"
 ALONG = 0.95  # smallest cosine between a branch and the half-branch along which it runs

@@ -15,8 +15,6 @@ import numpy as np
 from bifurc.search.findings import Findings
 from bifurc.search.seed_fates import Fate
 
-__all__ = ["asks_for_more_starts"]
-
 # Starts that meet an island: of one as large none comes in 5e-5 of searches.
 FEWEST = 10
 # Share of the starts that met what no other one met: of those to come about as many meet

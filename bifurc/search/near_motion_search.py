@@ -15,8 +15,6 @@ from bifurc.search.closure_gap import valley_points
 from bifurc.search.run import Run
 from bifurc.seeding import random_seeds
 
-__all__ = ["NearMotionSearch"]
-
 SAME_STARTS = 200  # from which every search looks for near motions
 FRUITLESS = 4  # of those on no known near motion that in a row led to nothing new
 

@@ -27,8 +27,6 @@ from bifurc.singular.sphere import is_on_surface
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ
 
-__all__ = ["BRANCH_REACH", "SEED_REACH", "PointSearch"]
-
 # Over the problem's scale.
 SEED_REACH = 1e-2  # how far from a seed its singular point may lie
 BRANCH_REACH = 0.05  # how far from a minimum on a branch its singular point may lie

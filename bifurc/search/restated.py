@@ -22,8 +22,6 @@ from bifurc.singular.point import SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.units import Units
 
-__all__ = ["restated", "restated_branch"]
-
 ORDER, FINE = 16, 48  # of a piece, and of its speed
 EXACT = (
     1e-12  # error of a piece, over the length of the curve, in the units of the search

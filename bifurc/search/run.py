@@ -9,8 +9,6 @@ from bifurc.problem import Problem
 from bifurc.search.findings import Findings
 from bifurc.search.settings import SearchSettings
 
-__all__ = ["Run"]
-
 
 @dataclass(frozen=True)
 class Run:

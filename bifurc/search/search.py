@@ -58,8 +58,6 @@ from bifurc.seeds import Seeds
 from bifurc.singular.classify import classify_from_nearby
 from bifurc.singular.point import Kind
 
-__all__ = ["Search"]
-
 log = logging.getLogger(__name__)
 
 # Singular values are over the problem's magnitude, lengths over its scale.

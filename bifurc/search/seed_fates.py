@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-__all__ = ["Fate", "SeedFate"]
-
 
 class Fate(Enum):
     """Where a seed lies."""

@@ -10,8 +10,6 @@ from bifurc.curves.continuation import TraceSettings
 from bifurc.decisions import is_same_point
 from bifurc.errors import ProblemError
 
-__all__ = ["SearchSettings"]
-
 # Points and curves are told apart to `bifurc.decisions.is_same_point`: curves that are
 # followed less closely than a tenth of that may be found twice.
 LOOSEST = 0.1 * is_same_point.threshold

@@ -21,8 +21,6 @@ from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.point import SingularPoint
 from bifurc.text_tables import count_of
 
-__all__ = ["SingularCurve", "describe_curves", "singular_curve_through"]
-
 WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 

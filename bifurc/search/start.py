@@ -8,8 +8,6 @@ import numpy as np
 
 from bifurc.singular.point import SingularPoint
 
-__all__ = ["Start", "half_branch_starts"]
-
 
 class Start(NamedTuple):
     """A solution (n,) to trace a branch from, first to the side of ``direction`` (n,)

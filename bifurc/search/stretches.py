@@ -12,8 +12,6 @@ from bifurc.curves.monitor import dead_points
 from bifurc.decisions import is_same_point
 from bifurc.problem import Problem
 
-__all__ = ["Verification", "verify_branch"]
-
 MOST = 4000  # stretches of a branch that are divided
 SHORTEST = 1e-7  # half a stretch, over the scale, that is not divided any more
 

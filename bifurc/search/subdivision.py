@@ -23,8 +23,6 @@ from bifurc.search.stretches import verify_branch
 from bifurc.singular.invariants import CROSSING, LONE_POINT
 from bifurc.singular.point import SingularPoint
 
-__all__ = ["Subdivision", "can_be_subdivided", "subdivide"]
-
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 64
 # Boxes that are looked at before their arcs are held against the branches.

@@ -11,8 +11,6 @@ from bifurc.search.findings import TracedBranch
 from bifurc.search.subdivision import Subdivision
 from bifurc.seeds import Audit, Level
 
-__all__ = ["audit_of", "refuted_at"]
-
 WIDTH = 1e-6  # of the length: of the gap in a certificate where a branch is refuted
 
 

@@ -48,8 +48,6 @@ if TYPE_CHECKING:
 
     from bifurc.branch import Branch
 
-__all__ = ["UnitProblem", "in_one_size", "in_own_units"]
-
 STARTS, STARTS_OF_CALLABLE = 100, 24  # from which it is seen where solutions are
 ROUNDS = 40  # in which the region shrinks to them
 MARGIN = 0.25  # of what solutions span, on either side of them

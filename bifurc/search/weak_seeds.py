@@ -25,8 +25,6 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
-__all__ = ["Sharpened", "sharpened", "with_weak_solutions"]
-
 STEPS, FARTHEST = 4, 1e-2  # from a solution to its curve, and their length in scales
 LONG_STEPS, LONGEST = 30, 0.3  # from a start that missed, and the length of each
 NEARLY = 1e-3  # residual of such a start

@@ -18,8 +18,6 @@ from bifurc.singular.sphere import UNSEEN, Section, section
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
 
-__all__ = ["classify_from_nearby", "classify_singular_point"]
-
 # Radii of the sections, over the scale, in the order in which they are tried: at a
 # larger one branches that touch separate, at a smaller one other singular points stay
 # outside.

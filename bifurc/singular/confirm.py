@@ -14,16 +14,6 @@ import numpy as np
 from bifurc.errors import ProblemError
 from bifurc.singular.locate import block_slice
 
-__all__ = [
-    "Confirmation",
-    "Convergence",
-    "Differences",
-    "Residual",
-    "augmented_system",
-    "confirm_singular_point",
-    "least_squares",
-]
-
 Residual = Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]
 """F over mpmath numbers: n of them in, m out, right to whatever precision is set when
 it is called."""

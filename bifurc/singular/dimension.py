@@ -31,13 +31,6 @@ from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 
-__all__ = [
-    "LocalDimensions",
-    "local_dimensions",
-    "misclosures_beside",
-    "project_slowly",
-]
-
 # Length of the probes, over the scale: at much less, degenerate singular points would
 # look like surfaces.
 RADIUS = 5e-3

@@ -18,8 +18,6 @@ from bifurc.decisions import is_same_coefficient
 from bifurc.singular.invariants import Invariants
 from bifurc.singular.puiseux import Series, Terms, branches, order_of
 
-__all__ = ["intersection_number", "invariants_of"]
-
 _Root: TypeAlias = dict[Fraction, mpmath.mpc]
 
 

@@ -35,8 +35,6 @@ from bifurc.singular.puiseux import (
     without_zeros,
 )
 
-__all__ = ["Germ", "germ_at", "placed_at"]
-
 DEGREE = 13  # of the Taylor polynomial
 # Digits of the spacing of the grid, over the scale, in the rounds in which the place is
 # found, and of that on which it is judged.

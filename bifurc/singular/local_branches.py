@@ -21,14 +21,6 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.singular.puiseux import HalfBranch
 
-__all__ = [
-    "UNKNOWN",
-    "LiftedEquation",
-    "LocalBranch",
-    "Neighbourhood",
-    "neighbourhood_of",
-]
-
 # Places on the half-branches at which F' is looked at, in the unit of the germ and in
 # scales: from the first on every next one twice as far away, up to the last.
 FIRST, LAST = 1e-4, 0.6

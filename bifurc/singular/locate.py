@@ -11,8 +11,6 @@ from bifurc.decisions import is_located, is_simple, is_singular_point
 from bifurc.numerics.singular_values import factors_of, values_of
 from bifurc.problem import Problem
 
-__all__ = ["MOST_FOR_GERM", "LocatedPoint", "block_slice", "locate_singular_point"]
-
 ITERATIONS = 60
 # Singular values of the augmented matrix, over its largest: what is smaller than the
 # first is rounding, what is smaller than the second is a direction of slow convergence.

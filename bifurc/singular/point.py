@@ -10,8 +10,6 @@ import numpy as np
 from bifurc.decisions import leaves_to_other_side, leaves_to_same_side
 from bifurc.singular.invariants import Invariants
 
-__all__ = ["Kind", "SingularPoint"]
-
 
 class Kind(Enum):
     """What a singular point is."""

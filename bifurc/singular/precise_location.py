@@ -17,8 +17,6 @@ from bifurc.problem import Problem
 from bifurc.singular.confirm import Differences, augmented_system, least_squares
 from bifurc.singular.locate import LocatedPoint
 
-__all__ = ["held_to_exact_equations", "precisely_located"]
-
 DIGITS = 40  # that are worked to; the derivatives are differences, at three times these
 ITERATIONS = 120
 AMISS = 2.0  # times the distance from the place in doubles is its error

@@ -21,17 +21,6 @@ import mpmath
 
 from bifurc.decisions import is_same_coefficient, is_zero_coefficient
 
-__all__ = [
-    "HalfBranch",
-    "Series",
-    "Terms",
-    "branches",
-    "half_branches",
-    "order_of",
-    "pairs_of",
-    "without_zeros",
-]
-
 Terms: TypeAlias = Mapping[tuple[int, int], mpmath.mpf]
 """The coefficients of a polynomial, by the exponents of x and y."""
 _RootsOf: TypeAlias = Callable[[Sequence[mpmath.mpf], int], list[mpmath.mpf] | None]

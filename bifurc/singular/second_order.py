@@ -15,8 +15,6 @@ from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
-__all__ = ["lines_of_form", "second_order_tangents"]
-
 # Singular value of the coefficients, over the largest, of a form that depends on
 # others.
 DEPENDENT = 1e-6

@@ -26,8 +26,6 @@ from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 
-__all__ = ["UNSEEN", "Section", "is_on_surface", "section"]
-
 UNSEEN = -1  # dimension of a section that could not be made
 
 # Samples on the circle of a null space of dimension 2, and the angle of the first.

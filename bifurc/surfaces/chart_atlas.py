@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     # it takes longer to import than NumPy, and most maps have no surface
     from scipy.spatial import cKDTree
 
-__all__ = ["ChartAtlas", "Covering"]
-
 # Charts near a point, one of which holds it if any does.
 NEAREST = 16
 # Distance of a chart from a singular point next to it, over its radius, at most.

@@ -12,8 +12,6 @@ from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.polygon import Polygon
 
-__all__ = ["FlatCharts", "assemble_charts"]
-
 # Corners of neighbouring polygons closer than this, over their charts' radius, are one
 # vertex.
 MERGED = 0.15

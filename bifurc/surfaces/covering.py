@@ -32,8 +32,6 @@ from bifurc.surfaces.complex import FlatCharts, assemble_charts
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.polygon import Polygon, octagon
 
-__all__ = ["cover_surface"]
-
 # Largest height of the surface above a chart's disk, over its radius.
 BEND = 0.12
 # The same above a disk in which a solution lies; rounding is allowed for.

@@ -19,8 +19,6 @@ from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = ["has_uncovered_crossing", "is_on_singular_curve"]
-
 # Determinant of the turn between two spaces above which its sign counts.
 CLEAR = 0.3
 # Distance from a chart, over its radius, in which it covers a crossing.

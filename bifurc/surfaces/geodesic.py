@@ -26,16 +26,6 @@ if TYPE_CHECKING:
     # a map without surfaces needs no graph of charts
     import networkx as nx
 
-__all__ = [
-    "SurfacePathError",
-    "chart_graph",
-    "entrances",
-    "path_length",
-    "place_at",
-    "resample",
-    "shortest_path",
-]
-
 ROUNDS, FINAL_ROUNDS = 40, 4
 # Share of the sum of squares still to be gained at which a path is tight.
 TIGHT = 1e-11

@@ -9,8 +9,6 @@ import numpy as np
 
 from bifurc.numerics.directions import unit_vectors
 
-__all__ = ["OUTLINE", "Polygon", "octagon"]
-
 OUTLINE = -1  # label of an edge that nothing has cut yet
 
 

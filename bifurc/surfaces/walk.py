@@ -12,8 +12,6 @@ from bifurc.numerics.null_spaces import null_spaces, tangent_planes
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
-__all__ = ["reached_charts"]
-
 WALKS, STEPS = 6, 100
 # Length of a step, over the radius of a chart.
 LONGEST, SHORTEST = 0.5, 1e-3

@@ -12,8 +12,6 @@ from bifurc.diagrams.diagram import Diagram, DiagramPoint
 from bifurc.singular.invariants import Invariants
 from bifurc.systems.verdict import verdict_of
 
-__all__ = ["make_document"]
-
 Json: TypeAlias = "str | float | bool | list[Json] | dict[str, Json] | None"
 
 

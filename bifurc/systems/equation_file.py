@@ -46,8 +46,6 @@ from bifurc.errors import ProblemError
 from bifurc.files.text_file import TextFileError, read_toml
 from bifurc.systems.system import EquationFileError, EquationSystem
 
-__all__ = ["read_equations"]
-
 Content: TypeAlias = Mapping[str, object]
 
 REQUIRED = ("unknowns", "equations")

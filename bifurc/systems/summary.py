@@ -13,8 +13,6 @@ from bifurc.diagrams.diagram import DiagramPoint, PointKind
 from bifurc.systems.verdict import verdict_of
 from bifurc.text_tables import section
 
-__all__ = ["make_summary"]
-
 SHOWN = 40  # rows of a table; the others are counted
 NONE = "-"
 

@@ -12,8 +12,6 @@ from bifurc.errors import BifurcError
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 
-__all__ = ["EquationFileError", "EquationSystem"]
-
 DEFAULT_SETTINGS = SearchSettings()
 
 

@@ -8,8 +8,6 @@ from bifurc.seeds import Level
 from bifurc.singular.point import Kind
 from bifurc.text_tables import count_of
 
-__all__ = ["has_only_open_points", "verdict_of"]
-
 
 def verdict_of(atlas: Atlas) -> str:
     """What there is: curves, surfaces, isolated solutions, or nothing; an interrupted

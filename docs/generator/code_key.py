@@ -12,8 +12,6 @@ from pathlib import Path
 
 from docs.generator.places import DOCS, ROOT
 
-__all__ = ["code_key", "key_of"]
-
 FOLDERS = (ROOT / "bifurc", ROOT / "linkages", ROOT / "studies")
 # of the generator, what records and pictures are made by; pages are written each time
 MODULES = ("exploration.py", "linkage_record.py", "pictures.py", "study_scripts.py")

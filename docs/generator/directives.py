@@ -15,9 +15,6 @@ from docs.generator.gallery import cards_of, gallery_html, search_html
 from docs.generator.pictures import drawing_of, map_of
 from linkages.catalogue import catalogue
 
-__all__ = ["FlowChart", "LinkageGallery", "LinkageView", "setup", "view_html"]
-
-
 GENERATOR = sorted(Path(__file__).parent.glob("*.py"))
 
 

@@ -7,8 +7,6 @@ import re
 
 from sphinx.application import Sphinx
 
-__all__ = ["escape_marks", "setup"]
-
 CODE = re.compile(r"(`+[^`]*`+)")
 MARKS = re.compile(r"([*|])|_(?![A-Za-z0-9])")
 

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 
 from docs.generator.markdown import plain, section, slug, table
 
-__all__ = ["SourcePage", "errata_index", "errata_pages"]
-
 CELLS = re.compile(r"(?<!\\)\|")
 MEASURED, IN_WORDS = "Equations", "In words"
 

@@ -21,8 +21,6 @@ from linkages.mapping import map_linkage
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
 
-__all__ = ["explore_catalogue", "read_record", "read_records", "record_file"]
-
 
 def explore_catalogue() -> dict[str, LinkageRecord]:
     """The record of every linkage by its name, in the order of the catalogue; pictures

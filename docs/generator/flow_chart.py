@@ -14,8 +14,6 @@ from typing import NamedTuple
 
 import networkx as nx
 
-__all__ = ["Chart", "chart_svg", "read_chart"]
-
 BOX = re.compile(r'(\w+)\["(.*?)"\]')
 HEIGHT, LINE = 46, 16  # px: of a box, and of a line of text
 LETTER, MARGIN = 7.2, 12  # px: width of a letter of 12 px, and room beside a text

@@ -6,12 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from bifurc.text_tables import count_of
 from docs.generator.linkage_record import LinkageRecord
 from docs.generator.pictures import drawing_of
-from linkages.app.texts import count_of
 from linkages.entry import Entry
-
-__all__ = ["Card", "cards_of", "gallery_html", "search_html"]
 
 
 @dataclass(frozen=True)

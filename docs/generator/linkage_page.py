@@ -8,10 +8,8 @@ from collections.abc import Iterable
 from docs.generator.linkage_record import ClosedFormText, LinkageRecord
 from docs.generator.markdown import bullets, plain, section, table
 from linkages.app.texts import in_degrees, link_name
-from linkages.entry import Entry, Parameter, ParameterKind
-from linkages.relations import RelationKind, relations_of
-
-__all__ = ["linkage_page"]
+from linkages.entry import Entry, Parameter, ParameterKind, RelationKind
+from linkages.relations import relations_of
 
 CONSTANTS = (
     r"In these equations $u_x$ stands for $\tan(x/2)$ and $t_i$ for "

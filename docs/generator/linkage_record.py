@@ -10,13 +10,12 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.text_tables import count_of
 from bifurc.torus import wrap
-from linkages.app.texts import count_of, in_degrees
+from linkages.app.texts import in_degrees
 from linkages.app.verdict import judge
 from linkages.entry import Entry
 from linkages.labels import FormLabels
-
-__all__ = ["ClosedFormText", "FormRow", "LinkageRecord", "PointRow", "record_linkage"]
 
 SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
 

@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
 
-__all__ = ["DeadLink", "dead_links", "fetched_from_afar"]
-
 ATTRIBUTES = frozenset({"href", "src", "data-page"})
 PARTS = "_static"  # a folder of the site: parts of pages stand there, not pages
 

@@ -7,9 +7,6 @@ from latex2mathml.converter import convert
 from sphinx.application import Sphinx
 from sphinx.writers.html5 import HTML5Translator
 
-__all__ = ["mathml", "setup"]
-
-
 SPACE = '<mspace width="0.17em"/>'  # between a function and what it is of
 
 

@@ -18,14 +18,6 @@ from linkages.app.scene_figure import draw_configuration
 from linkages.labels import loop_of
 from linkages.scene import Scene, breadth, clearance, make_scene
 
-__all__ = [
-    "clearest_configuration",
-    "draw_linkage",
-    "draw_no_picture",
-    "drawing_of",
-    "map_of",
-]
-
 MARGIN = 0.05  # inches
 LETTER = 0.12  # inches around the place of a number
 SAMPLES = 100  # configurations of each form that are looked at

@@ -5,19 +5,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = [
-    "DOCS",
-    "EXTRA",
-    "NO_PICTURE",
-    "PICTURES",
-    "RECORDS",
-    "ROOT",
-    "SCRIPTS",
-    "SITE",
-    "SOURCE",
-    "VIEWER",
-]
-
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 BUILD = ROOT / "build" / "docs"

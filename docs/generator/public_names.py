@@ -11,8 +11,6 @@ from sphinx.addnodes import pending_xref
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
-__all__ = ["public_name", "setup"]
-
 PACKAGES = ("bifurc", "linkages")
 
 

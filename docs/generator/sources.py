@@ -19,8 +19,6 @@ from docs.generator.study_scripts import HEADER, gallery_script, study_names
 from docs.generator.text_files import keep_only, remove_folder, write_texts
 from linkages.catalogue import catalogue, families
 
-__all__ = ["API", "STUDIES", "gather_sources", "linkage_pages"]
-
 STUDIES = "studies"  # below the sources: what sphinx-gallery writes
 API = "reference/api"  # below the sources: what autosummary writes
 KEY = "code.key"  # below the sources: of the code that the studies were run with

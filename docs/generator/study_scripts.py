@@ -8,8 +8,6 @@ import re
 
 from docs.generator.places import ROOT
 
-__all__ = ["RUN", "gallery_script", "study_names", "study_order"]
-
 # Studies that the build of the site runs, a few seconds each. The others take minutes,
 # or measure times, which belong to a machine: their code and text are shown alone.
 RUN = frozenset(

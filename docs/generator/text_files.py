@@ -7,8 +7,6 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
-__all__ = ["keep_only", "remove_folder", "write_texts"]
-
 
 def write_texts(folder: Path, texts: Mapping[str, str]) -> None:
     """Write each text to its path below ``folder``; a file that holds it already is

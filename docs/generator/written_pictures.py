@@ -10,8 +10,6 @@ from sphinx_gallery.scrapers import figure_rst
 
 from docs.generator.places import SCRIPTS
 
-__all__ = ["WrittenPictures"]
-
 
 class WrittenPictures:
     """A scraper of sphinx-gallery: it takes the pictures that a block of a study has

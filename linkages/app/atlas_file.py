@@ -8,8 +8,6 @@ from linkages.app.exit_codes import CommandError
 from linkages.labels import NoLinkageError, loop_of
 from linkages.mechanisms.subject import mechanism_of
 
-__all__ = ["open_linkage_atlas"]
-
 
 def open_linkage_atlas(path: str) -> Atlas:
     """The atlas of a linkage in a file. Raises `bifurc.AtlasFileError` for a file that

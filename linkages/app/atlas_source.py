@@ -19,8 +19,6 @@ from linkages.mechanisms.subject import mechanism_of
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["atlas_of", "is_atlas_file", "loop_atlas_of"]
-
 ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
 NOTHING_HELD = HoldOptions()
 

@@ -14,21 +14,12 @@ from linkages.catalogue import entry
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
-from linkages.loop import LARGEST, SMALLEST, GeometryError, Loop
+from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
-from linkages.values import check_angle
+from linkages.values import GeometryError, check_angle
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = [
-    "choose_linkage",
-    "choose_precisely",
-    "read_number",
-    "read_parameters",
-    "require_loop",
-    "split_parameter",
-]
 
 
 def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:

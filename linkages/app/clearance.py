@@ -12,8 +12,6 @@ from linkages.labels import loop_of
 from linkages.links.clearance import Approach, approaches_along
 from linkages.loop import Loop
 
-__all__ = ["FormClearance", "clearance_document", "clearance_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class FormClearance:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from bifurc.atlas import Atlas
+from bifurc.text_tables import table
 from linkages.app.clearance import FormClearance
 from linkages.app.configurations import (
     arclength_unit,
@@ -10,10 +11,7 @@ from linkages.app.configurations import (
     readout_of,
     show_configuration,
 )
-from linkages.app.texts import table
 from linkages.labels import loop_of
-
-__all__ = ["describe_clearance"]
 
 SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
 HEADS = ("clearance", "at most less by")

@@ -29,8 +29,6 @@ from linkages.app.commands.view_command import view_command
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.status import library_messages
 
-__all__ = ["main"]
-
 
 class Failure(click.ClickException):
     """The end of a command: one line on standard error, and an exit code."""

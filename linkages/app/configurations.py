@@ -18,22 +18,6 @@ if TYPE_CHECKING:
     from linkages.mechanisms.readout import Readout
     from linkages.networks.mechanism import NetworkMechanism
 
-__all__ = [
-    "SHOWN_SHARE",
-    "ArclengthUnit",
-    "arclength_unit",
-    "heading",
-    "joint_names",
-    "loop_angles_of",
-    "network_at",
-    "numbers_at",
-    "readout_of",
-    "show_configuration",
-    "show_travel",
-    "unit_of_arclengths",
-    "unknown_factors",
-]
-
 # what unknowns are shown in, by the units of an atlas
 UNITS = {"rad": "deg", "size": "lengths", "": "entries ax to bz of rotation matrices"}
 SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show

@@ -14,15 +14,12 @@ from bifurc.singular.confirm import (
     Convergence,
     confirm_singular_point,
 )
+from bifurc.text_tables import table
 from linkages.app.choice import choose_precisely
 from linkages.app.configurations import readout_of
 from linkages.app.equations import equations_of
-from linkages.app.texts import table
 from linkages.closure.precise import precise_residual
 from linkages.linkage import is_linkage_file
-
-__all__ = ["confirm_points", "describe_confirmation"]
-
 
 # where rounded numbers leave a gap: the word for how a point was refined
 ROUNDED = "rounded"

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from linkages.app.mechanism_document import MechanismDocument, RangeDocument
     from linkages.mechanisms.readout import JointVariables
 
-__all__ = ["MapDocument", "make_document"]
-
 
 class LinkageDocument(TypedDict):
     """The name, and of a single loop of revolute joints the Denavit-Hartenberg table,

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from linkages.app.texts import in_degrees, known_to, link_name, table
+from bifurc.text_tables import table
+from linkages.app.texts import in_degrees, known_to, link_name
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.loop import Loop
-
-__all__ = ["describe_entry", "describe_geometry", "list_below", "parameter_table"]
 
 
 def describe_entry(entry: Entry) -> str:

@@ -8,8 +8,6 @@ from linkages.app.configurations import readout_of
 from linkages.closure.loop_closure import LoopClosure
 from linkages.labels import loop_of
 
-__all__ = ["equations_of"]
-
 
 def equations_of(atlas: Atlas) -> Problem:
     """The closure of the loop or the mechanism of an atlas; raises `NoLinkageError` for

@@ -6,8 +6,6 @@ from enum import IntEnum
 
 from bifurc.errors import BifurcError
 
-__all__ = ["CommandError", "ExitCode", "exit_code_table"]
-
 
 class ExitCode(IntEnum):
     """What the command `bifurc` tells its caller; ``meaning`` says it in words."""

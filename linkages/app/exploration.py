@@ -15,8 +15,6 @@ from linkages.mapping import map_linkage
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["explore_linkage", "require_uninterrupted"]
-
 
 def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:
     """The transition map of a linkage or a mechanism; progress is shown on standard error.

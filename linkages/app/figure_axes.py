@@ -13,8 +13,6 @@ from linkages.linkage import Linkage
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["FigureAxes", "figure_axes"]
-
 
 @dataclass(frozen=True)
 class FigureAxes:

@@ -17,13 +17,6 @@ from linkages.app.figure_axes import FigureAxes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = [
-    "prepare_folder",
-    "remove_empty",
-    "write_data",
-    "write_figures",
-]
-
 
 def prepare_folder(folder: Path) -> list[Path]:
     """Make sure that files can be written to ``folder``: the folders that were made for

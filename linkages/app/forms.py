@@ -10,14 +10,6 @@ from bifurc.errors import RouteError
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.verdict import judge
 
-__all__ = [
-    "choose_form",
-    "choose_forms",
-    "listed_forms",
-    "listed_numbers",
-    "require_forms",
-]
-
 
 def listed_numbers(atlas: Atlas) -> list[int]:
     """The numbers of the forms in the order in which the summary lists them: by their

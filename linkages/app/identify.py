@@ -8,16 +8,11 @@ from typing import TypedDict
 
 import numpy as np
 
-from linkages.app.texts import count_of, known_to, link_name
+from bifurc.text_tables import count_of
+from linkages.app.texts import known_to, link_name
 from linkages.entry import ParameterKind
-from linkages.identification.identify import (
-    NEAR,
-    Identification,
-    LockedJoint,
-    Match,
-)
-
-__all__ = ["describe_identification", "make_identification_document"]
+from linkages.identification.fitting import NEAR
+from linkages.identification.identify import Identification, LockedJoint, Match
 
 NEAREST = 3  # linkages that are shown where none fits
 WORST = 4  # numbers of the table that are shown of each of them

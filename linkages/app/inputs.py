@@ -13,21 +13,10 @@ from linkages.app.choice import choose_linkage, read_number, split_parameter
 from linkages.app.exit_codes import CommandError
 from linkages.app.options import HoldOptions
 from linkages.linkage import Linkage
-from linkages.loop import GeometryError
-from linkages.values import check_angle, told_apart
+from linkages.values import GeometryError, check_angle, told_apart
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = [
-    "Inputs",
-    "check_limits",
-    "choose_held",
-    "hold_joints",
-    "no_network",
-    "read_kinks",
-    "without_centre",
-]
 
 
 @dataclass(frozen=True)

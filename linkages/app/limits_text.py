@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from linkages.mechanisms.beyond_limits import LimitedRange
     from linkages.mechanisms.joint import Limits
 
-__all__ = ["kept_out_by_limits"]
-
 
 @lru_cache(maxsize=2)
 def kept_out_by_limits(atlas: Atlas) -> str:

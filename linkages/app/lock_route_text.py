@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.text_tables import count_of, table
 from linkages.app.exit_codes import CommandError
 from linkages.app.inputs import read_kinks
 from linkages.app.network_text import describe_ring
-from linkages.app.texts import count_of, in_degrees, table
+from linkages.app.texts import in_degrees
 from linkages.mechanisms.readout import Readout
 from linkages.networks.lock_routes import (
     LockRoute,
@@ -18,8 +19,6 @@ from linkages.networks.lock_routes import (
     show_locks,
 )
 from linkages.networks.mechanism import NetworkMechanism, network_of
-
-__all__ = ["describe_lock_route", "read_place"]
 
 
 def read_place(text: str, option: str, network: NetworkMechanism) -> NetworkPlace:

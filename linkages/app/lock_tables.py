@@ -10,8 +10,6 @@ from linkages.app.texts import in_degrees
 from linkages.catalogue import entry
 from linkages.networks.locking import LockedState
 
-__all__ = ["as_csv", "as_markdown", "make_page"]
-
 HEADS = (
     "locks",
     "kinks (deg)",

@@ -13,16 +13,6 @@ from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import joint_values
 from linkages.mechanisms.translates import translates_of
 
-__all__ = [
-    "FormMotionDocument",
-    "LoopDocument",
-    "LooseChainDocument",
-    "MechanismDocument",
-    "RangeDocument",
-    "describe_mechanism",
-    "describe_motion",
-]
-
 
 class RangeDocument(TypedDict):
     """The range of a variable along a form, rad or the user's unit, and its turns."""

@@ -6,8 +6,6 @@ from pathlib import Path
 
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["mechanism_text"]
-
 
 def mechanism_text(mechanism: Mechanism, out: Path) -> str:
     """The text of TOML, SDF, or else MJCF, for the file ``out``."""

@@ -8,25 +8,19 @@ from itertools import zip_longest
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.text_tables import section
 from bifurc.torus import wrap
 from linkages.app.configurations import SHOWN_SHARE
 from linkages.app.forms import listed_numbers
 from linkages.app.mechanism_document import LooseChainDocument, describe_mechanism
 from linkages.app.mobility import gruebler_of, mobility_of
-from linkages.app.texts import in_degrees, in_lengths, known_to, section
+from linkages.app.texts import in_degrees, in_lengths, known_to
 from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.plane import is_on_sphere, normal_of_plane
 from linkages.mechanisms.ranges import VariableRange
 from linkages.mechanisms.readout import Readout
-
-__all__ = [
-    "describe_dead_points",
-    "describe_joints",
-    "describe_loops",
-    "describe_motions",
-]
 
 WIDTH = 72  # of a cell of a list, in characters
 SHOWN = 20  # dead points beyond this number are only counted

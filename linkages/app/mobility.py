@@ -5,8 +5,6 @@ from __future__ import annotations
 from bifurc.atlas import Atlas
 from linkages.app.configurations import readout_of
 
-__all__ = ["gruebler_of", "mobility_of"]
-
 SPACE = 6  # freedoms of a body
 
 

@@ -7,16 +7,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.text_tables import section, table
 from linkages.app.entry_text import list_below, parameter_table
 from linkages.app.forms import listed_numbers
-from linkages.app.texts import in_degrees, section, table
+from linkages.app.texts import in_degrees
 from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.ranges import VariableRange
 from linkages.mechanisms.readout import Readout
 from linkages.networks.entries import NetworkEntry
 from linkages.networks.mechanism import NetworkMechanism, lock_network
-
-__all__ = ["describe_kinks", "describe_network", "describe_ring", "ring_values"]
 
 
 def describe_network(entry: NetworkEntry) -> str:

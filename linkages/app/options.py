@@ -15,24 +15,6 @@ import click
 if TYPE_CHECKING:
     from bifurc.search.settings import SearchSettings
 
-__all__ = [
-    "FILE",
-    "FOLDER",
-    "SEED",
-    "HoldOptions",
-    "JointWords",
-    "NamedPath",
-    "NumberRange",
-    "SearchOptions",
-    "form_option",
-    "hold_options",
-    "json_option",
-    "out_option",
-    "param_option",
-    "search_options",
-    "verbose_option",
-]
-
 Command = Callable[..., None]
 
 MOST_STARTS = 1_000_000

@@ -13,15 +13,6 @@ import click
 
 from linkages.app.exit_codes import CommandError
 
-__all__ = [
-    "require_ending",
-    "require_folder",
-    "require_writable",
-    "say",
-    "say_json",
-    "writing_to",
-]
-
 
 def say(text: str) -> None:
     """Print ``text`` and a newline.

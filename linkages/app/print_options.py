@@ -10,8 +10,6 @@ import click
 
 from linkages.app.options import NumberRange
 
-__all__ = ["PrintOptions", "print_options"]
-
 Command = Callable[..., None]
 
 POSITIVE = NumberRange(min=0, min_open=True)

@@ -10,27 +10,18 @@ from pathlib import Path
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
+from bifurc.text_tables import table
 from linkages.app.configurations import show_configuration
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.print_options import PrintOptions
-from linkages.app.texts import link_name, table
+from linkages.app.texts import link_name
 from linkages.labels import loop_of
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.printing.assembly import Kind, Part
 from linkages.printing.dimensions import Dimensions
 from linkages.printing.interference import PartApproach, find_meetings
 from linkages.printing.seating import REACHES, Seating, choose_seats
-from linkages.values import told_apart
-
-__all__ = [
-    "describe_meetings",
-    "describe_seating",
-    "interference_error",
-    "meetings_along",
-    "require_cad",
-    "seat_hinges",
-    "write_parts",
-]
+from linkages.values import GeometryError, told_apart
 
 DIAMETER, PLAY, WALL, SIZE = 6.0, 0.3, 1.2, 100.0  # mm
 SMALLEST_SIZE, LARGEST_SIZE = 1.0, 10_000.0  # mm

@@ -6,15 +6,13 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.routes.route import Route
+from bifurc.text_tables import count_of, table
 from linkages.app.configurations import (
     arclength_unit,
     joint_names,
     show_configuration,
     show_travel,
 )
-from linkages.app.texts import count_of, table
-
-__all__ = ["describe_route"]
 
 
 def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:

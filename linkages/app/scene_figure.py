@@ -11,8 +11,6 @@ from mpl_toolkits.mplot3d import Axes3D
 from linkages.loop import Loop
 from linkages.scene import Scene, best_view, make_scene
 
-__all__ = ["draw_configuration"]
-
 AXIS_COLOR = "#888888"
 LINK_COLOR = "#0072B2"
 OFFSET_COLOR = "#D55E00"

@@ -10,13 +10,6 @@ from contextlib import contextmanager
 
 import click
 
-__all__ = [
-    "EchoHandler",
-    "StatusLine",
-    "library_messages",
-    "say_more",
-]
-
 LIBRARIES = ("bifurc", "linkages")
 
 

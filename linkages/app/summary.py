@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
+from bifurc.text_tables import section
 from linkages.app.configurations import (
     arclength_unit,
     heading,
@@ -21,11 +22,9 @@ from linkages.app.configurations import (
 )
 from linkages.app.entry_text import describe_geometry
 from linkages.app.forms import listed_forms
-from linkages.app.texts import in_degrees, section
+from linkages.app.texts import in_degrees
 from linkages.app.verdict import judge
 from linkages.labels import FormLabels, loop_of
-
-__all__ = ["make_summary"]
 
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
 # titles of the tables of singular points, and the kinds that stand in each

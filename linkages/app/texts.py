@@ -4,18 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.text_tables import count_of, section, table
-
-__all__ = [
-    "count_of",
-    "in_degrees",
-    "in_lengths",
-    "known_to",
-    "link_name",
-    "section",
-    "table",
-]
-
 ROUNDING = 12  # decimals of a length, over the characteristic length, that are shown
 
 

@@ -29,17 +29,6 @@ from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.tolerance import closure_with_errors
 
-__all__ = [
-    "Ladder",
-    "Tolerance",
-    "climb",
-    "half_branches",
-    "is_whole",
-    "measure",
-    "room_beside",
-    "slope",
-]
-
 Floats = NDArray[np.float64]
 
 ERRORS = 10.0 ** -np.arange(2.0, 11.0)

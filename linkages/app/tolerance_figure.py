@@ -13,8 +13,6 @@ from bifurc.curves.valley import Unfolding
 from linkages.app.configurations import arclength_unit, unit_of_arclengths
 from linkages.app.tolerance import Ladder, Tolerance, half_branches, room_beside
 
-__all__ = ["draw_tolerance"]
-
 COLOURS = (
     "#0077bb",
     "#ee7733",

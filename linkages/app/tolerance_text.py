@@ -8,11 +8,9 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.curves.valley import Unfolding, ValleyEnd
+from bifurc.text_tables import count_of, section
 from linkages.app.configurations import readout_of, unit_of_arclengths
-from linkages.app.texts import count_of, section
 from linkages.app.tolerance import Ladder, Tolerance, half_branches, is_whole, slope
-
-__all__ = ["describe_tolerance"]
 
 
 def describe_tolerance(

@@ -15,14 +15,12 @@ from bifurc.search.completeness import IN_DOUBT
 from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
 from bifurc.systems.verdict import has_only_open_points
+from bifurc.text_tables import count_of
 from linkages.app.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
 from linkages.app.limits_text import kept_out_by_limits
-from linkages.app.texts import count_of
 from linkages.assembly_statements import has_all_assemblies
 from linkages.mechanisms.translates import translates_of
-
-__all__ = ["Verdict", "exit_by", "is_without_gaps", "judge"]
 
 
 @dataclass(frozen=True)

@@ -18,17 +18,11 @@ from linkages.closed_forms.comparison import compare
 from linkages.closed_forms.proof import prove
 from linkages.closure.loop_closure import LoopClosure
 from linkages.entry import Entry
-from linkages.errata.misprints import HOLDS, errata_of
-from linkages.loop import GeometryError, Loop
+from linkages.errata.erratum import HOLDS
+from linkages.errata.misprints import errata_of
+from linkages.loop import Loop
 from linkages.mobility import survey
-
-__all__ = [
-    "ClosedFormCheck",
-    "ErratumCheck",
-    "MemberCheck",
-    "Verification",
-    "verify",
-]
+from linkages.values import GeometryError
 
 Floats = NDArray[np.float64]
 

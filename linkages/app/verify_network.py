@@ -10,13 +10,11 @@ import numpy as np
 
 from linkages.app.verify import CLOSURE, NAN
 from linkages.decisions import is_dependent_constraint
-from linkages.loop import GeometryError
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS, NetworkEntry
 from linkages.networks.mechanism import lock_network
-
-__all__ = ["NetworkMember", "NetworkVerification", "verify_network"]
+from linkages.values import GeometryError
 
 CONFIGURATIONS = 200  # of the closed form, at which closure in space is looked at
 

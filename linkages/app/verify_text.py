@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
-from linkages.app.texts import count_of
+from bifurc.text_tables import count_of
 from linkages.app.verify import (
     ClosedFormCheck,
     ErratumCheck,
@@ -18,12 +18,6 @@ from linkages.app.verify import (
 if TYPE_CHECKING:
     # it imports networkx, which a loop does not need
     from linkages.app.verify_network import NetworkVerification
-
-__all__ = [
-    "describe_network_verification",
-    "describe_verification",
-    "make_verification_document",
-]
 
 Json: TypeAlias = (
     "bool | int | float | str | Sequence[Json] | Mapping[str, Json] | None"

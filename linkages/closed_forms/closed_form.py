@@ -25,25 +25,6 @@ from linkages.construction.numbers import Number
 if TYPE_CHECKING:
     import sympy as sp
 
-__all__ = [
-    "HALF_TURN",
-    "ZERO",
-    "ClosedForm",
-    "Pair",
-    "constant",
-    "constant_latex",
-    "cosine_of",
-    "joint",
-    "minus",
-    "negative",
-    "only",
-    "plus",
-    "ratio",
-    "reciprocal",
-    "sine_of",
-    "tangent",
-]
-
 Pair: TypeAlias = tuple[Number, Number]
 ZERO: Pair = (0, 1)
 HALF_TURN: Pair = (1, 0)

@@ -14,8 +14,6 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from linkages.closed_forms.closed_form import ClosedForm
 
-__all__ = ["Comparison", "compare", "pole_samples"]
-
 # arclengths around a pole that are looked at
 BESIDE = np.array([0.0, 1e-12, 1e-9, 1e-6, 1e-3])
 REGULAR = 1e-3  # singular values above which rounding leaves eleven digits

@@ -37,16 +37,8 @@ from linkages.construction import exact, numbers
 from linkages.construction.exact import Angle, Exact, Quadratic
 from linkages.construction.numbers import Number
 from linkages.entry import Entry, ParameterKind
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "Proof",
-    "closing_defects",
-    "exact_angles",
-    "exact_parameters",
-    "prove",
-    "prove_symbolically",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 # denominator of the random tangents and lengths: at least VALUES / 10 values of each
 VALUES = 1_000_000_007

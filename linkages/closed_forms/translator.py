@@ -21,20 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkages.families.wohlhart import wohlhart_symmetric
-from linkages.loop import GeometryError
-
-__all__ = [
-    "Stroke",
-    "StrokeAngles",
-    "contact_angle",
-    "joint_axes",
-    "joint_centres",
-    "meeting_points",
-    "plane_distance",
-    "slide",
-    "stroke_angles",
-    "upright",
-]
+from linkages.values import GeometryError
 
 THIRD = np.pi / 3
 

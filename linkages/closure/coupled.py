@@ -18,9 +18,8 @@ from bifurc.checks import floats_of
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings
 from linkages.closure.loop_closure import LoopClosure, march
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["CoupledClosure", "common_period", "locked_joints"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 LARGEST_DENOMINATOR = 1000  # of a gear ratio whose angles come back to where they were
 RATIO_ROUNDING = 1e-12  # by which a gear ratio may differ from a fraction, of itself

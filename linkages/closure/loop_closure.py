@@ -29,8 +29,6 @@ from linkages.loop import Loop
 from linkages.slices.completeness import SliceAudit
 from linkages.slices.elimination import Slice, slice_configurations
 
-__all__ = ["LoopClosure", "march"]
-
 # of every joint: any motion in which a joint turns by more than 15 degrees meets one
 SLICES = 24
 LARGEST_SLICED = 6  # joints of the longest loop with complete slices

@@ -11,8 +11,6 @@ import mpmath
 from linkages.kinematics import Number
 from linkages.loop import Loop
 
-__all__ = ["precise_residual"]
-
 
 class Quaternion(NamedTuple):
     """The unit quaternion w + x i + y j + z k of a rotation."""

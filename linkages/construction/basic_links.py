@@ -7,8 +7,6 @@ from math import radians, sin
 
 from linkages.entry import Condition, Parameter
 
-__all__ = ["EQUAL_RATIOS", "length_a", "twist_of", "twists_of_links"]
-
 TWISTS = {"a": "alpha", "b": "beta", "c": "gamma", "d": "delta"}
 EQUAL_RATIOS = Condition("sin(twist)/length is the same for the links a, b, c, d")
 

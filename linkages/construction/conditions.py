@@ -12,16 +12,6 @@ import math
 from linkages.construction.numbers import Number, sin
 from linkages.values import GeometryError, told_apart
 
-__all__ = [
-    "ROUNDING",
-    "bennett_length",
-    "decided",
-    "require_different",
-    "require_equal",
-    "require_positive",
-    "require_within",
-]
-
 TOLERANCE = 1e-9  # relative; parameters typed with ten digits pass, a misprint does not
 ROUNDING = 1e-12  # relative; a difference below it is nothing but rounding
 

@@ -27,22 +27,8 @@ from linkages.construction.conditions import decided, require_equal
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number, sin
 from linkages.construction.spatial_triangle import Kink, KinkAngle, composite_link
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "Kink",
-    "ending_with",
-    "isomerize",
-    "isomerized_angles",
-    "lock",
-    "locked_angles",
-    "share_joint",
-    "subtract",
-    "summate",
-    "superpose",
-    "superpose_across_bennett",
-    "superposed_angles",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 EQUAL = 1e-9  # relative difference up to which two links count as the same one
 

@@ -13,22 +13,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
-__all__ = [
-    "Angle",
-    "Exact",
-    "HalfAngle",
-    "Quadratic",
-    "acos",
-    "asin",
-    "atan",
-    "atan2",
-    "cos",
-    "pi",
-    "sin",
-    "sqrt",
-    "tan",
-]
-
 
 def rational_sqrt(x: Fraction) -> Fraction | None:
     """The rational square root of ``x`` if it has one."""

@@ -19,15 +19,8 @@ from linkages.construction.conditions import (
     require_positive,
 )
 from linkages.construction.numbers import Number, atan, sin, tan
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "Link",
-    "bennett_links",
-    "closed_chain",
-    "half_angle_ratio",
-    "syncopated_link",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 
 @dataclass(frozen=True)

@@ -16,19 +16,6 @@ from typing import Any, Protocol, TypeAlias
 
 from linkages.construction import exact
 
-__all__ = [
-    "Number",
-    "acos",
-    "asin",
-    "atan",
-    "atan2",
-    "cos",
-    "pi_like",
-    "sin",
-    "sqrt",
-    "tan",
-]
-
 # the other side of an operation: each number type decides itself what it works with
 Operand: TypeAlias = Any
 EXACT = (Fraction, exact.Quadratic, exact.Angle, exact.HalfAngle)

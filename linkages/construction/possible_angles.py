@@ -12,8 +12,6 @@ from math import pi
 
 import numpy as np
 
-__all__ = ["half_tangents", "kinks", "twist_pairs", "twists_with"]
-
 BESIDE = 0.01
 # a cosine beyond this is not the rounding, or the error, of a table worth fitting
 SLACK = 1.02

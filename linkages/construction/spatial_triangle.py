@@ -10,9 +10,7 @@ from typing import NamedTuple, TypeAlias
 from linkages.construction.conditions import decided
 from linkages.construction.link import Link
 from linkages.construction.numbers import Number, atan2, cos, pi_like, sin, sqrt
-from linkages.loop import GeometryError
-
-__all__ = ["CompositeLink", "EndGain", "Kink", "KinkAngle", "composite_link"]
+from linkages.values import GeometryError
 
 PARALLEL = 1e-12  # sine of the angle between axes that are parallel but for rounding
 

@@ -16,23 +16,6 @@ import numpy as np
 
 from linkages.entry import Term
 
-__all__ = [
-    "TableNumbers",
-    "equal_lengths",
-    "equal_links",
-    "equal_offsets",
-    "equal_twists",
-    "equation",
-    "opposite_offsets",
-    "opposite_twists",
-    "supplementary_twists",
-    "twists_of_value",
-    "zero_lengths",
-    "zero_offsets",
-    "zero_twist_sums",
-    "zero_twists",
-]
-
 
 class TableNumbers:
     """The numbers of a table (3, n) by the names that the sources give them."""

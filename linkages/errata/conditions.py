@@ -19,8 +19,6 @@ from linkages.errata.erratum import Amounts, Erratum
 from linkages.loop import Loop
 from linkages.mobility import held_gap, survey
 
-__all__ = ["CONDITION_ERRATA", "immobility"]
-
 SONG = "Song 2013"
 
 

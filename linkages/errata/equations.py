@@ -11,8 +11,6 @@ from linkages.construction.link import Link
 from linkages.construction.spatial_triangle import composite_link
 from linkages.errata.erratum import Amounts, Erratum
 
-__all__ = ["EQUATION_ERRATA"]
-
 
 def _special_length() -> Amounts:
     """Equation (5.2.34): b = sin(beta)/sin(alpha), to the four decimals that are

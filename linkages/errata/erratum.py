@@ -8,8 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["HOLDS", "Amounts", "Erratum", "median_and_largest"]
-
 HOLDS = 1e-11  # what a correct equation may leave in doubles
 
 

@@ -26,8 +26,6 @@ from linkages.closed_forms.closed_form import (
 from linkages.construction.numbers import Number
 from linkages.errata.erratum import Amounts, Erratum, median_and_largest
 
-__all__ = ["FORM_ERRATA", "Change", "compare_closed_forms", "with_constants"]
-
 Change: TypeAlias = Callable[[ClosedForm], ClosedForm]
 INPUTS = 60  # input angles along a form
 

@@ -12,8 +12,6 @@ from linkages.errata.erratum import Amounts, Erratum, median_and_largest
 from linkages.loop import Loop
 from linkages.mobility import held_gap
 
-__all__ = ["MATRIX_ERRATA", "Path", "path_along"]
-
 ANGLES = np.array([0.5, 1.1, -0.7, 1.9, 0.3, -1.2])  # rad, of a loop that is not closed
 
 

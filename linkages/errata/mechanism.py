@@ -14,8 +14,6 @@ import numpy as np
 from linkages.errata.erratum import Amounts, Erratum, median_and_largest
 from linkages.errata.matrices import path_along
 
-__all__ = ["MECHANISM_ERRATA"]
-
 TWIST = radians(100)
 LENGTH = 1.3
 SIN_TWIST, COS_TWIST = np.sin(TWIST), np.cos(TWIST)

@@ -15,15 +15,13 @@ from __future__ import annotations
 
 from linkages.errata.conditions import CONDITION_ERRATA
 from linkages.errata.equations import EQUATION_ERRATA
-from linkages.errata.erratum import HOLDS, Amounts, Erratum
+from linkages.errata.erratum import Erratum
 from linkages.errata.forms import FORM_ERRATA
 from linkages.errata.matrices import MATRIX_ERRATA
 from linkages.errata.mechanism import MECHANISM_ERRATA
 from linkages.errata.switching import SWITCHING_ERRATA
 from linkages.errata.symmetric import SYMMETRIC_ERRATA
 from linkages.errata.tori import TORI_ERRATA
-
-__all__ = ["ERRATA", "HOLDS", "Amounts", "Erratum", "errata_of"]
 
 ERRATA: tuple[Erratum, ...] = (
     *CONDITION_ERRATA,

@@ -15,8 +15,6 @@ import numpy as np
 
 from linkages.errata.erratum import Amounts, Erratum
 
-__all__ = ["SWITCHING_ERRATA"]
-
 NEAR = 1e-13  # rad, from the input where the root changes
 
 

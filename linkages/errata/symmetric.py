@@ -23,8 +23,6 @@ from linkages.errata.erratum import Amounts, Erratum
 from linkages.errata.forms import Change, compare_closed_forms, with_constants
 from linkages.families.bricard import LETTERS, Three, original_equations
 
-__all__ = ["SYMMETRIC_ERRATA"]
-
 
 class _Symbols(NamedTuple):
     """Lengths, cosines, sines and offsets of a closed form of the line-symmetric

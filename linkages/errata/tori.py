@@ -9,8 +9,6 @@ import numpy as np
 
 from linkages.errata.erratum import Amounts, Erratum
 
-__all__ = ["TORI_ERRATA"]
-
 SIGMA, CHI, THETA, R, S = 0.7, 0.8, 0.25, 1.5, 0.9
 PHIS = (0.6, 2.1, -1.3)
 

@@ -25,8 +25,6 @@ from linkages.networks.assembly import motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import NetworkMechanism, lock_network
 
-__all__ = ["WORDS", "WordErratum"]
-
 THESIS = "Song 2013"
 PAPER = "Racila and Dahan 2010"
 MEMBERS = 12  # random linkages that a general statement is held against

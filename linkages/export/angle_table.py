@@ -6,8 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-__all__ = ["make_angle_table"]
-
 
 def make_angle_table(
     arclength: np.ndarray, variables: np.ndarray, names: Sequence[str]

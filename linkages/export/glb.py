@@ -12,9 +12,7 @@ from linkages.export.gltf import BinaryGltf, Track
 from linkages.export.meshes import Mesh, ball, box, cylinder
 from linkages.export.model import Body, LinkageModel, Shape, Symbol
 from linkages.export.motion import Motion, Poses
-from linkages.loop import GeometryError
-
-__all__ = ["make_glb"]
+from linkages.values import GeometryError
 
 ROD_RADIUS = 0.03  # in characteristic lengths, as all below
 JOINT_RADIUS = 0.07

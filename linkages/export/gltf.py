@@ -11,8 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["BinaryGltf", "Track"]
-
 FLOAT, UNSIGNED_SHORT = 5126, 5123  # numbers that the format gives to types
 ARRAY_BUFFER, INDEX_BUFFER = 34962, 34963  # and to what arrays are for
 TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}  # by the numbers of an entry

@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["Mesh", "ball", "box", "cylinder"]
-
 SIDES = 24  # of the prism that stands for a cylinder
 RINGS = 12  # of a ball, from pole to pole
 FULL_TURN = 2 * np.pi

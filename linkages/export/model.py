@@ -24,15 +24,6 @@ from linkages.loop import Loop
 from linkages.mechanisms.joint import JointKind
 from linkages.mechanisms.readout import Readout
 
-__all__ = [
-    "Body",
-    "LinkageModel",
-    "Shape",
-    "Symbol",
-    "model_of_loop",
-    "model_of_mechanism",
-]
-
 NOTHING = 1e-9  # in characteristic lengths: a rod that is none
 UPWARD = np.array([0.0, 0.0, 1.0])
 

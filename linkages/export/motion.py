@@ -13,16 +13,6 @@ from bifurc.routes.route import Route
 from bifurc.routes.spread import spread_route
 from linkages.loop import Loop
 
-__all__ = [
-    "Motion",
-    "Poses",
-    "link_poses",
-    "motion_of_form",
-    "motion_of_route",
-    "poses_of",
-    "quaternions_without_jumps",
-]
-
 
 @dataclass(frozen=True, eq=False)
 class Motion:

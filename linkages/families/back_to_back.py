@@ -28,8 +28,6 @@ from linkages.entry import (
 )
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "back_to_back", "isomerized_back_to_back", "matching_twist"]
-
 POSITION = 110
 
 

@@ -40,14 +40,6 @@ from linkages.entry import (
 )
 from linkages.loop import Loop
 
-__all__ = [
-    "ENTRIES",
-    "bennett",
-    "bennett_ab_2",
-    "bennett_lb_2",
-    "bennett_line_symmetric",
-]
-
 POSITION = 30
 SOURCE = (
     "Bennett 1903; set-ups: Song 2013, Kinematic study of overconstrained linkages, "

@@ -53,21 +53,8 @@ from linkages.entry import (
     Relation,
     RelationKind,
 )
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "ENTRIES",
-    "LETTERS",
-    "Equations",
-    "Three",
-    "bricard_line_symmetric",
-    "bricard_line_symmetric_zero_offset",
-    "bricard_octahedral_line_symmetric",
-    "original_equations",
-    "patterns",
-    "revised_equations",
-    "revised_line_symmetric",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 POSITION = 160
 SOURCE = (

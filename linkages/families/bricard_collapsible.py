@@ -14,9 +14,8 @@ from linkages.construction.conditions import decided, require_different
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number, acos, atan2, cos, pi_like, sin, sqrt
 from linkages.entry import Condition, Entry, Parameter
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["ENTRIES", "doubly_collapsible_octahedral"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 POSITION = 180
 

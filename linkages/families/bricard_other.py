@@ -27,8 +27,6 @@ from linkages.entry import (
 )
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "altmann", "trihedral", "wohlhart_hybrid"]
-
 POSITION = 190
 
 

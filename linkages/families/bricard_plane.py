@@ -31,14 +31,8 @@ from linkages.entry import (
     Relation,
     RelationKind,
 )
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "ENTRIES",
-    "plane_symmetric",
-    "plane_symmetric_octahedral",
-    "revised_plane_symmetric",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 POSITION = 170
 

@@ -17,8 +17,6 @@ from linkages.construction.table_equations import (
 from linkages.entry import Condition, Entry, Parameter
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "dietmaier"]
-
 POSITION = 150
 
 

@@ -84,17 +84,6 @@ from linkages.entry import (
 )
 from linkages.loop import Loop
 
-__all__ = [
-    "ENTRIES",
-    "constructive_closed_form",
-    "double_subtractive_goldberg",
-    "non_constructive_closed_form",
-    "patterns",
-    "special_double_subtractive_goldberg",
-    "special_wohlhart_double_goldberg",
-    "wohlhart_double_goldberg",
-]
-
 POSITION = 80
 THESIS = (
     "Song 2013, Kinematic study of overconstrained linkages and design of "

@@ -26,10 +26,8 @@ from linkages.entry import (
     Relation,
     RelationKind,
 )
-from linkages.loop import GeometryError, Loop
-from linkages.values import told_apart
-
-__all__ = ["ENTRIES", "form_patterns", "four_bar", "kite", "parallelogram", "rhombus"]
+from linkages.loop import Loop
+from linkages.values import GeometryError, told_apart
 
 POSITION = 10
 SOURCE = "Hunt 1990, Kinematic geometry of mechanisms"

@@ -24,8 +24,6 @@ from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
 from linkages.families.goldberg_5r import generalized_goldberg
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "generalized_double_goldberg"]
-
 POSITION = 90
 
 

@@ -44,8 +44,6 @@ from linkages.entry import (
 )
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "goldberg", "goldberg_closed_form", "subtractive_goldberg"]
-
 POSITION = 40
 SONG = "Song 2013, Kinematic study of overconstrained linkages"
 SUM, DIFFERENCE = +1, -1  # how a and c are joined

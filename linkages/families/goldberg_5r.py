@@ -52,16 +52,6 @@ from linkages.entry import (
 from linkages.families.goldberg import goldberg_closed_form
 from linkages.loop import Loop
 
-__all__ = [
-    "ENTRIES",
-    "extended_myard",
-    "generalized_goldberg",
-    "myard_asymmetric",
-    "myard_plane_symmetric",
-    "syncopated_goldberg",
-    "syncopation_guesses",
-]
-
 POSITION = 50
 
 

@@ -49,19 +49,6 @@ from linkages.entry import (
 from linkages.families.goldberg_5r import syncopation_guesses
 from linkages.loop import Loop
 
-__all__ = [
-    "ENTRIES",
-    "difference_guesses",
-    "generalized_l_shape_goldberg",
-    "generalized_serial_goldberg",
-    "l_shape_goldberg",
-    "l_shape_variant",
-    "serial_goldberg",
-    "serial_variant",
-    "syncopated_l_shape_goldberg",
-    "syncopated_serial_goldberg",
-]
-
 POSITION = 70
 NETWORK = "from the network of Bennett loops of Song 2013, section 5.4"
 

@@ -43,13 +43,6 @@ from linkages.construction.table_equations import zero_offsets
 from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
 from linkages.loop import Loop
 
-__all__ = [
-    "ENTRIES",
-    "generalized_l_shape_variant",
-    "generalized_serial_variant",
-    "isomerized_l_shape",
-]
-
 POSITION = 75
 SOURCE = "Song (2013), section 5.4"
 

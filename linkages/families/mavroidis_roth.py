@@ -25,8 +25,6 @@ from linkages.entry import (
 )
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "OffsetPattern", "mavroidis_roth"]
-
 POSITION = 140
 
 

@@ -55,14 +55,6 @@ from linkages.families.double_goldberg import (
 from linkages.families.goldberg_6r import difference_guesses
 from linkages.loop import Loop
 
-__all__ = [
-    "ENTRIES",
-    "Kind",
-    "Order",
-    "double_goldberg_chain",
-    "double_goldberg_type",
-]
-
 POSITION = 100
 
 

@@ -51,8 +51,6 @@ from linkages.families.bricard import bricard_line_symmetric
 from linkages.families.bricard import patterns as bricard_patterns
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "reconfigurable_bricard_1", "reconfigurable_bricard_2"]
-
 POSITION = 200
 SOURCE = "Song 2013, Kinematic study of overconstrained linkages, section 5.3, "
 FIRST, SECOND = "reconfigurable-bricard-1", "reconfigurable-bricard-2"

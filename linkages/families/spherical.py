@@ -9,8 +9,6 @@ from linkages.construction.table_equations import zero_lengths, zero_offsets
 from linkages.entry import Condition, Entry, Parameter
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "spherical_four_bar"]
-
 POSITION = 20
 
 

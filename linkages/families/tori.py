@@ -43,18 +43,8 @@ from linkages.entry import (
     Relation,
     RelationKind,
 )
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "ENTRIES",
-    "Companion",
-    "TorusLink",
-    "Variant",
-    "companion",
-    "torus_4r",
-    "torus_5r",
-    "torus_link",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 POSITION = 60
 

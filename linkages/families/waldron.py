@@ -17,9 +17,8 @@ from linkages.construction.possible_angles import kinks
 from linkages.construction.spatial_triangle import Kink, KinkAngle, composite_link
 from linkages.construction.table_equations import zero_offsets
 from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["ENTRIES", "waldron_collinear", "waldron_hybrid"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 POSITION = 120
 

@@ -35,8 +35,6 @@ from linkages.entry import (
 )
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "wohlhart_symmetric"]
-
 POSITION = 210
 
 

@@ -23,8 +23,6 @@ from linkages.construction.table_equations import zero_offsets
 from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
 from linkages.loop import Loop
 
-__all__ = ["ENTRIES", "yu_baker", "yu_baker_two_ratios"]
-
 POSITION = 130
 
 

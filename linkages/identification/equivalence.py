@@ -20,18 +20,6 @@ import numpy as np
 
 from linkages.loop import Loop
 
-__all__ = [
-    "Comparison",
-    "Reading",
-    "Signs",
-    "as_loop",
-    "compare",
-    "find_signs",
-    "normal_form",
-    "readings",
-    "table",
-]
-
 
 def table(loop: Loop) -> np.ndarray:
     """The table (3, n) of a loop: lengths, twists (rad), offsets."""

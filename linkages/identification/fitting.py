@@ -21,9 +21,8 @@ from linkages.identification.equivalence import (
     table,
 )
 from linkages.identification.recovery import Row, plain_guess, plain_parameters
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["NEAR", "Member", "View", "best_member", "joints_of", "views_of"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 # members that miss by less are fitted, and are near; relative to the characteristic
 # length, rad

@@ -31,16 +31,8 @@ from linkages.identification.fitting import (
     joints_of,
     views_of,
 )
-from linkages.loop import MIN_JOINTS, GeometryError, Loop
-
-__all__ = [
-    "NEAR",
-    "Identification",
-    "LockedJoint",
-    "Match",
-    "ToleranceError",
-    "identify",
-]
+from linkages.loop import MIN_JOINTS, Loop
+from linkages.values import GeometryError
 
 TOLERANCE = 1e-8
 # of fits that miss by amounts within this factor, the most special one counts as the

@@ -19,8 +19,6 @@ from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.identification.equivalence import table
 from linkages.loop import Loop
 
-__all__ = ["Place", "Row", "plain_guess", "plain_parameters"]
-
 NUDGES = (0.011, 0.023)  # relative, of the two members that are compared
 SAME = 1e-13  # a parameter and a number of the table that are one
 

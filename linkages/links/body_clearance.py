@@ -27,8 +27,6 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.poses import Poses
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["approaches_of_bodies", "distances_of_bodies", "lines_of_bodies"]
-
 STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
 
 

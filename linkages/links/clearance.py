@@ -19,8 +19,6 @@ from linkages.links.rods import CORNERS, place_links
 from linkages.links.segments import segment_distances
 from linkages.loop import Loop
 
-__all__ = ["Approach", "approaches_along", "distances_of_links", "pairs_apart"]
-
 TOLERANCE = 1e-3  # of the characteristic length: how far below a minimum may be
 
 

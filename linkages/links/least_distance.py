@@ -13,15 +13,6 @@ from scipy.optimize import minimize_scalar
 
 from bifurc.branch import Branch
 
-__all__ = [
-    "MARGIN",
-    "RATE_SAMPLES",
-    "Distance",
-    "LeastDistance",
-    "find_least_distance",
-    "largest_rates",
-]
-
 FIRST_INTERVALS = 64
 MOST_INTERVALS = (
     2000  # of one distance that may hold less: with more, errors are larger

@@ -14,16 +14,6 @@ from linkages.mechanisms.poses import Poses
 from linkages.mechanisms.structure import Structure
 from linkages.scene import View, breadth, clearest_view
 
-__all__ = [
-    "BodyDrawing",
-    "SymbolDrawing",
-    "best_view_of_mechanism",
-    "breadths_of_mechanism",
-    "draw_bodies",
-    "draw_symbols",
-    "held_body",
-]
-
 SAME = 1e-6  # characteristic lengths: places that are closer are drawn as one
 ASIDE = 0.7  # how far along its axis a joint is drawn that would cover another one
 RAIL_END = 0.15  # how far a rail goes on beyond the places that the slide comes to

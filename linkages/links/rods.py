@@ -12,8 +12,6 @@ import numpy as np
 
 from linkages.loop import Loop
 
-__all__ = ["CORNERS", "link_corners", "place_links", "seat_heights"]
-
 CORNERS = 4  # of a link: seat, foot, next foot, next seat
 NOTHING = 1e-9  # of the characteristic length: a length that is none
 ASIDE = 0.7  # how far along its axis a joint moves out, in characteristic lengths

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["distances_by_ends", "segment_distances"]
-
 TINY = 1e-300  # a square of a length that is none
 
 

@@ -13,7 +13,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from linkages.decisions import is_bar_assembled
-from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.figure_bodies import (
     Piece,
     bodies_of_figure,
@@ -25,8 +24,7 @@ from linkages.mechanisms.joined_names import check_joined_names, joined_name
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
-
-__all__ = ["read_bars"]
+from linkages.values import GeometryError, check_number, quoted
 
 Content: TypeAlias = Mapping[str, Any]
 

@@ -17,8 +17,6 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.ranges import VariableRange, variable_ranges
 from linkages.mechanisms.readout import Readout
 
-__all__ = ["LimitedRange", "ranges_beyond_limits"]
-
 SAMPLES = 401  # of a form, for the ranges along it
 QUICK = SearchSettings(
     starts=50, budget=5.0, charts=100, prove=False, certify=False, near_motions=False

@@ -46,8 +46,6 @@ if TYPE_CHECKING:
     import mpmath
     from scipy.sparse import sparray
 
-__all__ = ["MechanismClosure"]
-
 # unknowns up to which compiled methods with dense matrices take no longer than those in
 # Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250

@@ -10,9 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from linkages.loop import GeometryError, check_number, quoted
-
-__all__ = ["Coupling", "Leader", "leaders"]
+from linkages.values import GeometryError, check_number, quoted
 
 
 @dataclass(frozen=True)

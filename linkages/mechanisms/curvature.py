@@ -14,8 +14,6 @@ import numpy as np
 from linkages.mechanisms.elements import Element, Elements, extent, reaches
 from linkages.mechanisms.structure import Closure, ClosureKind, Structure
 
-__all__ = ["CurvatureBounds"]
-
 # The translation of a displacement, over its residual where that is at most 0.2: the
 # scalar of the dual part is not among the equations.
 TRANSLATION = 1.1

@@ -33,8 +33,6 @@ from linkages.mechanisms.turn_lattice import TurnLattice
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
 
-__all__ = ["CutMotions", "Stretches", "cut_motions", "loop_without_limits"]
-
 TURN = 2 * math.pi
 HALVINGS = 60  # of a stretch in which a joint passes a limit
 MOST_STRETCHES = 2000  # that are begun from

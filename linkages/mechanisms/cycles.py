@@ -6,9 +6,6 @@ from typing import NamedTuple, TypeAlias
 
 import networkx as nx
 
-__all__ = ["Chain", "Ends", "Step", "chain_between", "cycle_basis"]
-
-
 # times the largest weight of a pair: the weight up to which cycles are looked for first
 FIRST_LIMIT = 6
 

@@ -13,8 +13,6 @@ from bifurc.files.variable import Variable
 from linkages.mechanisms.poses import rotation_vectors
 from linkages.mechanisms.readout import Readout
 
-__all__ = ["dataset_variables"]
-
 VARIABLES, ROTATIONS = "joint_variable_name", "rotation_name"
 # dimensions of the places at which values are given
 FORM, POINT, ASSEMBLY = ("form", "sample"), ("point",), ("assembly",)

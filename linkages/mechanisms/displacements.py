@@ -7,8 +7,6 @@ import numpy as np
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["displacement_of", "transforms", "turns"]
-
 
 def transforms(motion: Motion, values: np.ndarray) -> np.ndarray:
     """The transforms (k, 4, 4) of an elementary motion by ``values`` (k,), in rad or

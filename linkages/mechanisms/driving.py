@@ -6,11 +6,9 @@ import numpy as np
 
 from bifurc.decisions import is_start_solved
 from linkages.decisions import is_dependent_constraint, is_stopped
-from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = ["joints_to_hold"]
+from linkages.values import GeometryError, quoted
 
 STARTS = 20  # next to the reference configuration
 NEARBY = 0.1  # rad or characteristic lengths

@@ -13,8 +13,6 @@ from linkages.mechanisms.placement import Placement
 from linkages.mechanisms.rod_reach import RodReach
 from linkages.mechanisms.structure import Closure, Structure
 
-__all__ = ["Blocks", "Element", "Elements", "extent", "reaches"]
-
 ORIGIN = np.zeros(3)
 COLUMNS = 2  # unit vectors of a rotation that are unknowns
 

@@ -35,8 +35,6 @@ from linkages.mechanisms.motors import (
 from linkages.mechanisms.placement import Placement
 from linkages.mechanisms.structure import Closure, ClosureKind, Share, Structure
 
-__all__ = ["Equations", "write_equations"]
-
 
 @dataclass(frozen=True)
 class Equations:

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkages.loop import GeometryError
 from linkages.mechanisms.cycles import Step
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.structure import Structure
-
-__all__ = ["JointErrors", "draw_errors", "no_errors"]
+from linkages.values import GeometryError
 
 SIDES = 2  # bodies that a pair joins, and points that a closure brings together
 

@@ -16,13 +16,6 @@ from linkages.mechanisms.ranges import VariableRange, variable_ranges
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.structure import ClosureKind
 
-__all__ = [
-    "FormFacts",
-    "LoopFacts",
-    "form_facts",
-    "loop_facts",
-]
-
 SAMPLES = 400  # of a form
 IN_PLANE = 3  # constraints of a cycle in a plane
 CONSTRAINTS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}

@@ -8,17 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
-from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.joint import Joint
-
-__all__ = [
-    "FRAME",
-    "Piece",
-    "bodies_of_figure",
-    "check_held",
-    "check_point",
-    "read_fixed",
-]
+from linkages.values import GeometryError, quoted
 
 FRAME = "frame"
 

@@ -15,7 +15,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias
 
-from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.arcs import read_arcs
 from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.couplings import Coupling
@@ -24,9 +23,7 @@ from linkages.mechanisms.loops import read_loops
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 from linkages.mechanisms.plane import normal_of_plane
-from linkages.values import check_angle, check_keys
-
-__all__ = ["FREE", "MANY_TURNS", "read_mechanism"]
+from linkages.values import GeometryError, check_angle, check_keys, check_number, quoted
 
 Content: TypeAlias = Mapping[str, Any]
 

@@ -18,15 +18,13 @@ from networkx.utils import UnionFind
 
 from bifurc.decisions import is_start_solved
 from linkages.decisions import is_parallel_axis
-from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism, Panel
 from linkages.mechanisms.misfits import check_moved
 from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
 from linkages.mechanisms.poses import Poses
-
-__all__ = ["read_fold"]
+from linkages.values import GeometryError, check_number, quoted
 
 Frame: TypeAlias = Mapping[str, Any]
 Side: TypeAlias = tuple[int, int]

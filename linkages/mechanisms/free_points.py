@@ -15,8 +15,6 @@ from linkages.mechanisms.rods import RodNet
 if TYPE_CHECKING:
     import networkx as nx
 
-__all__ = ["FreePoint", "free_points"]
-
 BEYOND = 1.01  # of how far rods can carry a point: limits that it does not meet
 
 

@@ -12,8 +12,6 @@ import networkx as nx
 from bifurc.files.atomic import replace_file
 from linkages.mechanisms.mechanism import Mechanism, Variable
 
-__all__ = ["plain_mechanism_graph", "write_mechanism_graph"]
-
 
 def write_mechanism_graph(mechanism: Mechanism, path: str | os.PathLike[str]) -> Path:
     """The path of the GraphML file just written; see `plain_mechanism_graph`.

@@ -14,8 +14,6 @@ from linkages.decisions import meets_in_one_point
 from linkages.mechanisms.cycles import Ends
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["Group", "JointPoint", "find_groups", "find_points"]
-
 
 @dataclass(frozen=True)
 class Group:

@@ -10,8 +10,6 @@ from linkages.mechanisms.cycles import Ends
 from linkages.mechanisms.groups import Group, JointPoint
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["find_idle_turn"]
-
 
 def find_idle_turn(
     mechanism: Mechanism,

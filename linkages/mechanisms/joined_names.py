@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from linkages.loop import GeometryError
-
-__all__ = ["check_joined_names", "joined_name"]
+from linkages.values import GeometryError
 
 
 def joined_name(first: str, second: str) -> str:

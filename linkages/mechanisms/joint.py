@@ -16,11 +16,14 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from linkages.decisions import is_one_direction
-from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling
-from linkages.values import check_angle, check_direction
-
-__all__ = ["WITHOUT_PLACE", "Joint", "JointKind", "Limits", "Motion", "Vector"]
+from linkages.values import (
+    GeometryError,
+    check_angle,
+    check_direction,
+    check_number,
+    quoted,
+)
 
 Vector: TypeAlias = tuple[float, float, float]
 # The least and the largest value of a variable.

@@ -17,8 +17,6 @@ from linkages.decisions import is_parallel_axis
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["JointPlace", "joint_places"]
-
 # freedoms of the point of a joint: along its axis, or anywhere
 ALONG = (JointKind.REVOLUTE, JointKind.CYLINDRICAL, JointKind.HELICAL)
 ANYWHERE = (JointKind.PRISMATIC, JointKind.PLANAR, JointKind.RIGID)

@@ -17,8 +17,6 @@ from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.subject import mechanism_subject
 from linkages.mechanisms.translates import with_translates
 
-__all__ = ["label_mechanism"]
-
 SAMPLES = 400  # of a form, to see what stands still
 
 

@@ -20,8 +20,6 @@ from linkages.labels import FormLabels, subject_of
 from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_subject
 
-__all__ = ["in_joint_variables", "in_loop_angles", "to_loop_angles"]
-
 
 def to_loop_angles(readout: Readout) -> Isometry:
     """From the unknowns of a mechanism to the joint angles of its loop, where it is a

@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from linkages.construction.constructions import lock, locked_angles
-from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop
+from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.single_loop import SingleLoop, turns_as_loop
 from linkages.mechanisms.structure import Structure
-
-__all__ = ["loop_geometry"]
+from linkages.values import GeometryError
 
 LOCKED_IN_PLACE = 0.0
 

@@ -15,15 +15,13 @@ import numpy as np
 from bifurc.decisions import is_start_solved
 from linkages.closure.loop_closure import LoopClosure
 from linkages.decisions import is_parallel_axis, meets_in_one_point
-from linkages.loop import GeometryError, Loop, check_number, quoted
+from linkages.loop import Loop
 from linkages.mechanisms.displacements import transforms
 from linkages.mechanisms.joined_names import check_joined_names, joined_name
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.misfits import check_moved
-from linkages.values import check_keys
-
-__all__ = ["read_loops"]
+from linkages.values import GeometryError, check_keys, check_number, quoted
 
 Table: TypeAlias = Mapping[str, Any]
 

@@ -21,8 +21,6 @@ from linkages.mechanisms.structure import Structure
 if TYPE_CHECKING:
     import networkx as nx
 
-__all__ = ["LooseChain", "loose_chains"]
-
 OF_ROD = 5  # freedoms that a rod leaves its ends, its own turning left out
 OF_ROTATION = 3  # freedoms that a point has not
 

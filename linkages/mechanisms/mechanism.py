@@ -11,7 +11,6 @@ import numpy as np
 
 from bifurc.text_tables import count_of
 from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
-from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.couplings import Coupling, Leader, leaders
 from linkages.mechanisms.joint import (
     WITHOUT_PLACE,
@@ -21,12 +20,11 @@ from linkages.mechanisms.joint import (
     Motion,
     Vector,
 )
+from linkages.values import GeometryError, check_number, quoted
 
 if TYPE_CHECKING:
     # networkx takes long to import
     import networkx as nx
-
-__all__ = ["Mechanism", "Pair", "Panel", "Variable"]
 
 MIRROR = np.array([1.0, 1.0, -1.0])  # a vector in the plane z = 0
 FRAMES = ("frame", "ground", "base", "world")  # names of the body that is drawn at rest

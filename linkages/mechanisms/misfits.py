@@ -8,9 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkages.decisions import keeps_angle
-from linkages.loop import GeometryError
-
-__all__ = ["LARGEST_MOVE", "check_moved"]
+from linkages.values import GeometryError
 
 log = logging.getLogger(__name__)
 

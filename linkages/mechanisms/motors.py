@@ -11,8 +11,6 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-__all__ = ["IDENTITY", "Motor", "product", "rotated_about", "slide", "turn"]
-
 Number: TypeAlias = Any
 Quaternion: TypeAlias = tuple[Number, Number, Number, Number]
 Point: TypeAlias = list[Number]

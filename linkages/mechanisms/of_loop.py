@@ -8,8 +8,6 @@ from linkages.loop import Loop
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["mechanism_of_loop"]
-
 FRAME = "frame"
 
 

@@ -15,17 +15,7 @@ from typing import Any, NamedTuple, TypeAlias, TypeGuard
 import numpy as np
 
 from linkages.coordinates import are_near_origin
-from linkages.loop import GeometryError, check_number, quoted
-
-__all__ = [
-    "Coordinates",
-    "Place",
-    "WrittenNumber",
-    "counted_from_near",
-    "exact_number",
-    "origin_of",
-    "rounding_of_number",
-]
+from linkages.values import GeometryError, check_number, quoted
 
 Place: TypeAlias = tuple[float, float, float]
 

@@ -15,8 +15,6 @@ import numpy as np
 from linkages.decisions import is_parallel_axis, meets_in_one_point
 from linkages.mechanisms.joint import Motion
 
-__all__ = ["Placement"]
-
 
 @dataclass(frozen=True)
 class Placement:

@@ -10,8 +10,6 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.placement import Placement
 from linkages.mechanisms.size import Size
 
-__all__ = ["is_on_sphere", "normal_of_plane"]
-
 
 def normal_of_plane(mechanism: Mechanism) -> np.ndarray | None:
     """The unit normal (3,) of the plane in which all bodies move: axes of turns are

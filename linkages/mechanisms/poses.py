@@ -12,8 +12,6 @@ from linkages.mechanisms.displacements import displacement_of, transforms
 from linkages.mechanisms.rods import Rod
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["Poses", "TreeStep", "rotation_vectors"]
-
 SMALL = 1e-12  # sine below which two directions are parallel
 
 

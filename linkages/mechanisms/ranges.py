@@ -17,8 +17,6 @@ from bifurc.torus import difference, whole_turns
 from linkages.decisions import passes_reference
 from linkages.mechanisms.readout import Readout
 
-__all__ = ["VariableRange", "variable_ranges"]
-
 SAMPLES = 400  # of a form, to see where it is nearest to the reference configuration
 AROUND, ROUNDS = 41, 4  # places about the nearest one, and how often they are refined
 SEAM = 1e-6  # turns: a middle so little above -180 degrees is at 180

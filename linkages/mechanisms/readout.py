@@ -13,8 +13,6 @@ from linkages.mechanisms.poses import Poses, rotation_vectors
 from linkages.mechanisms.single_loop import SingleLoop, as_single_loop
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["JointVariables", "Readout"]
-
 # A number for a joint of one variable, a list for another one: rad, the user's unit.
 JointVariables: TypeAlias = dict[str, float | list[float]]
 

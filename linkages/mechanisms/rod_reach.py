@@ -13,8 +13,6 @@ from linkages.mechanisms.free_points import FreePoint
 from linkages.mechanisms.rods import Rod
 from linkages.mechanisms.structure import FreePair, Structure
 
-__all__ = ["RodReach"]
-
 
 class RodReach:
     """The reach of the rods of a ``structure`` where residuals are at most

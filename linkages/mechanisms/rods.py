@@ -14,13 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from linkages.decisions import is_parallel_axis
-from linkages.loop import GeometryError
 from linkages.mechanisms.cycles import Ends
 from linkages.mechanisms.displacements import displacement_of
 from linkages.mechanisms.groups import Group, JointPoint
 from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = ["Leg", "Rod", "RodNet", "find_rods"]
+from linkages.values import GeometryError
 
 
 class Leg(NamedTuple):

@@ -8,11 +8,10 @@ import numpy as np
 
 from bifurc.isometry import Isometry
 from linkages.axes import loop_from_axes
-from linkages.loop import MAX_JOINTS, MIN_JOINTS, GeometryError, Loop
+from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import ClosureKind, Structure
-
-__all__ = ["SingleLoop", "as_single_loop", "turns_as_loop"]
+from linkages.values import GeometryError
 
 
 @dataclass(frozen=True, eq=False)

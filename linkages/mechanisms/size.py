@@ -11,8 +11,6 @@ import numpy as np
 from linkages.mechanisms.joint_places import joint_places
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["Size"]
-
 ROUNDING = 1e-12  # of the spread of the points: a distance that is none
 
 

@@ -21,7 +21,6 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from linkages.closure.coupled import common_period
-from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Leader
 from linkages.mechanisms.cycles import (
     Chain,
@@ -38,8 +37,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.placement import Placement
 from linkages.mechanisms.rods import Rod, RodNet, find_rods
 from linkages.mechanisms.size import Size
-
-__all__ = ["Closure", "ClosureKind", "FreePair", "Share", "Structure", "Unknown"]
+from linkages.values import GeometryError
 
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
 # limits, rad, of a turn that its coupling to others brings never back to where it was

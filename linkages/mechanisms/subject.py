@@ -8,13 +8,11 @@ from typing import Any
 
 from bifurc.atlas import Atlas
 from linkages.labels import NoLinkageError
-from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism, Panel
 from linkages.mechanisms.origin import origin_of
-
-__all__ = ["joint_values", "mechanism_from", "mechanism_of", "mechanism_subject"]
+from linkages.values import GeometryError
 
 
 def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:

@@ -9,8 +9,6 @@ from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.subject import joint_values
 
-__all__ = ["mechanism_toml"]
-
 # What stands for a variable without a value, by key: a TOML list has no null.
 NOTHING: dict[str, object] = {"limits": [], "locked": FREE}
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from linkages.mechanisms.structure import Structure
     from linkages.mechanisms.turn_lattice import Count, TurnLattice
 
-__all__ = ["Translates", "translates_of", "with_translates"]
-
 # of a form, to see from where to where it goes: fewest, most, and how far apart between
 SAMPLES, MOST_SAMPLES, APART = 200, 1000, 0.5
 SLACK = 0.01  # of the distance of samples, by which a curve may be off its arclength

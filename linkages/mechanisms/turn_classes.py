@@ -12,8 +12,6 @@ from bifurc.torus import difference
 from linkages.decisions import is_moved_by_whole_turns
 from linkages.mechanisms.turn_lattice import TurnLattice
 
-__all__ = ["classes_of_assemblies", "classes_of_forms", "passes_but_for_turns"]
-
 T = TypeVar("T")
 Classes: TypeAlias = list[list[T]]
 

@@ -20,8 +20,6 @@ from linkages.decisions import cancels_in_whole_turns, is_parallel_axis
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.structure import Closure, ClosureKind, Structure
 
-__all__ = ["Count", "Shifts", "TurnLattice", "turn_lattice"]
-
 DIGITS = 10**13  # to which advances count where whole turns are looked for
 MOST_TURNS = 1000  # of a joint, in a shift that the lattice is made of
 MOST_SHIFTS = 200_000  # that are listed

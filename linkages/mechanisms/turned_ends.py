@@ -16,8 +16,6 @@ from bifurc.problem import Problem
 from bifurc.seeds import Audit, Level
 from linkages.mechanisms.turn_lattice import TurnLattice
 
-__all__ = ["TurnedEnds"]
-
 FOLLOWED = "where limits cut a form off, it was followed from whole turns away"
 
 

@@ -26,8 +26,6 @@ from linkages.closure.coupled import common_period
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.turn_lattice import TurnLattice
 
-__all__ = ["WholeTurns", "starts_at_every_turn", "turns_that_advance"]
-
 MOST_FORMS = 120  # beyond, forms beside them are not looked for
 AT_A_TURN, MOST_STARTS = 50, 2000  # random starts, and those of all turns of a joint
 PLACES = np.array([0.05, 0.35, 0.65, 0.95])  # on a form, of its length

@@ -16,8 +16,6 @@ import numpy as np
 
 from bifurc.decisions import is_start_solved
 
-__all__ = ["HoldingProblem", "brought_within_limits"]
-
 TIMES_BACK = 4  # that each is brought back, where closure leads beyond other limits
 STEPS = 30  # along the solutions towards the limits
 FARTHER, LONGEST = 8.0, 0.5  # times as far as the next solution, up to so many scales

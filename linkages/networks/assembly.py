@@ -18,8 +18,6 @@ import numpy as np
 from linkages.decisions import is_dependent_lock, is_network_closed
 from linkages.networks.network import Network, Sum, other_angle, wrap_angles
 
-__all__ = ["Motion", "assemble", "constraints_of", "motion_at"]
-
 GRID = 24  # values of every cell that is given
 FINE = 720  # intervals in which roots are looked for
 NEWTON_STEPS = 60

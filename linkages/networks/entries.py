@@ -18,8 +18,6 @@ from linkages.networks.network import Network, build_network
 from linkages.networks.plan import Plan
 from linkages.networks.plans import FOUR_BENNETT, L_SHAPE, SERIAL
 
-__all__ = ["LENGTHS", "NETWORKS", "NetworkEntry"]
-
 LENGTHS = ("b", "c", "d")  # that follow from the other parameters
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from linkages.construction.numbers import Number, atan, tan
 
-__all__ = ["bennett_gap", "bennett_twist"]
-
 
 def bennett_gap(alpha: Number, beta: Number, gamma: Number, delta: Number) -> Number:
     """tan(alpha/2) tan(beta/2) - tan(gamma/2) tan(delta/2), twists in rad: 0 where the

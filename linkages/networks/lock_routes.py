@@ -24,13 +24,11 @@ from bifurc.atlas import Atlas
 from bifurc.errors import RouteError
 from bifurc.routes.route import Route, find_route
 from linkages.decisions import is_same_network_place
-from linkages.loop import GeometryError
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.mechanism import NetworkMechanism, lock_network
 from linkages.networks.network import Network, wrap_angles
 from linkages.networks.placement import PlacedNetwork
-
-__all__ = ["LockRoute", "Locks", "NetworkPlace", "Switch", "Travel", "find_lock_route"]
+from linkages.values import GeometryError
 
 # Joints with the D-H angles (rad) at which they are locked.
 Locks: TypeAlias = frozenset[tuple[str, float]]

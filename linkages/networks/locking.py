@@ -10,13 +10,12 @@ from itertools import combinations
 from linkages.catalogue import catalogue
 from linkages.entry import Entry
 from linkages.identification.identify import identify
-from linkages.loop import MIN_JOINTS, GeometryError
+from linkages.loop import MIN_JOINTS
 from linkages.networks.assembly import motion_at
 from linkages.networks.mechanism import NetworkMechanism, lock_network, replaced_ring
 from linkages.networks.network import Network
 from linkages.networks.placement import PlacedNetwork
-
-__all__ = ["LockedState", "locked_state", "locked_states"]
+from linkages.values import GeometryError
 
 
 @dataclass(frozen=True)

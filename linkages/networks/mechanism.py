@@ -12,21 +12,14 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.seeds import Seeds
 from linkages.construction.constructions import lock, locked_angles
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.network import Network, wrap_angles
 from linkages.networks.placement import PlacedNetwork
-
-__all__ = [
-    "NetworkClosure",
-    "NetworkMechanism",
-    "lock_network",
-    "network_of",
-    "network_subject",
-]
+from linkages.values import GeometryError
 
 # What every cell turns by at its second axis in the reference configuration, rad, where
 # nothing is locked: in no special place.

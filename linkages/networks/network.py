@@ -26,11 +26,9 @@ from linkages.construction.link import (
     half_angle_ratio,
 )
 from linkages.construction.numbers import Number
-from linkages.loop import GeometryError, Loop, quoted
+from linkages.loop import Loop
 from linkages.networks.plan import Plan
-
-__all__ = ["Network", "Sum", "build_network", "other_angle", "wrap_angles"]
-
+from linkages.values import GeometryError, quoted
 
 TWISTS = ("alpha", "beta", "gamma", "delta")
 

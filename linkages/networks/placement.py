@@ -13,8 +13,6 @@ from linkages.mechanisms.joint import Joint, JointKind, Vector
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.network import Network, wrap_angles
 
-__all__ = ["PlacedNetwork"]
-
 LOCKED_IN_PLACE = 0.0
 
 

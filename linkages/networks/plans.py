@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from linkages.networks.plan import Cell, Plan
 
-__all__ = ["FOUR_BENNETT", "L_SHAPE", "PLANS", "SERIAL"]
-
 A = Cell("A", ("8", "1", "2", "0"), ("c", "a"))
 B = Cell("B", ("2", "3", "4", "0"), ("b", "c"))
 C = Cell("C", ("4", "5", "6", "0"), ("d", "b"))

@@ -21,16 +21,6 @@ from linkages.links.segments import distances_by_ends
 from linkages.loop import Loop
 from linkages.printing.dimensions import Dimensions
 
-__all__ = [
-    "Assembly",
-    "Kind",
-    "Part",
-    "Seats",
-    "link_corners",
-    "pairs_that_may_meet",
-    "place_segments",
-]
-
 RODS = 3  # of a link: an arm, the rod in between, an arm
 FIRST_ARM, LAST_ARM = 0, RODS - 1
 PARALLEL = 1e-9  # of a length: what is less has no direction

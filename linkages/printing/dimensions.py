@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from linkages.loop import GeometryError
-from linkages.values import told_apart
-
-__all__ = ["Dimensions"]
+from linkages.values import GeometryError, told_apart
 
 PIN_SHARE = 0.5  # of the diameter of rods; 3 mm, an M3 bolt, for rods of 6 mm
 # what touches along a curve only, or by whole faces, is hard on boolean operations:

@@ -16,8 +16,6 @@ from linkages.printing.solids import (
     place_solid,
 )
 
-__all__ = ["write_step", "write_stl"]
-
 PIN_COLOR = "#444444"
 NO_TIME = "2000-01-01T00:00:00"  # the time of day is no part of a linkage
 DEFLECTION, ANGLE = 0.02, 0.2  # mm and rad: of facets from round surfaces

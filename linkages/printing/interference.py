@@ -12,8 +12,6 @@ from linkages.links.least_distance import find_least_distance, largest_rates
 from linkages.links.segments import distances_by_ends
 from linkages.printing.assembly import Assembly, Part
 
-__all__ = ["PartApproach", "find_meetings", "nearest_approach"]
-
 TOLERANCE = 1e-3  # of the characteristic length
 PLAY_SHARE = 0.25  # and of the play, for hinges with little of it
 SAMPLES = 721  # of a form, where all parts that meet are looked for

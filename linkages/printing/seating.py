@@ -19,8 +19,6 @@ from linkages.printing.assembly import Assembly, Seats, place_segments
 from linkages.printing.dimensions import Dimensions
 from linkages.printing.interference import PartApproach, nearest_approach
 
-__all__ = ["REACHES", "Seating", "choose_seats"]
-
 REACHES = (0.25, 0.5, 1.0, 1.0)  # how far hinges move out, in characteristic lengths
 CANDIDATES = 400  # at random, for each range
 MOMENTS = 192  # of each form, where candidates are looked at

@@ -16,8 +16,6 @@ from build123d import Plane, Shape, Solid
 from linkages.printing.assembly import Assembly, link_corners
 from linkages.printing.dimensions import Dimensions
 
-__all__ = ["PrintedParts", "link_poses_at", "make_parts", "place_solid"]
-
 BEYOND = 1.1  # how far a bore is cut, in heights of the eye
 FLAT_FROM = 45  # deg of latitude; a wall is left beyond the bore of a cap
 OVERLAP = 0.25  # how far a pin goes into its head, in radii of the pin

@@ -32,15 +32,8 @@ from linkages.decisions import (
     is_same_end,
     is_singular_end,
 )
-from linkages.loop import GeometryError, Loop
-
-__all__ = [
-    "Assemblies",
-    "GenericLoop",
-    "PathEnd",
-    "follow_paths",
-    "isolated_assemblies",
-]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 JOINTS = 6
 ATTEMPTS = 3  # generic geometries from which the paths start

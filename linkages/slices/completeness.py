@@ -51,8 +51,6 @@ from linkages.slices.assemblies import Assemblies, isolated_assemblies
 from linkages.slices.elimination import Slice, slice_configurations
 from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets
 
-__all__ = ["SliceAudit"]
-
 FEWEST = 4  # joints that move on a motion, at least
 CUT = 0.3819660112501051  # of its length: where a curve without dead points is cut
 TURN = 2 * np.pi

@@ -30,9 +30,8 @@ from enum import IntEnum
 import numpy as np
 
 from linkages import _core
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["Slice", "slice_configurations"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 SHORTEST = 4  # joints of a loop that is sliced
 LONGEST = 6

@@ -32,9 +32,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from linkages import _core
-from linkages.loop import GeometryError, Loop
-
-__all__ = ["Fold", "find_fold", "follow_sheets"]
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 SHORTEST, LONGEST = 4, 6  # joints of a loop whose sheets are followed
 

@@ -12,20 +12,6 @@ import numpy as np
 
 from linkages.loop import Loop
 
-__all__ = [
-    "Assembly",
-    "Axis",
-    "Bar",
-    "Role",
-    "Seat",
-    "bar_between",
-    "fourth_joint",
-    "joint_after",
-    "joint_on",
-    "loop_assembly",
-    "turn",
-]
-
 NEARLY_PARALLEL = 1e-9  # sine of the angle between axes without a common normal
 
 

@@ -23,8 +23,6 @@ from linkages.source_figures.drawing import (
 from linkages.source_figures.graph_drawing import draw_graph
 from linkages.source_figures.table import Content, SourceFigure
 
-__all__ = ["draw", "transversal_points"]
-
 SLANT = np.array([1.0, 0.37])  # a direction on paper that no line is across
 
 PANEL = 2.9  # width and height of a panel, in inches

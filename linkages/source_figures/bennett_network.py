@@ -17,8 +17,6 @@ from linkages.source_figures.assembly import (
 )
 from linkages.source_figures.table import Content
 
-__all__ = ["network_assembly"]
-
 SPOKES = (("2", "c"), ("4", "b"), ("6", "d"), ("8", "a"))
 
 

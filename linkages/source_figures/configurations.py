@@ -17,16 +17,6 @@ from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.source_figures.table import Content
 
-__all__ = [
-    "atlas_of",
-    "configuration",
-    "form_named",
-    "linkage_of",
-    "loop_of_content",
-    "places_at",
-    "widest_place",
-]
-
 SAMPLES = 720  # of a form, between which a given angle is looked for
 CHOICES = 48  # configurations among which the clearest is chosen
 CLEAR_ENOUGH = 0.99  # of the clearest: the first such one is taken

@@ -35,8 +35,6 @@ from linkages.source_figures.bennett_network import network_assembly
 from linkages.source_figures.configurations import configuration, linkage_of
 from linkages.source_figures.table import Content
 
-__all__ = ["BasicLink", "assembly_of", "basic_links", "link_text", "link_value"]
-
 GREEK = {"a": "α", "b": "β", "c": "γ", "d": "δ", "e": "ε"}
 PARAMETER = {"a": "alpha", "b": "beta", "c": "gamma", "d": "delta"}
 ROLES = frozenset(role.value for role in Role)

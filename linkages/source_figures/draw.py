@@ -22,8 +22,6 @@ from linkages.source_figures import (
 )
 from linkages.source_figures.table import Kind, SourceFigure
 
-__all__ = ["draw_source_figure"]
-
 DRAWINGS: dict[Kind, Callable[[SourceFigure], Figure]] = {
     Kind.ASSEMBLY: assembly_figure.draw,
     Kind.VIEWS: views_figure.draw_views,

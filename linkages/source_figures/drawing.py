@@ -13,23 +13,6 @@ from matplotlib.patheffects import withStroke
 
 from linkages.source_figures.assembly import Assembly, Role
 
-__all__ = [
-    "HALO",
-    "LARGE",
-    "SMALL",
-    "Look",
-    "Pen",
-    "best_look",
-    "clarity",
-    "clearest_of",
-    "common_look",
-    "draw_assembly",
-    "look_along",
-    "symmetry_line",
-    "write_at",
-    "write_names",
-]
-
 DIRECTIONS = 240  # from which an assembly is looked at
 FEW = 5  # every such direction, where many assemblies are compared
 REACH = 0.2  # of the extent: half the drawn length of an axis beyond its links

@@ -13,8 +13,6 @@ from matplotlib.textpath import TextPath
 from linkages.source_figures.assembly import Assembly, Role, Seat
 from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES, write_at
 
-__all__ = ["draw_graph", "places_of"]
-
 SHORTEST = 0.2  # of a drawn link: the least distance of a joint on it from its ends
 SEPARATION = 0.55  # joints inside the ring, at least, where the ring has radius 1
 PUSHES = 20

@@ -22,8 +22,6 @@ from linkages.source_figures.construction import assembly_of
 from linkages.source_figures.drawing import HALO, draw_assembly, look_along, write_at
 from linkages.source_figures.table import Content, SourceFigure
 
-__all__ = ["chain_assembly", "draw", "ray_angles"]
-
 UP = np.array([0.0, 0.0, 1.0])
 OBLIQUE = look_along(np.array([0.75, -1.0, 0.6]), UP)
 REACH = 0.9  # of the extent: how far the axes of a chain are drawn

@@ -18,8 +18,6 @@ from bifurc.torus import wrap
 from linkages.source_figures.configurations import atlas_of, form_named, places_at
 from linkages.source_figures.table import Content, SourceFigure
 
-__all__ = ["draw", "joints_alike"]
-
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 ALIKE = 1e-9  # rad: curves that are closer everywhere are drawn as one
 DEGREES = 180.0 / np.pi

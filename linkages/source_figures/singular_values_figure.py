@@ -19,8 +19,6 @@ from linkages.source_figures.configurations import (
 )
 from linkages.source_figures.table import SourceFigure
 
-__all__ = ["draw", "singular_values"]
-
 DEGREES = 180.0 / np.pi
 REGULAR = "#0072B2"
 SMALLEST = "#D55E00"

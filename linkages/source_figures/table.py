@@ -14,16 +14,6 @@ from typing import Any, TypeAlias
 
 from bifurc.errors import BifurcError
 
-__all__ = [
-    "Agreement",
-    "Content",
-    "Kind",
-    "SourceFigure",
-    "UnknownFigureError",
-    "figure_named",
-    "source_figures",
-]
-
 FILES = (
     "thesis_chapter_2",
     "thesis_chapter_3",

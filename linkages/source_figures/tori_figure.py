@@ -15,8 +15,6 @@ from matplotlib.figure import Figure
 from linkages.source_figures.drawing import LARGE, look_along, write_names
 from linkages.source_figures.table import Content, SourceFigure
 
-__all__ = ["Torus", "companion_torus", "draw", "shared_turn"]
-
 LOOK = look_along(np.array([1.0, -0.8, 0.75]), np.array([0.0, 0.0, 1.0]))
 TURN = np.linspace(0.0, 2 * np.pi, 181)
 CIRCLES = 36  # of which the surface is drawn

@@ -26,8 +26,6 @@ from linkages.source_figures.configurations import (
 from linkages.source_figures.drawing import SMALL, common_look, draw_assembly
 from linkages.source_figures.table import Content, SourceFigure
 
-__all__ = ["Stop", "draw", "tour_of"]
-
 ALONG = (0.25, 0.5, 0.75)  # of an arc: where a form is shown
 COLUMNS = 4
 SNAPSHOT = 1.45  # width and height, in inches

@@ -25,8 +25,6 @@ from linkages.closed_forms.translator import (
 from linkages.source_figures.drawing import HALO, look_along
 from linkages.source_figures.table import Content, SourceFigure
 
-__all__ = ["draw"]
-
 DEGREES = 180.0 / np.pi
 COUNT = 721
 ODD_COLOR = "#0072B2"

@@ -25,8 +25,6 @@ from linkages.source_figures.drawing import (
 )
 from linkages.source_figures.table import SourceFigure
 
-__all__ = ["draw_motion", "draw_views"]
-
 LINE_COLOR = "#009E73"
 FRONTS = 48  # looks across the line of symmetry among which the clearest is taken
 

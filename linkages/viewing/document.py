@@ -34,8 +34,6 @@ from linkages.scene import View, best_view, make_scene
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
 from linkages.viewing.title import title_of
 
-__all__ = ["ViewDocument", "make_view_document"]
-
 SAMPLES = 72  # places on each form by which the principal plane is found
 BESIDE_A_POINT = 2  # of the spacing of these: a form is first shown farther from points
 ALIKE = 1e-3  # of a breadth: configurations that differ by less show as much

@@ -24,8 +24,6 @@ from linkages.mechanisms.poses import Poses, TreeStep
 from linkages.mechanisms.rods import Rod
 from linkages.mechanisms.structure import Structure, Unknown
 
-__all__ = ["MechanismDocument", "UnknownDocument", "describe_motion"]
-
 MOST_UNKNOWNS = 30  # up to which a page has time for singular values at each frame
 
 

@@ -12,8 +12,6 @@ from linkages.viewing.document import make_view_document
 if TYPE_CHECKING:
     from linkages.viewing.widget import LinkageWidget
 
-__all__ = ["NoWidgetError", "view"]
-
 
 class NoWidgetError(BifurcError, ImportError):
     """The widget cannot be made, since anywidget is not installed."""

@@ -12,8 +12,6 @@ from pathlib import Path
 from bifurc.files.atomic import replace_file
 from linkages.viewing.document import ViewDocument
 
-__all__ = ["make_page", "viewer_script", "write_page"]
-
 log = logging.getLogger(__name__)
 
 LARGEST = 1_500_000  # bytes; a page beyond it is slow to open

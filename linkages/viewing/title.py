@@ -9,8 +9,6 @@ from linkages.labels import loop_of
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.subject import mechanism_of
 
-__all__ = ["title_of"]
-
 MOST_LOCKS = 6  # that a title lists
 
 

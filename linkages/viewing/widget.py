@@ -14,8 +14,6 @@ import traitlets
 from linkages.viewing.document import ViewDocument
 from linkages.viewing.page import viewer_script
 
-__all__ = ["LinkageWidget"]
-
 START = 0.3  # of a form: seldom at a singular point, as its ends and its middle are
 
 

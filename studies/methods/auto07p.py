@@ -22,8 +22,6 @@ from studies.methods.curve import Curve, MethodFailure, through_points
 from studies.methods.linear import mixtures
 from studies.methods.point_by_point import LONGEST, turn_per_step
 
-__all__ = ["auto_07p", "has_auto"]
-
 DEBIAN = "/usr/lib/auto-07p"
 KINDS = {"loop": 1, "circle": 2, "pitchfork": 3, "bratu": 4, "other": 5}
 NO_EQUATIONS = "subroutine other_equations\nend subroutine\n"

@@ -22,8 +22,6 @@ from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 
-__all__ = ["Case", "all_cases", "bratu"]
-
 Numbers: TypeAlias = list[mpmath.mpf]
 
 EXACT = TraceSettings(order=20, tolerance=1e-14)

@@ -8,8 +8,6 @@ from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings, Problem
 from studies.methods.curve import MethodFailure
 
-__all__ = ["Counted"]
-
 # evaluations of F and F' that a compiled Taylor piece costs: corrections, checks, and
 # the series itself
 A_PIECE = 10

@@ -9,8 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-__all__ = ["Curve", "MethodFailure", "through_points", "through_points_and_tangents"]
-
 
 class MethodFailure(RuntimeError):
     """The method cannot follow this curve to its end; the message says why."""

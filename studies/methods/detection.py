@@ -8,8 +8,6 @@ import numpy as np
 from bifurc.problem import Problem
 from studies.methods.linear import mixtures
 
-__all__ = ["by_determinant", "by_singular_value"]
-
 SMALL = 0.02  # of the median: a singular value below this is read as zero
 
 

@@ -8,8 +8,6 @@ import numpy as np
 
 from studies.methods.cases import DIGITS, Case
 
-__all__ = ["distance_in_digits", "distances", "largest_distance"]
-
 STEPS = 4  # of Newton's method
 COVER = 2000  # samples of a curve whose distances are measured
 

@@ -10,15 +10,6 @@ import numpy as np
 from scipy.fft import dstn
 from scipy.sparse import csr_array, diags_array, eye_array, hstack, kron
 
-__all__ = [
-    "FOLD_IN_1D",
-    "FOLD_IN_2D",
-    "BratuField",
-    "SwiftHohenberg",
-    "bratu_field",
-    "fast_poisson",
-]
-
 # Largest p in one dimension: 8 (t / cosh t)^2 with t tanh t = 1 (Bratu 1914).
 FOLD_IN_1D = 3.5138307191251613
 # In two, as others computed it: 6.808124423 (Mohsen 2014).

@@ -11,9 +11,6 @@ from scipy.sparse import csc_array, issparse
 from bifurc.numerics.bordered import sparse_bordered
 from bifurc.problem import Problem
 
-__all__ = ["Jacobian", "evaluate", "mixtures", "solve_bordered"]
-
-
 Jacobian: TypeAlias = np.ndarray | csc_array
 
 

@@ -11,8 +11,6 @@ from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.point_by_point import turn_per_step
 
-__all__ = ["natural_parameter"]
-
 # of the last 1 to 4 of equally spaced points, in the polynomial through them
 WEIGHTS = ((1,), (-1, 2), (1, -3, 3), (-1, 4, -6, 4))
 

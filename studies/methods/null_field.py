@@ -12,8 +12,6 @@ from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.linear import evaluate, solve_bordered
 
-__all__ = ["SOLVERS", "integrate_null_field"]
-
 SOLVERS: dict[str, Callable[..., OdeSolver]] = {
     "RK45": RK45,
     "DOP853": DOP853,

@@ -11,8 +11,6 @@ from studies.methods.curve import Curve, MethodFailure, through_points
 from studies.methods.linear import mixtures
 from studies.methods.point_by_point import turn_per_step
 
-__all__ = ["count_branch_points", "has_pycont", "pycont_lite"]
-
 
 def has_pycont() -> bool:
     """Whether pycont-lite can be imported."""

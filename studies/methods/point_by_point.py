@@ -15,12 +15,6 @@ from studies.methods.curve import (
 )
 from studies.methods.linear import evaluate, solve_bordered
 
-__all__ = [
-    "pseudo_arclength_secant",
-    "pseudo_arclength_tangent",
-    "svd_predictor_corrector",
-]
-
 NEWTON = 8  # corrections of one point
 # largest step over the turn of a step: straight stretches are not smooth ones
 LONGEST = 0.6

@@ -17,8 +17,6 @@ from studies.methods import (
 from studies.methods.cases import Case
 from studies.methods.curve import Curve
 
-__all__ = ["ORDERS", "Method", "comparison_methods", "orders_of_this_project"]
-
 ORDERS = (2, 4, 8, 12, 16, 20, 24)
 Follow = Callable[..., Curve]
 

@@ -9,8 +9,6 @@ from bifurc.curves.continuation import TraceSettings, lowest_order, trace_branch
 from bifurc.problem import Problem
 from studies.methods.curve import Curve, MethodFailure
 
-__all__ = ["trace"]
-
 
 def trace(
     problem: Problem,

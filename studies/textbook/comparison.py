@@ -12,8 +12,6 @@ from bifurc.search.completeness import IN_DOUBT
 from bifurc.seeds import Level
 from studies.textbook.problems import PointKind, PrintedPoint, TextbookProblem
 
-__all__ = ["Comparison", "Match", "Verdict", "compare"]
-
 UNITS = 1.0  # of the last digit: some sources round, and some cut off
 
 

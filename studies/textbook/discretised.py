@@ -10,8 +10,6 @@ import numpy as np
 
 from bifurc import FunctionProblem
 
-__all__ = ["DISCRETISED"]
-
 
 def torsion_by_differences() -> FunctionProblem:
     """Torsion of a square rod (Rheinboldt 1976), TEST_CON 10, option 1: stiffness

@@ -6,8 +6,6 @@ import sympy
 
 from bifurc import SymbolicProblem
 
-__all__ = ["fortran_of"]
-
 HEAD = """\
 subroutine other_equations(x, f, jacobian)
   implicit none

@@ -24,8 +24,6 @@ from bifurc.systems.equation_file import read_equations
 from bifurc.systems.system import EquationSystem
 from studies.textbook.discretised import DISCRETISED
 
-__all__ = ["PointKind", "PrintedPoint", "TextbookProblem", "load_problems"]
-
 DATA = Path(__file__).parents[2] / "data"
 
 

@@ -6,7 +6,7 @@ import pytest
 from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
 UPRIGHT = [[0, 0, 1]] * 4

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from linkages.catalogue import UnknownLinkageError, catalogue, entry
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 OWN_NAMES = {
     *("four-bar", "parallelogram", "rhombus", "kite"),

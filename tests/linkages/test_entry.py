@@ -9,7 +9,7 @@ from linkages.catalogue import catalogue, entry
 from linkages.entry import Condition, UnknownParameterError
 from linkages.identification.equivalence import as_loop, table
 from linkages.identification.identify import identify
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 
 @pytest.mark.parametrize("name", list(catalogue()))

@@ -5,8 +5,9 @@ import pytest
 
 from linkages.catalogue import entry
 from linkages.forms import identify_form, name_forms
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.values import GeometryError
 
 
 def _loop_and_patterns(case):

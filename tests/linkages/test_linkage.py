@@ -8,7 +8,8 @@ from bifurc.errors import BifurcError
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.file import LinkageFileError
 from linkages.linkage import Linkage, load
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 TABLE = """
 angles = "deg"

@@ -13,8 +13,9 @@ from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.construction.constructions import isomerize, lock
 from linkages.identification.equivalence import as_loop, table
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.tolerance import make_with_errors
+from linkages.values import GeometryError
 
 NAMES = [
     "bennett",

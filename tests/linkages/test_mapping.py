@@ -8,8 +8,9 @@ from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import UnknownParameterError
 from linkages.labels import FormLabels
 from linkages.linkage import load
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.values import GeometryError
 
 
 def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():

@@ -6,9 +6,11 @@ import pytest
 
 from linkages.catalogue import catalogue, entry
 from linkages.construction.constructions import isomerize
+from linkages.entry import RelationKind
 from linkages.identification.identify import identify
-from linkages.loop import GeometryError, Loop
-from linkages.relations import RelationKind, relation_graph, relations_of
+from linkages.loop import Loop
+from linkages.relations import relation_graph, relations_of
+from linkages.values import GeometryError
 
 
 def members(name, rng, count=2):

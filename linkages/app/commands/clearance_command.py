@@ -17,8 +17,6 @@ from linkages.app.options import (
     verbose_option,
 )
 
-__all__ = ["clearance_command"]
-
 LARGEST = 1e100  # diameter, as lengths of links
 
 

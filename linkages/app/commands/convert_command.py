@@ -15,8 +15,6 @@ from linkages.linkage import Linkage
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["convert_command"]
-
 TARGET = "OUT"
 ENDINGS = (".toml", ".xml", ".mjcf", ".sdf")
 

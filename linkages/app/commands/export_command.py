@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from linkages.export.model import LinkageModel
     from linkages.export.motion import Motion
 
-__all__ = ["export_command"]
-
 TO = "--to"
 MODEL, TABLE = ".glb", ".csv"
 MOTIONS = (MODEL, TABLE)

@@ -14,8 +14,6 @@ from linkages.app.options import out_option
 if TYPE_CHECKING:
     from linkages.source_figures.table import SourceFigure
 
-__all__ = ["figure_command"]
-
 ALL = "all"
 
 
@@ -51,8 +49,8 @@ def figure_command(names: tuple[str, ...], is_list: bool, out: Path | None) -> N
 
 def show_list() -> None:
     """Print every figure with what it shows."""
+    from bifurc.text_tables import table
     from linkages.app.output import say
-    from linkages.app.texts import table
     from linkages.source_figures.table import source_figures
 
     rows = []

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from linkages.loop import Loop
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["identify_command"]
-
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
 

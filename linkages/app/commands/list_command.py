@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import click
 
-__all__ = ["list_command"]
-
 
 @click.command("list")
 def list_command() -> None:
@@ -15,8 +13,8 @@ def list_command() -> None:
     Example:
       bifurc list
     """
+    from bifurc.text_tables import table
     from linkages.app.output import say
-    from linkages.app.texts import table
     from linkages.catalogue import catalogue
     from linkages.networks.entries import NETWORKS
 

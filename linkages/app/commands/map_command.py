@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from bifurc.atlas import Atlas
     from linkages.app.figure_axes import FigureAxes
 
-__all__ = ["map_command"]
-
 
 @click.command("map", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from linkages.networks.locking import LockedState
     from linkages.networks.network import Network
 
-__all__ = ["network_command"]
-
 
 @click.command("network", epilog=exit_code_table())
 @click.argument("name", metavar="NAME")

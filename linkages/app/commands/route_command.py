@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from bifurc.atlas import Atlas
     from bifurc.routes.route import Route
 
-__all__ = ["route_command"]
-
 
 @click.command("route", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from bifurc.atlas import Atlas
     from bifurc.systems.system import EquationSystem
 
-__all__ = ["solve_command"]
-
 
 @click.command("solve", epilog=exit_code_table())
 @click.argument("equations", metavar="FILE.toml")

@@ -10,8 +10,6 @@ import click
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import FOLDER, SEED, STARTS, NamedPath
 
-__all__ = ["sweep_command"]
-
 MOST_MEMBERS = 1_000_000_000
 MOST_WORKERS = 10_000
 

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from linkages.loop import Loop
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["tolerance_command"]
-
 LARGEST_ERROR = 1  # rad, and characteristic lengths
 MOST_COPIES = 10_000
 

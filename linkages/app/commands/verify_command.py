@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from linkages.app.verify import Verification
     from linkages.app.verify_network import NetworkVerification
 
-__all__ = ["verify_command"]
-
 MOST_MEMBERS = 1_000_000
 MOST_POINTS = 1_000_000
 

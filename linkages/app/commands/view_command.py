@@ -17,8 +17,6 @@ from linkages.app.options import (
     verbose_option,
 )
 
-__all__ = ["view_command"]
-
 PAGE = ".html"
 
 

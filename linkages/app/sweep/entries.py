@@ -17,8 +17,6 @@ from linkages.app.sweep.journal import Journal, JournalError, Line
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Plan
 
-__all__ = ["Entry", "FinishedMember", "WrittenBlock", "read_entries"]
-
 
 @dataclass(frozen=True)
 class FinishedMember:

@@ -17,8 +17,6 @@ try:
 except ImportError:  # not a Unix system: nothing keeps two sweeps off one journal
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["Journal", "JournalError", "Line"]
-
 Line: TypeAlias = dict[str, Any]  # values of JSON; who writes a line knows which
 
 NO_JOURNAL = "it is no journal of a sweep; choose another --out or delete it"

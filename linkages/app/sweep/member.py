@@ -22,18 +22,8 @@ from linkages.app.sweep.subjects import JointName, Member, Subject
 from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels
 from linkages.linkage import Linkage
-from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
-
-__all__ = [
-    "FIELDS",
-    "Field",
-    "Record",
-    "Status",
-    "atlas_name",
-    "map_member",
-    "summarise",
-]
+from linkages.values import GeometryError
 
 log = logging.getLogger(__name__)
 

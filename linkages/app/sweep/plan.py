@@ -21,10 +21,7 @@ from linkages.app.sweep.subjects import (
     Subject,
     choose_subject,
 )
-from linkages.loop import GeometryError
-from linkages.values import check_angle
-
-__all__ = ["Block", "Plan", "read_plan"]
+from linkages.values import GeometryError, check_angle
 
 MOST_VALUES = 1_000_000  # of one quantity on a grid
 

@@ -25,8 +25,6 @@ from linkages.app.sweep.plan import Block, Plan
 from linkages.app.sweep.store import SweepStore, require_room
 from linkages.app.sweep.workers import Pool, WorkerError, open_pool
 
-__all__ = ["Sweep", "journal_path", "prepare_sweep", "run_sweep"]
-
 Progress: TypeAlias = Callable[[int], None]
 
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     import xarray as xr
     import zarr
 
-__all__ = ["StoreError", "SweepStore", "count_status", "open_sweep", "require_room"]
-
 
 MADE_AGAIN = (
     "delete it, and the same command makes it again from the journal, without mapping"

@@ -23,19 +23,6 @@ from linkages.networks.entries import LENGTHS, NETWORKS
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = [
-    "LOCK",
-    "PARAM",
-    "Family",
-    "FileMechanism",
-    "JointName",
-    "Member",
-    "NetworkFamily",
-    "Quantity",
-    "Subject",
-    "choose_subject",
-]
-
 JointName: TypeAlias = str | int
 
 PARAM = "--param"

@@ -14,8 +14,6 @@ from multiprocessing.connection import wait as wait_for_end
 
 from bifurc.errors import BifurcError
 
-__all__ = ["Pool", "SchedulerError", "WorkerError", "open_pool", "usable_cores"]
-
 AHEAD = 4  # members waiting for each worker
 
 

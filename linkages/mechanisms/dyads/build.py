@@ -12,8 +12,6 @@ from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Pair
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["Builder", "Geometry", "TooManyError"]
-
 MOST = 256  # configurations at one value of the driver
 
 

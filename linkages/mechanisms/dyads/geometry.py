@@ -18,22 +18,6 @@ from linkages.decisions import is_degenerate_dyad
 from linkages.mechanisms.dyads.poses import AT_REST, PlanePose
 from linkages.mechanisms.joint import Motion
 
-__all__ = [
-    "MISFIT",
-    "TOUCHING",
-    "DegenerateDyadError",
-    "End",
-    "Middle",
-    "Pin",
-    "Pivot",
-    "PlaneGeometry",
-    "Rail",
-    "Slider",
-    "close_dyad",
-    "close_monad",
-    "may_be_degenerate",
-]
-
 # of the square of a length, over that of the mechanism: a circle that is touched. It
 # costs starts only: what does not close is left out later.
 TOUCHING = 1e-9

@@ -17,9 +17,6 @@ from networkx.utils import UnionFind
 
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["Contact", "Plan", "Step", "make_plan"]
-
-
 MOST_BEGUN = 3  # parts with which a plan may begin
 
 

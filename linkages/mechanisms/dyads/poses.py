@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-__all__ = ["AT_REST", "PlanePose"]
-
 
 class PlanePose(NamedTuple):
     """A displacement that takes z to ``turn`` z + ``shift``; ``turn`` is a unit

@@ -27,8 +27,6 @@ from linkages.mechanisms.dyads.space import SpaceGeometry
 from linkages.mechanisms.plane import normal_of_plane
 from linkages.mechanisms.structure import Structure
 
-__all__ = ["DyadSlices", "slice_by_dyads"]
-
 SLICES = 36  # of a driver's period, or of its limits
 MOST_DRIVERS = 4
 MOST_POINTS = 20_000  # in the slices of a driver, with whole turns within limits

@@ -20,8 +20,6 @@ from linkages.mechanisms.dyads.geometry import (
 )
 from linkages.mechanisms.joint import Motion
 
-__all__ = ["Axis", "SpaceGeometry", "SpacePin", "SpacePose"]
-
 
 class SpacePose(NamedTuple):
     """A displacement that takes x (3,) to ``rotation`` (3, 3) x + ``shift`` (3,)."""

@@ -8,18 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import LARGEST, JointKind, Limits, Vector
-
-__all__ = [
-    "Assembly",
-    "BodyJoint",
-    "frame_along",
-    "listed",
-    "translation",
-    "without_joints",
-]
+from linkages.values import GeometryError, quoted
 
 # what the variables of a joint of several are called
 PARTS = {

@@ -17,8 +17,6 @@ import numpy as np
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint
 from linkages.mechanisms.joint import JointKind
 
-__all__ = ["ClosedPoses", "Closing"]
-
 MOST_STEPS = 100
 POLISHING_STEPS = 4
 START_DAMPING = 1e-2

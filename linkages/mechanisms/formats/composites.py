@@ -13,8 +13,6 @@ from linkages.mechanisms.formats.assembly import frame_along, translation
 from linkages.mechanisms.formats.xml_tree import Element
 from linkages.mechanisms.joint import JointKind, Limits
 
-__all__ = ["Axis", "AxisCoupling", "WorldJoint", "joints_of_axes"]
-
 TINY = 1e-300  # of coordinates that are all 0
 
 

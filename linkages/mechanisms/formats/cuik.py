@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 
 from linkages.decisions import is_one_direction
-from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.formats.assembly import (
     Assembly,
     BodyJoint,
@@ -35,8 +34,7 @@ from linkages.mechanisms.formats.cuik_links import (
 )
 from linkages.mechanisms.formats.cuik_tokens import Cursor, tokens_of
 from linkages.mechanisms.joint import JointKind, Limits, Vector
-
-__all__ = ["read_world"]
+from linkages.values import GeometryError, quoted
 
 JOINTS = (
     *("revolute", "crevolute", "prismatic", "spherical", "universal", "fix"),

@@ -7,22 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.formats.assembly import frame_along, translation
 from linkages.mechanisms.formats.cuik_tokens import Cursor
 from linkages.mechanisms.joint import Vector
-
-__all__ = [
-    "Link",
-    "frame_of",
-    "read_end",
-    "read_links",
-    "read_point",
-    "read_transforms",
-    "rotation",
-    "skip_appearance",
-    "skip_dynamics",
-]
+from linkages.values import GeometryError, quoted
 
 COLORS = (
     *("red", "green", "blue", "black", "grey", "gray", "white", "yellow", "purple"),

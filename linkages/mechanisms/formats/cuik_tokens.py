@@ -12,9 +12,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from linkages.loop import GeometryError, quoted
-
-__all__ = ["Cursor", "Token", "tokens_of"]
+from linkages.values import GeometryError, quoted
 
 COMMENT = re.compile(r"/\*.*?\*/|%[^\n]*|#[^\n]*|//[^\n]*", re.DOTALL)
 TOKEN = re.compile(

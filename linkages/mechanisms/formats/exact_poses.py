@@ -19,8 +19,6 @@ from linkages.coordinates import are_near_origin, spread_of
 from linkages.mechanisms.joint import Vector
 from linkages.mechanisms.origin import exact_number, rounding_of_number
 
-__all__ = ["ExactPlace", "ExactPose", "Origin"]
-
 ExactPlace: TypeAlias = tuple[Fraction, Fraction, Fraction]
 ZERO: ExactPlace = (Fraction(0), Fraction(0), Fraction(0))
 EPSILON = float(np.finfo(float).eps)

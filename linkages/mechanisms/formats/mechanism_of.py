@@ -17,15 +17,13 @@ from linkages.decisions import (
     is_file_nearly_closed,
     is_rounding_of_zero,
 )
-from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Coupling, leaders
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint, listed
 from linkages.mechanisms.formats.closing import ClosedPoses, Closing
 from linkages.mechanisms.formats.starts import Starts
 from linkages.mechanisms.joint import Joint, JointKind, Limits, Vector
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
-
-__all__ = ["mechanism_of_assembly"]
+from linkages.values import GeometryError
 
 log = logging.getLogger(__name__)
 

@@ -14,8 +14,6 @@ from dataclasses import replace
 from linkages.mechanisms.formats.assembly import BodyJoint
 from linkages.mechanisms.formats.xml_tree import Element
 
-__all__ = ["TakenNames", "numbered"]
-
 
 class TakenNames:
     """The names of bodies, and of joints and their variables, that others must not

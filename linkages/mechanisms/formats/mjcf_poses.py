@@ -7,12 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from linkages.loop import quoted
 from linkages.mechanisms.formats.assembly import frame_along
 from linkages.mechanisms.formats.exact_poses import ExactPose
 from linkages.mechanisms.formats.xml_tree import Element
-
-__all__ = ["AT_REST", "Settings", "pose_of", "read_settings", "rotation_of_quaternion"]
+from linkages.values import quoted
 
 ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 AT_REST = (0.0, 0.0, 0.0)

@@ -17,7 +17,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from linkages.decisions import is_one_anchor
-from linkages.loop import GeometryError, quoted
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.file import MANY_TURNS
 from linkages.mechanisms.formats.assembly import (
@@ -46,8 +45,7 @@ from linkages.mechanisms.formats.mjcf_poses import (
 )
 from linkages.mechanisms.formats.xml_tree import Element
 from linkages.mechanisms.joint import JointKind, Limits
-
-__all__ = ["read_mjcf"]
+from linkages.values import GeometryError, quoted
 
 WORLD = "world"
 NOT_READ = ("include", "attach", "replicate", "composite", "flexcomp")

@@ -20,8 +20,6 @@ from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
 
-__all__ = ["mechanism_mjcf"]
-
 CONNECTED = JointKind.REVOLUTE, JointKind.SPHERICAL
 THICKNESS = 0.03  # of a drawn body, over the characteristic length
 LEAST_INERTIA = 1e-12  # MuJoCo takes none of less than 1e-15

@@ -17,8 +17,6 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 
-__all__ = ["NameRules", "with_names_for"]
-
 log = logging.getLogger(__name__)
 
 NamesOfJoint: TypeAlias = Callable[[Joint], Iterable[str]]

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkages.loop import GeometryError
 from linkages.mechanisms.formats.assembly import Assembly
 from linkages.mechanisms.formats.mechanism_of import mechanism_of_assembly
 from linkages.mechanisms.mechanism import Mechanism
-
-__all__ = ["read_foreign_file"]
+from linkages.values import GeometryError
 
 MOST_BYTES = 50_000_000
 

@@ -18,8 +18,6 @@ from linkages.mechanisms.formats.assembly import PARTS, BodyJoint
 from linkages.mechanisms.formats.composites import Axis, joints_of_axes
 from linkages.mechanisms.joint import JointKind
 
-__all__ = ["link_behind", "with_joints_of_chains"]
-
 WHOLE = JointKind.CYLINDRICAL, JointKind.PLANAR
 WORDS = {JointKind.REVOLUTE: "hinge", JointKind.PRISMATIC: "slide"}
 

@@ -14,13 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from linkages.decisions import is_one_direction
-from linkages.loop import quoted
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.formats.assembly import BodyJoint
 from linkages.mechanisms.formats.xml_tree import Element
 from linkages.mechanisms.joint import JointKind
-
-__all__ = ["AXES", "GEARBOX", "Gearbox", "with_gearboxes", "with_mimics"]
+from linkages.values import quoted
 
 GEARBOX = "gearbox"
 MIMIC_SINCE = (1, 11)

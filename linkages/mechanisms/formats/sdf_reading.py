@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linkages.decisions import is_one_direction
-from linkages.loop import quoted
 from linkages.mechanisms.formats.assembly import (
     Assembly,
     BodyJoint,
@@ -31,8 +30,7 @@ from linkages.mechanisms.formats.sdf_couplings import (
 )
 from linkages.mechanisms.formats.xml_tree import Element
 from linkages.mechanisms.joint import WITHOUT_PLACE, JointKind, Limits
-
-__all__ = ["read_sdf"]
+from linkages.values import quoted
 
 OLDEST, NEWEST = (1, 5), (1, 11)
 FRAMES_SINCE = (1, 7)  # relative_to and expressed_in

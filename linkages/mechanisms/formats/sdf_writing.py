@@ -12,15 +12,13 @@ import math
 from collections.abc import Iterable
 from xml.sax.saxutils import escape, quoteattr
 
-from linkages.loop import GeometryError
 from linkages.mechanisms.formats.names import NameRules, with_names_for
 from linkages.mechanisms.formats.sdf_chains import link_behind
 from linkages.mechanisms.formats.sdf_couplings import AXES
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
-
-__all__ = ["mechanism_sdf"]
+from linkages.values import GeometryError
 
 WORLD = "world"
 

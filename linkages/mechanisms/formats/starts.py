@@ -9,8 +9,6 @@ import numpy as np
 from linkages.mechanisms.formats.assembly import Assembly, BodyJoint
 from linkages.mechanisms.joint import JointKind, Limits
 
-__all__ = ["Starts"]
-
 
 class Starts:
     """Poses of an ``assembly`` in which the joints of a spanning tree fit, with random

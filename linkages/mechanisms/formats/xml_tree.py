@@ -7,10 +7,8 @@ from dataclasses import dataclass, field
 from typing import NoReturn
 from xml.parsers import expat
 
-from linkages.loop import GeometryError, check_number, quoted
 from linkages.mechanisms.origin import WrittenNumber
-
-__all__ = ["Element", "parse_xml"]
+from linkages.values import GeometryError, check_number, quoted
 
 DEEPEST = 500  # elements inside each other
 

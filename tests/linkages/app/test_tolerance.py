@@ -10,12 +10,12 @@ from linkages.app.tolerance import climb, half_branches, measure, slope
 from linkages.catalogue import entry
 from linkages.file import read_file
 from linkages.linkage import load
-from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
 from linkages.mechanisms.loop_atlas import in_loop_angles
 from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.mechanisms.readout import Readout
 from linkages.tolerance import closure_with_errors, make_with_errors
+from linkages.values import GeometryError
 from tests.linkages.app.slider_cranks import slider_crank_text
 
 

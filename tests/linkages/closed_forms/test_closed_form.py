@@ -9,7 +9,7 @@ import pytest
 
 from linkages.catalogue import catalogue, entry
 from linkages.closed_forms.closed_form import ZERO, joint, minus, plus
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 FORMS = [form for linkage in catalogue().values() for form in linkage.closed_forms]
 IDS = [f"{form.linkage}: {form.form}" for form in FORMS]

@@ -19,7 +19,7 @@ from linkages.closed_forms.translator import (
     upright,
 )
 from linkages.families.wohlhart import wohlhart_symmetric
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 DATA = Path(__file__).parents[3] / "data" / "translator_samples.json"
 MEASURED = json.loads(DATA.read_text(encoding="utf-8"))

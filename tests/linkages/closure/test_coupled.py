@@ -14,7 +14,8 @@ from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure, locked_joints
 from linkages.closure.loop_closure import LoopClosure
 from linkages.closure.precise import precise_residual
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 DIGITS = 50
 

@@ -39,7 +39,8 @@ from linkages.families.mixed_double_goldberg import (
     double_goldberg_chain,
     double_goldberg_type,
 )
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 A = 1.3
 ALPHA, BETA, GAMMA, DELTA = np.radians([66.0, 50.0, 28.0, 83.0])

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from linkages.catalogue import entry
-from linkages.errata.misprints import ERRATA, HOLDS, errata_of
+from linkages.errata.erratum import HOLDS
+from linkages.errata.misprints import ERRATA, errata_of
 from linkages.errata.words import WORDS
 
 PAGE = Path(__file__).parents[3] / "docs" / "errata.md"

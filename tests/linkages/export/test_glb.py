@@ -10,8 +10,9 @@ from linkages.export.model import model_of_loop
 from linkages.export.motion import Motion, link_poses, motion_of_form
 from linkages.linkage import load
 from linkages.links.rods import place_links
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.values import GeometryError
 
 DSG = "special-double-subtractive-goldberg"
 FRAMES = 100

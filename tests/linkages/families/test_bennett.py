@@ -10,7 +10,7 @@ from linkages.families.bennett import (
     bennett_lb_2,
     bennett_line_symmetric,
 )
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 SET_UPS = (bennett, bennett_ab_2, bennett_line_symmetric, bennett_lb_2)
 

@@ -8,7 +8,7 @@ from linkages.families.bricard import (
     bricard_octahedral_line_symmetric,
     patterns,
 )
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 TWISTS = (0.6981317007977318, 1.3962634015954636, 2.2689280275926285)
 

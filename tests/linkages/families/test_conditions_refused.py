@@ -15,7 +15,7 @@ from linkages.families.mavroidis_roth import mavroidis_roth
 from linkages.families.mixed_double_goldberg import double_goldberg_type
 from linkages.families.waldron import waldron_collinear
 from linkages.families.yu_baker import yu_baker
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 TWISTS = tuple(np.radians([35.0, 62.0, 41.0, 22.0]))
 OFF = 1 + 1e-3

@@ -10,7 +10,8 @@ from linkages.catalogue import catalogue, entry
 from linkages.entry import ParameterKind
 from linkages.families.goldberg_5r import syncopated_goldberg
 from linkages.families.yu_baker import yu_baker
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 SPECIAL_ANGLES = np.radians([0, 30, 45, 60, 90, 120, 135, 180, -45, -90, 360])
 SPECIAL_LENGTHS = (0.0, 1.0, -1.0, 2.0)

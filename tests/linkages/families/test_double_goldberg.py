@@ -11,7 +11,7 @@ from linkages.families.double_goldberg import (
     special_wohlhart_double_goldberg,
     wohlhart_double_goldberg,
 )
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 PUBLISHED = (
     1.0,

@@ -7,7 +7,7 @@ from linkages.families.four_bar import (
     parallelogram,
     rhombus,
 )
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 
 def test_special_four_bars_have_their_lengths_in_loop_order():

@@ -4,7 +4,7 @@ import pytest
 import sympy
 
 from linkages.families.goldberg import goldberg, subtractive_goldberg
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 TWISTS = dict(zip(("alpha", "beta", "gamma"), (1.15, 0.87, 0.49), strict=True))
 

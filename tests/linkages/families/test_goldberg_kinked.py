@@ -9,11 +9,11 @@ from linkages.construction.constructions import lock, locked_angles
 from linkages.construction.spatial_triangle import Kink
 from linkages.entry import RelationKind
 from linkages.identification.identify import identify
-from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
 from linkages.networks.assembly import assemble
 from linkages.networks.entries import NETWORKS
 from linkages.relations import relations_of
+from linkages.values import GeometryError
 
 SERIAL = "generalized-serial-goldberg-variant-6r"
 L_SHAPE = "generalized-l-shape-goldberg-variant-6r"

@@ -18,7 +18,8 @@ from linkages.families.bricard_plane import plane_symmetric, plane_symmetric_oct
 from linkages.families.dietmaier import dietmaier
 from linkages.families.goldberg_5r import extended_myard
 from linkages.families.goldberg_6r import syncopated_serial_goldberg
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 ENTRIES = [entry for entry in catalogue().values() if entry.facts.get("mobility") == 1]
 MEMBERS = 6

@@ -8,7 +8,7 @@ from linkages.families.reconfigurable import (
     reconfigurable_bricard_1,
     reconfigurable_bricard_2,
 )
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 DEFAULTS = entry("reconfigurable-bricard-1").defaults
 

@@ -9,7 +9,8 @@ import pytest
 from linkages.families.bennett import bennett
 from linkages.families.goldberg_5r import generalized_goldberg
 from linkages.families.tori import ENTRIES, companion, torus_4r, torus_5r, torus_link
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
+from linkages.values import GeometryError
 
 FIVE_BARS = [entry for entry in ENTRIES if entry.name.startswith("torus-5r")]
 EXAMPLE = {"r1": 1.5, "s1": 0.9, "chi1": 0.8, "theta1": 0.25}

@@ -4,7 +4,7 @@ import pytest
 
 from linkages.catalogue import entry
 from linkages.families.wohlhart import wohlhart_symmetric
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 
 def test_twists_alternate_and_add_up_to_full_turns():

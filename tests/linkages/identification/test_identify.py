@@ -19,7 +19,8 @@ from linkages.identification.equivalence import (
     readings,
     table,
 )
-from linkages.identification.identify import ALIKE, NEAR, ToleranceError, identify
+from linkages.identification.fitting import NEAR
+from linkages.identification.identify import ALIKE, ToleranceError, identify
 from linkages.identification.recovery import plain_parameters
 from tests.samples import one_in
 

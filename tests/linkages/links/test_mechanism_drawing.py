@@ -12,7 +12,6 @@ from linkages.links.mechanism_drawing import (
     draw_symbols,
     held_body,
 )
-from linkages.loop import GeometryError
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
@@ -21,6 +20,7 @@ from linkages.mechanisms.subject import (
     mechanism_of,
     mechanism_subject,
 )
+from linkages.values import GeometryError
 from linkages.viewing.document import make_view_document
 from studies.miura import miura
 from tests.linkages.viewing.conftest import mapped

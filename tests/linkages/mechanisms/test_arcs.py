@@ -6,9 +6,9 @@ import pytest
 import linkages
 from bifurc.search.settings import SearchSettings
 from linkages.file import LinkageFileError
-from linkages.loop import GeometryError
 from linkages.mechanisms.arcs import read_arcs
 from linkages.mechanisms.readout import Readout
+from linkages.values import GeometryError
 
 DEGREE = np.pi / 180
 POINTS = {"A": [0, 0, 1], "B": [0.1, 0.4, 1], "C": [0.9, 0.8, 1], "D": [0.8, 0, 1]}

@@ -7,8 +7,8 @@ import pytest
 
 import linkages
 from bifurc.search.settings import SearchSettings
-from linkages.loop import GeometryError
 from linkages.mechanisms.bars import read_bars
+from linkages.values import GeometryError
 
 POINTS = {"A": [0, 0], "B": [0.5, 1], "C": [3, 2], "D": [4, 0]}
 QUICK = SearchSettings(starts=60)

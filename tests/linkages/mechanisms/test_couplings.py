@@ -8,7 +8,6 @@ import pytest
 import linkages
 from bifurc.search.settings import SearchSettings
 from linkages.file import LinkageFileError
-from linkages.loop import GeometryError
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.curvature import CurvatureBounds
@@ -20,6 +19,7 @@ from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_from, mechanism_subject
 from linkages.mechanisms.toml_text import mechanism_toml
+from linkages.values import GeometryError
 from tests.linkages.mechanisms.known_mechanisms import cases
 from tests.linkages.mechanisms.test_maps import counts, lengths, slider_crank
 

@@ -6,9 +6,9 @@ import pytest
 
 import linkages
 from bifurc.search.settings import SearchSettings
-from linkages.loop import GeometryError
 from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.driving import joints_to_hold
+from linkages.values import GeometryError
 
 NAMES = "ABCDE"
 

@@ -5,11 +5,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from bifurc.curves.valley import correct_to_valley
-from linkages.loop import GeometryError
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.displacements import transforms
 from linkages.mechanisms.errors import draw_errors, no_errors
 from linkages.mechanisms.structure import ClosureKind, Structure
+from linkages.values import GeometryError
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import (
     one_of_each,

@@ -10,13 +10,13 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.construction.constructions import lock
 from linkages.identification.equivalence import compare, readings, table
 from linkages.identification.identify import identify
-from linkages.loop import GeometryError
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.loop_geometry import loop_geometry
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network
+from linkages.values import GeometryError
 
 
 def closed(name):

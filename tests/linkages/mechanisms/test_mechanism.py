@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linkages.loop import GeometryError
 from linkages.mechanisms.displacements import displacement_of
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.structure import Structure
+from linkages.values import GeometryError
 
 Z = (0, 0, 1)
 

@@ -9,12 +9,12 @@ import pytest
 import linkages
 from bifurc import SearchSettings
 from linkages.app.mechanism_document import describe_mechanism
-from linkages.loop import GeometryError
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.poses import Poses
 from linkages.mechanisms.readout import Readout
+from linkages.values import GeometryError
 from tests.linkages.mechanisms.frameworks import (
     OCTAHEDRON,
     flexible_octahedron,

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bifurc.search.settings import SearchSettings
-from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
 from linkages.networks.lock_routes import (
     NetworkPlace,
@@ -13,6 +12,7 @@ from linkages.networks.lock_routes import (
     find_lock_route,
 )
 from linkages.networks.mechanism import lock_network
+from linkages.values import GeometryError
 from tests.linkages.networks.known_networks import facts, in_radians, network
 
 FEW = SearchSettings(starts=20, certify=False)

@@ -10,13 +10,13 @@ import pytest
 from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.identification.identify import identify
-from linkages.loop import GeometryError
 from linkages.mapping import map_linkage
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.four_joints import bennett_gap, bennett_twist
 from linkages.networks.locking import locked_state, locked_states
 from linkages.networks.mechanism import lock_network
+from linkages.values import GeometryError
 from tests.linkages.networks.known_networks import facts, in_radians, kinks_of, network
 
 LOOPS = facts()["reduced_loops"]

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from linkages.loop import GeometryError
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.networks.assembly import assemble
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network
 from linkages.networks.placement import PlacedNetwork
+from linkages.values import GeometryError
 from tests.linkages.networks.known_networks import network
 
 every_network = pytest.mark.parametrize("name", NETWORKS)

@@ -7,7 +7,7 @@ from bifurc.limits import Deadline
 from linkages import _core
 from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.slices import assemblies
 from linkages.slices.assemblies import (
     GenericLoop,
@@ -15,6 +15,7 @@ from linkages.slices.assemblies import (
     follow_paths,
     isolated_assemblies,
 )
+from linkages.values import GeometryError
 
 # The 6R of the CUIK suite (Porta, Ros and Thomas; `Serial6R.world`) with 16 real
 # assemblies.

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from linkages.axes import loop_from_axes
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.slices.elimination import slice_configurations
+from linkages.values import GeometryError
 
 DEGREE = np.pi / 180
 

@@ -9,9 +9,10 @@ from bifurc.search.explore import explore
 from linkages import _core
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import GeometryError, Loop
+from linkages.loop import Loop
 from linkages.slices.elimination import slice_configurations
 from linkages.slices.nonreal_tracking import find_fold, follow_sheets
+from linkages.values import GeometryError
 
 FAMILIES = [
     "spherical-four-bar",

@@ -5,7 +5,7 @@ import pytest
 
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.subjects import Family
-from linkages.loop import GeometryError
+from linkages.values import GeometryError
 
 
 def test_blocks_hold_every_member_once():

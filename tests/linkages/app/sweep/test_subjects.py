@@ -25,9 +25,9 @@ from linkages.app.sweep.subjects import (
     NetworkFamily,
     choose_subject,
 )
-from linkages.loop import GeometryError
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.values import GeometryError
 from tests.linkages.app.slider_cranks import slider_crank_text
 
 NETWORK = "four-bennett-network"

@@ -9,12 +9,12 @@ import pytest
 
 from linkages import load
 from linkages.file import LinkageFileError
-from linkages.loop import GeometryError
 from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.formats.mjcf_writing import mechanism_mjcf
 from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.toml_text import mechanism_toml
+from linkages.values import GeometryError
 from tests.linkages.mechanisms.formats.examples import EXAMPLES
 from tests.linkages.mechanisms.formats.robot_models import (
     MJCF,

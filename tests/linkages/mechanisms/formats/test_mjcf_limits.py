@@ -6,9 +6,9 @@ import itertools
 import mujoco
 import pytest
 
-from linkages.loop import GeometryError
 from linkages.mechanisms.formats.mjcf_reading import read_mjcf
 from linkages.mechanisms.formats.xml_tree import parse_xml
+from linkages.values import GeometryError
 
 REFUSED = "refused"
 COMPILERS = [

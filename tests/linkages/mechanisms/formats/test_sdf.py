@@ -6,9 +6,9 @@ import pytest
 
 from linkages import load, map_linkage
 from linkages.file import LinkageFileError
-from linkages.loop import GeometryError
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
+from linkages.values import GeometryError
 from tests.linkages.mechanisms.formats.examples import EXAMPLES, assert_same_geometry
 from tests.linkages.mechanisms.known_mechanisms import geared_five_bar
 
