@@ -1,6 +1,7 @@
 from .axes import loop_from_axes as loop_from_axes
 from .catalogue import UnknownLinkageError as UnknownLinkageError
 from .closure.loop_closure import LoopClosure as LoopClosure
+from .closure.mechanism_closure import MechanismClosure as MechanismClosure
 from .entry import UnknownParameterError as UnknownParameterError
 from .file import LinkageFileError as LinkageFileError
 from .labels import FormLabels as FormLabels
@@ -12,12 +13,11 @@ from .linkage import load as load
 from .linkage import load_linkage as load_linkage
 from .loop import Loop as Loop
 from .mapping import map_linkage as map_linkage
-from .mechanisms.closure import MechanismClosure as MechanismClosure
 from .mechanisms.joint import Joint as Joint
 from .mechanisms.joint import JointKind as JointKind
 from .mechanisms.mechanism import Mechanism as Mechanism
-from .mechanisms.readout import Readout as Readout
 from .mechanisms.subject import mechanism_of as mechanism_of
+from .readout.readout import Readout as Readout
 from .slices.assemblies import Assemblies as Assemblies
 from .slices.assemblies import isolated_assemblies as isolated_assemblies
 from .values import GeometryError as GeometryError

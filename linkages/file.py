@@ -15,9 +15,9 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
     directions = [[0, 0, 1], [0, 1, 1], ...]
 
 What has ``[[joints]]``, ``[[loops]]``, or ``bars`` or ``arcs`` between ``[points]`` is a
-mechanism (`linkages.mechanisms.file`), and so are crease patterns and the files of
-other programs, told by the endings of their names (`linkages.mechanisms.fold`,
-`linkages.mechanisms.formats`).
+mechanism (`linkages.files.mechanism_file`), and so are crease patterns and the files of
+other programs, told by the endings of their names (`linkages.files.fold`,
+`linkages.formats`).
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def read_file(path: Path | str) -> Loop | Mechanism:
     if not _is_of_mechanism(content):
         loop, _ = read_linkage(path)
         return loop
-    from linkages.mechanisms.file import read_mechanism
+    from linkages.files.mechanism_file import read_mechanism
 
     try:
         return read_mechanism(content, path.stem)
@@ -93,7 +93,7 @@ def read_file(path: Path | str) -> Loop | Mechanism:
 
 
 def _read_fold_file(path: Path) -> Mechanism:
-    from linkages.mechanisms.fold import read_fold
+    from linkages.files.fold import read_fold
 
     try:
         return read_fold(_text(path), path.stem)
@@ -103,7 +103,7 @@ def _read_fold_file(path: Path) -> Mechanism:
 
 def _read_foreign(path: Path) -> Mechanism:
     """The mechanism in a file of another program."""
-    from linkages.mechanisms.formats.reading import read_foreign_file
+    from linkages.formats.reading import read_foreign_file
 
     try:
         return read_foreign_file(path)

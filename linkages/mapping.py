@@ -38,7 +38,7 @@ def map_linkage(
     ``seed`` is that of the random starts; ``progress`` is called with what was found
     and how many. `linkages.labels.FormLabels` reads what a form is,
     `linkages.labels.loop_of` the loop that an atlas is of, and
-    `linkages.mechanisms.readout.Readout` the joint variables of a mechanism, also of
+    `linkages.readout.readout.Readout` the joint variables of a mechanism, also of
     one that is a single loop. Every form
     has its ``certificate``, unless the settings say otherwise. Raises `GeometryError`
     for anything but a linkage or a mechanism, and for a loop with lengths whose squares
@@ -71,15 +71,15 @@ def _map_mechanism(
     """The transition map of a mechanism in its own unknowns: solved as that of its loop,
     where it is a single one of revolute joints."""
     # they import networkx, which a loop does not need
-    from linkages.mechanisms.closure import MechanismClosure
-    from linkages.mechanisms.labels import label_mechanism
-    from linkages.mechanisms.loop_atlas import in_joint_variables
-    from linkages.mechanisms.readout import Readout
+    from linkages.closure.mechanism_closure import MechanismClosure
     from linkages.networks.mechanism import (
         NetworkClosure,
         NetworkMechanism,
         network_subject,
     )
+    from linkages.readout.loop_atlas import in_joint_variables
+    from linkages.readout.mechanism_labels import label_mechanism
+    from linkages.readout.readout import Readout
 
     readout = Readout(mechanism)
     single = readout.single_loop

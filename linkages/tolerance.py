@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from bifurc.problem import Problem
+from linkages.closure.errors import draw_errors
 from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.loop import Loop
-from linkages.mechanisms.closure import MechanismClosure
-from linkages.mechanisms.errors import draw_errors
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.structure import Structure
+from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 
 
@@ -24,7 +24,7 @@ def closure_with_errors(
     atlas: of a loop the joint angles, of a mechanism its joint variables.
 
     Those of a loop are the errors of `make_with_errors`, those of a mechanism are of
-    `linkages.mechanisms.errors.draw_errors`: out of the plane, too, where it is planar.
+    `linkages.closure.errors.draw_errors`: out of the plane, too, where it is planar.
     Raises `GeometryError` for an ``error`` that is negative or not finite.
     """
     if isinstance(linkage, Loop):

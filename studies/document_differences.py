@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from linkages.app.document import MapDocument
+from linkages.app.answer.document import MapDocument
 
 Json: TypeAlias = Any  # a value that JSON can hold
 

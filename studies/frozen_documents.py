@@ -33,10 +33,10 @@ from bifurc.files.graphml import plain_graph
 from bifurc.systems.document import make_document as make_system_document
 from bifurc.systems.summary import make_summary as make_system_summary
 from linkages import Linkage, Mechanism, load, map_linkage
-from linkages.app.document import make_document
+from linkages.app.answer.document import make_document
+from linkages.app.answer.verdict import judge
 from linkages.app.options import FOLDER
-from linkages.app.summary import make_summary
-from linkages.app.verdict import judge
+from linkages.app.texts.summary import make_summary
 from linkages.catalogue import catalogue
 from linkages.networks.entries import NETWORKS
 from linkages.viewing.document import make_view_document

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from linkages.mechanisms.bars import read_bars
+from linkages.files.bars import read_bars
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
 

@@ -27,8 +27,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from bifurc.curves.continuation import trace_branch
-from linkages.mechanisms.closure import MechanismClosure
-from linkages.mechanisms.fold import read_fold
+from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.files.fold import read_fold
 from linkages.mechanisms.mechanism import Mechanism
 from studies.bennett_lattice import locked_lattice
 from studies.miura import miura

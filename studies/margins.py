@@ -34,13 +34,13 @@ from bifurc.problem import Problem
 from bifurc.search.explore import explore
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
-from linkages.app.document import make_document
+from linkages.app.answer.document import make_document
 from linkages.catalogue import catalogue
 from linkages.closure.loop_closure import LoopClosure
+from linkages.files.bars import read_bars
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
-from linkages.mechanisms.bars import read_bars
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.assembly import assemble, motion_at

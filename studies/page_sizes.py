@@ -18,8 +18,8 @@ from typing import NamedTuple
 import click
 
 from bifurc.text_tables import table
+from linkages.app.answer.verdict import judge
 from linkages.app.options import FOLDER
-from linkages.app.verdict import judge
 from linkages.catalogue import catalogue
 from linkages.linkage import load
 from linkages.mapping import map_linkage

@@ -15,7 +15,7 @@ from bifurc.figures.plotting import plot_transition_map
 from bifurc.files.atomic import replace_files
 from linkages.app.files import write_data, write_figures
 from linkages.app.options import FOLDER
-from linkages.app.summary import make_summary
+from linkages.app.texts.summary import make_summary
 
 HOLDS = 1e-9  # rad
 

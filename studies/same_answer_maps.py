@@ -17,7 +17,7 @@ from pathlib import Path
 import click
 
 from bifurc.search.explore import explore
-from linkages.app.document import MapDocument, make_document
+from linkages.app.answer.document import MapDocument, make_document
 from linkages.app.options import NamedPath
 from linkages.catalogue import catalogue
 from linkages.linkage import load_linkage

@@ -30,8 +30,8 @@ from bifurc.search.settings import SearchSettings
 from bifurc.singular.dimension import local_dimensions
 from bifurc.text_tables import count_of, section
 from linkages.app.options import FOLDER
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mapping import map_linkage
-from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.mechanism import Mechanism
 from studies.known_mechanisms import WAYS, KnownMechanism, known_mechanisms
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from docs.generator.linkage_record import ClosedFormText, LinkageRecord
 from docs.generator.markdown import bullets, plain, section, table
-from linkages.app.texts import in_degrees, link_name
+from linkages.app.texts.numbers import in_degrees, link_name
 from linkages.entry import Entry, Parameter, ParameterKind, RelationKind
 from linkages.relations import relations_of
 

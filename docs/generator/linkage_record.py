@@ -12,8 +12,8 @@ import numpy as np
 from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.text_tables import count_of
 from bifurc.torus import wrap
-from linkages.app.texts import in_degrees
-from linkages.app.verdict import judge
+from linkages.app.answer.verdict import judge
+from linkages.app.texts.numbers import in_degrees
 from linkages.entry import Entry
 from linkages.labels import FormLabels
 

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
+from linkages.app.answer.configurations import readout_of
 from linkages.app.atlas_file import open_linkage_atlas
 from linkages.app.choice import require_loop
-from linkages.app.configurations import readout_of
 from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
 from linkages.app.inputs import choose_held
@@ -77,7 +77,7 @@ def loop_atlas_of(
     readout = readout_of(atlas)
     if readout is None:
         return atlas
-    from linkages.mechanisms.loop_atlas import in_loop_angles
+    from linkages.readout.loop_atlas import in_loop_angles
 
     return in_loop_angles(atlas, readout)
 

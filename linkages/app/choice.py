@@ -27,7 +27,7 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     joints; raises `CommandError` for another one."""
     if isinstance(linkage, Linkage):
         return linkage.loop
-    from linkages.mechanisms.readout import Readout
+    from linkages.readout.readout import Readout
 
     single = Readout(linkage).single_loop
     if single is None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
+from linkages.app.answer.verdict import judge
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import SearchOptions
 from linkages.app.status import StatusLine
-from linkages.app.verdict import judge
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
 

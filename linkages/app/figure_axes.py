@@ -46,7 +46,7 @@ def names_of_unknowns(linkage: Linkage | Mechanism) -> list[str]:
     order."""
     if isinstance(linkage, Linkage):
         return [f"theta{number}" for number in range(1, linkage.loop.n + 1)]
-    from linkages.mechanisms.readout import Readout
+    from linkages.readout.readout import Readout
 
     readout = Readout(linkage)
     return [unknown.label for unknown in readout.structure.unknowns]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
-from linkages.app.configurations import readout_of
+from linkages.app.answer.configurations import readout_of
 from linkages.app.figure_axes import FigureAxes
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _write_dataset(atlas: Atlas, path: Path) -> None:
     if readout is None:
         save_atlas(atlas, path)
         return
-    from linkages.mechanisms.dataset_variables import dataset_variables
+    from linkages.readout.dataset_variables import dataset_variables
 
     save_atlas(atlas, path, dataset_variables(atlas, readout))
 

@@ -66,7 +66,7 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
 
 def _driven(mechanism: Mechanism, driver: str) -> Inputs:
     """The mechanism with what has to be held for one joint to drive it."""
-    from linkages.mechanisms.driving import joints_to_hold
+    from linkages.closure.driving import joints_to_hold
 
     held = joints_to_hold(mechanism, driver)
     notes: tuple[str, ...] = ()

@@ -22,7 +22,7 @@ from linkages.links.mechanism_drawing import (
 from linkages.links.rods import link_corners, seat_heights
 from linkages.loop import Loop
 from linkages.mechanisms.joint import JointKind
-from linkages.mechanisms.readout import Readout
+from linkages.readout.readout import Readout
 
 NOTHING = 1e-9  # in characteristic lengths: a rod that is none
 UPWARD = np.array([0.0, 0.0, 1.0])
@@ -82,7 +82,7 @@ def model_of_loop(loop: Loop, motions: list[Motion]) -> LinkageModel:
     heights = seat_heights(loop)
     corners = link_corners(loop)
     size = loop.characteristic_length
-    dash = "-" if loop.n > 9 else ""  # as in linkages.app.texts.link_name
+    dash = "-" if loop.n > 9 else ""  # as in linkages.app.texts.numbers.link_name
     bodies = []
     for i in range(loop.n):
         joint = (i + 1) % loop.n

@@ -24,8 +24,8 @@ from linkages.links.least_distance import (
 from linkages.links.mechanism_drawing import draw_bodies
 from linkages.links.segments import distances_by_ends
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.poses import Poses
-from linkages.mechanisms.structure import Structure
+from linkages.readout.poses import Poses
+from linkages.structure.structure import Structure
 
 STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism, Pair
-from linkages.mechanisms.poses import Poses
-from linkages.mechanisms.structure import Structure
+from linkages.readout.poses import Poses
 from linkages.scene import View, breadth, clearest_view
+from linkages.structure.structure import Structure
 
 SAME = 1e-6  # characteristic lengths: places that are closer are drawn as one
 ASIDE = 0.7  # how far along its axis a joint is drawn that would cover another one

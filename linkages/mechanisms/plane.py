@@ -7,8 +7,8 @@ import numpy as np
 from linkages.decisions import is_parallel_axis
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.placement import Placement
 from linkages.mechanisms.size import Size
+from linkages.structure.placement import Placement
 
 
 def normal_of_plane(mechanism: Mechanism) -> np.ndarray | None:

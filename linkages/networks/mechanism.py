@@ -11,9 +11,9 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.seeds import Seeds
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.construction.constructions import lock, locked_angles
 from linkages.loop import Loop
-from linkages.mechanisms.closure import MechanismClosure
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS

@@ -26,11 +26,11 @@ from linkages.links.mechanism_drawing import (
     breadths_of_mechanism,
 )
 from linkages.loop import Loop
-from linkages.mechanisms.loop_atlas import to_loop_angles
-from linkages.mechanisms.readout import Readout
-from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_of
+from linkages.readout.loop_atlas import to_loop_angles
+from linkages.readout.readout import Readout
 from linkages.scene import View, best_view, make_scene
+from linkages.structure.structure import Structure
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
 from linkages.viewing.title import title_of
 

@@ -12,6 +12,7 @@ from typing import TypedDict
 
 import numpy as np
 
+from linkages.closure.equations import write_equations
 from linkages.links.mechanism_drawing import (
     BodyDrawing,
     SymbolDrawing,
@@ -19,10 +20,9 @@ from linkages.links.mechanism_drawing import (
     draw_symbols,
     held_body,
 )
-from linkages.mechanisms.equations import write_equations
-from linkages.mechanisms.poses import Poses, TreeStep
-from linkages.mechanisms.rods import Rod
-from linkages.mechanisms.structure import Structure, Unknown
+from linkages.readout.poses import Poses, TreeStep
+from linkages.structure.rods import Rod
+from linkages.structure.structure import Structure, Unknown
 
 MOST_UNKNOWNS = 30  # up to which a page has time for singular values at each frame
 

@@ -7,8 +7,8 @@ import pytest
 
 from bifurc.atlas import Kind
 from bifurc.seeds import Level
-from linkages.app.document import make_document
-from linkages.app.verdict import judge
+from linkages.app.answer.document import make_document
+from linkages.app.answer.verdict import judge
 from linkages.axes import loop_from_axes
 from linkages.loop import Loop
 from linkages.mapping import map_linkage

@@ -5,7 +5,7 @@ import pytest
 
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
-from linkages.mechanisms.closure import MechanismClosure
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.placement import PlacedNetwork
 from studies.bennett_lattice import STATE, lattice, lattice_kinks

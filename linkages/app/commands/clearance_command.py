@@ -59,13 +59,13 @@ def clearance_command(
       bifurc clearance out/atlas.nc --form "Form I" --diameter 0.05
       bifurc clearance four-bennett-network --lock 2=40 --lock 6=-75
     """
+    from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.atlas_source import atlas_of
-    from linkages.app.clearance import clearance_document, clearance_of
-    from linkages.app.clearance_text import describe_clearance
-    from linkages.app.forms import choose_forms, require_forms
     from linkages.app.output import say, say_json
+    from linkages.app.reports.clearance import clearance_document, clearance_of
     from linkages.app.status import say_more
-    from linkages.app.verdict import exit_by, judge
+    from linkages.app.texts.clearance_text import describe_clearance
+    from linkages.app.texts.form_names import choose_forms, require_forms
 
     if verbose:
         say_more()

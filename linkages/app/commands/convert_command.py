@@ -36,7 +36,7 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     require_ending(TARGET, out, *ENDINGS)
     from bifurc.files.atomic import replace_file
     from bifurc.text_tables import count_of
-    from linkages.app.mechanism_file import mechanism_text
+    from linkages.app.reports.mechanism_file import mechanism_text
 
     mechanism = _mechanism(source, hold)
     text = mechanism_text(mechanism, out)

@@ -20,7 +20,7 @@ from linkages.app.options import (
     search_options,
     verbose_option,
 )
-from linkages.app.print_options import PrintOptions, print_options
+from linkages.app.reports.print_options import PrintOptions, print_options
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -106,10 +106,10 @@ def export_command(
       bifurc export bennett --to bennett.stl --size 120 --diameter 8
       bifurc export bennett --to bennett.mjcf
     """
-    from linkages.app.forms import require_forms
+    from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.output import require_ending, require_writable
     from linkages.app.status import say_more
-    from linkages.app.verdict import exit_by, judge
+    from linkages.app.texts.form_names import require_forms
 
     if verbose:
         say_more()
@@ -148,7 +148,7 @@ def check_options(out: Path) -> None:
             f"{' and '.join(endings)}"
         )
     if is_one_of(out, PARTS):
-        from linkages.app.printing import require_cad
+        from linkages.app.reports.printing import require_cad
 
         require_cad(out)
 
@@ -188,9 +188,8 @@ def export_parts(
     Raises `CommandError` where parts meet: with offsets that were given after the file
     is written, else without any.
     """
-    from linkages.app.forms import choose_forms
     from linkages.app.output import say, writing_to
-    from linkages.app.printing import (
+    from linkages.app.reports.printing import (
         describe_meetings,
         describe_seating,
         interference_error,
@@ -198,6 +197,7 @@ def export_parts(
         seat_hinges,
         write_parts,
     )
+    from linkages.app.texts.form_names import choose_forms
 
     forms = choose_forms(atlas, texts)
     seating = seat_hinges(atlas, forms, printing, seed)
@@ -215,9 +215,9 @@ def export_parts(
 def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     """Write the linkage where the first of the forms begins."""
     from bifurc.files.atomic import replace_file
-    from linkages.app.forms import choose_forms
-    from linkages.app.mechanism_file import mechanism_text
     from linkages.app.output import writing_to
+    from linkages.app.reports.mechanism_file import mechanism_text
+    from linkages.app.texts.form_names import choose_forms
     from linkages.labels import loop_of
     from linkages.mechanisms.of_loop import mechanism_of_loop
 
@@ -255,7 +255,7 @@ def choose_motions(
     count: int,
 ) -> list[Motion]:
     """The motions along forms and routes, all forms where neither is named."""
-    from linkages.app.forms import choose_forms
+    from linkages.app.texts.form_names import choose_forms
     from linkages.export.motion import motion_of_form
 
     chosen = choose_forms(atlas, forms) if forms or not routes else []
@@ -279,7 +279,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     """
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.app.equations import equations_of
+    from linkages.app.answer.equations import equations_of
     from linkages.export.motion import motion_of_route
 
     option = f"--route {start!r} {goal!r}"
@@ -321,7 +321,7 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
     mechanism and the unit quaternions of its spherical joints."""
     import numpy as np
 
-    from linkages.app.configurations import readout_of
+    from linkages.app.answer.configurations import readout_of
     from linkages.export.angle_table import make_angle_table
     from linkages.export.motion import quaternions_without_jumps
 
@@ -339,7 +339,7 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
 
 def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:
     """The linkage of an atlas with its motions, to be animated."""
-    from linkages.app.configurations import loop_angles_of, readout_of
+    from linkages.app.answer.configurations import loop_angles_of, readout_of
     from linkages.export.model import model_of_loop, model_of_mechanism
     from linkages.labels import loop_of
 

@@ -53,12 +53,12 @@ def identify_command(
       bifurc identify my_linkage.toml
       bifurc identify four-bennett-network --lock 2=40 --lock 6=-75 --without-centre
     """
-    from linkages.app.identify import (
+    from linkages.app.inputs import choose_held
+    from linkages.app.output import say, say_json
+    from linkages.app.reports.identify import (
         describe_identification,
         make_identification_document,
     )
-    from linkages.app.inputs import choose_held
-    from linkages.app.output import say, say_json
     from linkages.identification.identify import identify
 
     loop = _loop_of(choose_held(linkage, parameters, hold))
@@ -78,8 +78,8 @@ def _loop_of(linkage: Linkage | Mechanism) -> Loop:
 
     if isinstance(linkage, Linkage):
         return linkage.loop
-    from linkages.mechanisms.loop_geometry import loop_geometry
     from linkages.networks.mechanism import NetworkMechanism
+    from linkages.structure.loop_geometry import loop_geometry
 
     if isinstance(linkage, NetworkMechanism):
         raise CommandError(

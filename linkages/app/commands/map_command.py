@@ -90,12 +90,12 @@ def map_command(
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
+    from linkages.app.answer.verdict import judge
     from linkages.app.exploration import explore_linkage
     from linkages.app.figure_axes import figure_axes
     from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.status import say_more
-    from linkages.app.verdict import judge
 
     if as_json and digits:
         raise CommandError(
@@ -118,7 +118,7 @@ def map_command(
         finally:  # where nothing can be shown, there are still the files
             paths = write_numbers(atlas, out)
     if digits:
-        from linkages.app.confirmation import describe_confirmation
+        from linkages.app.reports.confirmation import describe_confirmation
 
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
     if out is not None:
@@ -134,9 +134,9 @@ def map_command(
 
 def report(atlas: Atlas, as_json: bool) -> None:
     """Print the map, as tables or as one JSON document."""
-    from linkages.app.document import make_document
+    from linkages.app.answer.document import make_document
     from linkages.app.output import say, say_json
-    from linkages.app.summary import make_summary
+    from linkages.app.texts.summary import make_summary
 
     if as_json:
         say_json(make_document(atlas))
@@ -151,7 +151,7 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
         return []
     from linkages.app.files import write_data
     from linkages.app.output import writing_to
-    from linkages.app.summary import make_summary
+    from linkages.app.texts.summary import make_summary
 
     with writing_to(out):
         return write_data(atlas, out, make_summary(atlas))
@@ -159,8 +159,8 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
 
 def write_map_page(atlas: Atlas, out: Path) -> Path:
     """The path of the page that `bifurc view` makes, just written to ``out``."""
+    from linkages.app.answer.verdict import judge
     from linkages.app.output import writing_to
-    from linkages.app.verdict import judge
     from linkages.viewing.document import make_view_document
     from linkages.viewing.page import write_page
 

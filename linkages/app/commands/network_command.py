@@ -51,9 +51,9 @@ def network_command(
       bifurc network serial-bennett-network --locks --kinks 40 -75 --out out
     """
     from linkages.app.choice import choose_linkage
-    from linkages.app.lock_tables import make_page
-    from linkages.app.network_text import describe_network
     from linkages.app.output import require_folder, say
+    from linkages.app.texts.lock_tables import make_page
+    from linkages.app.texts.network_text import describe_network
     from linkages.networks.entries import NETWORKS
     from linkages.networks.mechanism import NetworkMechanism
 
@@ -101,8 +101,8 @@ def _lock_all(
 def _write(out: Path, page: str, tables: dict[str, list[LockedState]]) -> list[Path]:
     """The paths of the files just written to ``out``, all or none."""
     from bifurc.files.atomic import replace_files
-    from linkages.app.lock_tables import as_csv
     from linkages.app.output import writing_to
+    from linkages.app.texts.lock_tables import as_csv
 
     def write(stage: Path) -> None:
         (stage / "locks.md").write_text(page + "\n", encoding="utf-8")

@@ -67,11 +67,11 @@ def route_command(
       bifurc route five_bar.toml --lock J1=40 "Form 1" "Form 2"
       bifurc route four-bennett-network --from "2=40,6=-75@p4=90" --to "2=40,4=90"
     """
+    from linkages.app.answer.verdict import judge
     from linkages.app.atlas_source import atlas_of
     from linkages.app.output import say
-    from linkages.app.route_text import describe_route
     from linkages.app.status import say_more
-    from linkages.app.verdict import judge
+    from linkages.app.texts.route_text import describe_route
 
     if verbose:
         say_more()
@@ -109,8 +109,8 @@ def _route_over_locks(
     from bifurc.errors import RouteError
     from linkages.app.choice import choose_linkage
     from linkages.app.exploration import explore_linkage, require_uninterrupted
-    from linkages.app.lock_route_text import describe_lock_route, read_place
     from linkages.app.output import say
+    from linkages.app.texts.lock_route_text import describe_lock_route, read_place
     from linkages.networks.entries import NETWORKS
     from linkages.networks.lock_routes import find_lock_route
     from linkages.networks.mechanism import NetworkMechanism, lock_network
@@ -147,7 +147,7 @@ def _route_between(atlas: Atlas, start: str, goal: str) -> Route:
     there is none."""
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.app.equations import equations_of
+    from linkages.app.answer.equations import equations_of
 
     try:
         return find_route(atlas, start, goal, problem=equations_of(atlas))

@@ -14,9 +14,9 @@ def show_command(name: str) -> None:
     Example:
       bifurc show bennett
     """
-    from linkages.app.entry_text import describe_entry
-    from linkages.app.network_text import describe_network
     from linkages.app.output import say
+    from linkages.app.texts.entry_text import describe_entry
+    from linkages.app.texts.network_text import describe_network
     from linkages.catalogue import entry
     from linkages.networks.entries import NETWORKS
 

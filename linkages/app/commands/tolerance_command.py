@@ -79,8 +79,8 @@ def tolerance_command(
     from linkages.app.exploration import explore_linkage
     from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say
-    from linkages.app.tolerance import climb, measure
-    from linkages.app.tolerance_text import describe_tolerance
+    from linkages.app.reports.tolerance import climb, measure
+    from linkages.app.texts.tolerance_text import describe_tolerance
 
     if out is not None:
         require_folder(out)
@@ -96,7 +96,7 @@ def tolerance_command(
         say(text)
     finally:  # where nothing can be shown, there are still the files
         if out is not None:
-            from linkages.app.tolerance_figure import draw_tolerance
+            from linkages.app.reports.tolerance_figure import draw_tolerance
 
             _write(text, draw_tolerance(atlas, copies[0], ladder), out)
 
@@ -106,12 +106,12 @@ def as_made(
 ) -> tuple[Loop | Mechanism, Atlas]:
     """What is made with errors, the loop of a linkage or of a mechanism that is a single
     one of revolute joints, and its atlas in the unknowns of its equations."""
-    from linkages.app.configurations import readout_of
+    from linkages.app.answer.configurations import readout_of
     from linkages.linkage import Linkage
 
     if isinstance(linkage, Linkage):
         return linkage.loop, atlas
-    from linkages.mechanisms.loop_atlas import in_loop_angles
+    from linkages.readout.loop_atlas import in_loop_angles
 
     readout = readout_of(atlas)
     assert readout is not None
@@ -122,8 +122,8 @@ def as_made(
 
 def _require_forms(atlas: Atlas) -> None:
     """Raise `CommandError` unless there are forms whose closure can be measured."""
+    from linkages.app.answer.verdict import judge
     from linkages.app.exploration import require_uninterrupted
-    from linkages.app.verdict import judge
 
     require_uninterrupted(atlas)
     if atlas.forms:

@@ -10,8 +10,8 @@ from linkages.app.exit_codes import ExitCode, exit_code_table
 from linkages.app.options import SEED, json_option
 
 if TYPE_CHECKING:
-    from linkages.app.verify import Verification
-    from linkages.app.verify_network import NetworkVerification
+    from linkages.app.reports.verify import Verification
+    from linkages.app.reports.verify_network import NetworkVerification
 
 MOST_MEMBERS = 1_000_000
 MOST_POINTS = 1_000_000
@@ -57,7 +57,7 @@ def verify_command(
       bifurc verify mixed-double-goldberg-type-i --members 50 --json
     """
     from linkages.app.output import say, say_json
-    from linkages.app.verify_text import make_verification_document
+    from linkages.app.texts.verify_text import make_verification_document
     from linkages.catalogue import catalogue
 
     names = list(catalogue()) if name is None else [name]
@@ -84,18 +84,18 @@ def _verify(
     name: str, members: int, points: int, seed: int
 ) -> tuple[Verification | NetworkVerification, str]:
     """What was checked of a linkage or a network, and as text."""
-    from linkages.app.verify_text import (
+    from linkages.app.texts.verify_text import (
         describe_network_verification,
         describe_verification,
     )
     from linkages.networks.entries import NETWORKS
 
     if name in NETWORKS:
-        from linkages.app.verify_network import verify_network
+        from linkages.app.reports.verify_network import verify_network
 
         of_network = verify_network(name, members, seed)
         return of_network, describe_network_verification(of_network)
-    from linkages.app.verify import verify
+    from linkages.app.reports.verify import verify
 
     of_linkage = verify(name, members, points, seed)
     return of_linkage, describe_verification(of_linkage)

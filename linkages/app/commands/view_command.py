@@ -52,10 +52,10 @@ def view_command(
       bifurc view out/atlas.nc
       bifurc view four-bennett-network --lock 2=40 --lock 6=-75
     """
+    from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.atlas_source import atlas_of
     from linkages.app.output import require_ending, require_writable, writing_to
     from linkages.app.status import say_more
-    from linkages.app.verdict import exit_by, judge
     from linkages.viewing.document import make_view_document
     from linkages.viewing.page import write_page
 

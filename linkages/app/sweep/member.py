@@ -17,9 +17,9 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.settings import SearchSettings
-from linkages.app.mobility import mobility_of
+from linkages.app.answer.mobility import mobility_of
+from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.sweep.subjects import JointName, Member, Subject
-from linkages.app.verdict import is_without_gaps
 from linkages.labels import FormLabels
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
@@ -195,8 +195,8 @@ def _still_joints(atlas: Atlas, member: Member) -> list[set[JointName]]:
             for of_form in numbers
         ]
     # they import networkx, which loops do not need
-    from linkages.mechanisms.facts import form_facts
-    from linkages.mechanisms.readout import Readout
+    from linkages.readout.facts import form_facts
+    from linkages.readout.readout import Readout
 
     readout = Readout(member.linkage)
     count = len(atlas.forms)

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import linkages.app.verify
+import linkages.app.reports.verify
 from bifurc.files.dataset import save_atlas
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
@@ -536,13 +536,13 @@ STEPS = {
     ("list",): "linkages.catalogue.catalogue",
     ("show", "bennett"): "linkages.catalogue.entry",
     ("identify", "bennett"): "linkages.identification.identify.identify",
-    ("verify", "bennett"): "linkages.app.verify.verify",
+    ("verify", "bennett"): "linkages.app.reports.verify.verify",
     ("map", "bennett"): "linkages.app.exploration.explore_linkage",
     ("route", "bennett", "a", "b"): "linkages.app.atlas_source.explore_linkage",
     ("view", "kite"): "linkages.app.atlas_source.explore_linkage",
     ("export", "kite", "--to", "a.glb"): "linkages.app.atlas_source.explore_linkage",
     ("clearance", "kite"): "linkages.app.atlas_source.explore_linkage",
-    ("tolerance", "kite"): "linkages.app.tolerance.measure",
+    ("tolerance", "kite"): "linkages.app.reports.tolerance.measure",
     ("sweep", "bennett", *GRID): "linkages.app.sweep.run.prepare_sweep",
 }
 
@@ -569,7 +569,7 @@ def test_half_a_map_is_no_map_for_other_commands(command, monkeypatch):
 
 
 def test_what_was_verified_before_ctrl_c_is_in_the_document(monkeypatch):
-    verify = linkages.app.verify.verify
+    verify = linkages.app.reports.verify.verify
     names = iter(["bennett"])
 
     def one(*arguments):
@@ -577,7 +577,7 @@ def test_what_was_verified_before_ctrl_c_is_in_the_document(monkeypatch):
             raise KeyboardInterrupt
         return verify("bennett")
 
-    monkeypatch.setattr(linkages.app.verify, "verify", one)
+    monkeypatch.setattr(linkages.app.reports.verify, "verify", one)
     result = bifurc("verify", "--json")
     assert result.exit_code == ExitCode.INTERRUPTED
     assert result.stdout.startswith('[{"name": "bennett"')

@@ -5,8 +5,8 @@ from click.testing import CliRunner
 
 from linkages import load
 from linkages.app.cli import main
-from linkages.mechanisms.toml_text import mechanism_toml
-from tests.linkages.mechanisms.formats.examples import EXAMPLES
+from linkages.files.toml_text import mechanism_toml
+from tests.linkages.formats.examples import EXAMPLES
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 
 

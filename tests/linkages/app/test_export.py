@@ -8,9 +8,9 @@ import pytest
 from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
+from linkages.app.answer.configurations import readout_of
 from linkages.app.cli import main
 from linkages.app.commands.export_command import make_table
-from linkages.app.configurations import readout_of
 from linkages.app.exit_codes import ExitCode
 from linkages.export.glb import make_glb
 from linkages.export.model import Shape, model_of_mechanism

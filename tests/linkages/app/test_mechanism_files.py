@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from bifurc.files.dataset import load_atlas
-from linkages.app.configurations import readout_of
+from linkages.app.answer.configurations import readout_of
 from linkages.app.files import write_data
 from linkages.mapping import map_linkage
 from linkages.mechanisms.couplings import Coupling

@@ -9,17 +9,17 @@ import pytest
 from click.testing import CliRunner
 
 from bifurc.files.dataset import load_atlas
-from linkages.app import mechanism_text
 from linkages.app.cli import main
 from linkages.app.commands.map_command import write_numbers
-from linkages.app.mechanism_text import describe_joints
+from linkages.app.texts import mechanism_text
+from linkages.app.texts.mechanism_text import describe_joints
+from linkages.files.toml_text import mechanism_toml
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
-from linkages.mechanisms.toml_text import mechanism_toml
+from linkages.readout.readout import Readout
 from tests.linkages.app.slider_cranks import slider_crank_text
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import platform

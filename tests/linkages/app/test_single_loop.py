@@ -12,11 +12,11 @@ from click.testing import CliRunner
 
 from bifurc.torus import SEAM
 from linkages.app.cli import main
-from linkages.app.mechanism_file import mechanism_text
+from linkages.app.reports.mechanism_file import mechanism_text
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
 from linkages.loop import Loop
-from linkages.mechanisms.readout import Readout
+from linkages.readout.readout import Readout
 from tests.linkages.mechanisms.single_loops import catalogue_loop
 
 DSG = "special-double-subtractive-goldberg"

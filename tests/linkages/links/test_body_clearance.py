@@ -9,8 +9,8 @@ from linkages.links.body_clearance import (
 )
 from linkages.links.clearance import TOLERANCE
 from linkages.mapping import map_linkage
-from linkages.mechanisms.poses import Poses
-from linkages.mechanisms.structure import Structure
+from linkages.readout.poses import Poses
+from linkages.structure.structure import Structure
 from tests.linkages.links.test_clearance import nearest_by_optimisation
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import rods

@@ -14,12 +14,12 @@ from linkages.links.mechanism_drawing import (
 )
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import (
     mechanism_from,
     mechanism_of,
     mechanism_subject,
 )
+from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 from linkages.viewing.document import make_view_document
 from studies.miura import miura

@@ -7,18 +7,18 @@ import pytest
 
 import linkages
 from bifurc.search.settings import SearchSettings
+from linkages.closure.curvature import CurvatureBounds
+from linkages.closure.driving import joints_to_hold
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError
-from linkages.mechanisms.closure import MechanismClosure
+from linkages.files.toml_text import mechanism_toml
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.curvature import CurvatureBounds
-from linkages.mechanisms.driving import joints_to_hold
-from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.readout import Readout
-from linkages.mechanisms.structure import Structure
 from linkages.mechanisms.subject import mechanism_from, mechanism_subject
-from linkages.mechanisms.toml_text import mechanism_toml
+from linkages.readout.facts import form_facts
+from linkages.readout.readout import Readout
+from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 from tests.linkages.mechanisms.known_mechanisms import cases
 from tests.linkages.mechanisms.test_maps import counts, lengths, slider_crank

@@ -12,10 +12,10 @@ from bifurc.branch import Outcome
 from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
 from bifurc.singular.point import Kind
-from linkages.mechanisms.facts import form_facts
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.readout import Readout
+from linkages.readout.facts import form_facts
+from linkages.readout.readout import Readout
 from studies.known_mechanisms import WAYS
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import platform

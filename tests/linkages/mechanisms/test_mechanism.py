@@ -8,7 +8,7 @@ import pytest
 from linkages.mechanisms.displacements import displacement_of
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.structure import Structure
+from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 
 Z = (0, 0, 1)

@@ -8,14 +8,14 @@ import pytest
 import linkages
 from bifurc.files.dataset import load_atlas, save_atlas
 from bifurc.seeds import Level
-from linkages.app.summary import make_summary
+from linkages.app.texts.summary import make_summary
 from linkages.file import LinkageFileError, read_file
+from linkages.files.toml_text import mechanism_toml
 from linkages.labels import loop_of
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
 from linkages.mechanisms.subject import mechanism_of
-from linkages.mechanisms.toml_text import mechanism_toml
 from tests.linkages.mechanisms.test_maps import slider_crank
 
 UPWARDS = (0.0, 0.0, 1.0)

@@ -6,8 +6,8 @@ import pytest
 
 import linkages
 from bifurc.search.settings import SearchSettings
-from linkages.app.document import make_document
-from linkages.app.summary import make_summary
+from linkages.app.answer.document import make_document
+from linkages.app.texts.summary import make_summary
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from tests.samples import one_in

@@ -13,7 +13,7 @@ from bifurc.curves.certificate import Certificate, certify_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.search.branch_parts import followed_by, part_of
 from bifurc.search.settings import SearchSettings
-from linkages.mechanisms.closure import MechanismClosure
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from tests.linkages.mechanisms.frameworks import flexible_octahedron

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from linkages import load
-from linkages.mechanisms.formats.sdf_writing import mechanism_sdf
+from linkages.formats.sdf_writing import mechanism_sdf
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.structure import Structure
+from linkages.structure.structure import Structure
 
 UPWARDS = (0.0, 0.0, 1.0)
 

@@ -9,9 +9,9 @@ import pytest
 
 from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.identification.identify import identify
 from linkages.mapping import map_linkage
-from linkages.mechanisms.closure import MechanismClosure
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.four_joints import bennett_gap, bennett_twist
 from linkages.networks.locking import locked_state, locked_states

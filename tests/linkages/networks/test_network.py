@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linkages.mechanisms.closure import MechanismClosure
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.networks.assembly import assemble
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from bifurc.atlas import Atlas
-from linkages.app.verdict import judge
+from linkages.app.answer.verdict import judge
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage

@@ -4,10 +4,10 @@ are, and map, choices and routes work as those of a loop."""
 import numpy as np
 import pytest
 
-from linkages.mechanisms.closure import MechanismClosure
+from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import JointKind
-from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
+from linkages.readout.readout import Readout
 from linkages.viewing import mechanism_document
 from tests.linkages.viewing.test_viewer import drawn_share, picture_of
 

@@ -7,13 +7,13 @@ from bifurc.errors import RouteError
 from bifurc.figures.style import form_style
 from bifurc.routes.route import find_route
 from bifurc.torus import wrap
-from linkages.app.forms import listed_forms
+from linkages.app.texts.form_names import listed_forms
 from linkages.closure.loop_closure import LoopClosure
 from linkages.labels import loop_of
 from linkages.links.rods import place_links
-from linkages.mechanisms.loop_atlas import to_loop_angles
-from linkages.mechanisms.readout import Readout
 from linkages.mechanisms.subject import mechanism_of
+from linkages.readout.loop_atlas import to_loop_angles
+from linkages.readout.readout import Readout
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
 

@@ -1,0 +1,178 @@
+"""What a linkage is, by its atlas: mobile, rigid, or without any real configuration;
+and the exit code for it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NoReturn
+
+import click
+
+from bifurc.atlas import Atlas, NearMotion
+from bifurc.decisions import closes_to_rounding
+from bifurc.search.completeness import IN_DOUBT
+from bifurc.seeds import Completeness, Level
+from bifurc.singular.point import Kind
+from bifurc.systems.verdict import has_only_open_points
+from bifurc.text_tables import count_of
+from linkages.app.answer.configurations import ArclengthUnit, arclength_unit
+from linkages.app.exit_codes import ExitCode
+from linkages.app.texts.limits_text import kept_out_by_limits
+from linkages.assembly_statements import has_all_assemblies
+from linkages.turns.translates import translates_of
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One sentence on what the linkage is, and the exit code."""
+
+    sentence: str
+    code: ExitCode
+
+
+def judge(atlas: Atlas) -> Verdict:
+    """What the linkage of an atlas is.
+
+    An interrupted search is said to be one, whatever it found. A search that ran out of
+    time before it found a motion says nothing of the linkage.
+    """
+    if atlas.provenance.interrupted:
+        return Verdict(_interrupted(atlas), ExitCode.INTERRUPTED)
+    if atlas.forms or atlas.surfaces:
+        return Verdict(_mobile(atlas) + _remark(atlas), ExitCode.DONE)
+    if atlas.completeness.level is Level.OUT_OF_TIME:
+        return Verdict(_nothing_known(atlas), ExitCode.NOTHING_KNOWN)
+    if has_only_open_points(atlas):
+        return Verdict(_closed_at_points(atlas), ExitCode.NOTHING_KNOWN)
+    return Verdict(_immobile(atlas), ExitCode.DOES_NOT_MOVE)
+
+
+def exit_by(verdict: Verdict) -> NoReturn:
+    """End a command that has written what there is, with the exit code of the verdict;
+    one that is not "done" is said on standard error."""
+    if verdict.code is not ExitCode.DONE:
+        click.echo(verdict.sentence, err=True)
+    click.get_current_context().exit(verdict.code)
+
+
+def is_without_gaps(completeness: Completeness) -> bool:
+    """Whether every slice was complete, and nothing rests on random starts alone."""
+    return completeness.level in (Level.PROVED, Level.CERTIFIED)
+
+
+def _interrupted(atlas: Atlas) -> str:
+    forms = count_of(len(atlas.forms), "form")
+    bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
+    return f"The search was interrupted; {forms} and {bifurcations} were found by then."
+
+
+def _remark(atlas: Atlas) -> str:
+    """What to add where the answer is in doubt."""
+    is_in_doubt = atlas.completeness.statement.startswith(IN_DOUBT)
+    return " Some of it is in doubt: see its completeness." if is_in_doubt else ""
+
+
+def _mobile(atlas: Atlas) -> str:
+    forms = count_of(len(atlas.forms), "form")
+    if atlas.forms and translates_of(atlas) is not None:
+        forms += " (up to whole turns)"
+    if not atlas.surfaces:
+        components = count_of(atlas.components, "component")
+        bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
+        sentence = (
+            f"The linkage moves with mobility 1: {forms} in {components}, "
+            f"{bifurcations}."
+        )
+        return sentence + _within_tolerance(atlas)
+    dimension = max(surface.dimension for surface in atlas.surfaces)
+    sentence = f"The linkage moves with mobility {dimension}"
+    if atlas.forms:
+        sentence += f", and has {forms} of mobility 1"
+    return f"{sentence}.{_within_tolerance(atlas)}"
+
+
+def _within_tolerance(atlas: Atlas) -> str:
+    """By how much forms miss closure, where that is more than rounding."""
+    largest = max((form.misclosure for form in atlas.forms), default=0.0)
+    if closes_to_rounding(largest):
+        return ""
+    return (
+        " It moves within the closing tolerance: along the way its loop misses closure "
+        f"by {largest:.2g} of the characteristic length at most."
+    )
+
+
+def _nothing_known(atlas: Atlas) -> str:
+    assemblies = count_of(len(atlas.rigid), "isolated assembly")
+    seconds = atlas.provenance.settings.budget
+    return (
+        f"The search ended after {seconds:.4g} s, before it found a motion: whether "
+        f"the linkage moves is not known ({assemblies} so far)."
+    )
+
+
+def _closed_at_points(atlas: Atlas) -> str:
+    points = count_of(len(atlas.points), "singular point")
+    return (
+        f"The linkage closes at {points}; whether it moves from there within its "
+        "limits is not known."
+    )
+
+
+def _immobile(atlas: Atlas) -> str:
+    shaky = sum(1 for point in atlas.points if point.kind is Kind.ISOLATED)
+    assemblies = len(atlas.rigid) + shaky
+    if atlas.near_motions:
+        unit = arclength_unit(atlas)
+        sentence = (
+            f"The linkage nearly moves{_near_motion(atlas.near_motions[0], unit)}."
+        )
+    elif assemblies:
+        sentence = "The linkage is rigid."
+    else:
+        return kept_out_by_limits(atlas) or _nowhere_closed(atlas)
+    if not assemblies:
+        return sentence
+    return f"{sentence} {_assemblies(atlas, assemblies, shaky)}"
+
+
+def _nowhere_closed(atlas: Atlas) -> str:
+    start = "The linkage has no real configuration"
+    if closes_to_rounding(atlas.closure_gap):
+        return f"{start} within the limits in which slides are followed."
+    gap = f"{atlas.closure_gap:.3g} of the characteristic length"
+    return f"{start}: its loop stays open by {gap}."
+
+
+def _near_motion(motion: NearMotion, unit: ArclengthUnit) -> str:
+    """How far a near motion goes, and by how much it is none."""
+    length = f"joint-space length {unit.factor * motion.length:.4g} ({unit.name})"
+    if unit.name == "deg":
+        length = f"{math.degrees(motion.length):.4g} degrees of joint-space length"
+    stretch = f": all along a closed path of {length}"
+    if motion.mobility > 1:
+        stretch = f" with mobility {motion.mobility}: all over a surface"
+    elif not motion.is_closed:
+        stretch = f": along {length}"
+    return (
+        f"{stretch} its loop misses closure by {motion.misclosure:.3g} of the "
+        "characteristic length at most"
+    )
+
+
+def _assemblies(atlas: Atlas, count: int, shaky: int) -> str:
+    """In how many assemblies a linkage closes, at least where random starts alone led to
+    them."""
+    least = "" if has_all_assemblies(atlas.completeness.statement) else "at least "
+    remark = f", {shaky} of them shaky (of lower rank)" if shaky else ""
+    if count == shaky == 1:
+        remark = ", which is shaky (of lower rank)"
+    translates = translates_of(atlas)
+    if translates is not None:
+        fewest = "" if translates.are_all else "at least "
+        remark += f" (up to whole turns; with them {fewest}{translates.assemblies})"
+    return (
+        f"It closes in {least}{count_of(count, 'isolated assembly')}{remark}, and does "
+        "not move from there."
+    )

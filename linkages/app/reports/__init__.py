@@ -1,0 +1,1 @@
+"""What commands work out besides the map."""

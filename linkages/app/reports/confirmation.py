@@ -1,0 +1,124 @@
+"""The singular points of a map found again at high precision: how many of its digits
+are right."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import mpmath
+
+from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.problem import PreciseResidual
+from bifurc.singular.confirm import (
+    Confirmation,
+    Convergence,
+    confirm_singular_point,
+)
+from bifurc.text_tables import table
+from linkages.app.answer.configurations import readout_of
+from linkages.app.answer.equations import equations_of
+from linkages.app.choice import choose_precisely
+from linkages.closure.precise import precise_residual
+from linkages.linkage import is_linkage_file
+
+# where rounded numbers leave a gap: the word for how a point was refined
+ROUNDED = "rounded"
+
+
+def confirm_points(
+    atlas: Atlas, linkage: str, parameters: Sequence[str] = (), digits: int = 50
+) -> Iterator[tuple[MeetingPoint, Confirmation]]:
+    """Every singular point of the map of a linkage with its `Confirmation`, the
+    geometry at the same precision; that of a mechanism is taken from its doubles."""
+    residual: PreciseResidual | None
+    readout = readout_of(atlas)
+    if readout is None:
+        with mpmath.workdps(3 * digits + 30):
+            residual = precise_residual(choose_precisely(linkage, parameters))
+    else:
+        from linkages.readout.loop_atlas import in_loop_angles
+
+        # the equations in which the points were located: others, as they are rounded,
+        # have their singular points elsewhere
+        atlas = in_loop_angles(atlas, readout)
+        residual = equations_of(atlas).precise_residual()
+    assert residual is not None
+    for meeting in atlas.points:
+        point = meeting.point
+        confirmation = confirm_singular_point(
+            residual, point.u, point.null_space, digits
+        )
+        yield meeting, confirmation
+
+
+def describe_confirmation(
+    atlas: Atlas, linkage: str, parameters: Sequence[str] = (), digits: int = 50
+) -> str:
+    """What ``bifurc map --digits`` shows: a row for every singular point, and what the
+    words for convergence mean."""
+    rows = []
+    endings = {}
+    gap = 0.0
+    is_rounded = readout_of(atlas) is not None or is_linkage_file(linkage)
+    for point, confirmation in confirm_points(atlas, linkage, parameters, digits):
+        word = confirmation.convergence.name.lower().replace("_", " ")
+        if is_rounded and confirmation.convergence is Convergence.INCONSISTENT:
+            word = ROUNDED
+        rows.append((*_row(point, confirmation), word))
+        endings[confirmation.convergence] = f"  {confirmation.convergence.value}"
+        if confirmation.convergence is Convergence.INCONSISTENT:
+            gap = max(gap, confirmation.residual)
+    if is_rounded and Convergence.INCONSISTENT in endings:
+        endings[Convergence.INCONSISTENT] = _of_rounded_numbers(gap)
+    title = f"Confirmation at {digits} digits"
+    if not rows:
+        return f"{title}: there is no singular point to confirm."
+    heads = (
+        "name",
+        "kind",
+        "digits right",
+        "distance (rad)",
+        "error stated",
+        "null space (rad)",
+        "nullity",
+        "next s.v.",
+        "|F|",
+        "error here",
+        "convergence",
+    )
+    explanations = "\n".join(endings.values())
+    return f"{title}\n{table(heads, rows)}\n\nConvergence\n{explanations}"
+
+
+def _of_rounded_numbers(gap: float) -> str:
+    """The words for points at which rounded numbers leave a ``gap`` |F|."""
+    return (
+        f"  {ROUNDED}: the numbers of the linkage are rounded, and exactly as they are "
+        f"written it does not close there, by up to {gap:.1e} (|F|); these are the "
+        "points that come nearest"
+    )
+
+
+def _row(meeting: MeetingPoint, confirmation: Confirmation) -> tuple[str, ...]:
+    stated = meeting.point.error
+    within = confirmation.distance <= stated + confirmation.error
+    return (
+        meeting.name,
+        meeting.kind.value,
+        f"{confirmation.agreeing_digits:.1f}",
+        f"{confirmation.distance:.1e}",
+        f"{stated:.1e} {'holds' if within else 'exceeded'}",
+        f"{confirmation.angle:.1e}",
+        str(confirmation.nullity),
+        _smallest_regular(confirmation),
+        f"{confirmation.residual:.0e}",
+        f"{confirmation.error:.0e}",
+    )
+
+
+def _smallest_regular(confirmation: Confirmation) -> str:
+    """The smallest singular value that is not zero to the precision reached."""
+    rank = len(confirmation.singular_values) - confirmation.nullity
+    positive = [value for value in confirmation.singular_values if value > 0]
+    regular = positive[:rank]
+    return f"{regular[-1]:.3g}" if regular else "-"

@@ -1,0 +1,65 @@
+"""An entry of the catalogue as text: degrees, joints numbered from 1."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from bifurc.text_tables import table
+from linkages.app.texts.numbers import in_degrees, known_to, link_name
+from linkages.entry import Entry, Parameter, ParameterKind
+from linkages.loop import Loop
+
+
+def describe_entry(entry: Entry) -> str:
+    """Everything that the catalogue says of a linkage, angles in degrees."""
+    facts = [f"{key}: {value}" for key, value in entry.facts.items()]
+    parts = [
+        f"{entry.name}\n{entry.title}\nSource: {entry.source}",
+        parameter_table(entry.parameters),
+        list_below("Conditions", [condition.text for condition in entry.conditions]),
+        describe_geometry(entry.build()),
+        list_below("Published facts", facts),
+        list_below("Misprints in the source", entry.errata),
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def parameter_table(parameters: Sequence[Parameter]) -> str:
+    """The parameters with their defaults."""
+    rows = [(p.name, _default(p), p.kind, p.meaning) for p in parameters]
+    return "Parameters\n" + table(("name", "default", "kind", "meaning"), rows)
+
+
+def describe_geometry(loop: Loop) -> str:
+    """The Denavit-Hartenberg table of a loop, twists in degrees."""
+    lengths, twists, offsets = loop.arrays
+    rows = []
+    for i in range(loop.n):
+        rows.append(
+            (
+                str(i + 1),
+                link_name(i, loop.n),
+                f"{lengths[i]:.10g}",
+                in_degrees(twists[i]),
+                f"{offsets[i]:.10g}",
+            )
+        )
+    heads = ("joint", "link", "length", "twist (deg)", "offset")
+    text = "Geometry\n" + table(heads, rows)
+    if loop.rounding:
+        text += "\n\n" + known_to(loop.rounding, loop.characteristic_length)
+    return text
+
+
+def _default(parameter: Parameter) -> str:
+    if parameter.kind is ParameterKind.ANGLE:
+        return f"{math.degrees(parameter.default):.6g} deg"
+    return f"{parameter.default:.6g}"
+
+
+def list_below(title: str, lines: Sequence[str]) -> str:
+    """Lines below their title; empty where there are none."""
+    if not lines:
+        return ""
+    return "\n".join([title, *(f"  {line}" for line in lines)])

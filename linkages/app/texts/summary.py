@@ -1,0 +1,273 @@
+"""The summary of a transition map: degrees, joints numbered from 1."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bifurc.atlas import Atlas, MeetingPoint, Surface
+from bifurc.branch import Branch, Outcome
+from bifurc.singular.point import Kind
+from bifurc.text_tables import section
+from linkages.app.answer.configurations import (
+    arclength_unit,
+    heading,
+    joint_names,
+    network_at,
+    readout_of,
+    show_configuration,
+    unit_of_arclengths,
+)
+from linkages.app.answer.verdict import judge
+from linkages.app.texts.entry_text import describe_geometry
+from linkages.app.texts.form_names import listed_forms
+from linkages.app.texts.numbers import in_degrees
+from linkages.labels import FormLabels, loop_of
+
+SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
+# titles of the tables of singular points, and the kinds that stand in each
+POINT_TABLES = (
+    ("Bifurcations", (Kind.BIFURCATION,)),
+    ("Rank drops (a single branch passes)", (Kind.RANK_DROP,)),
+    ("Changes of dimension (a surface is met)", (Kind.DIMENSION_CHANGE,)),
+    (
+        "Other singular points",
+        (Kind.CUSP, Kind.ISOLATED, Kind.SURFACE, Kind.UNDECIDED),
+    ),
+)
+
+
+def make_summary(atlas: Atlas) -> str:
+    """What `bifurc map` shows: verdict, geometry, forms, singular points, completeness
+    and time."""
+    completeness = atlas.completeness
+    provenance = atlas.provenance
+    parts = [
+        f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
+        *_geometry(atlas),
+        _forms(atlas),
+        _surfaces(atlas),
+        *(_points(atlas, title, kinds) for title, kinds in POINT_TABLES),
+        _near_misses(atlas),
+        _rigid_assemblies(atlas),
+        _near_motions(atlas),
+        _certificates(atlas),
+        *_motions(atlas),
+        f"Completeness ({completeness.level}): {completeness.statement}.",
+        f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
+    ]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _geometry(atlas: Atlas) -> list[str]:
+    """Tables of what was mapped."""
+    readout = readout_of(atlas)
+    if readout is None:
+        return [describe_geometry(loop_of(atlas))]
+    from linkages.app.texts.mechanism_text import describe_joints, describe_loops
+
+    parts = [describe_joints(readout), describe_loops(atlas, readout)]
+    network = network_at(atlas)
+    if network is not None:
+        from linkages.app.texts.network_text import describe_kinks
+
+        parts.insert(1, describe_kinks(network))
+    return parts
+
+
+def _motions(atlas: Atlas) -> list[str]:
+    """What the joints and bodies of a mechanism do along its forms."""
+    readout = readout_of(atlas)
+    if readout is None or not atlas.forms:
+        return []
+    from linkages.app.texts.mechanism_text import describe_dead_points, describe_motions
+
+    parts = [describe_motions(atlas, readout), describe_dead_points(atlas, readout)]
+    network = network_at(atlas)
+    if network is not None:
+        from linkages.app.texts.network_text import describe_ring
+
+        parts.append(describe_ring(atlas, readout, network))
+    return parts
+
+
+def _forms(atlas: Atlas) -> str:
+    rows = []
+    unit = arclength_unit(atlas)
+    for form in listed_forms(atlas):
+        labels = FormLabels.of(form)
+        rows.append(
+            (
+                form.name,
+                _closure(form.branch),
+                f"{unit.factor * form.branch.length:.6g}",
+                _winding(atlas, form.branch),
+                _inactive_joints(atlas, labels),
+                labels.symmetry.value or "-",
+                f"{form.min_singular_value:.3g}",
+                f"{labels.max_residual:.1e}",
+            )
+        )
+    heads = (
+        "name",
+        "closed",
+        f"length ({unit.name})",
+        "winding",
+        "inactive joints",
+        "symmetry",
+        "smallest s.v.",
+        "residual",
+    )
+    return section("Forms", heads, rows)
+
+
+def _closure(branch: Branch) -> str:
+    """Whether a branch is closed, or else how it ends."""
+    if branch.closed:
+        return "yes"
+    if branch.outcome is Outcome.LEFT_REGION:
+        return "leaves the limits"
+    return branch.outcome.name.lower().replace("_", " ")
+
+
+def _winding(atlas: Atlas, branch: Branch) -> str:
+    """How often each joint turns round, with its sign; "-" for unknowns that do not
+    turn."""
+    words = []
+    for turns, period in zip(branch.winding, atlas.periods, strict=True):
+        if not np.isfinite(period):
+            words.append("-")
+        else:
+            words.append(f"{turns:+d}" if turns else "0")
+    return " ".join(words)
+
+
+def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:
+    """The joints that stand still, those of a mechanism by name; where, of a loop."""
+    names = joint_names(atlas)
+    if readout_of(atlas) is not None:
+        return ", ".join(names[joint - 1] for joint in labels.inactive_joints) or "-"
+    pairs = zip(labels.inactive_joints, labels.inactive_angles, strict=True)
+    shown = ", ".join(f"{joint} at {in_degrees(angle)}" for joint, angle in pairs)
+    return shown or "-"
+
+
+def _surfaces(atlas: Atlas) -> str:
+    unit = "rad^2"
+    if set(atlas.units) != {"rad"}:
+        unit = f"squares of {arclength_unit(atlas).name}"
+    heads = ("name", "dimension", "charts", f"area ({unit})", "covering", "remark")
+    return section("Surfaces", heads, [_surface_row(s) for s in atlas.surfaces])
+
+
+def _surface_row(surface: Surface) -> tuple[str, ...]:
+    name, dimension = surface.name, str(surface.dimension)
+    charts = surface.charts
+    if charts is None:
+        return (name, dimension, "-", "-", "none: only sampled", surface.note)
+    count, area = str(len(charts)), f"{charts.area:.6g}"
+    return (name, dimension, count, area, charts.outcome.value, surface.note)
+
+
+def _points(atlas: Atlas, title: str, kinds: Sequence[Kind]) -> str:
+    rows = []
+    for point in atlas.points:
+        if point.kind not in kinds:
+            continue
+        remark = f": {point.note}" if point.note else ""
+        rows.append(
+            (
+                point.name,
+                show_configuration(atlas, point.point.u),
+                str(point.point.rank),
+                f"{point.point.error:.0e}",
+                ", ".join(_names_at(atlas, point)) or "-",
+                point.kind.value + remark,
+            )
+        )
+    heads = ("name", heading(atlas), "rank", "error", "forms", "kind")
+    return section(title, heads, rows)
+
+
+def _names_at(atlas: Atlas, point: MeetingPoint) -> list[str]:
+    """Names of the forms, once for every pass, and the surfaces at a singular point."""
+    forms = [atlas.forms[index].name for index, _ in point.passes]
+    surfaces = [atlas.surfaces[index].name for index in point.surfaces]
+    if point.kind is Kind.DIMENSION_CHANGE and not surfaces:
+        # charts tell which surface is met; those that are only sampled have none
+        sampled = [one.name for one in atlas.surfaces if one.charts is None]
+        surfaces = [" or ".join(sampled)] if sampled else []
+    return forms + surfaces
+
+
+def _near_misses(atlas: Atlas) -> str:
+    rows = []
+    for miss in sorted(atlas.near_misses, key=lambda miss: miss.value):
+        angles = show_configuration(atlas, miss.u)
+        value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
+        rows.append((angles, value, error, atlas.forms[miss.form].name))
+    heads = (heading(atlas), "singular value", "error", "form")
+    return _beginning("Near misses (no bifurcation)", heads, rows)
+
+
+def _rigid_assemblies(atlas: Atlas) -> str:
+    rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
+    return _beginning("Rigid assemblies", (heading(atlas),), rows)
+
+
+def _near_motions(atlas: Atlas) -> str:
+    rows = []
+    unit = arclength_unit(atlas)
+    for near in atlas.near_motions:
+        angles = show_configuration(atlas, near.sample)
+        closed = "yes" if near.is_closed else "no"
+        length = f"{unit.factor * near.length:.4g}"
+        if near.mobility > 1:
+            closed, length = "-", "-"
+        mobility = str(near.mobility)
+        rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
+    length = f"length ({unit.name})"
+    heads = (heading(atlas), "mobility", "closed", length, "misclosure")
+    return _beginning("Near motions (the loop nearly closes)", heads, rows)
+
+
+def _beginning(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """The first `SHOWN` rows of a table, and how many there are beyond."""
+    text = section(title, heads, rows[:SHOWN])
+    if len(rows) > SHOWN:
+        text += f"\n  and {len(rows) - SHOWN} more"
+    return text
+
+
+def _certificates(atlas: Atlas) -> str:
+    rows = []
+    for form in listed_forms(atlas):
+        certificate = form.certificate
+        if certificate is None:
+            continue
+        rows.append(
+            (
+                form.name,
+                certificate.status,
+                str(certificate.points),
+                f"{certificate.bound:.3g}",
+                _show_intervals(certificate.gaps),
+                _show_intervals(certificate.blurred),
+            )
+        )
+    unit = unit_of_arclengths(atlas)
+    intervals = f"refused ({unit})", f"blurred ({unit})"
+    heads = ("name", "status", "points", "bound K", *intervals)
+    return section("Certificates (each form is one arc of solutions)", heads, rows)
+
+
+def _show_intervals(intervals: NDArray[np.float64]) -> str:
+    """The first interval of arclength, and how many more there are."""
+    if not len(intervals):
+        return "-"
+    low, high = intervals[0]
+    text = f"{low:.6g} to {high:.6g}"
+    more = len(intervals) - 1
+    return f"{text} and {more} more" if more else text

@@ -1,0 +1,323 @@
+"""The closure equations of a mechanism, written on a tape.
+
+A cycle of pairs is closed when the product of the displacements along it is the
+identity (the product of exponentials in the reference configuration, Brockett 1984).
+Where a chain ends in a spherical joint, a point comes back to itself; between two of
+them, two points keep their distance. A mechanism that is made with errors has small
+displacements at both ends of every joint.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from bifurc.equations.recorded import RecordedNumber, Recorder
+from bifurc.equations.tape import Tape
+from linkages.closure.errors import JointErrors, no_errors
+from linkages.closure.motors import (
+    IDENTITY,
+    Motor,
+    Number,
+    Point,
+    product,
+    rotated_about,
+    slide,
+    turn,
+)
+from linkages.decisions import is_rounding_of_zero
+from linkages.mechanisms.joint import Motion
+from linkages.structure.cycles import Step
+from linkages.structure.placement import Placement
+from linkages.structure.structure import Closure, ClosureKind, Share, Structure
+
+
+@dataclass(frozen=True)
+class Equations:
+    """The ``tape`` of all equations, and how many of them belong to each closure."""
+
+    tape: Tape
+    counts: tuple[int, ...]
+
+
+def write_equations(
+    structure: Structure, errors: JointErrors | None = None
+) -> Equations:
+    """The equations of all closures, then those of the embedded spherical joints; with
+    ``errors`` those of the mechanism as it is made."""
+    writer = Recorder(len(structure.unknowns))
+    values = _values(structure, writer)
+    outputs: list[int] = []
+    counts = []
+    if errors is None:
+        errors = no_errors(structure)
+    for number in range(len(structure.closures)):
+        equations = _ChainWriter(structure, number, writer, values, errors)
+        slots = _slots(writer, equations.residuals())
+        counts.append(len(slots))
+        outputs += slots
+    for columns in structure.embedded.values():
+        numbers = [_unknown(writer, column) for column in columns]
+        outputs += _slots(writer, _orthonormal(numbers[:3], numbers[3:6]))
+    return Equations(writer.tape(outputs), tuple(counts))
+
+
+def _unknown(writer: Recorder, number: int) -> RecordedNumber:
+    return RecordedNumber(writer, writer.unknown(number))
+
+
+def _values(structure: Structure, writer: Recorder) -> list[Number]:
+    """The value of every variable: an unknown, or the number at which it is locked."""
+    values: list[Number] = []
+    for number, variable in enumerate(structure.mechanism.variables):
+        share = structure.share(number)
+        if share is not None:
+            values.append(_followed(_unknown(writer, share.column), share))
+        else:
+            assert variable.locked is not None
+            unit = 1.0 if variable.motion.is_turn else structure.unit
+            values.append(variable.locked / unit)
+    return values
+
+
+def _followed(value: Number, share: Share) -> Number:
+    """The value of a variable from that of its unknown."""
+    if share.rate != 1.0:
+        value = share.rate * value
+    return value + share.offset if share.offset != 0.0 else value
+
+
+def _slots(writer: Recorder, residuals: Sequence[Number]) -> list[int]:
+    """The slots of equations, without those that hold whatever the unknowns are."""
+    slots = []
+    for residual in residuals:
+        if not isinstance(residual, RecordedNumber):
+            residual = RecordedNumber(writer, writer.constant(float(residual)))
+        value = writer.value(residual.slot)
+        if value is None or not is_rounding_of_zero(abs(value)):
+            slots.append(residual.slot)
+    return slots
+
+
+def _orthonormal(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
+    """The equations of two orthogonal unit vectors; 0 where they are."""
+    return [
+        0.5 * (_dot(a, a) - 1.0),
+        0.5 * (_dot(b, b) - 1.0),
+        _dot(a, b),
+    ]
+
+
+def _dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Sequence[Number], b: Sequence[Number]) -> list[Number]:
+    return [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+
+
+# --- one chain ------------------------------------------------------------------------
+
+
+class _ChainWriter:
+    """The equations of the closure of this ``number`` while they are written."""
+
+    def __init__(
+        self,
+        structure: Structure,
+        number: int,
+        writer: Recorder,
+        values: Sequence[Number],
+        errors: JointErrors,
+    ):
+        self.structure = structure
+        self.number = number
+        self.writer = writer
+        self.values = values
+        self.errors = errors
+        self.placement = self._placement()
+
+    @property
+    def closure(self) -> Closure:
+        """What has to close."""
+        return self.structure.closures[self.number]
+
+    def _placement(self) -> Placement:
+        """The frame of the equations; made with errors no chain is planar or
+        spherical."""
+        placement = self.structure.placement(self.closure)
+        if self.errors.are_none:
+            return placement
+        return replace(placement, is_planar=False, is_spherical=False)
+
+    def residuals(self) -> list[Number]:
+        """The equations, 0 where the chain is closed; lengths in the structure's
+        unit."""
+        if self.closure.kind is ClosureKind.CYCLE:
+            return self._of_cycle()
+        off_first, off_second = self.errors.points[self.number]
+        axes = self.placement.axes
+        first = self.placement.point(self.closure.first) + axes @ off_first
+        second = self.placement.point(self.closure.second) + axes @ off_second
+        arrival = self._moved(list(second))
+        gaps = [x - float(c) for x, c in zip(arrival, first, strict=True)]
+        if self.closure.kind is ClosureKind.POINT:
+            return gaps
+        return [self._of_rod(_dot(gaps, gaps))]
+
+    def _of_rod(self, square: Number) -> Number:
+        """How much too long a rod is, for small errors, from the ``square`` of the
+        distance of its ends."""
+        rod = self.closure.rod
+        assert rod is not None
+        rest = rod.length / self.structure.unit + float(self.errors.rods[self.number])
+        length: Number = rest
+        if rod.leg is not None:
+            length = rest + rod.leg.sign * self.values[rod.leg.variable]
+        return (square - length * length) / (2 * rest)
+
+    def _of_cycle(self) -> list[Number]:
+        """Twice the vector part of the product of motors: for small errors the rotation
+        vector and the translation. It is zero at closure alone, at half turns it is
+        not."""
+        motor = IDENTITY
+        steps = map(self._elements_with_errors, self.closure.chain)
+        for motion, value in _joined(chain.from_iterable(steps)):
+            motor = product(motor, self._motor(motion, value))
+        return [2.0 * number for number in (*motor.real[1:], *motor.dual[1:])]
+
+    def _elements_with_errors(self, step: Step) -> Iterator[tuple[Motion, Number]]:
+        """The same with the errors at both ends of the joint."""
+        yield from self.errors.before(step)
+        yield from self._elements(step)
+        yield from self.errors.after(step)
+
+    def _elements(self, step: Step) -> Iterator[tuple[Motion, Number]]:
+        """The elementary motions of a step, the last to act first, with their
+        values."""
+        variables = self.structure.variables_of(step.pair)
+        for number in variables[:: step.sign]:
+            value = self.values[number]
+            if isinstance(value, float) and value == 0.0:
+                continue
+            motion = self.structure.mechanism.variables[number].motion
+            yield motion, value if step.sign > 0 else -value
+
+    def _motor(self, motion: Motion, value: Number) -> Motor:
+        direction = self.placement.direction(motion)
+        if not motion.is_turn:
+            return slide(direction, value)
+        moment = np.cross(self.placement.point_on_axis(motion), direction)
+        half = 0.5 * value
+        advance = self._advance(motion, value)
+        return turn(direction, moment, _cosine(half), _sine(half), advance)
+
+    def _advance(self, motion: Motion, value: Number) -> Number:
+        """How far a turn by ``value`` advances, in the unit of the structure."""
+        if motion.advance == 0.0:
+            return 0.0
+        return (motion.advance / self.structure.unit) * value
+
+    # --- points -----------------------------------------------------------------------
+
+    def _moved(self, point: Point) -> Point:
+        """Where the chain takes a ``point`` (3,) of its last body."""
+        for step in reversed(self.closure.chain):
+            point = self._moved_by_all(point, self.errors.after(step))
+            if step.pair in self.structure.shifts:
+                point = self._carried(point, step)
+            elif step.pair in self.structure.embedded:
+                point = self._turned_freely(point, step)
+            else:
+                point = self._moved_by_all(point, self._elements(step))
+            point = self._moved_by_all(point, self.errors.before(step))
+        return point
+
+    def _moved_by_all(
+        self, point: Point, elements: Iterable[tuple[Motion, Number]]
+    ) -> Point:
+        """A point moved by elementary motions, the last one first."""
+        for motion, value in reversed(list(elements)):
+            point = self._moved_by(point, motion, value)
+        return point
+
+    def _moved_by(self, point: Point, motion: Motion, value: Number) -> Point:
+        direction = self.placement.direction(motion)
+        if not motion.is_turn:
+            return _shifted(point, direction, value)
+        center = self.placement.point_on_axis(motion)
+        turned = rotated_about(point, direction, center, _cosine(value), _sine(value))
+        return _shifted(turned, direction, self._advance(motion, value))
+
+    def _carried(self, point: Point, step: Step) -> Point:
+        """A point moved by the pair of a free point."""
+        columns = self.structure.shifts[step.pair]
+        directions = self.structure.point_pairs[step.pair].directions
+        for column, direction in zip(columns, directions, strict=True):
+            distance = step.sign * _unknown(self.writer, column)
+            point = _shifted(point, self.placement.axes @ direction, distance)
+        return point
+
+    def _turned_freely(self, point: Point, step: Step) -> Point:
+        """A point turned by an embedded spherical joint, and moved by a free pair: the
+        columns of the rotation are two unit vectors and their cross product."""
+        center = self.placement.point(self.structure.center(step.pair))
+        columns = self.structure.embedded[step.pair]
+        numbers: list[Number] = [_unknown(self.writer, one) for one in columns]
+        a, b, shift = numbers[:3], numbers[3:6], numbers[6:] or [0.0, 0.0, 0.0]
+        vectors = [a, b, _cross(a, b)]
+        offset = [x - float(c) for x, c in zip(point, center, strict=True)]
+        if step.sign < 0:
+            offset = [x - t for x, t in zip(offset, shift, strict=True)]
+            turned = [_dot(vector, offset) for vector in vectors]
+        else:
+            rows = zip(*vectors, strict=True)
+            turned = [_dot(row, offset) for row in rows]
+            turned = [x + t for x, t in zip(turned, shift, strict=True)]
+        return [float(c) + x for c, x in zip(center, turned, strict=True)]
+
+
+def _joined(
+    elements: Iterable[tuple[Motion, Number]],
+) -> Iterator[tuple[Motion, Number]]:
+    """The elementary motions, those that follow each other about one axis made one, by
+    the sum of their values: as where a chain crosses an axis of several bodies."""
+    before: tuple[Motion, Number] | None = None
+    for motion, value in elements:
+        if before is not None and _is_same(before[0], motion):
+            before = motion, before[1] + value
+            continue
+        if before is not None:
+            yield before
+        before = motion, value
+    if before is not None:
+        yield before
+
+
+def _is_same(motion: Motion, other: Motion) -> bool:
+    if motion.is_turn != other.is_turn or motion.advance != other.advance:
+        return False
+    is_same_axis = np.array_equal(motion.point, other.point) or not motion.is_turn
+    return is_same_axis and np.array_equal(motion.direction, other.direction)
+
+
+def _shifted(point: Point, direction: np.ndarray, distance: Number) -> Point:
+    if isinstance(distance, float) and distance == 0.0:
+        return point
+    return [x + distance * float(d) for x, d in zip(point, direction, strict=True)]
+
+
+def _cosine(value: Number) -> Any:
+    return value.cos() if isinstance(value, RecordedNumber) else float(np.cos(value))
+
+
+def _sine(value: Number) -> Any:
+    return value.sin() if isinstance(value, RecordedNumber) else float(np.sin(value))

@@ -1,0 +1,295 @@
+"""The closure of a mechanism as a problem for `bifurc`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import cached_property
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bifurc.checks import check_type, rows_of
+from bifurc.decisions import is_start_solved
+from bifurc.equations.system import ScaledTape
+from bifurc.function_problem import NumericalProblem
+from bifurc.limits import Deadline
+from bifurc.problem import (
+    March,
+    MarchSettings,
+    NodeCorrector,
+    PreciseResidual,
+    Solver,
+    SphereProjection,
+)
+from bifurc.seeding import random_seeds, start_region
+from bifurc.seeds import Seeds
+from linkages.closure.curvature import CurvatureBounds
+from linkages.closure.equations import Equations, write_equations
+from linkages.closure.errors import JointErrors
+from linkages.dyads.slices import slice_by_dyads
+from linkages.joint_limits.cut_at_limits import CutMotions, loop_without_limits
+from linkages.joint_limits.within_limits import brought_within_limits
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.structure.structure import Structure
+from linkages.turns.turn_lattice import TurnLattice, turn_lattice
+from linkages.turns.turned_ends import TurnedEnds
+from linkages.turns.whole_turns import (
+    WholeTurns,
+    starts_at_every_turn,
+    turns_that_advance,
+)
+
+if TYPE_CHECKING:
+    import mpmath
+    from scipy.sparse import sparray
+
+# unknowns up to which compiled methods with dense matrices take no longer than those in
+# Python: for sections with spheres, and for curves of equations that are not sparse
+LARGEST_COMPILED = 250
+MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
+LARGEST_SEED = 2**32
+STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
+
+
+class MechanismClosure(NumericalProblem):
+    """The closure equations of a mechanism in the variables of its joints.
+
+    Angles are in radians, slides in characteristic lengths. All derivatives are exact:
+    they come from the tape of the equations. With ``errors`` it is the mechanism as it
+    is made, in the same unknowns, and need not close anywhere.
+    """
+
+    curvature_residual = 0.2
+    hessian_error = 1e-14
+    derivatives = "recorded"
+
+    def __init__(self, mechanism: Mechanism, errors: JointErrors | None = None):
+        check_type("mechanism", mechanism, Mechanism)
+        self.mechanism = mechanism
+        self.structure = Structure(mechanism)
+        unknowns = self.structure.unknowns
+        self.names = tuple(unknown.label for unknown in unknowns)
+        self.units = tuple(unknown.unit for unknown in unknowns)
+        self.periods = np.array([unknown.period for unknown in unknowns])
+        self.bounds = np.array([[one.low, one.high] for one in unknowns])
+        self.data_rounding = mechanism.coordinate_rounding / self.structure.unit
+        self._equations: Equations = write_equations(self.structure, errors)
+        tape = self._equations.tape
+        self.equations = f"recorded ({tape.size} operations)"
+        self._tape = ScaledTape(
+            tape, self.magnitude, self.scale, self.bounds, self.periods
+        )
+
+    # --- values and derivatives -------------------------------------------------------
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        return self._tape.residuals(rows_of("points", points, self.n))
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,), sparse for many unknowns."""
+        point = self.check_point(point, "point")
+        if self._tape.is_sparse:
+            return self._tape.sparse_jacobian(point)
+        return self._tape.jacobians(point[None])[0]
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        return self._tape.jacobians(rows_of("points", points, self.n))
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,)."""
+        return self._tape.hessian(self.check_point(point, "point"))
+
+    def precise_residual(self) -> PreciseResidual:
+        """F over mpmath numbers; the geometry is that of the doubles, taken as
+        exact."""
+        tape = self._equations.tape
+
+        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+            import mpmath  # it takes long to import
+
+            values: list[mpmath.mpf] = tape.over(unknowns, mpmath)
+            return values
+
+        return residual
+
+    @cached_property
+    def rows_of_closures(self) -> list[slice]:
+        """The equations that belong to each closure of the structure."""
+        ends = np.cumsum([0, *self._equations.counts])
+        return [slice(int(a), int(b)) for a, b in pairwise(ends)]
+
+    def columns_of_joint(self, name: str) -> list[int]:
+        """The numbers of the unknowns that move a joint."""
+        structure = self.structure
+        columns: list[int] = []
+        for number, pair in enumerate(self.mechanism.pairs):
+            if pair.joint != name:
+                continue
+            free = [k for k in pair.variables if k in structure.column_of]
+            columns += [structure.column_of[k] for k in free]
+            columns += structure.embedded.get(number, ())
+        return sorted(set(columns))
+
+    def curvature_bound(self) -> float:
+        """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations."""
+        return self._curvature.near_solutions
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
+        """Bounds (k,) on |F''| at complex points no farther than ``reach`` (k,) from a
+        real one within the limits near closed configurations."""
+        return self._curvature.at_complex_points(reach)
+
+    @cached_property
+    def _curvature(self) -> CurvatureBounds:
+        return CurvatureBounds(self.structure, self.curvature_residual)
+
+    # --- curves and solutions ---------------------------------------------------------
+
+    @cached_property
+    def _is_compiled(self) -> bool:
+        """Whether curves and solutions come from compiled code: sparse matrices of any
+        size are factored there, dense ones up to some size."""
+        return self._tape.is_factored_sparse or self.n <= LARGEST_COMPILED
+
+    @property
+    def stride(self) -> float:
+        """The unit of the longest step along a form: in a step of the same angles more
+        joints make it longer, by the root of their number."""
+        return self.scale * math.sqrt(max(1.0, self.n / STRIDE_OF))
+
+    @property
+    def equation_count(self) -> int:
+        """Number of equations."""
+        return self._equations.tape.m
+
+    def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
+        """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
+        under it the row ``tangent`` (n,); None where that matrix is to be factored."""
+        return self._tape.bordered_solver(point, tangent)
+
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    ) -> March:
+        """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
+        if self._is_compiled:
+            return self._tape.march(start, tangent, settings)
+        return super().march(start, tangent, settings)
+
+    def valley_corrector(self) -> NodeCorrector | None:
+        """What corrects points at the nodes of a piece of the valley along which the
+        mechanism nearly closes."""
+        if self.n > LARGEST_COMPILED:
+            return None
+        return self._tape.valley_corrector()
+
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
+        each."""
+        starts = rows_of("starts", starts, self.n)
+        if self._is_compiled:
+            return self._tape.project(starts)
+        return super().project(starts)
+
+    def project_with_held(
+        self, starts: np.ndarray, is_held: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What `project` gives, the unknowns that are held (n,) staying as they are in
+        each of the ``starts`` (k, n)."""
+        return self._tape.project(starts, is_held)
+
+    def project_to_sphere(
+        self, starts: np.ndarray, center: np.ndarray, radius: float
+    ) -> SphereProjection:
+        """Closed configurations near ``starts`` (k, n) at distance ``radius`` from
+        ``center`` (n,)."""
+        if self.n <= LARGEST_COMPILED:
+            return self._tape.project_to_sphere(starts, center, radius)
+        return super().project_to_sphere(starts, center, radius)
+
+    # --- starts -----------------------------------------------------------------------
+
+    @property
+    def reference(self) -> np.ndarray:
+        """The reference configuration (n,): all variables 0. Where joints are locked
+        elsewhere it need not be closed."""
+        return self.structure.reference
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        """The closed configuration nearest to the reference, those that dyads build,
+        what is reached from every turn of a joint that advances, and from ``count``
+        random starts or, where these lead beyond given limits, from within."""
+        drawn = self._drawn(rng, count)
+        lattice = self.lattice
+        turns = turns_that_advance(self.structure)
+        starts = [self.reference[None]]
+        slices = slice_by_dyads(self.structure, rng)
+        if slices is not None:
+            starts.append(slices.points)
+        elif not lattice:
+            starts.append(starts_at_every_turn(self, turns, rng))
+        points, gaps = self.project(np.concatenate(starts))
+        solutions = points[is_start_solved(gaps)]
+        brought = self._from_beyond_limits(solutions, drawn, rng)
+        solutions = np.concatenate([solutions, brought])
+        if lattice:
+            # what is outside the limits may have a translate inside
+            solutions = lattice.homes(solutions)
+        seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
+        judge = slices or self._audit(turns, count, rng)
+        if judge is None:
+            seeds = replace(seeds, more=self._drawn)
+        if not lattice:
+            return replace(seeds, audit=judge)
+        audit = TurnedEnds(self, lattice, judge)
+        return replace(seeds, home=lattice.home, audit=audit)
+
+    def _audit(
+        self, turns: dict[int, float], count: int, rng: np.random.Generator
+    ) -> WholeTurns | CutMotions | None:
+        """What can be said of the motions of a mechanism that dyads do not build, with
+        ``turns`` that advance."""
+        if turns:
+            return WholeTurns(self, turns, self.lattice)
+        single = loop_without_limits(self.structure)
+        if single is None:
+            return None
+        seed = int(rng.integers(LARGEST_SEED))
+        return CutMotions(self.structure, single, self.lattice, count, seed)
+
+    def _from_beyond_limits(
+        self, solutions: np.ndarray, drawn: Seeds, rng: np.random.Generator
+    ) -> np.ndarray:
+        """Closed configurations (k, n) within limits that are given, from those of the
+        ``solutions`` (j, n) beyond them and some that random starts reached there:
+        narrow limits leave few that are reached else."""
+        if all(one.limits is None for one in self.structure.mechanism.variables):
+            return np.empty((0, self.n))
+        missed = drawn.missed[is_start_solved(drawn.gaps)]
+        beyond = np.concatenate([solutions[~self.are_inside(solutions)], missed])
+        return brought_within_limits(self, beyond[:MOST_BEYOND], rng)
+
+    def _drawn(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
+    ) -> Seeds:
+        """What is reached from random starts before a deadline; where whole turns lead
+        to the same again, half of them from a region that holds a translate of
+        everything."""
+        lattice = self.lattice
+        if not lattice:
+            return random_seeds(self, rng, count, deadline=deadline)
+        region = lattice.region(start_region(self), self.reference)
+        homes = lattice.homes
+        anywhere = random_seeds(self, rng, count // 2, None, deadline, homes)
+        rest = count - count // 2
+        near = random_seeds(self, rng, rest, region, deadline, homes)
+        return anywhere.and_random(near)
+
+    @cached_property
+    def lattice(self) -> TurnLattice:
+        """The whole turns after which every closed configuration is closed again."""
+        return turn_lattice(self.structure)

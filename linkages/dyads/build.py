@@ -1,0 +1,197 @@
+"""The configurations of a mechanism at a value of its driver, built part by part."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+
+from linkages.dyads.plan import Contact, Plan, Step
+from linkages.mechanisms.joint import Motion
+from linkages.mechanisms.mechanism import Pair
+from linkages.structure.structure import Structure
+
+MOST = 256  # configurations at one value of the driver
+
+
+class TooManyError(ArithmeticError):
+    """There are more configurations than are worth the time."""
+
+
+class Geometry(Protocol):
+    """How bodies move and dyads close, in a plane or in space; poses have ``after`` and
+    ``inverse``."""
+
+    rest: Any
+
+    def motion(self, motion: Motion, value: float) -> Any:
+        """The displacement that a joint variable makes."""
+
+    def value(self, relative: Any, motion: Motion) -> float:
+        """The joint variable that makes a displacement."""
+
+    def end(self, pose: Any, own: Any, motion: Motion) -> Any:
+        """A joint on a standing body with this ``pose``, of a body that has the pose
+        ``own`` in the part that is placed."""
+
+    def middle(self, first: Any, second: Any, motion: Motion) -> Any:
+        """A joint between bodies that have these poses in two parts."""
+
+    def close_monad(self, one: Any, other: Any) -> list[Any]:
+        """The poses of a part that two joints hold on what stands."""
+
+    def close_dyad(self, one: Any, middle: Any, other: Any) -> list[tuple[Any, Any]]:
+        """The poses of both parts of a dyad, in every way in which it closes."""
+
+    def may_be_degenerate(self, one: Any, middle: Any, other: Any) -> bool:
+        """Whether a dyad may close in a whole curve of configurations somewhere."""
+
+
+class Builder:
+    """Builds the mechanism of a ``structure`` by a ``plan``, in a ``geometry``."""
+
+    def __init__(self, structure: Structure, geometry: Geometry, plan: Plan):
+        self.structure = structure
+        self.mechanism = structure.mechanism
+        self.geometry = geometry
+        self.plan = plan
+        self.numbers = {body: k for k, body in enumerate(self.mechanism.bodies)}
+
+    def configurations(self, values: Sequence[float]) -> list[list[Any]]:
+        """The poses of all bodies in every configuration in which the known variables
+        have these ``values`` (those of others are not read), rad and the user's unit.
+
+        Raises `DegenerateDyadError` where a dyad closes in a whole curve of them, and
+        `TooManyError`.
+        """
+        inner = self._inner_poses(values)
+        states: list[dict[int, Any]] = [{self.plan.start: self.geometry.rest}]
+        for step in self.plan.steps:
+            states = [
+                {**state, **dict(zip(step.parts, poses, strict=True))}
+                for state in states
+                for poses in self._closed(step, state, inner)
+            ]
+            if len(states) > MOST:
+                raise TooManyError
+        return [self._poses_of_bodies(state, inner) for state in states]
+
+    def is_never_degenerate(self, values: Sequence[float]) -> bool:
+        """Whether no dyad can close in a curve of configurations, wherever the parts
+        are that it stands on, and whatever the driver's value is; other known
+        ``values`` are locks."""
+        if any(self._part_of(pair) != self.plan.start for pair in self._driven()):
+            return False  # lengths within a part that is placed change with the driver
+        inner = self._inner_poses(values)
+        standing = dict.fromkeys(self.plan.part, self.geometry.rest)
+        for step in self.plan.steps:
+            if len(step.parts) == 1:
+                if not any(contact.is_turn for contact in step.contacts):
+                    return False
+                continue
+            joints = self._dyad(step, standing, inner)
+            if self.geometry.may_be_degenerate(*joints):
+                return False
+        return True
+
+    # --- parts ------------------------------------------------------------------------
+
+    def _inner_poses(self, values: Sequence[float]) -> dict[int, Any]:
+        """The pose of every body in its part, by number: in the first body of it."""
+        poses = dict.fromkeys(self.plan.part, self.geometry.rest)
+        left = [self.mechanism.pairs[number] for number in self.plan.known]
+        while left:
+            pair = next(pair for pair in left if self._is_reached(pair, poses))
+            left.remove(pair)
+            base, moved = self.numbers[pair.base], self.numbers[pair.moved]
+            motion = self._pair_motion(pair, values)
+            if moved not in poses:
+                poses[moved] = poses[base].after(motion)
+            elif base not in poses:
+                poses[base] = poses[moved].after(motion.inverse())
+        return poses
+
+    def _is_reached(self, pair: Pair, poses: dict[int, Any]) -> bool:
+        """Whether one of the bodies of a pair has its pose."""
+        return self.numbers[pair.base] in poses or self.numbers[pair.moved] in poses
+
+    def _driven(self) -> list[Pair]:
+        """The pairs that move with the driver."""
+        variables = self.mechanism.variables
+        known = [self.mechanism.pairs[number] for number in self.plan.known]
+        return [
+            pair
+            for pair in known
+            if any(variables[number].locked is None for number in pair.variables)
+        ]
+
+    def _part_of(self, pair: Pair) -> int:
+        """The number of the part in which a known pair is."""
+        return self.plan.part[self.numbers[pair.base]]
+
+    def _pair_motion(self, pair: Pair, values: Sequence[float]) -> Any:
+        pose = self.geometry.rest
+        for number in pair.variables:
+            motion = self.mechanism.variables[number].motion
+            pose = pose.after(self.geometry.motion(motion, values[number]))
+        return pose
+
+    # --- steps ------------------------------------------------------------------------
+
+    def _closed(
+        self, step: Step, state: dict[int, Any], inner: dict[int, Any]
+    ) -> Sequence[tuple[Any, ...]]:
+        """The poses of the parts of a step, in every way in which it closes."""
+        if len(step.parts) == 1:
+            ends = [self._end(contact, state, inner) for contact in step.contacts]
+            return [(pose,) for pose in self.geometry.close_monad(*ends)]
+        return self.geometry.close_dyad(*self._dyad(step, state, inner))
+
+    def _dyad(
+        self, step: Step, state: dict[int, Any], inner: dict[int, Any]
+    ) -> tuple[Any, Any, Any]:
+        """The three joints of a dyad."""
+        one, contact, other = step.contacts
+        middle = self.geometry.middle(
+            inner[contact.first], inner[contact.second], self._motion(contact)
+        )
+        return self._end(one, state, inner), middle, self._end(other, state, inner)
+
+    def _end(
+        self, contact: Contact, state: dict[int, Any], inner: dict[int, Any]
+    ) -> Any:
+        """A joint that leads from what stands to a part."""
+        pose = state[self.plan.part[contact.first]].after(inner[contact.first])
+        own = inner[contact.second]
+        return self.geometry.end(pose, own, self._motion(contact))
+
+    def _motion(self, contact: Contact) -> Motion:
+        return self.mechanism.variables[contact.variable].motion
+
+    def _poses_of_bodies(
+        self, state: dict[int, Any], inner: dict[int, Any]
+    ) -> list[Any]:
+        return [
+            state[part].after(inner[body]) for body, part in enumerate(self.plan.part)
+        ]
+
+    # --- unknowns ---------------------------------------------------------------------
+
+    def unknowns(self, poses: Sequence[Any]) -> np.ndarray:
+        """The unknowns (n,) of the structure at these poses of all bodies, but for what
+        others are coupled to; angles between -pi and pi."""
+        result = np.zeros(len(self.structure.unknowns))
+        for pair in self.mechanism.pairs:
+            if len(pair.variables) != 1:
+                continue
+            (number,) = pair.variables
+            share = self.structure.share(number)
+            if share is None or share.rate != 1.0 or share.offset != 0.0:
+                continue
+            base, moved = self.numbers[pair.base], self.numbers[pair.moved]
+            relative = poses[base].inverse().after(poses[moved])
+            motion = self.mechanism.variables[number].motion
+            unit = 1.0 if motion.is_turn else self.structure.unit
+            result[share.column] = self.geometry.value(relative, motion) / unit
+        return result

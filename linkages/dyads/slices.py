@@ -1,0 +1,230 @@
+"""All configurations of a mechanism with one joint at given values, and what
+they say of its motions.
+
+Where dyads build the mechanism from a driver (`linkages.dyads.plan`), every
+configuration at a value of the driver is known, and a motion on which the driver passes
+that value cannot be missed. A motion on which it stands still needs a dyad that closes
+in a whole curve of configurations.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.seeds import Audit, Level
+from linkages.assembly_statements import ALL_BUILT, RANDOM_ASSEMBLIES
+from linkages.dyads.build import Builder, Geometry, TooManyError
+from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
+from linkages.dyads.plan import make_plan
+from linkages.dyads.space import SpaceGeometry
+from linkages.mechanisms.plane import normal_of_plane
+from linkages.structure.structure import Structure
+
+SLICES = 36  # of a driver's period, or of its limits
+MOST_DRIVERS = 4
+MOST_POINTS = 20_000  # in the slices of a driver, with whole turns within limits
+TURN = 2 * math.pi
+MOST_TRIED = 16  # variables that are looked at as drivers
+
+
+class _Slice(NamedTuple):
+    """What is built at all values of a driver: ``points`` (k, n), whether the driver
+    ``always_moves`` on a motion, and how far apart, rad or the structure's unit, the
+    values are (``step``)."""
+
+    points: np.ndarray
+    always_moves: bool
+    step: float
+
+
+@dataclass(frozen=True, eq=False)
+class DyadSlices:
+    """Configurations ``points`` (k, n) of a ``structure``, all that there are at the
+    values of some ``drivers``, numbers of unknowns, ``step`` apart.
+
+    ``misses_none``: a motion that is not among them is a small one.
+    """
+
+    structure: Structure
+    points: np.ndarray
+    drivers: tuple[int, ...]
+    steps: tuple[float, ...]
+    misses_none: bool
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """How sure it is that no motion is missing: the search has traced one through
+        every configuration in the slices."""
+        nowhere = np.empty((0, len(self.structure.unknowns)))
+        if not self.drivers:
+            return Audit(Level.CERTIFIED, ALL_BUILT, nowhere)
+        text = f"complete slices, built of dyads: every motion is here {self._moves()}"
+        if not self.misses_none:
+            text += ", and others may be missing"
+        level = Level.CERTIFIED if self.misses_none else Level.ESTIMATED
+        return Audit(level, f"{text}; {RANDOM_ASSEMBLIES}", nowhere)
+
+    def _moves(self) -> str:
+        """On which motions a driver passes a slice, as text."""
+        ways: dict[str, list[str]] = {}
+        for driver, step in zip(self.drivers, self.steps, strict=True):
+            unknown = self.structure.unknowns[driver]
+            if unknown.is_angle:
+                way = f"turns by more than {np.degrees(step):.4g} degrees"
+            else:
+                way = f"slides by more than {step * self.structure.unit:.4g}"
+            ways.setdefault(way, []).append(unknown.label)
+        parts = [f"{' or '.join(labels)} {way}" for way, labels in ways.items()]
+        return f"on which {', or '.join(parts)}"
+
+
+def slice_by_dyads(structure: Structure, rng: np.random.Generator) -> DyadSlices | None:
+    """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
+    drawn, of a few of its variables; None where dyads do not build it, or build too
+    many configurations."""
+    try:
+        return _slice_by_dyads(structure, rng)
+    except TooManyError:
+        return None
+
+
+def _slice_by_dyads(
+    structure: Structure, rng: np.random.Generator
+) -> DyadSlices | None:
+    geometry = _geometry(structure)
+    if geometry is None or _follows_many_turns(structure):
+        return None
+    still = make_plan(structure.mechanism, None)
+    if still is not None:
+        builder = Builder(structure, geometry, still)
+        points = _points_at(builder, None, (0.0,))
+        if points is None:
+            return None
+        return DyadSlices(structure, points, (), (), misses_none=True)
+    slices: dict[int, _Slice] = {}
+    always_moves = False
+    for number, one in _slices(structure, geometry, rng):
+        slices[number] = one
+        always_moves = any(known.always_moves for known in slices.values())
+        if always_moves and len(slices) >= MOST_DRIVERS:
+            break
+    if not slices:
+        return None
+    return DyadSlices(
+        structure,
+        np.concatenate([one.points for one in slices.values()]),
+        tuple(slices),
+        tuple(one.step for one in slices.values()),
+        misses_none=always_moves or len(slices) == len(structure.unknowns),
+    )
+
+
+def _geometry(structure: Structure) -> Geometry | None:
+    """That of the plane in which all moves, else that of turns in space; None where
+    other joints move, too."""
+    mechanism = structure.mechanism
+    normal = normal_of_plane(mechanism)
+    if normal is not None:
+        return PlaneGeometry(normal, structure.unit)
+    motions = [one.motion for one in mechanism.variables if one.locked is None]
+    is_free = any(pair.center is not None for pair in mechanism.pairs)
+    if is_free or any(not one.is_turn or one.advance for one in motions):
+        return None
+    return SpaceGeometry(structure.unit)
+
+
+def _follows_many_turns(structure: Structure) -> bool:
+    """Whether something follows an angle that may turn by more than a full turn within
+    its limits: it is elsewhere after each."""
+    columns = list(structure.column_of.values())
+    return any(
+        unknown.is_angle
+        and unknown.period == np.inf
+        and unknown.high - unknown.low > TURN
+        and columns.count(number) > 1
+        for number, unknown in enumerate(structure.unknowns)
+    )
+
+
+def _slices(
+    structure: Structure, geometry: Geometry, rng: np.random.Generator
+) -> Iterator[tuple[int, _Slice]]:
+    """The slices of every unknown, by number, from which dyads build the mechanism."""
+    for number, unknown in enumerate(structure.unknowns[:MOST_TRIED]):
+        plan = make_plan(structure.mechanism, unknown.variable)
+        if plan is None:
+            continue
+        low, high = unknown.low, unknown.high
+        if np.isfinite(unknown.period):
+            low, high = 0.0, unknown.period
+        elif unknown.is_angle:
+            # what is a turn away is the same for dyads
+            high = min(high, low + TURN)
+        step = (high - low) / SLICES
+        places = low + step * (np.arange(SLICES) + rng.uniform())
+        builder = Builder(structure, geometry, plan)
+        points = _points_at(builder, number, places)
+        if points is not None:
+            at_first = _values(structure, number, places[0])
+            always_moves = builder.is_never_degenerate(at_first)
+            yield number, _Slice(points, always_moves, step)
+
+
+def _values(structure: Structure, number: int | None, place: float) -> list[float]:
+    """The values of all variables where an unknown, by number, is at a ``place``, rad
+    and the user's unit; 0 for those that are not known."""
+    point = np.zeros((1, len(structure.unknowns)))
+    if number is not None:
+        point[0, number] = place
+    count = len(structure.mechanism.variables)
+    return [float(structure.values(point, variable)[0]) for variable in range(count)]
+
+
+def _points_at(
+    builder: Builder, driver: int | None, places: Iterable[float]
+) -> np.ndarray | None:
+    """The configurations (k, n) within the limits at the ``places`` of a driver, by
+    number; None where it is not known that they are all. Raises `TooManyError`."""
+    points = []
+    for place in places:
+        values = _values(builder.structure, driver, place)
+        try:
+            states = builder.configurations(values)
+        except DegenerateDyadError:
+            return None
+        for poses in states:
+            point = builder.unknowns(poses)
+            if driver is not None:
+                point[driver] = place
+            points += _within_limits(builder.structure, point)
+            if len(points) > MOST_POINTS:
+                raise TooManyError
+    return np.array(points).reshape(-1, len(builder.structure.unknowns))
+
+
+def _within_limits(structure: Structure, point: np.ndarray) -> list[np.ndarray]:
+    """The configurations (n,) within the limits that are ``point`` (n,) but for whole
+    turns of limited angles, somewhat more of them than are wanted at most."""
+    turning, turns = [], []
+    for number, unknown in enumerate(structure.unknowns):
+        if np.isfinite(unknown.period) or not np.isfinite(unknown.high):
+            continue
+        low, high = unknown.low - point[number], unknown.high - point[number]
+        if unknown.is_angle:
+            turning.append(number)
+            first, last = math.ceil(low / TURN), math.floor(high / TURN)
+            turns.append(range(first, last + 1))
+        elif not low <= 0.0 <= high:
+            return []
+    points = []
+    for counts in itertools.islice(itertools.product(*turns), MOST_POINTS + 1):
+        moved = point.copy()
+        moved[turning] += TURN * np.array(counts)
+        points.append(moved)
+    return points

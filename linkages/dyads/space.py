@@ -1,0 +1,226 @@
+"""Dyads in space: two bodies, three joints that turn, about axes that are not parallel.
+
+The axis between both bodies keeps its angles with the axes on which they stand: it lies
+on two cones, which meet in two lines at most. In general the bodies do not meet then;
+on a sphere and in overconstrained loops they do.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from linkages.decisions import is_degenerate_dyad
+from linkages.dyads.geometry import (
+    MISFIT,
+    TOUCHING,
+    DegenerateDyadError,
+)
+from linkages.mechanisms.joint import Motion
+
+
+class SpacePose(NamedTuple):
+    """A displacement that takes x (3,) to ``rotation`` (3, 3) x + ``shift`` (3,)."""
+
+    rotation: np.ndarray
+    shift: np.ndarray
+
+    def __call__(self, place: np.ndarray) -> np.ndarray:
+        """Where a place (3,) is taken."""
+        moved: np.ndarray = self.rotation @ place + self.shift
+        return moved
+
+    def after(self, other: SpacePose) -> SpacePose:
+        """The displacement that does the ``other`` one first."""
+        return SpacePose(self.rotation @ other.rotation, self(other.shift))
+
+    def inverse(self) -> SpacePose:
+        """The displacement back."""
+        back = self.rotation.T
+        return SpacePose(back, -back @ self.shift)
+
+
+class _Line(NamedTuple):
+    """A point of an axis, and its direction (3,)."""
+
+    point: np.ndarray
+    direction: np.ndarray
+
+
+class Axis(NamedTuple):
+    """A joint on what stands: its axis there, and in the body."""
+
+    standing: _Line
+    own: _Line
+
+
+class SpacePin(NamedTuple):
+    """A joint between both bodies: its axis in each of them."""
+
+    first: _Line
+    second: _Line
+
+
+class SpaceGeometry:
+    """Bodies that turn about axes in space; ``size`` is a length of the mechanism."""
+
+    def __init__(self, size: float):
+        self.size = size
+        self.rest = SpacePose(np.eye(3), np.zeros(3))
+
+    def motion(self, motion: Motion, value: float) -> SpacePose:
+        """The displacement that a joint variable makes."""
+        from scipy.spatial.transform import Rotation
+
+        if not motion.is_turn:
+            return SpacePose(np.eye(3), value * motion.direction)
+        turn = Rotation.from_rotvec(value * motion.direction).as_matrix()
+        advance = value * motion.advance * motion.direction
+        return SpacePose(turn, motion.point - turn @ motion.point + advance)
+
+    def value(self, relative: SpacePose, motion: Motion) -> float:
+        """The variable, between -pi and pi, that makes a displacement."""
+        turn = relative.rotation
+        skew = (
+            turn[2, 1] - turn[1, 2],
+            turn[0, 2] - turn[2, 0],
+            turn[1, 0] - turn[0, 1],
+        )
+        double_sine = float(motion.direction @ skew)
+        double_cosine = float(turn[0, 0] + turn[1, 1] + turn[2, 2]) - 1.0
+        return math.atan2(double_sine, double_cosine)
+
+    def end(self, pose: SpacePose, own: SpacePose, motion: Motion) -> Axis:
+        """A joint on a standing body with this ``pose``, of a body that has the pose
+        ``own`` in the part that is placed."""
+        return Axis(_moved(pose, motion), _moved(own, motion))
+
+    def middle(self, first: SpacePose, second: SpacePose, motion: Motion) -> SpacePin:
+        """A joint between bodies that have these poses in two parts."""
+        return SpacePin(_moved(first, motion), _moved(second, motion))
+
+    def close_monad(self, one: Axis, other: Axis) -> list[SpacePose]:
+        """The poses of a part that two joints hold; none where they do not fit. Raises
+        `DegenerateDyadError`."""
+        far, own = _between(one.standing, other.standing), _between(one.own, other.own)
+        rotation = _rotation((one.own.direction, own), (one.standing.direction, far))
+        pose = _placed(rotation, one)
+        aside = np.abs(pose(other.own.point) - other.standing.point).max()
+        turned = rotation @ other.own.direction - other.standing.direction
+        fits = max(float(aside) / self.size, float(np.abs(turned).max())) <= MISFIT
+        return [pose] if fits else []
+
+    def close_dyad(
+        self, one: Axis, pin: SpacePin, other: Axis
+    ) -> list[tuple[SpacePose, SpacePose]]:
+        """The poses of both parts of a dyad, in every way in which it closes. Raises
+        `DegenerateDyadError`, also where its axes are parallel."""
+        results = []
+        for along in self._directions(one, pin, other):
+            first = _placed(
+                _rotation(
+                    (one.own.direction, pin.first.direction),
+                    (one.standing.direction, along),
+                ),
+                one,
+            )
+            second = _placed(
+                _rotation(
+                    (other.own.direction, pin.second.direction),
+                    (other.standing.direction, along),
+                ),
+                other,
+            )
+            gap = np.abs(first(pin.first.point) - second(pin.second.point)).max()
+            if gap <= MISFIT * self.size:
+                results.append((first, second))
+        return results
+
+    def _directions(self, one: Axis, pin: SpacePin, other: Axis) -> list[np.ndarray]:
+        """Unit vectors (3,) along the axis between both parts."""
+        start, end = one.standing.direction, other.standing.direction
+        cosines = _cosines(one, pin, other)
+        across = _cross(start, end)
+        square = float(across @ across)
+        if is_degenerate_dyad(math.sqrt(square)):
+            gap = abs(cosines[0] - math.copysign(1.0, start @ end) * cosines[1])
+            if is_degenerate_dyad(gap):
+                raise DegenerateDyadError
+            return []
+        between = float(start @ end)
+        along = (cosines[0] - between * cosines[1]) * start
+        along = (along + (cosines[1] - between * cosines[0]) * end) / square
+        height = (1.0 - float(along @ along)) / square
+        if height < -TOUCHING:
+            return []
+        root = math.sqrt(max(height, 0.0))
+        roots = (root, -root) if root > 0.0 else (0.0,)
+        return [along + sign * across for sign in roots]
+
+    def may_be_degenerate(self, one: Axis, pin: SpacePin, other: Axis) -> bool:
+        """Whether a dyad may close in a whole curve of configurations somewhere."""
+        first, second = _cosines(one, pin, other)
+        first, second = abs(first), abs(second)
+        most = min(max(first, second), 1.0)
+        sine = math.sqrt(1.0 - most * most)
+        return is_degenerate_dyad(min(abs(first - second), sine))
+
+
+def _cosines(one: Axis, pin: SpacePin, other: Axis) -> tuple[float, float]:
+    """Those of the angles between the axes of each body."""
+    first = float(one.own.direction @ pin.first.direction)
+    second = float(other.own.direction @ pin.second.direction)
+    return first, second
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The cross product of two vectors (3,); that of numpy takes ten times as long."""
+    ax, ay, az = a
+    bx, by, bz = b
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+
+
+def _length(vector: np.ndarray) -> float:
+    return math.sqrt(float(vector @ vector))
+
+
+def _moved(pose: SpacePose, motion: Motion) -> _Line:
+    return _Line(pose(motion.point), pose.rotation @ motion.direction)
+
+
+def _placed(rotation: np.ndarray, axis: Axis) -> SpacePose:
+    """The pose of a body with this rotation on an axis."""
+    shift = axis.standing.point - rotation @ axis.own.point
+    return SpacePose(rotation, shift)
+
+
+def _between(one: _Line, other: _Line) -> np.ndarray:
+    """A vector (3,) across the first axis that goes with both: the other direction, or,
+    where that is the same, the way to the other axis."""
+    across = _cross(one.direction, other.direction)
+    is_parallel = is_degenerate_dyad(_length(across))
+    way: np.ndarray = other.point - one.point
+    return way if is_parallel else other.direction
+
+
+def _rotation(
+    own: tuple[np.ndarray, np.ndarray], standing: tuple[np.ndarray, np.ndarray]
+) -> np.ndarray:
+    """The rotation (3, 3) that takes the first of two vectors (3,) to its place, and
+    the second one as near as can be. Raises `DegenerateDyadError` where both are
+    parallel."""
+    rotation: np.ndarray = _frame(*standing) @ _frame(*own).T
+    return rotation
+
+
+def _frame(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """Unit vectors (3, 3), in columns: along the first vector, and across it towards
+    the second one."""
+    across = second - (second @ first) * first
+    length = _length(across)
+    if is_degenerate_dyad(length / max(_length(second), 1e-300)):
+        raise DegenerateDyadError
+    across = across / length
+    return np.array([first, across, _cross(first, across)]).T

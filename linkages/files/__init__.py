@@ -1,0 +1,1 @@
+"""Mechanisms in files of this project and in FOLD files."""

@@ -1,0 +1,397 @@
+"""Rigid origami from FOLD files (Demaine, Ku and Lang 2016): panels and creases.
+
+A face is a body, a crease between two faces a revolute joint. A folded state that the
+file gives, by coordinates in space or by fold angles, is the reference configuration.
+Thick panels have their hinges above and below the paper: on the faces that come
+together there, or at heights that the file gives (Chen, Peng and You 2015).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from networkx.utils import UnionFind
+
+from bifurc.decisions import is_start_solved
+from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.decisions import is_parallel_axis
+from linkages.files.misfits import check_moved
+from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.mechanism import Mechanism, Panel
+from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
+from linkages.readout.poses import Poses
+from linkages.values import GeometryError, check_number, quoted
+
+Frame: TypeAlias = Mapping[str, Any]
+Side: TypeAlias = tuple[int, int]
+
+FOLDED = "foldedForm"
+# what the letters of edges_assignment make of a side between two faces
+HINGES = ("M", "V", "U")
+RIGID = ("F", "J")
+CUTS = ("B", "C")
+# where hinges of thick panels are, over the thickness: on the faces that come together
+SIDES = {"V": 0.5, "M": -0.5}
+STRAIGHT = 180.0  # degrees, the largest fold angle
+
+
+# keys of this program, which FOLD tells by the colon
+THICKNESS, HEIGHTS = "bifurc:thickness", "bifurc:edges_height"
+
+
+class _Edge(NamedTuple):
+    """What a file says of an edge: its name, its letter, its fold angle in degrees, and
+    how high its hinge is above the flat paper."""
+
+    name: str
+    letter: str = "U"
+    angle: float = 0.0
+    height: float = 0.0
+
+
+class _Crease(NamedTuple):
+    """A side from vertex ``start`` to ``end`` of face ``left``, of which face ``right``
+    is the other one; and its ``edge``."""
+
+    start: int
+    end: int
+    left: int
+    right: int
+    edge: _Edge
+
+
+def read_fold(text: str, name: str) -> Mechanism:
+    """The mechanism of a crease pattern or of a folded state; without a title it gets
+    this name.
+
+    Every crease is called after its vertices, ``3-7``, every face ``f2``; a variable is
+    the change of the fold angle, positive where a valley is folded further. Flat edges
+    (F) and joins (J) are rigid, cuts (C) and boundaries (B) hold nothing. Fold angles
+    are moved to the nearest ones that close. Of thick panels the flat state is given.
+    Raises `GeometryError` for anything wrong.
+    """
+    try:
+        content = json.loads(text, parse_float=WrittenNumber)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise GeometryError("content", f"no JSON, {error},", "a FOLD file") from None
+    if not isinstance(content, Mapping):
+        raise GeometryError("content", quoted(content), "a table, as of a FOLD file")
+    frame = _frame(content)
+    title = content.get("file_title", content.get("frame_title", name))
+    if not isinstance(title, str):
+        raise GeometryError("file_title", quoted(title), "a text in quotes")
+    points, near = _points(frame)
+    faces = _faces(frame, len(points))
+    edges = _edges(frame, len(points))
+    creases = _creases(faces, edges)
+    if any(key in frame for key in (THICKNESS, HEIGHTS)):
+        _check_thick(frame, points)
+    bodies = _bodies(len(faces), creases)
+    angles: dict[str, float] = {}
+    joints: list[Joint] = []
+    for crease in creases:
+        if crease.edge.letter in HINGES:
+            upwards = _normal(points[faces[crease.left]])
+            joint = _joint(crease, points, bodies, upwards)
+            if not any(_is_same_hinge(joint, other) for other in joints):
+                joints.append(joint)
+                angles[joint.name] = np.radians(crease.edge.angle)
+    origin = near.origin or (0.0, 0.0, 0.0)
+    mechanism = Mechanism(
+        tuple(joints),
+        title or name,
+        origin=origin,
+        rounding=near.rounding,
+        panels=_panels(faces, bodies, points, joints),
+    )
+    if FOLDED in frame.get("frame_classes", []) or not any(angles.values()):
+        return mechanism
+    _check_flat(points)
+    return _folded(mechanism, angles)
+
+
+# --- the state that is given ----------------------------------------------------------
+
+
+def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
+    """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint,
+    from the flat one."""
+    problem = MechanismClosure(mechanism)
+    start = np.array([angles[name] for name in problem.names])
+    points, gaps = problem.project(start[None])
+    if not is_start_solved(float(gaps[0])):
+        value = f"folded such that a gap of {gaps[0]:.3g} is left"
+        raise GeometryError("edges_foldAngle", value, "near a closed state")
+    gap = float(np.linalg.norm(problem.residuals(start[None])))
+    check_moved("edges_foldAngle", start, points[0], gap, problem.names)
+    poses = Poses(problem.structure).at(points)[0]
+    joints = []
+    for joint in mechanism.joints:
+        pose = poses[mechanism.bodies.index(joint.bodies[0])]
+        point = pose[:3, :3] @ joint.place + pose[:3, 3]
+        direction = pose[:3, :3] @ np.array(joint.direction)
+        joints.append(replace(joint, point=tuple(point), direction=tuple(direction)))
+    panels = []
+    for panel in mechanism.panels:
+        pose = poses[mechanism.bodies.index(panel.body)]
+        corners = np.array(panel.corners) @ pose[:3, :3].T + pose[:3, 3]
+        panels.append(Panel(panel.body, tuple(map(tuple, corners.tolist()))))
+    return replace(mechanism, joints=tuple(joints), panels=tuple(panels))
+
+
+def _check_flat(points: np.ndarray) -> None:
+    heights = np.ptp(points[:, 2])
+    if heights > 0.0:
+        allowed = (
+            "the same for all vertices where edges_foldAngle is given; a state that is "
+            f'folded has "{FOLDED}" in its frame_classes'
+        )
+        raise GeometryError("vertices_coords", f"heights {heights:.6g} apart", allowed)
+
+
+def _check_thick(frame: Frame, points: np.ndarray) -> None:
+    """Refuse thick panels in a state that is folded in space."""
+    key = THICKNESS if THICKNESS in frame else HEIGHTS
+    if FOLDED in frame.get("frame_classes", []) or np.ptp(points[:, 2]) > 0.0:
+        allowed = "left out, or given with the flat crease pattern and its fold angles"
+        raise GeometryError(key, "given with folded coordinates,", allowed)
+
+
+def _frame(content: Mapping[str, Any]) -> Frame:
+    """The first frame that is folded in space, else the first one."""
+    frames = content.get("file_frames", [])
+    if not isinstance(frames, list):
+        raise GeometryError("file_frames", quoted(frames), "a list of frames")
+    merged: list[Frame] = [content]
+    for number, frame in enumerate(frames, start=1):
+        if not isinstance(frame, Mapping):
+            raise GeometryError(f"file_frames[{number}]", quoted(frame), "a table")
+        parent = frame.get("frame_parent", 0)
+        if not frame.get("frame_inherit", False):
+            merged.append(frame)
+        elif isinstance(parent, int) and 0 <= parent < len(merged):
+            merged.append({**merged[parent], **frame})
+        else:
+            allowed = f"from 0 to {number - 1}, a frame before it"
+            raise GeometryError(
+                f"frame_parent of file_frames[{number}]", quoted(parent), allowed
+            )
+    for frame in merged:
+        classes = frame.get("frame_classes", [])
+        if not isinstance(classes, list):
+            raise GeometryError("frame_classes", quoted(classes), "a list of texts")
+        rows = frame.get("vertices_coords")
+        in_space = isinstance(rows, list) and all(
+            isinstance(row, list) and len(row) == 3 for row in rows
+        )
+        if FOLDED in classes and in_space:
+            return frame
+    return content
+
+
+# --- lists of the file ----------------------------------------------------------------
+
+
+def _list(frame: Frame, key: str) -> list[Any]:
+    given = frame.get(key)
+    if not isinstance(given, list) or not given:
+        value = "a missing key" if given is None else quoted(given)
+        raise GeometryError(key, value, "a list")
+    return given
+
+
+def _points(frame: Frame) -> tuple[np.ndarray, Coordinates]:
+    """The vertices (v, 3), and how they are counted."""
+    near = counted_from_near(_list(frame, "vertices_coords"))
+    rows = near.rows
+    points = np.zeros((len(rows), 3))
+    for number, row in enumerate(rows):
+        what = f"vertices_coords[{number}]"
+        if not isinstance(row, list) or len(row) not in (2, 3):
+            raise GeometryError(what, quoted(row), "[x, y] or [x, y, z]")
+        for k, coordinate in enumerate(row):
+            check_number(what, coordinate)
+            points[number, k] = coordinate
+    return points, near
+
+
+def _faces(frame: Frame, vertices: int) -> list[list[int]]:
+    faces = _list(frame, "faces_vertices")
+    for number, face in enumerate(faces):
+        what = f"faces_vertices[{number}]"
+        if not isinstance(face, list) or len(face) < 3:
+            raise GeometryError(what, quoted(face), "a list of three vertices or more")
+        for vertex in face:
+            _check_vertex(what, vertex, vertices)
+            if face.count(vertex) > 1:
+                raise GeometryError(what, face, f"different; {vertex} stands twice")
+    return faces
+
+
+def _check_vertex(what: str, vertex: object, vertices: int) -> None:
+    is_number = isinstance(vertex, int) and not isinstance(vertex, bool)
+    if not is_number or not 0 <= vertex < vertices:  # type: ignore[operator]
+        allowed = f"vertices, numbers from 0 to {vertices - 1}"
+        raise GeometryError(what, quoted(vertex), allowed)
+
+
+def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
+    """What is said of edges, by their vertices in ascending order."""
+    if "edges_vertices" not in frame:
+        for key in ("edges_assignment", "edges_foldAngle", THICKNESS, HEIGHTS):
+            if key in frame:
+                allowed = f"given together with {key}"
+                raise GeometryError("edges_vertices", "a missing key", allowed)
+        return {}
+    ends = _list(frame, "edges_vertices")
+    letters = _of_edges(frame, "edges_assignment", len(ends))
+    angles = _of_edges(frame, "edges_foldAngle", len(ends))
+    heights = _of_edges(frame, HEIGHTS, len(ends))
+    thickness = _thickness(frame)
+    edges = {}
+    for number, pair in enumerate(ends):
+        what = f"edges_vertices[{number}]"
+        if not isinstance(pair, list) or len(pair) != 2:
+            raise GeometryError(what, quoted(pair), "two vertices")
+        for vertex in pair:
+            _check_vertex(what, vertex, vertices)
+        letter = letters[number] or "U"
+        if letter not in (*HINGES, *RIGID, *CUTS):
+            allowed = "one of " + ", ".join((*HINGES, *RIGID, *CUTS))
+            raise GeometryError(f"edges_assignment[{number}]", quoted(letter), allowed)
+        angle = angles[number] or 0.0
+        check_number(f"edges_foldAngle[{number}]", angle)
+        if abs(angle) > STRAIGHT:
+            what = f"edges_foldAngle[{number}]"
+            raise GeometryError(what, angle, "from -180 to 180, in degrees")
+        name = f"{pair[0]}-{pair[1]}"
+        height = heights[number]
+        if height is None:
+            height = SIDES.get(letter, 0.0) * thickness
+        check_number(f"{HEIGHTS}[{number}]", height)
+        edge = _Edge(name, letter, float(angle), float(height))
+        edges[min(pair), max(pair)] = edge
+    return edges
+
+
+def _thickness(frame: Frame) -> float:
+    """How thick all panels are."""
+    thickness = frame.get(THICKNESS, 0.0)
+    check_number(THICKNESS, thickness)
+    if thickness < 0:
+        raise GeometryError(THICKNESS, thickness, "0 or more")
+    return float(thickness)
+
+
+def _of_edges(frame: Frame, key: str, count: int) -> list[Any]:
+    if key not in frame:
+        return [None] * count
+    values = _list(frame, key)
+    if len(values) != count:
+        raise GeometryError(f"number of {key}", len(values), f"{count}, one an edge")
+    return values
+
+
+# --- panels and hinges ----------------------------------------------------------------
+
+
+def _creases(faces: Sequence[list[int]], edges: Mapping[Side, _Edge]) -> list[_Crease]:
+    """The sides that two faces share, cuts left out."""
+    owners: dict[Side, int] = {}
+    for number, face in enumerate(faces):
+        for start, end in zip(face, [*face[1:], face[0]], strict=True):
+            if (start, end) in owners:
+                value = f"{start}-{end} in f{owners[start, end]} and f{number}"
+                allowed = "oriented alike, so that two faces run along a side opposite"
+                raise GeometryError("faces_vertices", value, f"{allowed} ways")
+            owners[start, end] = number
+    for side, edge in edges.items():
+        if edge.letter in HINGES and not {side, side[::-1]} & owners.keys():
+            value = f"{edge.name}, {quoted(edge.letter)},"
+            allowed = "a side of a face, as every crease (M, V, U) is"
+            raise GeometryError("edge", value, allowed)
+    creases = []
+    for (start, end), left in owners.items():
+        right = owners.get((end, start))
+        if right is None or right < left:
+            continue
+        side = (min(start, end), max(start, end))
+        edge = edges.get(side, _Edge(f"{side[0]}-{side[1]}"))
+        if edge.letter not in CUTS:
+            creases.append(_Crease(start, end, left, right, edge))
+    return creases
+
+
+def _bodies(faces: int, creases: Sequence[_Crease]) -> list[str]:
+    """What the body of every face is called: after the first of the faces that flat
+    edges and joins make one."""
+    panels = UnionFind(range(faces))
+    for crease in creases:
+        if crease.edge.letter in RIGID:
+            panels.union(crease.left, crease.right)
+    firsts: dict[int, int] = {}
+    for face in range(faces):
+        firsts.setdefault(panels[face], face)
+    return [f"f{firsts[panels[face]]}" for face in range(faces)]
+
+
+def _panels(
+    faces: Sequence[list[int]],
+    bodies: Sequence[str],
+    points: np.ndarray,
+    joints: Sequence[Joint],
+) -> tuple[Panel, ...]:
+    """The outline of every face on its body; a face without a hinge is none."""
+    hinged = {body for joint in joints for body in joint.bodies}
+    panels = []
+    for face, body in zip(faces, bodies, strict=True):
+        if body not in hinged:
+            continue
+        corners = tuple(map(tuple, points[face].tolist()))
+        panels.append(Panel(body, corners))
+    return tuple(panels)
+
+
+def _normal(corners: np.ndarray) -> np.ndarray:
+    """The unit normal (3,) of a face with these corners (k, 3), on the side from which
+    they run counterclockwise; 0 where it has no area."""
+    spokes = corners - corners[0]
+    double_area = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
+    length = float(np.linalg.norm(double_area))
+    normal: np.ndarray = double_area / length if length > 0.0 else np.zeros(3)
+    return normal
+
+
+def _joint(
+    crease: _Crease, points: np.ndarray, bodies: Sequence[str], upwards: np.ndarray
+) -> Joint:
+    """The hinge of a crease, at its height ``upwards`` (3,). Its first face lies on the
+    left of its side, so that a valley turns the other one about the opposite
+    direction."""
+    start, end = points[crease.start], points[crease.end]
+    length = float(np.linalg.norm(end - start))
+    if length == 0.0:
+        allowed = "of a length other than zero"
+        raise GeometryError(f"crease {crease.edge.name}", "its ends coincide,", allowed)
+    pair = (bodies[crease.left], bodies[crease.right])
+    if pair[0] == pair[1]:
+        allowed = f"flat (F) as well, as other edges make its faces one body, {pair[0]}"
+        raise GeometryError(f"crease {crease.edge.name}", "a fold", allowed)
+    along = tuple(((start - end) / length).tolist())
+    middle = tuple((0.5 * (start + end) + crease.edge.height * upwards).tolist())
+    return Joint(crease.edge.name, JointKind.REVOLUTE, pair, middle, along)
+
+
+def _is_same_hinge(joint: Joint, other: Joint) -> bool:
+    """Whether two creases are parts of one line between the same two bodies."""
+    if set(joint.bodies) != set(other.bodies):
+        return False
+    along, beside = np.array(joint.direction), np.array(other.direction)
+    gap = joint.place - other.place
+    distance = float(np.linalg.norm(gap)) or 1.0
+    sines = [np.cross(along, beside), np.cross(along, gap / distance)]
+    return all(is_parallel_axis(float(np.linalg.norm(sine))) for sine in sines)

@@ -1,0 +1,261 @@
+"""The links of a CUIK world: of their shapes only the points that joints refer to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from linkages.formats.assembly import frame_along, translation
+from linkages.formats.cuik_tokens import Cursor
+from linkages.mechanisms.joint import Vector
+from linkages.values import GeometryError, quoted
+
+COLORS = (
+    *("red", "green", "blue", "black", "grey", "gray", "white", "yellow", "purple"),
+    "cyan",
+)
+SHAPES = ("body", "box", "prism", "sphere", "cylinder", "line", "segments")
+TURNS = {"rx": (1.0, 0.0, 0.0), "ry": (0.0, 1.0, 0.0), "rz": (0.0, 0.0, 1.0)}
+SLIDES = {"tx": (1.0, 0.0, 0.0), "ty": (0.0, 1.0, 0.0), "tz": (0.0, 0.0, 1.0)}
+INERTIAS = {"rod": 1, "cylinder": 3, "sphere": 1, "box": 3, "ellipsoid": 3}
+MOST_POINTS = 100_000  # of a body in a file of its own
+
+
+@dataclass
+class Link:
+    """A link: its ``name``, and the points (3,) that define each of its ``shapes``; for
+    a shape in a file of its own the ``path`` of that file."""
+
+    name: str
+    shapes: list[list[Vector] | Path] = field(default_factory=list)
+
+    def point(self, shape: int, number: int, what: str) -> Vector:
+        """A point (3,) of a shape, by number from 0; raises `GeometryError`."""
+        if not 0 <= shape < len(self.shapes):
+            allowed = f"below {len(self.shapes)}, the number of shapes of {self.name}"
+            raise GeometryError(f"shape of {what}", shape, allowed)
+        points = self.shapes[shape]
+        if isinstance(points, Path):
+            points = self.shapes[shape] = _points_of_off(points)
+        if not 0 <= number < len(points):
+            allowed = f"below {len(points)}, the number of points of {self.name}"
+            raise GeometryError(f"point of {what}", number, allowed)
+        return points[number]
+
+
+def read_links(cursor: Cursor, folder: Path, links: dict[str, Link]) -> None:
+    """Read links up to the next section into ``links``, by name; bodies in files of
+    their own are next to ``folder``."""
+    while not cursor.is_at_section:
+        line = cursor.token.line
+        name = cursor.name("the name of a link")
+        if name in links:
+            raise GeometryError(f"line {line}", quoted(name), "given once")
+        links[name] = Link(name)
+        if cursor.take(":") or cursor.take("-"):
+            _read_shapes(cursor, folder, links[name])
+
+
+def _read_shapes(cursor: Cursor, folder: Path, link: Link) -> None:
+    """Read shapes and what else stands behind the name of a link."""
+    while not cursor.is_at_section:
+        if cursor.is_word(*SHAPES) and cursor.ahead(1) not in (":", "-"):
+            link.shapes.append(_read_shape(cursor, folder))
+        elif not skip_appearance(cursor) and not skip_dynamics(cursor):
+            return
+
+
+def _read_shape(cursor: Cursor, folder: Path) -> list[Vector] | Path:
+    """The points of a shape, or the path of its file."""
+    shape = cursor.next().text.lower()
+    match shape:
+        case "body":
+            if cursor.token.kind != "text":
+                cursor.refuse("the name of a file in quotes")
+            return folder / cursor.next().text.strip('"')
+        case "sphere":
+            cursor.number()
+            return [read_point(cursor)]
+        case "cylinder":
+            cursor.number()
+            return _read_points(cursor)
+        case "prism":
+            points = [read_point(cursor) for _ in range(3)]
+            cursor.number()
+            return points
+        case "segments":
+            return _read_segments(cursor)
+        case _:
+            return _read_points(cursor)
+
+
+def skip_appearance(cursor: Cursor) -> bool:
+    """Whether a color or another word on how a shape looks stands here; the cursor goes
+    on behind it."""
+    token = cursor.token
+    if token.kind == "number" and cursor.ahead(1) == "*":
+        cursor.place += 2
+        return True
+    if cursor.take("+"):
+        return True
+    if cursor.is_word("color") and cursor.ahead(1) == "(":
+        cursor.next()
+        read_point(cursor)
+        return True
+    if cursor.is_word("granularity"):
+        cursor.next()
+        cursor.number()
+        return True
+    words = (*COLORS, "hidden", "decoration")
+    if cursor.is_word(*words) and cursor.ahead(1) not in (":", "-"):
+        cursor.next()
+        return True
+    return False
+
+
+def skip_dynamics(cursor: Cursor) -> bool:
+    """Whether mass or inertia stand here; the cursor goes on behind them."""
+    if cursor.is_word("mass") and cursor.ahead(1) not in (":", "-"):
+        cursor.next()
+        cursor.number()
+        return True
+    if cursor.is_word("inertial") and cursor.ahead(1).lower() == "frame":
+        cursor.place += 2
+        read_transforms(cursor)
+        return True
+    if cursor.is_word("inertia") and cursor.ahead(1).lower() == "matrix":
+        cursor.place += 2
+        cursor.take("solid")
+        if cursor.token.text.lower().split("_")[0] in INERTIAS:
+            cursor.next()
+        cursor.number()
+        while cursor.take(","):
+            cursor.number()
+        return True
+    return False
+
+
+# --- points ---------------------------------------------------------------------------
+
+
+def read_point(cursor: Cursor) -> Vector:
+    """The point (x, y, z) that stands here."""
+    cursor.expect("(")
+    x = cursor.number()
+    cursor.expect(",")
+    y = cursor.number()
+    cursor.expect(",")
+    z = cursor.number()
+    cursor.expect(")")
+    return (x, y, z)
+
+
+def _read_points(cursor: Cursor) -> list[Vector]:
+    """Two points, the second one as such or as a vector from the first one."""
+    first = read_point(cursor)
+    return [first, read_end(cursor, first)]
+
+
+def read_end(cursor: Cursor, start: Vector) -> Vector:
+    """A point, or "+" and the vector to it from ``start``."""
+    is_vector = cursor.take("+")
+    x, y, z = read_point(cursor)
+    if not is_vector:
+        return (x, y, z)
+    return (start[0] + x, start[1] + y, start[2] + z)
+
+
+def _read_segments(cursor: Cursor) -> list[Vector]:
+    points = []
+    cursor.expect("(")
+    while True:
+        x = cursor.number()
+        cursor.expect(",")
+        y = cursor.number()
+        cursor.expect(",")
+        points.append((x, y, cursor.number()))
+        if not cursor.take(";"):
+            break
+    cursor.expect(")")
+    return points
+
+
+def _points_of_off(path: Path) -> list[Vector]:
+    """The vertices of a body in an OFF file; raises `GeometryError`."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        allowed = f"a file that can be read ({error.strerror})"
+        raise GeometryError("body", quoted(path), allowed) from None
+    except UnicodeDecodeError:
+        raise GeometryError("body", quoted(path), "an OFF file of text") from None
+    lines = [line.split("#")[0] for line in text.splitlines()]
+    words = " ".join(lines).split()
+    try:
+        start = 1 if words[0].upper().endswith("OFF") else 0
+        count = int(words[start])
+        if not 0 <= count <= MOST_POINTS:
+            raise ValueError
+        numbers = [float(word) for word in words[start + 3 : start + 3 + 3 * count]]
+        if len(numbers) < 3 * count or not np.all(np.isfinite(numbers)):
+            raise ValueError
+    except (ValueError, IndexError):
+        raise GeometryError("body", quoted(path), "an OFF file of text") from None
+    rows = [numbers[k : k + 3] for k in range(0, 3 * count, 3)]
+    return [(x, y, z) for x, y, z in rows]
+
+
+# --- transforms -----------------------------------------------------------------------
+
+
+def read_transforms(cursor: Cursor) -> np.ndarray:
+    """The product (4, 4) of the transforms that stand here; identity without any."""
+    result = np.eye(4)
+    while cursor.is_word("id", "txyz", "tr", *TURNS, *SLIDES):
+        result = result @ _read_transform(cursor)
+        if not cursor.take("*"):
+            break
+    return result
+
+
+def _read_transform(cursor: Cursor) -> np.ndarray:
+    word = cursor.next().text.lower()
+    if word == "id":
+        return np.eye(4)
+    if word == "txyz":
+        return translation(read_point(cursor))
+    if word == "tr":
+        cursor.place -= 1
+        cursor.refuse("one of Id, Tx, Ty, Tz, Txyz, Rx, Ry, Rz")
+    cursor.expect("(")
+    value = cursor.number()
+    cursor.expect(")")
+    result = (
+        translation(value * np.array(SLIDES[word]))
+        if word in SLIDES
+        else rotation(TURNS[word], value)
+    )
+    if cursor.token.text == "^" and cursor.ahead(1) == "-" and cursor.ahead(2) == "1":
+        cursor.place += 3
+        return np.linalg.inv(result)
+    return result
+
+
+def rotation(direction: Vector, angle: float) -> np.ndarray:
+    """The turn (4, 4) about a unit vector (3,) through the origin."""
+    from linkages.mechanisms.displacements import turns
+
+    result = np.eye(4)
+    result[:3, :3] = turns(np.array(direction), np.array([angle]))[0]
+    return result
+
+
+def frame_of(first: Vector, second: Vector, what: str) -> np.ndarray:
+    """The frame (4, 4) at ``first`` with its third axis towards ``second``; raises
+    `GeometryError` where they are one point."""
+    direction = np.subtract(second, first)
+    if not np.any(direction):
+        raise GeometryError(f"axis of {what}", [first, second], "two different points")
+    return frame_along(first, direction)

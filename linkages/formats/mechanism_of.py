@@ -1,0 +1,333 @@
+"""From an assembly to a mechanism: a closed configuration, and what lies in a loop."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import networkx as nx
+import numpy as np
+
+from bifurc.text_tables import count_of
+from linkages.decisions import (
+    is_closed_as_it_stands,
+    is_file_closed,
+    is_file_nearly_closed,
+    is_rounding_of_zero,
+)
+from linkages.formats.assembly import Assembly, BodyJoint, listed
+from linkages.formats.closing import ClosedPoses, Closing
+from linkages.formats.starts import Starts
+from linkages.mechanisms.couplings import Coupling, leaders
+from linkages.mechanisms.joint import Joint, JointKind, Limits, Vector
+from linkages.mechanisms.mechanism import FRAMES, Mechanism
+from linkages.values import GeometryError
+
+log = logging.getLogger(__name__)
+
+MOST_STARTS = 50  # random starts until one closes within the limits
+SEED = 0
+FULL_TURN = 2 * math.pi
+ROUNDING = 1e-9  # rad, of an angle at the end of its limits
+WITH_POINT = (
+    JointKind.REVOLUTE,
+    JointKind.PRISMATIC,
+    JointKind.CYLINDRICAL,
+    JointKind.HELICAL,
+    JointKind.UNIVERSAL,
+    JointKind.SPHERICAL,
+    JointKind.PLANAR,
+)
+WITHOUT_DIRECTION = (JointKind.SPHERICAL, JointKind.RIGID)
+
+
+def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
+    """The mechanism of an ``assembly``, in a closed configuration: the one that the
+    file gives, the nearest to it, or where it gives none, one from random starts.
+
+    Bodies that are rigid with each other become one, and so do those whose joint lies
+    in no closed loop: it is held. What was left out or moved is said in the log. Raises
+    `GeometryError` where there is no loop, or where the joints do not fit.
+    """
+    notes = list(assembly.notes)
+    assembly = _without_branches(assembly, notes)
+    closed = _closed(assembly)
+    if not is_file_closed(closed.gap):
+        notes.append(
+            f"closure gap {closed.gap * closed.size:.2g}: the joints do not fit "
+            "exactly, and each is put halfway between its bodies"
+        )
+    names = _merged_bodies(assembly, notes)
+    numbers = {body: k for k, body in enumerate(assembly.bodies)}
+    joints = []
+    values: dict[str, float] = {}
+    for joint in assembly.joints:
+        bodies = tuple(names[body] for body in joint.bodies)
+        if bodies[0] == bodies[1]:
+            continue
+        frames = [
+            closed.poses[numbers[body]] @ frame
+            for body, frame in zip(joint.bodies, joint.frames, strict=True)
+        ]
+        joints.append(_placed(joint, bodies, frames[0], frames[1]))
+        values |= zip(joint.labels, _values(joint, frames[0], frames[1]), strict=False)
+    if not joints:
+        allowed = "one with a joint that can move"
+        raise GeometryError("mechanism", "rigid: no joint is left in a loop", allowed)
+    joints = _coupled(joints, assembly, values, notes)
+    for note in notes:
+        log.warning("%s: %s", assembly.name, note)
+    return Mechanism(
+        tuple(joints),
+        assembly.name,
+        origin=assembly.origin,
+        rounding=assembly.rounding,
+    )
+
+
+# --- what lies in a loop --------------------------------------------------------------
+
+
+def _without_branches(assembly: Assembly, notes: list[str]) -> Assembly:
+    """The assembly without bodies that hang on one joint, and without those that then
+    do."""
+    graph = nx.MultiGraph()
+    graph.add_nodes_from(assembly.bodies)
+    for joint in assembly.joints:
+        graph.add_edge(*joint.bodies, key=joint.name)
+    ends = [body for body in graph if graph.degree(body) < 2]
+    while ends:
+        graph.remove_nodes_from(ends)
+        ends = [body for body in graph if graph.degree(body) < 2]
+    if not graph:
+        value = f"{count_of(len(assembly.bodies), 'body')} without a closed loop"
+        allowed = "a mechanism with a closed loop at least"
+        raise GeometryError("mechanism", value, allowed)
+    bodies = tuple(body for body in assembly.bodies if body in graph)
+    joints = tuple(j for j in assembly.joints if set(j.bodies) <= set(bodies))
+    left_out = [joint.name for joint in assembly.joints if joint not in joints]
+    if left_out:
+        notes.append(f"left out, as they lie in no loop: joints {listed(left_out)}")
+    return replace(assembly, bodies=bodies, joints=joints)
+
+
+def _merged_bodies(assembly: Assembly, notes: list[str]) -> dict[str, str]:
+    """The name of the body that each body is one with."""
+    rigid = [joint for joint in assembly.joints if joint.kind is JointKind.RIGID]
+    between = [joint for joint in assembly.joints if joint.kind is not JointKind.RIGID]
+    graph = nx.MultiGraph()
+    graph.add_nodes_from(assembly.bodies)
+    graph.add_edges_from(joint.bodies for joint in rigid)
+    names = _names_of_parts(graph, assembly.bodies)
+    loops = nx.MultiGraph()
+    loops.add_nodes_from(set(names.values()))
+    for joint in between:
+        first, second = (names[body] for body in joint.bodies)
+        loops.add_edge(first, second, key=joint.name)
+    bridges = {frozenset(edge) for edge in nx.bridges(nx.MultiGraph(loops))}
+    held = []
+    for joint in between:
+        if frozenset(names[body] for body in joint.bodies) in bridges:
+            graph.add_edge(*joint.bodies)
+            held.append(joint.name)
+    inside = [j.name for j in between if names[j.bodies[0]] == names[j.bodies[1]]]
+    if held:
+        notes.append(f"held, as they lie in no loop: joints {listed(held)}")
+    if inside:
+        notes.append(f"left out, as their bodies are one: joints {listed(inside)}")
+    return _names_of_parts(graph, assembly.bodies)
+
+
+def _names_of_parts(graph: nx.MultiGraph, order: Iterable[str]) -> dict[str, str]:
+    """For every body the name of its part of the graph: that of a frame, or the first
+    one in this order."""
+    rank = {body: k for k, body in enumerate(order)}
+    names = {}
+    for part in nx.connected_components(graph):
+        frames = [body for body in FRAMES if body in part]
+        name = frames[0] if frames else min(part, key=rank.__getitem__)
+        names.update(dict.fromkeys(part, name))
+    return names
+
+
+# --- a closed configuration -----------------------------------------------------------
+
+
+def _closed(assembly: Assembly) -> ClosedPoses:
+    """Poses in which the joints fit; raises `GeometryError` where there are none."""
+    closing = Closing(assembly)
+    if assembly.poses:
+        given = np.array([assembly.poses[body] for body in assembly.bodies])
+        closed = closing.measure(given)
+        if not is_closed_as_it_stands(closed.gap):
+            closed = closing.close(given)
+    else:
+        closed = _from_random_starts(assembly, closing)
+    if is_file_nearly_closed(closed.gap):
+        return closed
+    value = f"open: the joints miss each other by {closed.gap * closed.size:.3g}"
+    raise GeometryError("mechanism", value, "one that can be closed")
+
+
+def _from_random_starts(assembly: Assembly, closing: Closing) -> ClosedPoses:
+    """The first closed poses within the limits of the joints, or the best ones."""
+    rng = np.random.default_rng(SEED)
+    starts = Starts(assembly, closing.size)
+    best: ClosedPoses | None = None
+    is_met = False
+    for _ in range(MOST_STARTS):
+        closed = closing.close(starts.draw(rng))
+        within = _is_within_limits(assembly, closed.poses)
+        if within and is_file_closed(closed.gap):
+            return closed
+        is_met = is_met or is_file_closed(closed.gap)
+        if within and (best is None or closed.gap < best.gap):
+            best = closed
+    if best is None or (is_met and not is_file_closed(best.gap)):
+        value = f"outside them in all configurations of {MOST_STARTS} random starts"
+        raise GeometryError("limits of the joints", value, "met by a configuration")
+    return best
+
+
+def _is_within_limits(assembly: Assembly, poses: np.ndarray) -> bool:
+    numbers = {body: k for k, body in enumerate(assembly.bodies)}
+    for joint in assembly.joints:
+        frames = [
+            poses[numbers[body]] @ frame
+            for body, frame in zip(joint.bodies, joint.frames, strict=True)
+        ]
+        values = _values(joint, frames[0], frames[1])
+        for pair, value in zip(joint.limits, values, strict=False):
+            if pair is not None and not pair[0] <= value <= pair[1]:
+                return False
+    return True
+
+
+# --- couplings ------------------------------------------------------------------------
+
+
+def _coupled(
+    joints: list[Joint],
+    assembly: Assembly,
+    values: Mapping[str, float],
+    notes: list[str],
+) -> list[Joint]:
+    """The ``joints`` with the couplings of an assembly. ``values``, by label, are those
+    of the file where the variables of the joints are 0.
+
+    Variables that follow one that is left out follow the first of them.
+    """
+    couplings = {
+        label: coupling
+        for joint in assembly.joints
+        for label, coupling in joint.coupled.items()
+    }
+    if not couplings:
+        return joints
+    kept = {label for joint in joints for label in joint.labels}
+    labels = sorted({*couplings, *(one.to for one in couplings.values())} - kept)
+    labels += sorted(kept)
+    found = dict(zip(labels, leaders(labels, couplings), strict=True))
+    first_of: dict[int, str] = {
+        labels.index(label): label for label in kept - {*couplings}
+    }
+    result: dict[str, Coupling] = {}
+    for label in couplings:
+        if label not in kept:
+            notes.append(f"left out: the coupling of {label}, which lies in no loop")
+            continue
+        own = found[label]
+        to = first_of.setdefault(own.number, label)
+        if to == label:
+            notes.append(f"left out: the coupling of {label} to what lies in no loop")
+            continue
+        ratio = own.ratio / found[to].ratio
+        offset = own.offset - ratio * found[to].offset
+        offset += ratio * values[to] - values[label]
+        if is_rounding_of_zero(abs(offset)):
+            offset = 0.0
+        result[label] = Coupling(to, ratio, offset)
+    return [
+        replace(joint, coupled=tuple(result.get(label) for label in joint.labels))
+        for joint in joints
+    ]
+
+
+# --- joints ---------------------------------------------------------------------------
+
+
+def _values(joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> list[float]:
+    """The variables that have limits, at the places of the frames (4, 4)."""
+    gap = second[:3, 3] - first[:3, 3]
+    x, y, z = (float(first[:3, k] @ gap) for k in range(3))
+    match joint.kind:
+        case JointKind.REVOLUTE | JointKind.HELICAL:
+            return [_angle(joint, 0, first, second)]
+        case JointKind.PRISMATIC:
+            return [z]
+        case JointKind.CYLINDRICAL:
+            return [_angle(joint, 0, first, second), z]
+        case JointKind.PLANAR:
+            return [x, y, _angle(joint, 2, first, second)]
+        case JointKind.UNIVERSAL:
+            return [0.0, 0.0]
+        case _:
+            return []
+
+
+def _angle(
+    joint: BodyJoint, number: int, first: np.ndarray, second: np.ndarray
+) -> float:
+    """The turn from the first frame to the second one, from -pi to pi, or, where only
+    that is within the limits of variable ``number``, full turns away."""
+    cosine = first[:3, 0] @ second[:3, 0]
+    sine = first[:3, 1] @ second[:3, 0]
+    angle = math.atan2(sine, cosine)
+    limits = joint.limits[number] if joint.limits else None
+    if limits is None or _is_within(limits, angle):
+        return angle
+    middle = (limits[0] + limits[1]) / 2
+    turned = angle + FULL_TURN * round((middle - angle) / FULL_TURN)
+    return turned if _is_within(limits, turned) else angle
+
+
+def _is_within(limits: Limits, angle: float) -> bool:
+    """Whether an angle is within limits, but for rounding."""
+    return limits[0] - ROUNDING <= angle <= limits[1] + ROUNDING
+
+
+def _placed(
+    joint: BodyJoint, bodies: tuple[str, ...], first: np.ndarray, second: np.ndarray
+) -> Joint:
+    """The joint with its frames (4, 4) at these places, halfway between them."""
+    middle = (first[:3] + second[:3]) / 2
+    limits: list[Limits | None] = []
+    values = _values(joint, first, second)
+    for pair, value in zip(joint.limits, values, strict=False):
+        limits.append(None if pair is None else (pair[0] - value, pair[1] - value))
+    locked: list[float | None] = []
+    for lock, value in zip(joint.locked, values, strict=False):
+        locked.append(None if lock is None else lock - value)
+    direction, second_direction = _vector(middle[:, 2]), None
+    if joint.kind is JointKind.UNIVERSAL:
+        direction, second_direction = _vector(first[:3, 2]), _vector(second[:3, 2])
+    elif joint.kind is JointKind.PLANAR:
+        second_direction = _vector(first[:3, 0])
+    return Joint(
+        joint.name,
+        joint.kind,
+        bodies,
+        point=_vector(middle[:, 3]) if joint.kind in WITH_POINT else None,
+        direction=None if joint.kind in WITHOUT_DIRECTION else direction,
+        second_direction=second_direction,
+        pitch=joint.pitch,
+        limits=tuple(limits),
+        locked=tuple(locked),
+    )
+
+
+def _vector(numbers: np.ndarray) -> Vector:
+    x, y, z = (float(number) for number in numbers)
+    return (x, y, z)

@@ -1,0 +1,513 @@
+"""Mechanisms in MJCF, the files of MuJoCo (Todorov, Erez and Tassa 2012).
+
+Bodies stand in a tree, in the configuration qpos0. Loops are closed by <equality>: one
+<connect> between two bodies is a spherical joint, two are a revolute joint, more of
+them or a <weld> join the bodies rigidly. Several joints of a body follow each other;
+those that make a cylindrical, a universal, a planar or a helical joint are read as
+such. Equality of two joints couples them. Masses, shapes, actuators and tendons are
+left out.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from linkages.decisions import is_one_anchor
+from linkages.files.mechanism_file import MANY_TURNS
+from linkages.formats.assembly import (
+    Assembly,
+    BodyJoint,
+    frame_along,
+    translation,
+)
+from linkages.formats.composites import (
+    Axis,
+    AxisCoupling,
+    joints_of_axes,
+)
+from linkages.formats.exact_poses import (
+    ExactPlace,
+    ExactPose,
+    Origin,
+)
+from linkages.formats.mjcf_names import TakenNames, numbered
+from linkages.formats.mjcf_poses import (
+    AT_REST,
+    Settings,
+    pose_of,
+    read_settings,
+    rotation_of_quaternion,
+)
+from linkages.formats.xml_tree import Element
+from linkages.mechanisms.couplings import Coupling
+from linkages.mechanisms.joint import JointKind, Limits
+from linkages.values import GeometryError, quoted
+
+WORLD = "world"
+NOT_READ = ("include", "attach", "replicate", "composite", "flexcomp")
+COUPLINGS = ("tendon", "flex", "flexvert", "flexstrain", "distance")
+TINY = 1e-300  # of coordinates that are all 0
+NUMBERED = re.compile(r"\.\d+$")
+
+
+@dataclass
+class _Body:
+    """A body that may move: its ``name``, and the ``frame`` (4, 4) at qpos0 in which
+    its joints are written."""
+
+    name: str
+    frame: np.ndarray
+
+
+@dataclass
+class _Model:
+    """What was read so far. ``names`` leads from every <body> to the `_Body` that it is
+    rigid with, ``sites`` to body and pose in the world, ``labels`` from every axis to
+    the label of the variable that it is. Places are counted from the ``origin``;
+    ``places`` are those of all joints, off by ``rounding`` at most."""
+
+    settings: Settings
+    taken: TakenNames
+    origin: Origin
+    bodies: list[_Body] = field(default_factory=list)
+    names: dict[str, _Body] = field(default_factory=dict)
+    element_poses: dict[str, ExactPose] = field(default_factory=dict)
+    sites: dict[str, tuple[_Body, ExactPose]] = field(default_factory=dict)
+    places: list[ExactPlace] = field(default_factory=list)
+    rounding: float = 0.0
+    axes: dict[str, Axis] = field(default_factory=dict)
+    chains: list[tuple[_Body, _Body, list[Axis]]] = field(default_factory=list)
+    joints: list[BodyJoint] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    locks: dict[str, float] = field(default_factory=dict)
+    couplings: dict[str, AxisCoupling] = field(default_factory=dict)
+    labels: dict[str, str] = field(default_factory=dict)
+
+    def point(self, pose: ExactPose) -> np.ndarray:
+        """The place (3,) of a pose at which a joint is, which is kept in mind."""
+        self.places.append(pose.place)
+        self.rounding = max(self.rounding, pose.rounding)
+        point: np.ndarray = pose.matrix()[:3, 3]
+        return point
+
+
+def read_mjcf(root: Element, name: str) -> Assembly:
+    """The assembly that an MJCF model describes; raises `GeometryError`."""
+    for element in root.children:
+        if element.tag in NOT_READ:
+            _refuse_element(element)
+    model = _read_model(root, Origin())
+    origin = Origin.near(model.places)
+    rounding = 0.0
+    if origin.place is not None:
+        model = _read_model(root, origin)
+        rounding = model.rounding
+    bodies = tuple(body.name for body in model.bodies)
+    return Assembly(
+        root.attributes.get("model", name),
+        bodies,
+        tuple(model.joints),
+        {body.name: body.frame for body in model.bodies},
+        tuple(model.notes),
+        model.origin.vector,
+        rounding,
+    )
+
+
+def _read_model(root: Element, origin: Origin) -> _Model:
+    """What an MJCF model describes, with places that are counted from an origin."""
+    model = _Model(read_settings(root), TakenNames(root), origin)
+    world = _Body(WORLD, origin.frame(origin.pose))
+    model.bodies.append(world)
+    model.names[WORLD] = world
+    model.element_poses[WORLD] = origin.pose
+    for worldbody in root.all("worldbody"):
+        _read_children(worldbody, world, origin.pose, None, model)
+    for equality in root.all("equality"):
+        _read_couplings(equality, model)
+    _add_chains(model)
+    for equality in root.all("equality"):
+        _read_closures(equality, model)
+    return model
+
+
+def _refuse_element(element: Element) -> None:
+    allowed = "left out; put the whole model in one file"
+    raise GeometryError(f"line {element.line}", f"<{element.tag}>", allowed)
+
+
+# --- the tree of bodies ---------------------------------------------------------------
+
+
+def _read_children(
+    element: Element,
+    body: _Body,
+    pose: ExactPose,
+    childclass: str | None,
+    model: _Model,
+) -> None:
+    """Read the bodies, frames and sites in an element at ``pose`` in the world, which
+    belongs to ``body``."""
+    for child in element.children:
+        if child.tag in NOT_READ:
+            _refuse_element(child)
+        elif child.tag == "site":
+            site = model.settings.attributes(child, childclass)
+            place = pose @ pose_of(site, model.settings)
+            model.sites[site.attributes.get("name", "")] = (body, place)
+        elif child.tag == "frame":
+            inner = child.attributes.get("childclass", childclass)
+            place = pose @ pose_of(child, model.settings)
+            _read_children(child, body, place, inner, model)
+        elif child.tag == "body":
+            _read_body(child, body, pose, childclass, model)
+
+
+def _read_body(
+    element: Element,
+    parent: _Body,
+    pose: ExactPose,
+    childclass: str | None,
+    model: _Model,
+) -> None:
+    """Read a body and what is in it; without joints it is one with its parent."""
+    childclass = element.attributes.get("childclass", childclass)
+    name = element.attributes.get("name")
+    if name is None:
+        numbers = itertools.count(len(model.names))
+        name = model.taken.new_body(f"body{number}" for number in numbers)
+    if name in model.names:
+        element.refuse("name", quoted(name), "given once")
+    pose = pose @ pose_of(element, model.settings)
+    joints = [
+        model.settings.attributes(joint, childclass)
+        for joint in element.all("joint", "freejoint")
+    ]
+    body = parent
+    if joints:
+        body = _Body(name, model.origin.frame(pose))
+        model.bodies.append(body)
+    model.names[name] = body
+    model.element_poses[name] = pose
+    is_free = any(
+        joint.tag == "freejoint" or joint.attributes.get("type") == "free"
+        for joint in joints
+    )
+    if joints and not is_free:
+        axes = [_read_axis(joint, pose, model) for joint in joints]
+        model.chains.append((parent, body, axes))
+    _read_children(element, body, pose, childclass, model)
+
+
+def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
+    """A joint of a body at ``pose``."""
+    kind = joint.choice("type", ("hinge", "slide", "ball"), "hinge")
+    name = joint.attributes.get("name")
+    if name is None:
+        numbers = itertools.count(len(model.axes) + 1)
+        name = model.taken.new_axis(f"J{number}" for number in numbers)
+    if name in model.axes:
+        joint.refuse("name", quoted(name), "given once")
+    point = ExactPose.at(joint.numbers("pos", (3,)) or AT_REST)
+    direction = np.array(joint.numbers("axis", (3,)) or (0.0, 0.0, 1.0))
+    if kind != "ball" and not np.any(direction):
+        value = quoted(joint.attributes["axis"])
+        joint.refuse("axis", value, "of a length other than zero")
+    unit = model.settings.angle_unit if kind == "hinge" else 1.0
+    limits = _read_limits(joint, kind, unit, model.settings)
+    low, high = limits or (0.0, 0.0)
+    is_in_radians = kind == "hinge" and unit == 1.0
+    if is_in_radians and max(-low, high) > MANY_TURNS:
+        model.notes.append(
+            f"joint {name} is limited from {low:g} to {high:g} rad, more than two "
+            'turns; if that is in degrees, write angle="degree"'
+        )
+    if kind == "ball" and limits is not None:
+        limits = None
+        model.notes.append(f"left out: the range of the ball joint {name}")
+    is_slide = kind == "slide"
+    place_of = model.origin.place_of_slide if is_slide else model.point
+    place = place_of(pose @ point)
+    axis = Axis(name, kind, place, pose.rotation @ direction, limits)
+    model.axes[name] = axis
+    return axis
+
+
+def _read_limits(
+    joint: Element, kind: str, unit: float, settings: Settings
+) -> Limits | None:
+    """The limits of a joint, from where it is at qpos0; None where MuJoCo does not
+    limit it. Raises `GeometryError` where MuJoCo refuses the range."""
+    limited = joint.choice("limited", ("true", "false", "auto"), "auto")
+    # a range that is not given is 0 0 for MuJoCo
+    low, high = joint.numbers("range", (2,)) or (0.0, 0.0)
+    is_limited = limited == "true"
+    if limited == "auto":
+        if (low or high) and not settings.has_auto_limits:
+            allowed = 'with `limited`, as the compiler says autolimits="false"'
+            joint.refuse("range", [low, high], allowed)
+        is_limited = low < high
+    if not is_limited:
+        return None
+    if kind == "ball" and low:
+        joint.refuse("range", [low, high], "0 and the largest angle of a ball")
+    if kind != "ball" and not low < high:
+        joint.refuse("range", [low, high], "a smaller number and a larger one")
+    reference = (joint.numbers("ref", (1,)) or [0.0])[0]
+    return (unit * (low - reference), unit * (high - reference))
+
+
+def _add_chains(model: _Model) -> None:
+    """Add the joints of the tree, with bodies between several joints of one body."""
+    for parent, body, axes in model.chains:
+        joints = joints_of_axes(axes, model.couplings, model.locks)
+        first = parent
+        for number, joint in enumerate(joints, start=1):
+            second = body
+            if number < len(joints):
+                name = model.taken.new_body(numbered(f"{body.name}.{number}"))
+                second = _Body(name, body.frame)
+                model.bodies.append(second)
+            base, moved = (second, first) if joint.is_reversed else (first, second)
+            frames = (
+                np.linalg.inv(base.frame) @ joint.first,
+                np.linalg.inv(moved.frame) @ joint.second,
+            )
+            body_joint = BodyJoint(
+                joint.name,
+                joint.kind,
+                (base.name, moved.name),
+                frames,
+                cosine=float(joint.first[:3, 2] @ joint.second[:3, 2]),
+                pitch=joint.pitch,
+                limits=joint.limits,
+                locked=joint.locked,
+            )
+            if len(joint.axes) > 1:
+                names = numbered(joint.name, "+".join(joint.axes))
+                body_joint = model.taken.named_joint(body_joint, names, joint.axes)
+            model.joints.append(body_joint)
+            model.labels |= zip(joint.axes, body_joint.labels, strict=True)
+            first = second
+    _add_couplings(model)
+
+
+def _add_couplings(model: _Model) -> None:
+    """Couple the variables of joints of the tree."""
+    coupled: dict[str, Coupling] = {}
+    for axis, (to, ratio, offset, element) in model.couplings.items():
+        for key, name in (("joint1", axis), ("joint2", to)):
+            if name not in model.labels:
+                value = f"{quoted(name)}, a ball joint or the slide of a helical one,"
+                element.refuse(key, value, "a hinge or a slide with a variable")
+        coupled[model.labels[axis]] = Coupling(model.labels[to], ratio, offset)
+    joints = []
+    for joint in model.joints:
+        own = {label: coupled[label] for label in joint.labels if label in coupled}
+        joints.append(replace(joint, coupled=own))
+    model.joints = joints
+
+
+# --- equality -------------------------------------------------------------------------
+
+
+def _is_active(element: Element) -> bool:
+    return element.choice("active", ("true", "false"), "true") == "true"
+
+
+def _read_couplings(equality: Element, model: _Model) -> None:
+    """Read what is said of joints: one alone is locked, two are coupled. Raises
+    `GeometryError` for a coupling that is not linear."""
+    for element in equality.children:
+        element = model.settings.attributes(element, None, "equality")
+        if element.tag in COUPLINGS and _is_active(element):
+            value = f"<{element.tag}>"
+            allowed = "<connect>, <weld> or <joint>"
+            raise GeometryError(f"equality on line {element.line}", value, allowed)
+        if element.tag != "joint" or not _is_active(element):
+            continue
+        names = [element.attributes.get(key) for key in ("joint1", "joint2")]
+        for key, name in zip(("joint1", "joint2"), names, strict=True):
+            if (name is None and key == "joint2") or name in model.axes:
+                continue
+            allowed = f"one of the joints {', '.join(model.axes)}"
+            element.refuse(key, quoted(name), allowed)
+        first, second = names
+        given = element.numbers("polycoef", (1, 2, 3, 4, 5)) or []
+        # those that are not given stay at MuJoCo's default
+        offset, ratio, *higher = [*given, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(given) :]]
+        assert first is not None
+        if second is None or (ratio == 0.0 and not any(higher)):
+            model.locks[first] = offset
+        elif any(higher):
+            value = f"a coupling of joints {first} and {second} that is not linear"
+            element.refuse("polycoef", value, "two numbers, and zeros after them")
+        elif first in model.couplings:
+            element.refuse("joint1", quoted(first), "coupled to one joint")
+        else:
+            model.couplings[first] = AxisCoupling(second, ratio, offset, element)
+
+
+def _read_closures(equality: Element, model: _Model) -> None:
+    """Read the joints that close loops."""
+    groups: dict[tuple[str, str], list[_Anchor]] = {}
+    for number, element in enumerate(equality.children, start=1):
+        element = model.settings.attributes(element, None, "equality")
+        if element.tag not in ("connect", "weld") or not _is_active(element):
+            continue
+        name = element.attributes.get("name", f"{element.tag}{number}")
+        if element.tag == "weld":
+            weld = _read_weld(element, name, model)
+            if weld.bodies[0] != weld.bodies[1]:
+                _add_closure(weld, model)
+            continue
+        anchor = _read_connect(element, name, model)
+        if anchor.bodies[0] is anchor.bodies[1]:
+            continue  # it holds whatever the joints do
+        key = anchor.bodies[0].name, anchor.bodies[1].name
+        if key[::-1] in groups:
+            anchor = anchor.reversed()
+            key = key[::-1]
+        groups.setdefault(key, []).append(anchor)
+    for anchors in groups.values():
+        _add_closure(_joint_of_anchors(anchors), model)
+
+
+def _add_closure(joint: BodyJoint, model: _Model) -> None:
+    """Add a joint of an equality, which may have the name of a joint of the tree."""
+    named = model.taken.named_joint(joint, numbered(joint.name))
+    if named.name != joint.name:
+        note = f"equality {joint.name} is called {named.name}, as there is such a joint"
+        model.notes.append(note)
+    model.joints.append(named)
+
+
+@dataclass
+class _Anchor:
+    """A point that two ``bodies`` share: where it is in the world at qpos0 as a point
+    of the one and of the other."""
+
+    name: str
+    bodies: tuple[_Body, _Body]
+    points: tuple[np.ndarray, np.ndarray]
+
+    def reversed(self) -> _Anchor:
+        """The anchor with its bodies exchanged."""
+        return _Anchor(self.name, self.bodies[::-1], self.points[::-1])
+
+
+def _read_bodies(element: Element, model: _Model) -> tuple[_Body, _Body]:
+    first = element.attributes.get("body1")
+    second = element.attributes.get("body2", WORLD)
+    for key, name in (("body1", first), ("body2", second)):
+        if name not in model.names:
+            shown = "missing" if name is None else quoted(name)
+            allowed = f"one of the bodies {', '.join(model.names)}"
+            element.refuse(key, shown, allowed)
+    assert first is not None
+    return model.names[first], model.names[second]
+
+
+def _read_sites(
+    element: Element, model: _Model
+) -> tuple[tuple[_Body, ExactPose], tuple[_Body, ExactPose]] | None:
+    """The two sites of an equality; None where it has none."""
+    if "site1" not in element.attributes and "site2" not in element.attributes:
+        return None
+    sites = []
+    for key in ("site1", "site2"):
+        name = element.attributes.get(key)
+        if name is None or name not in model.sites:
+            shown = "missing" if name is None else quoted(name)
+            element.refuse(key, shown, "the name of a site")
+        sites.append(model.sites[name])
+    return sites[0], sites[1]
+
+
+def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:
+    sites = _read_sites(element, model)
+    if sites is not None:
+        (first, one), (second, other) = sites
+        points = model.point(one), model.point(other)
+        return _Anchor(name, (first, second), points)
+    bodies = _read_bodies(element, model)
+    anchor = element.numbers("anchor", (3,))
+    if anchor is None:
+        element.refuse("anchor", "missing", "a point in body1, or two sites")
+    pose = model.element_poses[element.attributes["body1"]]
+    point = model.point(pose @ ExactPose.at(anchor))
+    return _Anchor(name, bodies, (point, point))
+
+
+def _read_weld(element: Element, name: str, model: _Model) -> BodyJoint:
+    """Bodies that are joined as they are at qpos0, or in a given pose."""
+    sites = _read_sites(element, model)
+    if sites is not None:
+        (first, one), (second, other) = sites
+    else:
+        first, second = _read_bodies(element, model)
+        one = other = model.element_poses[element.attributes["body1"]]
+        given = element.numbers("relpose", (7,))
+        if given is not None and any(given[3:]):
+            turn = rotation_of_quaternion(np.array(given[3:]))
+            one = one @ ExactPose.at(given[:3], turn)
+            other = model.element_poses[element.attributes.get("body2", WORLD)]
+    if model.origin.place is not None:
+        # the same frames of both, brought near
+        near = ExactPose(place=other.inverse().place)
+        one, other = one @ near, other @ near
+    frames = (
+        np.linalg.inv(first.frame) @ one.matrix(),
+        np.linalg.inv(second.frame) @ other.matrix(),
+    )
+    return BodyJoint(name, JointKind.RIGID, (first.name, second.name), frames)
+
+
+def _joint_of_anchors(anchors: list[_Anchor]) -> BodyJoint:
+    """The joint that two bodies have when they share these points."""
+    bodies = anchors[0].bodies
+    inverses = [np.linalg.inv(body.frame) for body in bodies]
+    places = [np.array([a.points[side] for a in anchors]) for side in (0, 1)]
+    kind, columns = _kind_of_points(places[0])
+    name = _name_of_anchors(anchors)
+    frames = []
+    for inverse, points in zip(inverses, places, strict=True):
+        frame = translation(points[0])
+        if kind is JointKind.REVOLUTE:
+            frame = frame_along(points[0], points[columns[0]] - points[0])
+        elif kind is JointKind.RIGID:
+            across, other = (points[column] - points[0] for column in columns)
+            frame = frame_along(points[0], np.cross(across, other), across)
+        frames.append(inverse @ frame)
+    pair = bodies[0].name, bodies[1].name
+    return BodyJoint(name, kind, pair, (frames[0], frames[1]))
+
+
+def _name_of_anchors(anchors: list[_Anchor]) -> str:
+    """What anchors "J.1" and "J.2" are called together: "J"; else the first name."""
+    names = [anchor.name for anchor in anchors]
+    stems = {NUMBERED.sub("", name) for name in names}
+    if len(names) > 1 and len(stems) == 1:
+        return stems.pop()
+    return names[0]
+
+
+def _kind_of_points(points: np.ndarray) -> tuple[JointKind, tuple[int, ...]]:
+    """The kind of a joint that shares ``points`` (k, 3), and the numbers of those that,
+    with the first one, give its axis or its plane."""
+    size = float(np.abs(points).max(initial=TINY))
+    gaps = points - points[0]
+    distances = np.linalg.norm(gaps, axis=1)
+    far = int(np.argmax(distances))
+    if is_one_anchor(float(distances[far]), size):
+        return JointKind.SPHERICAL, ()
+    along = gaps[far] / distances[far]
+    across = np.linalg.norm(np.cross(gaps, along), axis=1)
+    wide = int(np.argmax(across))
+    if is_one_anchor(float(across[wide]), size):
+        return JointKind.REVOLUTE, (far,)
+    return JointKind.RIGID, (far, wide)

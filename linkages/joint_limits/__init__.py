@@ -1,0 +1,1 @@
+"""What limits of joints cut off, keep out and leave."""

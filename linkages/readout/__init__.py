@@ -1,0 +1,1 @@
+"""What an atlas says in the variables of joints and in places of bodies."""

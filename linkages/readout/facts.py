@@ -1,0 +1,141 @@
+"""What is said of a mechanism besides its map: redundant constraints, joints that stand
+still, bodies that move as one, ranges of the joint variables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.atlas import Atlas
+from bifurc.decisions import unit_over_rounding
+from bifurc.numerics.blur import change_by_rounding
+from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.decisions import is_dependent_constraint, keeps_angle
+from linkages.joint_limits.ranges import VariableRange, variable_ranges
+from linkages.readout.readout import Readout
+from linkages.structure.structure import ClosureKind
+
+SAMPLES = 400  # of a form
+IN_PLANE = 3  # constraints of a cycle in a plane
+CONSTRAINTS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
+
+
+# --- loops ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class LoopFacts:
+    """A loop of the cycle basis: the names of its ``joints``, how many ``constraints``
+    it puts on them, the ``rank`` of these, and the joints that are ``dependent``: their
+    motions can be had by the others of the loop."""
+
+    joints: tuple[str, ...]
+    constraints: int
+    rank: int
+    dependent: tuple[str, ...]
+
+    @property
+    def redundant(self) -> int:
+        """How many of the constraints follow from the others."""
+        return self.constraints - self.rank
+
+
+def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
+    """What is redundant in every loop at a configuration (n,) of the atlas."""
+    problem = MechanismClosure(readout.mechanism)
+    jacobian = problem.jacobians(point[None])[0]
+    facts = []
+    for closure, rows in zip(
+        problem.structure.closures, problem.rows_of_closures, strict=True
+    ):
+        block = jacobian[rows]
+        rank = _rank(block)
+        dependent = []
+        for joint in dict.fromkeys(closure.joints):
+            columns = problem.columns_of_joint(joint)
+            if columns and _rank(np.delete(block, columns, axis=1)) == rank:
+                dependent.append(joint)
+        constraints = CONSTRAINTS[closure.kind]
+        if readout.mechanism.is_planar:
+            constraints = min(constraints, IN_PLANE)
+        facts.append(
+            LoopFacts(
+                tuple(dict.fromkeys(closure.joints)),
+                constraints,
+                rank,
+                tuple(dependent),
+            )
+        )
+    return facts
+
+
+def _rank(matrix: np.ndarray) -> int:
+    if not matrix.size:
+        return 0
+    values = np.linalg.svd(matrix, compute_uv=False)
+    return int(np.count_nonzero(~is_dependent_constraint(values)))
+
+
+# --- forms ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class FormFacts:
+    """What a form of a mechanism does: the ``ranges`` of all variables, the joints that
+    are ``still``, and the bodies that move as one, in ``groups`` of two and more."""
+
+    ranges: tuple[VariableRange, ...]
+    still: tuple[str, ...]
+    groups: tuple[tuple[str, ...], ...]
+
+
+def form_facts(atlas: Atlas, index: int, readout: Readout) -> FormFacts:
+    """What the form of this ``index`` in an atlas does."""
+    branch = atlas.forms[index].branch
+    turning = [event.s for event in atlas.dead_points if event.form == index]
+    places = np.array([0.0, branch.length, *turning])
+    samples = branch.sample(SAMPLES)
+    points = np.concatenate([branch(places), samples])
+    rounding = change_by_rounding(MechanismClosure(readout.mechanism), branch)
+    groups = _groups(readout, samples, unit_over_rounding(keeps_angle, rounding))
+    ranges = variable_ranges(readout, branch, points)
+    return FormFacts(ranges, _still(readout, groups), groups)
+
+
+def _groups(
+    readout: Readout, samples: np.ndarray, unit: float
+) -> tuple[tuple[str, ...], ...]:
+    """Bodies whose displacement with respect to each other is the same at all samples,
+    in groups of two and more."""
+    poses = readout.poses(samples)
+    length = readout.structure.unit
+    bodies = readout.mechanism.bodies
+    left = list(range(len(bodies)))
+    groups = []
+    while left:
+        first = left.pop(0)
+        inverse = np.linalg.inv(poses[:, first])
+        group = [first]
+        for other in list(left):
+            relative = inverse @ poses[:, other]
+            change = np.abs(relative - relative[0])
+            change[:, :3, 3] /= length
+            if keeps_angle(float(change.max()), unit):
+                group.append(other)
+                left.remove(other)
+        if len(group) > 1:
+            groups.append(tuple(bodies[number] for number in group))
+    return tuple(groups)
+
+
+def _still(readout: Readout, groups: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
+    """The joints all of whose bodies move as one, but for idle turns."""
+    still = []
+    for joint in readout.mechanism.joints:
+        bodies = set(joint.bodies)
+        if set(joint.labels) & set(readout.structure.idle_turns):
+            continue
+        if joint.freedoms and any(bodies <= set(group) for group in groups):
+            still.append(joint.name)
+    return tuple(still)

@@ -1,0 +1,190 @@
+"""Where the bodies of a mechanism are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from linkages.mechanisms.displacements import displacement_of, transforms
+from linkages.structure.rods import Rod
+from linkages.structure.structure import Structure
+
+SMALL = 1e-12  # sine below which two directions are parallel
+
+
+class TreeStep(NamedTuple):
+    """From a body to another one, by number, across a pair: from its base to its moved
+    body or, with the sign -1, the other way."""
+
+    origin: int
+    goal: int
+    pair: int
+    sign: int
+
+
+class Poses:
+    """The displacements of all bodies of a mechanism with a ``structure`` from the
+    reference configuration, the frame at rest. Lengths are in the user's unit."""
+
+    def __init__(self, structure: Structure):
+        self.structure = structure
+        self.mechanism = structure.mechanism
+
+    def at(self, points: np.ndarray) -> np.ndarray:
+        """Homogeneous transforms (k, b, 4, 4) of the b bodies at configurations (k, n),
+        in the unknowns of the structure."""
+        bodies = self.mechanism.bodies
+        count = self.structure.body_count
+        poses = np.tile(np.eye(4), (len(points), count, 1, 1))
+        for origin, goal, number, sign in self.tree:
+            motion = self._displacement(points, number)
+            if sign < 0:
+                motion = _inverse(motion)
+            poses[:, goal] = poses[:, origin] @ motion
+        for rod in self.structure.rods:
+            self._place_rod(poses, points, rod)
+        frame = bodies.index(self.mechanism.frame)
+        of_bodies = poses[:, : len(bodies)]
+        from_frame: np.ndarray = _inverse(poses[:, frame])[:, None] @ of_bodies
+        return from_frame
+
+    def rotations(self, points: np.ndarray, numbers: Sequence[int]) -> np.ndarray:
+        """The rotations (p, k, 3, 3) of the moved bodies of some pairs, by ``numbers``
+        (p,), with respect to their bases."""
+        bodies = self.mechanism.bodies
+        pairs = [self.mechanism.pairs[number] for number in numbers]
+        base = [bodies.index(pair.base) for pair in pairs]
+        moved = [bodies.index(pair.moved) for pair in pairs]
+        of_bodies = np.moveaxis(self.at(points)[..., :3, :3], 1, 0)
+        rotations: np.ndarray = np.swapaxes(of_bodies[base], 2, 3) @ of_bodies[moved]
+        return rotations
+
+    @cached_property
+    def tree(self) -> list[TreeStep]:
+        """Steps that reach every body but the idle ones, from one that is not."""
+        pairs = self.structure.tree_pairs
+        idle = {body for rod in self.structure.rods for body in rod.bodies}
+        steps = []
+        reached = [min(set(range(len(self.mechanism.bodies))) - idle)]
+        for body in reached:  # it grows on the way
+            for number, ends in pairs.items():
+                for here, there, sign in (
+                    (ends.base, ends.moved, 1),
+                    (ends.moved, ends.base, -1),
+                ):
+                    if here == body and there not in reached:
+                        steps.append(TreeStep(here, there, number, sign))
+                        reached.append(there)
+        return steps
+
+    def _displacement(self, points: np.ndarray, number: int) -> np.ndarray:
+        """The transform (k, 4, 4) of the moved body of a pair with respect to its
+        base."""
+        result = np.tile(np.eye(4), (len(points), 1, 1))
+        shifts = self.structure.shifts.get(number)
+        if shifts is not None:
+            directions = self.structure.point_pairs[number].directions
+            result[:, :3, 3] = points[:, list(shifts)] @ directions
+            result[:, :3, 3] *= self.structure.unit
+            return result
+        columns = list(self.structure.embedded.get(number, ()))
+        if columns:
+            a, b = points[:, columns[:3]], points[:, columns[3:6]]
+            rotation = np.stack([a, b, np.cross(a, b)], axis=-1)
+            center = self.structure.center(number)
+            result[:, :3, :3] = rotation
+            result[:, :3, 3] = center - rotation @ center
+            if len(columns) > 6:
+                result[:, :3, 3] += points[:, columns[6:]] * self.structure.unit
+            return result
+        for variable in self.structure.variables_of(number):
+            motion = self.mechanism.variables[variable].motion
+            values = self.structure.values(points, variable)
+            result = result @ transforms(motion, values)
+        return result
+
+    def _place_rod(self, poses: np.ndarray, points: np.ndarray, rod: Rod) -> None:
+        """Fill in the ``poses`` (k, b, 4, 4) of the bodies of a rod at configurations
+        (k, n), turned as little as can be."""
+        centers = rod.centers
+        places = [
+            poses[:, body, :3, :3] @ center + poses[:, body, :3, 3]
+            for body, center in zip(rod.ends, centers, strict=True)
+        ]
+        now = places[1] - places[0]
+        now = now / np.linalg.norm(now, axis=1)[:, None]
+        if rod.leg is not None:  # beyond length 0 it points the other way
+            slide = self.structure.values(points, rod.leg.variable)
+            now = now * np.sign(rod.length + rod.leg.sign * slide)[:, None]
+        inside = self.inside_rod(rod)
+        holder = self.holder(rod, 1)
+        far = (inside[holder] @ np.append(centers[1], 1.0))[:3]
+        along = (far - centers[0]) / np.linalg.norm(far - centers[0])
+        rotation = _shortest_rotations(along, now)
+        starts = [centers[0], far]
+        for part, start, place in zip(rod.parts, starts, places, strict=True):
+            pose = np.tile(np.eye(4), (len(poses), 1, 1))
+            pose[:, :3, :3] = rotation
+            pose[:, :3, 3] = place - rotation @ start
+            for body in part:
+                poses[:, body] = pose @ inside[body]
+
+    def holder(self, rod: Rod, end: int) -> int:
+        """The body of a rod that its first or second spherical joint holds."""
+        point = self.structure.points[rod.points[end]]
+        return min(set(point.bodies) & set(rod.parts[end]))
+
+    def inside_rod(self, rod: Rod) -> dict[int, np.ndarray]:
+        """The displacements (4, 4) of the bodies of a rod with respect to the one that
+        its first joint holds, slides at 0."""
+        bodies = self.mechanism.bodies
+        inside = {self.holder(rod, 0): np.eye(4)}
+        pending = list(rod.inner)
+        while pending:
+            number = pending.pop(0)
+            pair = self.mechanism.pairs[number]
+            base, moved = bodies.index(pair.base), bodies.index(pair.moved)
+            is_slide = rod.leg is not None and rod.leg.variable in pair.variables
+            step = np.eye(4) if is_slide else displacement_of(self.mechanism, number)
+            if base in inside:
+                inside.setdefault(moved, inside[base] @ step)
+            elif moved in inside:
+                inside[base] = inside[moved] @ np.linalg.inv(step)
+            else:
+                pending.append(number)
+        return inside
+
+
+def rotation_vectors(rotations: np.ndarray) -> np.ndarray:
+    """Rotation vectors (k, 3), rad, of rotations (k, 3, 3)."""
+    from scipy.spatial.transform import Rotation
+
+    vectors: np.ndarray = Rotation.from_matrix(rotations).as_rotvec()
+    return vectors
+
+
+def _shortest_rotations(start: np.ndarray, goals: np.ndarray) -> np.ndarray:
+    """The smallest rotations (k, 3, 3) that turn a unit vector (3,) to ``goals``
+    (k, 3)."""
+    from scipy.spatial.transform import Rotation
+
+    axes = np.cross(start, goals)
+    sines, cosines = np.linalg.norm(axes, axis=1), goals @ start
+    across = np.cross(start, np.eye(3)[np.argmin(np.abs(start))])
+    axes = np.where(sines[:, None] < SMALL, across, axes)
+    axes = axes / np.linalg.norm(axes, axis=1)[:, None]
+    angles = np.arctan2(sines, cosines)
+    rotations: np.ndarray = Rotation.from_rotvec(angles[:, None] * axes).as_matrix()
+    return rotations
+
+
+def _inverse(transforms: np.ndarray) -> np.ndarray:
+    """The inverses of displacements (k, 4, 4)."""
+    result = np.tile(np.eye(4), (len(transforms), 1, 1))
+    transposed = np.swapaxes(transforms[:, :3, :3], 1, 2)
+    result[:, :3, :3] = transposed
+    result[:, :3, 3] = -np.einsum("kij,kj->ki", transposed, transforms[:, :3, 3])
+    return result

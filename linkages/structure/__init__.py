@@ -1,0 +1,1 @@
+"""What is unknown in a mechanism, and which chains have to close."""

@@ -1,0 +1,638 @@
+"""What is unknown in a mechanism, and which chains have to close.
+
+Every cycle that passes a spherical joint is cut there, if that can be: a point comes
+back to itself, three equations and no unknowns. A body between two spherical joints is
+a rod: it keeps two points at a distance, and its own turning about the line between
+them, which moves nothing else, is left out. Where only rods meet there is a point,
+three numbers. A spherical joint that no cut removes is embedded: two orthonormal
+vectors, six numbers under three equations, which have no singular place and no double
+cover.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from networkx.utils import UnionFind
+
+from linkages.closure.coupled import common_period
+from linkages.mechanisms.couplings import Leader
+from linkages.mechanisms.joint import Motion
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.size import Size
+from linkages.structure.cycles import (
+    Chain,
+    Ends,
+    Step,
+    chain_between,
+    cycle_basis,
+)
+from linkages.structure.free_points import FreePoint, free_points
+from linkages.structure.groups import Group, JointPoint, find_groups, find_points
+from linkages.structure.idle_turns import find_idle_turn
+from linkages.structure.placement import Placement
+from linkages.structure.rods import Rod, RodNet, find_rods
+from linkages.values import GeometryError
+
+SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
+# limits, rad, of a turn that its coupling to others brings never back to where it was
+TURNS_REACH = 10 * 2 * np.pi
+SPHERICAL, FREE = 3, 6  # freedoms of a spherical pair and of a free one
+# numbers of an embedded rotation, two orthonormal vectors, and of a translation
+ROTATION = ("ax", "ay", "az", "bx", "by", "bz")
+TRANSLATION = ("x", "y", "z")
+
+
+class ClosureKind(Enum):
+    """What a chain has to do to be closed."""
+
+    # Come back to where it began.
+    CYCLE = "cycle"
+    # Bring a point back to itself.
+    POINT = "point"
+    # Bring a point to a distance from another one.
+    ROD = "rod"
+
+
+@dataclass(frozen=True, eq=False)
+class Closure:
+    """A ``chain`` that has to close. The point ``second`` (3,) of its last body comes
+    to the point ``first`` (3,) of its first one, or to its distance from it; a cycle
+    has none. ``joints`` are the names of all joints round the loop."""
+
+    kind: ClosureKind
+    chain: Chain
+    joints: tuple[str, ...]
+    first: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    second: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    rod: Rod | None = None
+
+
+class JoinedPair(NamedTuple):
+    """Two bodies, by number, that spherical joints hold at a ``point``."""
+
+    base: int
+    moved: int
+    point: JointPoint
+
+
+class FreePair(NamedTuple):
+    """Two bodies that no chain of joints but rods joins: ``moved`` is anywhere with
+    respect to ``base``, as a rotation about ``center`` (3,) and a translation."""
+
+    base: int
+    moved: int
+    center: np.ndarray
+
+
+class Share(NamedTuple):
+    """What an unknown makes of a variable: ``rate`` times the unknown of this
+    ``column``, plus ``offset``, in rad and in the structure's unit."""
+
+    column: int
+    rate: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """An unknown: the number of its ``variable`` (-1 for a number of a body or a point
+    that no joint places), which others may follow, its period and its limits, in rad or
+    in the structure's unit. It is an angle, a length, or else an entry of a rotation
+    matrix."""
+
+    label: str
+    variable: int
+    period: float
+    low: float
+    high: float
+    is_angle: bool
+    is_length: bool
+
+    @property
+    def unit(self) -> str:
+        """What it is counted in: "rad", "size" or, of an entry of a matrix, nothing."""
+        if self.is_angle:
+            return "rad"
+        return "size" if self.is_length else ""
+
+
+class Structure:
+    """The unknowns and the closures of a ``mechanism``; raises `GeometryError` where
+    nothing is left that could move.
+
+    ``unit`` is the characteristic length, in which slides are counted.
+    """
+
+    def __init__(self, mechanism: Mechanism):
+        self.mechanism = mechanism
+        self.size = Size(mechanism)
+        self.unit = self.size.characteristic_length
+        self.idle_turns: tuple[str, ...] = ()
+        self._hold_idle_turns()
+        if not self.unknowns:
+            locked = "every one locked or rigid"
+            if self.idle_bodies:
+                idle = ", ".join(self.idle_bodies)
+                locked += f" but for {idle}, whose turning about its own line is idle,"
+            raise GeometryError("joints", locked, "such that one is left to move")
+
+    # --- bodies and pairs -------------------------------------------------------------
+
+    def _hold_idle_turns(self) -> None:
+        """Lock the turns that move nothing else at 0, one after the other."""
+        while True:
+            ends = _ends_of(self.mechanism)
+            points = find_points(self.mechanism, ends, self.unit)
+            groups = find_groups(self.mechanism, ends, points)
+            args = self.mechanism, ends, groups, points, self.unit
+            label = find_idle_turn(*args)
+            if label is None:
+                break
+            self.idle_turns += (label,)
+            self.mechanism = self.mechanism.with_locks({label: 0.0})
+
+    @cached_property
+    def points(self) -> tuple[JointPoint, ...]:
+        """The points at which spherical joints hold bodies."""
+        return find_points(self.mechanism, _ends_of(self.mechanism), self.unit)
+
+    @cached_property
+    def _groups(self) -> tuple[Group, ...]:
+        return find_groups(self.mechanism, _ends_of(self.mechanism), self.points)
+
+    @cached_property
+    def _net(self) -> RodNet:
+        ends = _ends_of(self.mechanism)
+        return find_rods(self.mechanism, ends, self._groups, self.points)
+
+    @property
+    def rods(self) -> tuple[Rod, ...]:
+        """The bodies that spherical joints hold at two points, and nothing else."""
+        return self._net.rods
+
+    @property
+    def body_count(self) -> int:
+        """How many bodies there are, points at which only rods meet among them: they
+        are numbered after the others."""
+        return len(self.mechanism.bodies) + len(self._net.free)
+
+    @cached_property
+    def free_points(self) -> tuple[FreePoint, ...]:
+        """The points at which only rods meet."""
+        return free_points(self.points, self._net)
+
+    @cached_property
+    def ends(self) -> dict[int, Ends]:
+        """The bodies and the number of unknowns of every pair that is left without the
+        rods, and of spherical ones between bodies that only rods would join else."""
+        in_rods = {body for rod in self.rods for body in rod.bodies}
+        inner = {pair for rod in self.rods for pair in rod.inner}
+        ends = {
+            number: one
+            for number, one in _ends_of(self.mechanism).items()
+            if number not in inner and not in_rods & set(one[:2])
+        }
+        joined = {
+            number: Ends(pair.base, pair.moved, SPHERICAL)
+            for number, pair in self._joined_at_points.items()
+        }
+        return ends | joined
+
+    @cached_property
+    def _joined_at_points(self) -> dict[int, JoinedPair]:
+        """Spherical pairs, numbered after those of the mechanism, between bodies that
+        meet at a point where joints name rods between them."""
+        in_rods = {body for rod in self.rods for body in rod.bodies}
+        ends = _ends_of(self.mechanism)
+        joined: dict[int, JoinedPair] = {}
+        for point in self.points:
+            bodies = [body for body in point.bodies if body not in in_rods]
+            parts = UnionFind(bodies)
+            for number in point.pairs:
+                if not in_rods & set(ends[number][:2]):
+                    parts.union(*ends[number][:2])
+            for body in bodies[1:]:
+                if parts[body] != parts[bodies[0]]:
+                    parts.union(body, bodies[0])
+                    number = len(self.mechanism.pairs) + len(joined)
+                    joined[number] = JoinedPair(bodies[0], body, point)
+        return joined
+
+    @property
+    def _spherical(self) -> list[int]:
+        return [
+            number
+            for number in self.ends
+            if number in self._joined_at_points
+            or self.mechanism.pairs[number].center is not None
+        ]
+
+    # --- chains -----------------------------------------------------------------------
+
+    @cached_property
+    def _plain(self) -> dict[int, Ends]:
+        """The pairs without spherical ones and those inside rods."""
+        spherical = set(self._spherical)
+        return {k: ends for k, ends in self.ends.items() if k not in spherical}
+
+    @cached_property
+    def _kept_spherical(self) -> list[int]:
+        """The spherical pairs that are not cut: they hold the bodies together."""
+        parts = UnionFind(range(self.body_count))
+        for ends in self._plain.values():
+            parts.union(ends.base, ends.moved)
+        kept = []
+        for number in self._spherical:
+            base, moved, _ = self.ends[number]
+            if parts[base] != parts[moved]:
+                parts.union(base, moved)
+                kept.append(number)
+        return kept
+
+    @cached_property
+    def point_pairs(self) -> dict[int, FreePoint]:
+        """Pairs, numbered after those between bodies, that move the free points."""
+        first = len(self.mechanism.pairs) + len(self._joined_at_points)
+        return dict(enumerate(self.free_points, start=first))
+
+    @cached_property
+    def free_pairs(self) -> dict[int, FreePair]:
+        """Pairs, numbered after those of points, between bodies that only rods join."""
+        parts = UnionFind(range(self.body_count))
+        for ends in self._plain.values():
+            parts.union(ends.base, ends.moved)
+        for number in self._kept_spherical:
+            parts.union(*self.ends[number][:2])
+        for point in self.free_points:
+            parts.union(point.base, point.body)
+        first = len(self.mechanism.pairs) + len(self._joined_at_points)
+        first += len(self.free_points)
+        free: dict[int, FreePair] = {}
+        for rod in self.rods:
+            if parts[rod.ends[0]] != parts[rod.ends[1]]:
+                parts.union(*rod.ends)
+                free[first + len(free)] = self._free_pair(rod)
+        return free
+
+    def _free_pair(self, rod: Rod) -> FreePair:
+        """The free pair of the two bodies that a rod joins. What moves is a body: a
+        point at which only rods meet has no rotation."""
+        base, moved = rod.ends
+        if moved >= len(self.mechanism.bodies):
+            return FreePair(moved, base, rod.centers[0])
+        return FreePair(base, moved, rod.centers[1])
+
+    @cached_property
+    def closures(self) -> tuple[Closure, ...]:
+        """The chains that have to close, as short as can be: cycles, then points, then
+        rods."""
+        cycles = cycle_basis(self.body_count, self._plain)
+        chains = [self._begun_at_a_joint(cycle) for cycle in cycles]
+        closures = [
+            Closure(ClosureKind.CYCLE, chain, self._joints(chain)) for chain in chains
+        ]
+        for number in self._spherical:
+            if number not in self._kept_spherical:
+                closures.append(self._point_closure(number))
+        closures += [self._rod_closure(rod) for rod in self.rods]
+        return tuple(closures)
+
+    def _begun_at_a_joint(self, cycle: Chain) -> Chain:
+        """The cycle from the first of its steps across the joint at which it begins:
+        steps across one axis of several bodies then follow each other."""
+        joints = [self._joint_of(step.pair) for step in cycle]
+        first = 0
+        while joints[first - 1] == joints[0] and -first < len(cycle) - 1:
+            first -= 1
+        return cycle[first:] + cycle[:first] if first else cycle
+
+    @cached_property
+    def tree_pairs(self) -> dict[int, Ends]:
+        """The pairs that lead from body to body: all but the spherical ones that are
+        cut, those of points, and the free ones."""
+        kept = {number: self.ends[number] for number in self._kept_spherical}
+        points = {
+            number: Ends(point.base, point.body, len(point.directions))
+            for number, point in self.point_pairs.items()
+        }
+        free = {
+            number: Ends(pair.base, pair.moved, FREE)
+            for number, pair in self.free_pairs.items()
+        }
+        return self._plain | kept | points | free
+
+    @property
+    def idle_bodies(self) -> tuple[str, ...]:
+        """The bodies whose own turning about the line between the two points at which
+        spherical joints hold them is left out."""
+        numbers = [number for rod in self.rods for number in rod.bodies]
+        if any(len(point.directions) < 3 for point in self.free_points):
+            numbers += self._net.remains
+        return tuple(self.mechanism.bodies[number] for number in numbers)
+
+    def _point_closure(self, number: int) -> Closure:
+        base, moved, _ = self.ends[number]
+        chain = chain_between(self.body_count, self.tree_pairs, base, moved)
+        assert chain is not None
+        center = self.center(number)
+        joints = (*self._joint_of(number), *self._joints(chain))
+        return Closure(ClosureKind.POINT, chain, joints, center, center)
+
+    def _rod_closure(self, rod: Rod) -> Closure:
+        chain = chain_between(self.body_count, self.tree_pairs, *rod.ends)
+        assert chain is not None
+        first, second = rod.centers
+        inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
+        joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
+        return Closure(ClosureKind.ROD, chain, joints, first, second, rod)
+
+    def _joints(self, chain: Chain) -> tuple[str, ...]:
+        return tuple(name for step in chain for name in self._joint_of(step.pair))
+
+    def _joint_of(self, pair: int) -> tuple[str, ...]:
+        """The names of the joints that a pair is of; none for one that no joint makes."""
+        if pair in self._joined_at_points:
+            return self._joined_at_points[pair].point.joints
+        if pair in self.free_pairs or pair in self.point_pairs:
+            return ()
+        return (self.mechanism.pairs[pair].joint,)
+
+    def variables_of(self, pair: int) -> tuple[int, ...]:
+        """The variables of a pair, by number; none for one that no joint makes."""
+        if pair >= len(self.mechanism.pairs):
+            return ()
+        return self.mechanism.pairs[pair].variables
+
+    def motions(self, step: Step) -> list[Motion]:
+        """The motions of a step, but for those locked at 0."""
+        variables = [
+            self.mechanism.variables[number] for number in self.variables_of(step.pair)
+        ]
+        return [one.motion for one in variables if one.locked != 0.0]
+
+    def placement(self, closure: Closure) -> Placement:
+        """The frame in which a closure is written; that of the file where the numbers
+        of a rotation are unknowns."""
+        special = self.embedded | self.shifts
+        if any(step.pair in special for step in closure.chain):
+            return Placement(closure.first, np.eye(3), self.unit)
+        motions = [m for step in closure.chain for m in self.motions(step)]
+        return Placement.of_chain(motions, self.unit)
+
+    # --- unknowns ---------------------------------------------------------------------
+
+    @cached_property
+    def unknowns(self) -> tuple[Unknown, ...]:
+        """The variables that are neither locked nor coupled to others, then the numbers
+        of embedded joints, then those of points."""
+        unknowns = [self._unknown(number) for number in self._leading]
+        for pair in self._kept_spherical:
+            joint = self._joint_of(pair)[0]
+            unknowns += [_entry_of_rotation(joint, part) for part in ROTATION]
+        for free in self.free_pairs.values():
+            body = self.mechanism.bodies[free.moved]
+            unknowns += [_entry_of_rotation(body, part) for part in ROTATION]
+            unknowns += [_length(f"{body}.{part}") for part in TRANSLATION]
+        for point in self.free_points:
+            unknowns += self._numbers_of_point(point)
+        return _each_called_once(unknowns)
+
+    def _numbers_of_point(self, point: FreePoint) -> list[Unknown]:
+        return [
+            _length(f"{point.name}.{part}", low / self.unit, high / self.unit)
+            for part, (low, high) in zip(TRANSLATION, point.limits, strict=False)
+        ]
+
+    @cached_property
+    def shifts(self) -> dict[int, tuple[int, ...]]:
+        """The numbers of the unknowns of every pair of a point, one a direction."""
+        first = len(self._leading) + sum(map(len, self.embedded.values()))
+        shifts = {}
+        for pair, point in self.point_pairs.items():
+            count = len(point.directions)
+            shifts[pair] = tuple(range(first, first + count))
+            first += count
+        return shifts
+
+    @property
+    def scales(self) -> np.ndarray:
+        """What the unknowns (n,) are multiplied with to be in rad and in the user's
+        unit."""
+        is_length = [unknown.is_length for unknown in self.unknowns]
+        return np.where(is_length, self.unit, 1.0)
+
+    @property
+    def reference(self) -> np.ndarray:
+        """The unknowns (n,) where all variables are 0 and all bodies in their places."""
+        reference = np.zeros(len(self.unknowns))
+        for columns in self.embedded.values():
+            reference[list(columns[:6])] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+        return reference
+
+    @cached_property
+    def column_of(self) -> dict[int, int]:
+        """The number of the unknown that every free variable is or follows, by its
+        number."""
+        columns = {variable: column for column, variable in enumerate(self._leading)}
+        return {
+            number: columns[variable.leader.number]
+            for number, variable in enumerate(self.mechanism.variables)
+            if variable.locked is None
+        }
+
+    @cached_property
+    def _leading(self) -> list[int]:
+        """The variables, by number, that are neither locked nor coupled to others."""
+        return [
+            number
+            for number, variable in enumerate(self.mechanism.variables)
+            if variable.locked is None and variable.leader.number == number
+        ]
+
+    def share(self, variable: int) -> Share | None:
+        """What an unknown makes of a variable, by number; None where it is locked."""
+        column = self.column_of.get(variable)
+        if column is None:
+            return None
+        leader = self.mechanism.variables[variable].leader
+        unit = self._unit_of(variable)
+        rate = leader.ratio * self._unit_of(leader.number) / unit
+        return Share(column, rate, leader.offset / unit)
+
+    def _unit_of(self, variable: int) -> float:
+        """What a variable, by number, is counted in: rad or the structure's unit."""
+        return 1.0 if self.mechanism.variables[variable].motion.is_turn else self.unit
+
+    def values(self, points: np.ndarray, variable: int) -> np.ndarray:
+        """The values (k,) of a variable, by number, at configurations (k, n): in rad
+        and in the user's unit, the same everywhere where it is locked."""
+        share = self.share(variable)
+        if share is None:
+            return np.full(len(points), self.mechanism.variables[variable].locked)
+        shares = share.rate * points[:, share.column] + share.offset
+        values: np.ndarray = shares * self._unit_of(variable)
+        return values
+
+    def largest_value(self, variable: int) -> float:
+        """The largest absolute value that a variable, by number, takes within the
+        limits, in rad and the structure's unit; infinite where it has none."""
+        share = self.share(variable)
+        if share is None:
+            locked = self.mechanism.variables[variable].locked
+            assert locked is not None
+            return abs(locked) / self._unit_of(variable)
+        unknown = self.unknowns[share.column]
+        largest = max(abs(unknown.low), abs(unknown.high))
+        return abs(share.rate) * largest + abs(share.offset)
+
+    def limits(self, variable: int) -> tuple[float, float] | None:
+        """The limits within which a variable, by number, is followed, in rad and the
+        user's unit; None where it is locked or has none."""
+        share = self.share(variable)
+        if share is None or not np.isfinite(self.unknowns[share.column].high):
+            return None
+        unknown = self.unknowns[share.column]
+        ends = np.array([[unknown.low], [unknown.high]])
+        points = np.zeros((2, len(self.unknowns)))
+        points[:, [share.column]] = ends
+        low, high = sorted(self.values(points, variable).tolist())
+        return low, high
+
+    @cached_property
+    def embedded(self) -> dict[int, tuple[int, ...]]:
+        """The numbers of the unknowns of every embedded spherical pair, six, and of
+        every free one, nine."""
+        first = len(self._leading)
+        embedded = {}
+        for pair in (*self._kept_spherical, *self.free_pairs):
+            count = len(ROTATION)
+            if pair in self.free_pairs:
+                count += len(TRANSLATION)
+            embedded[pair] = tuple(range(first, first + count))
+            first += count
+        return embedded
+
+    def center(self, pair: int) -> np.ndarray:
+        """The point (3,) about which an embedded spherical pair or a free one turns."""
+        if pair in self.free_pairs:
+            return self.free_pairs[pair].center
+        if pair in self._joined_at_points:
+            return self._joined_at_points[pair].point.center
+        center = self.mechanism.pairs[pair].center
+        assert center is not None
+        return center
+
+    def _unknown(self, number: int) -> Unknown:
+        """The unknown that the variable of this number is, within the limits of all
+        that follow it."""
+        variable = self.mechanism.variables[number]
+        is_angle = variable.motion.is_turn
+        unit = self._unit_of(number)
+        ratios = []
+        low, high = -np.inf, np.inf
+        for follower, other in enumerate(self.mechanism.variables):
+            if other.leader.number != number:
+                continue
+            ratios.append(other.leader.ratio)
+            start, end = _range_of_leader(other.leader, self._range(follower))
+            low, high = max(low, start), min(high, end)
+            if not low < high:
+                what = f"limits of {variable.label} and what is coupled to it"
+                raise GeometryError(what, [low, high], "such that they overlap")
+        if np.isfinite(high):
+            low, high = low / unit, high / unit
+            return Unknown(
+                variable.label, number, np.inf, low, high, is_angle, not is_angle
+            )
+        period = common_period(ratios)
+        if not np.isfinite(period):
+            low, high = -TURNS_REACH, TURNS_REACH
+        return Unknown(
+            variable.label, number, period, low, high, is_angle, not is_angle
+        )
+
+    def _range(self, number: int) -> tuple[float, float]:
+        """From where to where a variable is followed, in rad and the user's unit:
+        infinite for a turn without advance and limits."""
+        variable = self.mechanism.variables[number]
+        motion = variable.motion
+        if variable.limits is not None:
+            return variable.limits
+        if motion.is_turn and motion.advance == 0.0:
+            return -np.inf, np.inf
+        reach = self._reach(number)
+        if motion.is_turn:
+            reach /= abs(motion.advance)
+        return -reach, reach
+
+    def _variables_around(self, closure: Closure) -> set[int]:
+        """The variables, by number, of the joints round a loop."""
+        numbers = {k for step in closure.chain for k in self.variables_of(step.pair)}
+        if closure.rod is not None and closure.rod.leg is not None:
+            numbers.add(closure.rod.leg.variable)
+        return numbers
+
+    def _reach(self, number: int) -> float:
+        """How far a slide is looked at from the reference configuration: farther than
+        the bodies of its shortest cycle reach."""
+        lengths = self.size.body_lengths
+        sums = []
+        for closure in self.closures:
+            if number in self._variables_around(closure):
+                joints = [self.mechanism.joint(name) for name in closure.joints]
+                bodies = {body for joint in joints for body in joint.bodies}
+                sums.append(sum(lengths[body] for body in sorted(bodies)))
+        total = min(sums, default=sum(lengths.values()))
+        return SLIDE_REACH * (total or sum(lengths.values()))
+
+
+def _ends_of(mechanism: Mechanism) -> dict[int, Ends]:
+    """The bodies and the number of unknowns of every pair of a mechanism."""
+    numbers = {body: number for number, body in enumerate(mechanism.bodies)}
+    ends = {}
+    for number, pair in enumerate(mechanism.pairs):
+        free = [k for k in pair.variables if mechanism.variables[k].locked is None]
+        count = len(free) if pair.center is None else SPHERICAL
+        ends[number] = Ends(numbers[pair.base], numbers[pair.moved], count)
+    return ends
+
+
+def _range_of_leader(
+    leader: Leader, limits: tuple[float, float]
+) -> tuple[float, float]:
+    """Between which values of its leader a variable is within its limits."""
+    low, high = sorted(leader.value_of_leader(value) for value in limits)
+    return low, high
+
+
+def _each_called_once(unknowns: Sequence[Unknown]) -> tuple[Unknown, ...]:
+    """The unknowns, those that are called as one before them with a number behind: a
+    coordinate of a body may be called as the variable of a joint."""
+    labels: set[str] = set()
+    once = []
+    for unknown in unknowns:
+        label = unknown.label
+        number = 1
+        while label in labels:
+            number += 1
+            label = f"{unknown.label} ({number})"
+        labels.add(label)
+        once.append(replace(unknown, label=label))
+    return tuple(once)
+
+
+def _entry_of_rotation(name: str, part: str) -> Unknown:
+    """An unknown that is an entry of a rotation matrix."""
+    label = f"{name}.{part}"
+    return Unknown(label, -1, np.inf, -np.inf, np.inf, is_angle=False, is_length=False)
+
+
+def _length(label: str, low: float = -np.inf, high: float = np.inf) -> Unknown:
+    """An unknown that is a coordinate of a body or a point."""
+    return Unknown(label, -1, np.inf, low, high, is_angle=False, is_length=True)

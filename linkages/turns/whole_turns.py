@@ -1,0 +1,108 @@
+"""Motions that are a whole turn of a joint apart, of which something advances: a helical
+joint, or a slide that follows.
+
+After a whole turn more it has advanced, and what closes the loop then is another form,
+or none. Random starts reach such forms one by one; beside a known one
+the others are found by turning each joint. Isolated assemblies have none beside them
+that is known: they are looked for from starts at every turn.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.decisions import is_start_solved
+from bifurc.problem import Problem
+from bifurc.seeding import start_region
+from bifurc.seeds import Audit, Level
+from bifurc.text_tables import count_of
+from linkages.assembly_statements import RANDOM_ASSEMBLIES
+from linkages.closure.coupled import common_period
+from linkages.structure.structure import Structure
+from linkages.turns.turn_lattice import TurnLattice
+
+MOST_FORMS = 120  # beyond, forms beside them are not looked for
+AT_A_TURN, MOST_STARTS = 50, 2000  # random starts, and those of all turns of a joint
+PLACES = np.array([0.05, 0.35, 0.65, 0.95])  # on a form, of its length
+
+
+def turns_that_advance(structure: Structure) -> dict[int, float]:
+    """The unknowns, by number, whose turning advances something, and after what angle
+    (rad) all that turns with one is back."""
+    advancing: set[int] = set()
+    ratios: dict[int, list[float]] = {}
+    for number, variable in enumerate(structure.mechanism.variables):
+        share = structure.share(number)
+        if share is None:
+            continue
+        motion = variable.motion
+        if motion.advance or not motion.is_turn:
+            advancing.add(share.column)
+        if motion.is_turn:
+            ratios.setdefault(share.column, []).append(share.rate)
+    angles = [number for number in advancing if structure.unknowns[number].is_angle]
+    periods = {number: common_period(ratios[number]) for number in sorted(angles)}
+    return {n: period for n, period in periods.items() if np.isfinite(period)}
+
+
+def starts_at_every_turn(
+    problem: Problem, turns: dict[int, float], rng: np.random.Generator
+) -> np.ndarray:
+    """Random points (k, n), as many at each of the ``turns`` that a joint which advances
+    may make within its limits, as `turns_that_advance` has them."""
+    low, high = start_region(problem).T
+    starts = [np.empty((0, problem.n))]
+    for number, period in turns.items():
+        count = math.ceil((high[number] - low[number]) / period)
+        most = min(AT_A_TURN * count, MOST_STARTS)
+        starts.append(rng.uniform(low, high, (most, problem.n)))
+    return np.concatenate(starts)
+
+
+@dataclass(frozen=True, eq=False)
+class WholeTurns:
+    """The forms of a ``problem`` with ``turns`` that advance, as `turns_that_advance`
+    has them; those that shifts of the ``lattice`` lead to are one."""
+
+    problem: Problem
+    turns: dict[int, float]
+    lattice: TurnLattice
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """Configurations a whole turn of a joint beside ``branches``, as starts; or, of
+        many branches, that there may be more."""
+        nowhere = np.empty((0, self.problem.n))
+        if len(branches) > MOST_FORMS or seconds <= 0.0:
+            forms = count_of(len(branches), "form")
+            text = (
+                f"at least {forms} in all: joints that advance may stand whole turns "
+                "away within their limits, and not all of that was tried"
+            )
+            return Audit(Level.ESTIMATED, text, nowhere)
+        text = (
+            "beside every form listed here others a whole turn of a joint away, which "
+            f"advances, were looked for within the limits; {RANDOM_ASSEMBLIES}"
+        )
+        starts = [self._beside(branch) for branch in branches]
+        return Audit(Level.ESTIMATED, text, np.concatenate([nowhere, *starts]))
+
+    def _beside(self, branch: Branch) -> np.ndarray:
+        """Closed configurations (k, n) within the limits, a whole turn beside a
+        branch."""
+        places = branch(PLACES * branch.length)
+        turned = []
+        for number, period in self.turns.items():
+            for turn in (period, -period):
+                beside = places.copy()
+                beside[:, number] += turn
+                turned.append(beside)
+        points, gaps = self.problem.project(np.concatenate(turned))
+        # what is outside the limits may have a translate inside
+        solutions = self.lattice.homes(points[is_start_solved(gaps)])
+        inside: np.ndarray = solutions[self.problem.are_inside(solutions)]
+        return inside

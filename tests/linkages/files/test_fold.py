@@ -1,0 +1,340 @@
+"""Rigid origami from FOLD files."""
+
+import json
+
+import numpy as np
+import pytest
+
+import linkages
+from bifurc.search.settings import SearchSettings
+from bifurc.singular.point import Kind
+from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.file import LinkageFileError
+from linkages.readout.poses import Poses
+from studies.miura import SECTOR, miura
+from tests.linkages.mechanisms.test_maps import counts
+
+
+def read(tmp_path, content, name="pattern.fold"):
+    path = tmp_path / name
+    text = content if isinstance(content, str) else json.dumps(content)
+    path.write_text(text, encoding="utf-8")
+    return linkages.load(str(path))
+
+
+# Schenk and Guest 2013; Kumar, Feng, Guest 2021: from flat, a vertex of Miura's pattern
+# folds two ways, and one pair of creases folds alone
+def test_a_vertex_folds_two_ways_from_flat(tmp_path):
+    mechanism = read(tmp_path, miura(2, 2))
+    assert mechanism.name == "Miura-ori 2 x 2"
+    assert [joint.name for joint in mechanism.joints] == ["1-4", "3-4", "4-5", "4-7"]
+    assert mechanism.bodies == ("f0", "f1", "f2", "f3")
+    atlas = linkages.map_linkage(mechanism, settings=SearchSettings(starts=60))
+    assert counts(atlas) == (3, [Kind.BIFURCATION] * 3, [], 0)
+
+
+@pytest.mark.parametrize("fold", [0.9, -0.4])
+def test_a_sheet_with_fold_angles_is_folded_first(fold, tmp_path):
+    mechanism = read(tmp_path, miura(4, 4, fold))
+    assert mechanism.independent_loops == 9
+    assert mechanism.gruebler == -30
+    problem = MechanismClosure(mechanism)
+    assert np.abs(problem.residuals(problem.reference[None])).max() < 1e-14
+    values = np.linalg.svd(problem.jacobian(problem.reference), compute_uv=False)
+    assert np.count_nonzero(values > 1e-9) == problem.n - 1  # it folds one way
+    # panels along a zigzag: the dihedral angle that the file says
+    poses = Poses(problem.structure)
+    assert np.allclose(poses.at(problem.reference[None]), np.eye(4))
+    first, second = (np.array(mechanism.joint(n).direction) for n in ("1-6", "6-11"))
+    half = np.arctan(np.tan(fold / 2) * np.cos(SECTOR))
+    straight = [np.array(mechanism.joint(n).direction) for n in ("5-6", "6-7")]
+    assert straight[0] @ straight[1] < 1.0 - 1e-3  # lines are straight only when flat
+    assert abs(half) < abs(fold / 2)
+    assert first @ second < np.cos(np.pi - 2 * SECTOR)
+
+
+def test_folded_coordinates_are_the_same_state_as_fold_angles(tmp_path):
+    flat = read(tmp_path, miura(3, 3))
+    folded = read(tmp_path, miura(3, 3, 0.8))
+    problem = MechanismClosure(flat)
+    content = miura(3, 3, 0.8)
+    angles = dict(
+        zip(
+            [f"{a}-{b}" for a, b in content["edges_vertices"]],
+            np.radians(content["edges_foldAngle"]),
+            strict=True,
+        )
+    )
+    point = np.array([angles[name] for name in problem.names])
+    poses = Poses(problem.structure).at(point[None])[0]
+    places = np.zeros((len(content["vertices_coords"]), 3))
+    for number, face in enumerate(content["faces_vertices"]):
+        pose = poses[flat.bodies.index(f"f{number}")]
+        for vertex in face:
+            at = np.array([*content["vertices_coords"][vertex], 0.0])
+            places[vertex] = pose[:3, :3] @ at + pose[:3, 3]
+    state = {
+        "frame_classes": ["foldedForm"],
+        "frame_inherit": True,
+        "frame_parent": 0,
+        "vertices_coords": places.tolist(),
+    }
+    given = read(tmp_path, {**content, "file_frames": [state]})
+    for joint in given.joints:
+        other = folded.joint(joint.name)
+        assert joint.bodies == other.bodies
+        assert np.allclose(joint.point, other.point, atol=1e-12)
+        assert np.allclose(joint.direction, other.direction, atol=1e-12)
+
+
+def test_a_valley_is_a_positive_angle_that_lifts_the_panel(tmp_path):
+    mechanism = read(tmp_path, miura(2, 2))
+    problem = MechanismClosure(mechanism)
+    content = miura(2, 2, 0.3)
+    angles = {
+        f"{a}-{b}": np.radians(angle)
+        for (a, b), angle in zip(
+            content["edges_vertices"], content["edges_foldAngle"], strict=True
+        )
+    }
+    point = np.array([angles[name] for name in problem.names])
+    assert np.abs(problem.residuals(point[None])).max() < 1e-15
+    for joint in mechanism.joints:
+        base, moved = (mechanism.bodies.index(body) for body in joint.bodies)
+        poses = Poses(problem.structure).at(point[None])[0]
+        relative = np.linalg.inv(poses[base]) @ poses[moved]
+        corners = content["faces_vertices"][int(joint.bodies[1][1:])]
+        corners = [[*content["vertices_coords"][k], 0.0, 1.0] for k in corners]
+        heights = (relative @ np.array(corners).T)[2]
+        is_valley = angles[joint.name] > 0
+        assert (heights.max() > 1e-3) == is_valley
+        assert (heights.min() < -1e-3) != is_valley
+
+
+def test_flat_edges_join_panels_and_cuts_part_them(tmp_path):
+    content = miura(3, 3, 0.8)
+    letters = content["edges_assignment"]
+    inner = content["edges_vertices"].index([5, 6])
+    whole = read(tmp_path, content)
+    letters[inner] = "F"
+    content["edges_foldAngle"] = [0.0] * len(letters)
+    joined = read(tmp_path, content)
+    assert len(joined.bodies) == len(whole.bodies) - 1
+    assert len(joined.joints) == len(whole.joints) - 1
+    letters[inner] = "C"
+    cut = read(tmp_path, content)
+    assert len(cut.bodies) == len(whole.bodies)
+    assert len(cut.joints) == len(whole.joints) - 1
+
+
+def test_two_parts_of_one_crease_are_one_joint(tmp_path):
+    content = miura(2, 2)
+    # a vertex on the crease from 4 to 7
+    (x, y), (u, v) = (content["vertices_coords"][k] for k in (4, 7))
+    content["vertices_coords"].append([0.5 * (x + u), 0.5 * (y + v)])
+    edge = content["edges_vertices"].index([4, 7])
+    content["edges_vertices"][edge] = [4, 9]
+    content["edges_vertices"].append([9, 7])
+    content["edges_assignment"].append(content["edges_assignment"][edge])
+    content["edges_foldAngle"].append(0.0)
+    for face in content["faces_vertices"]:
+        for first, second in ((4, 7), (7, 4)):
+            ring = [*face, face[0]]
+            for k in range(len(face)):
+                if ring[k : k + 2] == [first, second]:
+                    face.insert(k + 1, 9)
+                    break
+    mechanism = read(tmp_path, content)
+    assert len(mechanism.joints) == 4
+
+
+def test_fold_angles_that_are_rounded_are_moved_with_a_warning(tmp_path, caplog):
+    content = miura(3, 3, 0.8)
+    content["edges_foldAngle"] = [round(a, 1) for a in content["edges_foldAngle"]]
+    problem = MechanismClosure(read(tmp_path, content))
+    assert np.abs(problem.residuals(problem.reference[None])).max() < 1e-12
+    assert "edges_foldAngle: moved by up to 0.0" in caplog.text
+
+
+def test_fold_angles_that_do_not_close_are_refused_with_what_they_miss(tmp_path):
+    content = miura(3, 3, 0.8)
+    content["edges_foldAngle"] = [abs(a) for a in content["edges_foldAngle"]]
+    with pytest.raises(
+        LinkageFileError, match=r"edges_foldAngle: not closed, by a gap"
+    ):
+        read(tmp_path, content)
+
+
+@pytest.mark.parametrize("letter", ["M", "V", "U"])
+def test_a_crease_that_is_no_side_of_a_face_is_refused_by_name(tmp_path, letter):
+    content = miura(3, 3, 0.8)
+    del content["edges_foldAngle"]
+    ends = content["faces_vertices"][0]
+    content["edges_vertices"].append([ends[0], ends[2]])
+    content["edges_assignment"].append(letter)
+    message = f'edge: {ends[0]}-{ends[2]}, "{letter}", is not allowed'
+    with pytest.raises(LinkageFileError, match=message):
+        read(tmp_path, content)
+    content["edges_assignment"][-1] = "F"  # a line on a panel holds nothing
+    read(tmp_path, content)
+
+
+# --- thick panels ---------------------------------------------------------------------
+
+
+FIRST, SECOND = np.radians(60), np.radians(100)
+RATIO = np.sin(FIRST) / np.sin(SECOND)  # of the steps of a Bennett linkage
+SECTORS = FIRST, SECOND, np.pi - FIRST, np.pi - SECOND
+
+
+def vertex(**values):
+    """Four creases that meet at one vertex, at angles with which it folds flat."""
+    angles = np.cumsum([0.0, *SECTORS[:3]])
+    ends = [[np.cos(angle), np.sin(angle)] for angle in angles]
+    return {
+        "vertices_coords": [[0.0, 0.0], *ends],
+        "faces_vertices": [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]],
+        "edges_vertices": [[0, 1], [0, 2], [0, 3], [0, 4]],
+        "edges_assignment": ["M", "M", "M", "V"],
+        **values,
+    }
+
+
+def heights(signs, ratio=RATIO):
+    """Heights of four hinges, with steps a, b, a, b of these signs between them."""
+    steps = 0.1 * np.array([ratio, 1.0, ratio, 1.0]) * signs
+    return [0.0, *np.cumsum(steps[:3]).tolist()]
+
+
+# Chen, Peng and You 2015: a thick vertex of four creases is a Bennett linkage
+@pytest.mark.parametrize("signs", [(1, 1, -1, -1), (1, -1, -1, 1)])
+def test_a_thick_vertex_moves_as_a_bennett_linkage(signs, tmp_path):
+    content = vertex(**{"bifurc:edges_height": heights(signs)})
+    atlas = linkages.map_linkage(read(tmp_path, content))
+    assert len(atlas.forms) == 1
+    assert atlas.forms[0].branch.closed
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"bifurc:thickness": 0.1},
+        {"bifurc:edges_height": heights((1, 1, -1, -1), ratio=1.1)},
+    ],
+)
+def test_another_thick_vertex_does_not_move(values, tmp_path):
+    atlas = linkages.map_linkage(read(tmp_path, vertex(**values)))
+    assert not atlas.forms
+
+
+def test_hinges_are_on_the_faces_that_come_together(tmp_path):
+    given = {"bifurc:thickness": 0.2, "bifurc:edges_height": [None, 0.3, None, None]}
+    mechanism = read(tmp_path, vertex(**given))
+    places = {joint.name: joint.place[2] for joint in mechanism.joints}
+    assert places == {"0-1": -0.1, "0-2": 0.3, "0-3": -0.1, "0-4": 0.1}
+    # seen from below: what was a valley is on the other side of the paper
+    faces = [face[::-1] for face in vertex()["faces_vertices"]]
+    below = read(tmp_path, vertex(**given, faces_vertices=faces))
+    assert {joint.name: -joint.place[2] for joint in below.joints} == places
+
+
+def changed(**values):
+    content = {**miura(3, 3, 0.8), **values}
+    return {key: value for key, value in content.items() if value is not None}
+
+
+COUNT = len(miura(3, 3)["edges_vertices"])
+LETTERS = miura(3, 3, 0.8)["edges_assignment"]
+ENDS = miura(3, 3)["edges_vertices"]
+FACES = miura(3, 3)["faces_vertices"]
+POINTS = miura(3, 3)["vertices_coords"]
+MALFORMED = {
+    "no JSON": ("{", r"content: no JSON"),
+    "no table": ("[]", r"content: .* a table"),
+    "no vertices": (changed(vertices_coords=None), "vertices_coords: a missing key"),
+    "a vertex of one number": (
+        changed(vertices_coords=[[0.0], *POINTS[1:]]),
+        r"vertices_coords\[0\]: \[0.0\]",
+    ),
+    "a vertex that is a text": (
+        changed(vertices_coords=[["x", 0], *POINTS[1:]]),
+        r'vertices_coords\[0\]: "x"',
+    ),
+    "no faces": (changed(faces_vertices=None), "faces_vertices: a missing key"),
+    "a face of two": (
+        changed(faces_vertices=[[0, 1], *FACES[1:]]),
+        r"faces_vertices\[0\]: \[0, 1\]",
+    ),
+    "a vertex too many": (
+        changed(faces_vertices=[[0, 1, 99], *FACES[1:]]),
+        r"faces_vertices\[0\]: 99 .* from 0 to 15",
+    ),
+    "a vertex twice": (
+        changed(faces_vertices=[[0, 1, 1, 5], *FACES[1:]]),
+        r"faces_vertices\[0\]: .* 1 stands twice",
+    ),
+    "a face turned round": (
+        changed(faces_vertices=[FACES[0][::-1], *FACES[1:]]),
+        r"faces_vertices: \d+-\d+ in f0 and f1 .* oriented alike",
+    ),
+    "letters too few": (
+        changed(edges_assignment=LETTERS[1:]),
+        rf"number of edges_assignment: {COUNT - 1} .* {COUNT}",
+    ),
+    "an unknown letter": (
+        changed(edges_assignment=["X", *LETTERS[1:]]),
+        r'edges_assignment\[0\]: "X" .* one of M, V',
+    ),
+    "edges missing": (changed(edges_vertices=None), "edges_vertices: a missing key"),
+    "an edge of three": (
+        changed(edges_vertices=[[0, 1, 2], *ENDS[1:]]),
+        r"edges_vertices\[0\]: \[0, 1, 2\]",
+    ),
+    "an angle too large": (
+        changed(edges_foldAngle=[200, *[0] * (COUNT - 1)]),
+        r"edges_foldAngle\[0\]: 200 .* -180 to 180",
+    ),
+    "angles of a sheet that is folded already": (
+        changed(vertices_coords=[[*POINTS[0], 1.0], *POINTS[1:]]),
+        r"vertices_coords: heights 1 apart",
+    ),
+    "a thickness below 0": (
+        changed(**{"bifurc:thickness": -1}),
+        r"bifurc:thickness: -1 .* 0 or more",
+    ),
+    "a thickness that is a text": (
+        changed(**{"bifurc:thickness": "thin"}),
+        r'bifurc:thickness: "thin"',
+    ),
+    "heights too few": (
+        changed(**{"bifurc:edges_height": [0.1]}),
+        rf"number of bifurc:edges_height: 1 .* {COUNT}",
+    ),
+    "a height that is a text": (
+        changed(**{"bifurc:edges_height": ["x", *[0] * (COUNT - 1)]}),
+        r'bifurc:edges_height\[0\]: "x"',
+    ),
+    "thick panels, folded": (
+        changed(frame_classes=["foldedForm"], **{"bifurc:thickness": 0.1}),
+        r"bifurc:thickness: .* flat crease pattern",
+    ),
+    "a parent that comes later": (
+        changed(file_frames=[{"frame_inherit": True, "frame_parent": 3}]),
+        r"frame_parent of file_frames\[1\]: 3",
+    ),
+    "a flap": (
+        changed(
+            edges_assignment=[
+                "C" if x == [1, 5] else y for x, y in zip(ENDS, LETTERS, strict=True)
+            ]
+        ),
+        r"body f0: one joint only, 4-5",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", MALFORMED)
+def test_a_malformed_file_is_refused_by_name_and_value(name, tmp_path):
+    content, message = MALFORMED[name]
+    with pytest.raises(LinkageFileError, match=message):
+        read(tmp_path, content)
