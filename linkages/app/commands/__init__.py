@@ -1,1 +1,5 @@
-"""The commands of `bifurc`, one a file. What they need is imported when they run."""
+"""The commands of `bifurc`, one a file.
+
+Options go in; tables, JSON and files come out. What a command needs is imported when it
+runs.
+"""
