@@ -6,8 +6,14 @@ a line. Every function takes ``periods`` (n,), inf where there is none.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
+from fractions import Fraction
+
 import numpy as np
 
+LARGEST_DENOMINATOR = 1000  # of a ratio of turns after which both are back
+RATIO_ROUNDING = 1e-12  # by which such a ratio may differ from a fraction, of itself
 SEAM = 1e-12  # share of a period: what lies nearer to an end of it lies at the end
 
 
@@ -66,3 +72,18 @@ def into_box(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
     inside = out[..., periodic] % period
     out[..., periodic] = np.where(inside >= period, 0.0, inside)
     return out
+
+
+def common_period(ratios: Iterable[float]) -> float:
+    """The smallest turn (rad) of an unknown after which all angles are back that it turns
+    at these ``ratios``; inf where none is short."""
+    turning = []
+    for ratio in ratios:
+        fraction = Fraction(float(ratio)).limit_denominator(LARGEST_DENOMINATOR)
+        if abs(float(fraction) - ratio) > RATIO_ROUNDING * abs(ratio):
+            return math.inf
+        if fraction:
+            turning.append(fraction)
+    denominator = math.lcm(*(fraction.denominator for fraction in turning))
+    numerator = math.gcd(*(fraction.numerator for fraction in turning))
+    return 2 * math.pi * denominator / numerator

@@ -8,21 +8,17 @@ are left, as of a 7R loop.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Mapping
-from fractions import Fraction
+from collections.abc import Mapping
 
 import numpy as np
 
 from bifurc.checks import floats_of
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import March, MarchSettings
+from bifurc.torus import common_period
 from linkages.closure.loop_closure import LoopClosure, march
 from linkages.loop import Loop
 from linkages.values import GeometryError
-
-LARGEST_DENOMINATOR = 1000  # of a gear ratio whose angles come back to where they were
-RATIO_ROUNDING = 1e-12  # by which a gear ratio may differ from a fraction, of itself
 
 
 class CoupledClosure(NumericalProblem):
@@ -143,18 +139,3 @@ def _check_finite(name: str, values: np.ndarray) -> None:
     is_wrong = ~np.isfinite(values)
     if np.any(is_wrong):
         raise GeometryError(name, values[is_wrong][0], "finite numbers")
-
-
-def common_period(ratios: Iterable[float]) -> float:
-    """The smallest turn (rad) of an unknown that brings all joints round that it turns
-    at these ``ratios``; inf where none is short."""
-    turning = []
-    for ratio in ratios:
-        fraction = Fraction(float(ratio)).limit_denominator(LARGEST_DENOMINATOR)
-        if abs(float(fraction) - ratio) > RATIO_ROUNDING * abs(ratio):
-            return math.inf
-        if fraction:
-            turning.append(fraction)
-    denominator = math.lcm(*(fraction.denominator for fraction in turning))
-    numerator = math.gcd(*(fraction.numerator for fraction in turning))
-    return 2 * math.pi * denominator / numerator

@@ -27,11 +27,11 @@ from bifurc.problem import (
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Seeds
 from linkages.closure.curvature import CurvatureBounds
+from linkages.closure.cut_at_limits import CutMotions, loop_without_limits
 from linkages.closure.equations import Equations, write_equations
 from linkages.closure.errors import JointErrors
+from linkages.closure.within_limits import brought_within_limits
 from linkages.dyads.slices import slice_by_dyads
-from linkages.joint_limits.cut_at_limits import CutMotions, loop_without_limits
-from linkages.joint_limits.within_limits import brought_within_limits
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.structure import Structure
 from linkages.turns.turn_lattice import TurnLattice, turn_lattice

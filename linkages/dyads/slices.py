@@ -24,7 +24,7 @@ from linkages.dyads.build import Builder, Geometry, TooManyError
 from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
 from linkages.dyads.plan import make_plan
 from linkages.dyads.space import SpaceGeometry
-from linkages.mechanisms.plane import normal_of_plane
+from linkages.structure.plane import normal_of_plane
 from linkages.structure.structure import Structure
 
 SLICES = 36  # of a driver's period, or of its limits

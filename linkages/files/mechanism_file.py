@@ -22,7 +22,7 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import WITHOUT_PLACE, Joint, Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
-from linkages.mechanisms.plane import normal_of_plane
+from linkages.structure.plane import normal_of_plane
 from linkages.values import GeometryError, check_angle, check_keys, check_number, quoted
 
 Content: TypeAlias = Mapping[str, Any]

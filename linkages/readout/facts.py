@@ -12,7 +12,7 @@ from bifurc.decisions import unit_over_rounding
 from bifurc.numerics.blur import change_by_rounding
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.decisions import is_dependent_constraint, keeps_angle
-from linkages.joint_limits.ranges import VariableRange, variable_ranges
+from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
 from linkages.structure.structure import ClosureKind
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from networkx.utils import UnionFind
 
-from linkages.mechanisms.plane import is_on_sphere, normal_of_plane
+from linkages.structure.plane import is_on_sphere, normal_of_plane
 from linkages.structure.structure import Structure
 
 if TYPE_CHECKING:

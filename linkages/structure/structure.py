@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from networkx.utils import UnionFind
 
-from linkages.closure.coupled import common_period
+from bifurc.torus import common_period
 from linkages.mechanisms.couplings import Leader
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Mechanism

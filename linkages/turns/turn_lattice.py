@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.closure.coupled import common_period
+from bifurc.torus import common_period
 from linkages.decisions import cancels_in_whole_turns, is_parallel_axis
 from linkages.mechanisms.joint import Motion
 from linkages.structure.structure import Closure, ClosureKind, Structure

@@ -21,8 +21,8 @@ from bifurc.problem import Problem
 from bifurc.seeding import start_region
 from bifurc.seeds import Audit, Level
 from bifurc.text_tables import count_of
+from bifurc.torus import common_period
 from linkages.assembly_statements import RANDOM_ASSEMBLIES
-from linkages.closure.coupled import common_period
 from linkages.structure.structure import Structure
 from linkages.turns.turn_lattice import TurnLattice
 

@@ -12,7 +12,7 @@ from linkages.app.exit_codes import CommandError, exit_code_table
 from linkages.app.options import out_option, param_option
 
 if TYPE_CHECKING:
-    from linkages.networks.locking import LockedState
+    from linkages.identification.locked_networks import LockedState
     from linkages.networks.network import Network
 
 
@@ -83,7 +83,7 @@ def _lock_all(
     """What every pair of locks, at ``kinks`` (rad) if there are some, and every triple
     make of a network."""
     from linkages.app.status import StatusLine
-    from linkages.networks.locking import locked_states
+    from linkages.identification.locked_networks import locked_states
 
     status = StatusLine()
     tables: dict[str, list[LockedState]] = {}

@@ -10,7 +10,7 @@ from linkages.app.answer.configurations import readout_of
 from linkages.app.texts.numbers import in_degrees, in_lengths
 
 if TYPE_CHECKING:
-    from linkages.joint_limits.beyond_limits import LimitedRange
+    from linkages.app.reports.beyond_limits import LimitedRange
     from linkages.mechanisms.joint import Limits
 
 
@@ -25,7 +25,7 @@ def kept_out_by_limits(atlas: Atlas) -> str:
     readout = readout_of(atlas)
     if readout is None:
         return ""
-    from linkages.joint_limits.beyond_limits import ranges_beyond_limits
+    from linkages.app.reports.beyond_limits import ranges_beyond_limits
 
     limited = ranges_beyond_limits(readout.mechanism)
     if not limited:

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from linkages.app.texts.numbers import in_degrees
 from linkages.catalogue import entry
-from linkages.networks.locking import LockedState
+from linkages.identification.locked_networks import LockedState
 
 HEADS = (
     "locks",

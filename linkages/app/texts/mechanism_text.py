@@ -18,12 +18,12 @@ from linkages.app.answer.mechanism_document import (
 from linkages.app.answer.mobility import gruebler_of, mobility_of
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
-from linkages.joint_limits.ranges import VariableRange
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.plane import is_on_sphere, normal_of_plane
 from linkages.readout.facts import form_facts
+from linkages.readout.ranges import VariableRange
 from linkages.readout.readout import Readout
+from linkages.structure.plane import is_on_sphere, normal_of_plane
 
 WIDTH = 72  # of a cell of a list, in characters
 SHOWN = 20  # dead points beyond this number are only counted

@@ -11,10 +11,10 @@ from bifurc.text_tables import section, table
 from linkages.app.texts.entry_text import list_below, parameter_table
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees
-from linkages.joint_limits.ranges import VariableRange
 from linkages.networks.entries import NetworkEntry
 from linkages.networks.mechanism import NetworkMechanism, lock_network
 from linkages.readout.facts import form_facts
+from linkages.readout.ranges import VariableRange
 from linkages.readout.readout import Readout
 
 

@@ -72,11 +72,11 @@ def test_one_joint_drives_a_network():
 
 
 def test_the_tables_of_locks_are_written(tmp_path, monkeypatch):
-    from linkages.networks import locking
+    from linkages.identification import locked_networks
 
     expected = ("generalized-goldberg-5r", "bennett")
-    entries = tuple(e for e in locking._entries() if e.name in expected)
-    monkeypatch.setattr(locking, "_entries", lambda: entries)
+    entries = tuple(e for e in locked_networks._entries() if e.name in expected)
+    monkeypatch.setattr(locked_networks, "_entries", lambda: entries)
     result = run("network", "serial-bennett-network", "--locks", "--out", str(tmp_path))
     assert result.exit_code == ExitCode.DONE
     page = (tmp_path / "locks.md").read_text(encoding="utf-8")

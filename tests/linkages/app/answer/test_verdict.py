@@ -6,11 +6,11 @@ import pytest
 from bifurc.search.settings import SearchSettings
 from linkages.app.answer.verdict import judge
 from linkages.app.exit_codes import ExitCode
-from linkages.joint_limits.beyond_limits import LimitedRange
-from linkages.joint_limits.ranges import VariableRange
+from linkages.app.reports.beyond_limits import LimitedRange
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.ranges import VariableRange
 
 FEW = SearchSettings(starts=40)
 UPWARDS = (0.0, 0.0, 1.0)

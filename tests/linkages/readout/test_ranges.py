@@ -7,9 +7,9 @@ import pytest
 
 import linkages
 from bifurc.search.settings import SearchSettings
-from linkages.joint_limits.ranges import variable_ranges
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.ranges import variable_ranges
 from linkages.readout.readout import Readout
 
 FEW = SearchSettings(starts=40)

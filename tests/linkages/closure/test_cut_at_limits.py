@@ -11,17 +11,17 @@ from bifurc import SearchSettings
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.seeds import Level
-from linkages.closure.mechanism_closure import MechanismClosure
-from linkages.families.four_bar import four_bar
-from linkages.joint_limits.cut_at_limits import (
+from linkages.closure.cut_at_limits import (
     CutMotions,
     cut_motions,
     loop_without_limits,
 )
+from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.families.four_bar import four_bar
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.readout.readout import Readout
-from tests.linkages.joint_limits.test_within_limits import line_symmetric_loop, rccc
+from tests.linkages.closure.test_within_limits import line_symmetric_loop, rccc
 
 PLAIN = SearchSettings(certify=False, near_motions=False)
 SAMPLES = 20_000  # of a form

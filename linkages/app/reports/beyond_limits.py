@@ -11,10 +11,10 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.search.settings import SearchSettings
 from bifurc.torus import wrap
-from linkages.joint_limits.ranges import VariableRange, variable_ranges
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Limits
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
 
 SAMPLES = 401  # of a form, for the ranges along it

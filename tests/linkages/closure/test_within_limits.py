@@ -7,9 +7,9 @@ import pytest
 
 import linkages
 from bifurc import SearchSettings
+from linkages.closure import within_limits
 from linkages.closure.mechanism_closure import MechanismClosure
-from linkages.joint_limits import within_limits
-from linkages.joint_limits.within_limits import brought_within_limits
+from linkages.closure.within_limits import brought_within_limits
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout

@@ -11,10 +11,10 @@ from bifurc.search.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.identification.identify import identify
+from linkages.identification.locked_networks import locked_state, locked_states
 from linkages.mapping import map_linkage
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.four_joints import bennett_gap, bennett_twist
-from linkages.networks.locking import locked_state, locked_states
 from linkages.networks.mechanism import lock_network
 from linkages.values import GeometryError
 from tests.linkages.networks.known_networks import facts, in_radians, kinks_of, network
