@@ -7,7 +7,6 @@ from .atlas import Surface as Surface
 from .branch import Branch as Branch
 from .branch import Outcome as Outcome
 from .curves.certificate import Certificate as Certificate
-from .curves.continuation import TraceSettings as TraceSettings
 from .curves.continuation import trace_branch as trace_branch
 from .curves.monitor import Profile as Profile
 from .diagrams.diagram import Branching as Branching
@@ -49,11 +48,12 @@ from .routes.route import Route as Route
 from .routes.route import find_route as find_route
 from .search.certify_atlas import certify_atlas as certify_atlas
 from .search.explore import explore as explore
-from .search.settings import SearchSettings as SearchSettings
 from .seeds import Audit as Audit
 from .seeds import Completeness as Completeness
 from .seeds import Level as Level
 from .seeds import Seeds as Seeds
+from .settings import SearchSettings as SearchSettings
+from .settings import TraceSettings as TraceSettings
 from .singular.point import Kind as Kind
 from .singular.point import SingularPoint as SingularPoint
 from .surfaces.chart_atlas import ChartAtlas as ChartAtlas

@@ -15,8 +15,8 @@ from bifurc.curves.monitor import Profile
 from bifurc.diagrams.diagram import Diagram
 from bifurc.errors import ProblemError, RouteError
 from bifurc.html_tables import html_paragraph, html_table
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
 

@@ -74,6 +74,16 @@ def into_box(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
     return out
 
 
+def wrapped_periods(periods: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """The periods (n,) of the unknowns to wrap; inf for those whose ``bounds`` (n, 2)
+    reach farther."""
+    half = 0.5 * periods
+    low, high = bounds.T
+    is_bounded = np.isfinite(bounds).any(axis=1)
+    reaches_farther = is_bounded & ((low < -half) | (high > half))
+    return np.where(reaches_farther, np.inf, periods)
+
+
 def common_period(ratios: Iterable[float]) -> float:
     """The smallest turn (rad) of an unknown after which all angles are back that it turns
     at these ``ratios``; inf where none is short."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from bifurc.atlas import Atlas
 from bifurc.numerics.blur import change_by_rounding
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.forms import FormIdentity, name_forms
 from linkages.labels import largest_residual, subject_of

@@ -9,7 +9,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 

@@ -24,10 +24,10 @@ import click
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.continuation import DEFAULT_SETTINGS, TraceSettings, trace_branch
+from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
 from bifurc.problem import MarchSettings
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings, TraceSettings
 from linkages.app.options import FILE
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure

@@ -32,8 +32,8 @@ from bifurc.decisions import Decision, Margins, Role, record_margins
 from bifurc.function_problem import FunctionProblem
 from bifurc.problem import Problem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
+from bifurc.settings import SearchSettings
 from linkages.app.answer.document import make_document
 from linkages.catalogue import catalogue
 from linkages.closure.loop_closure import LoopClosure

@@ -22,8 +22,8 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
+from bifurc.settings import SearchSettings
 from bifurc.text_tables import table
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure

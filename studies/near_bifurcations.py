@@ -23,8 +23,9 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.certificate import CertificateStatus, certify_branch
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
+from bifurc.settings import TraceSettings
 from bifurc.singular.locate import locate_singular_point
 from bifurc.text_tables import table
 from studies.near_misses import NearMiss, near_misses

@@ -25,7 +25,7 @@ from matplotlib.patches import Patch
 
 from bifurc.atlas import Atlas
 from bifurc.search.completeness import IN_DOUBT
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.text_tables import table
 from linkages.app.options import NamedPath
 from linkages.catalogue import entry

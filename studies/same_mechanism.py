@@ -26,7 +26,7 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.singular.dimension import local_dimensions
 from bifurc.text_tables import count_of, section
 from linkages.app.options import FOLDER

@@ -17,7 +17,8 @@ from collections.abc import Sequence
 import click
 
 from bifurc import SymbolicProblem
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
+from bifurc.settings import TraceSettings
 from studies.methods import auto07p
 from studies.methods.cases import Case
 from studies.methods.roster import Method, orders_of_this_project

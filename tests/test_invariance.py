@@ -10,8 +10,8 @@ import pytest
 from bifurc.branch import Outcome
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
+from bifurc.settings import SearchSettings
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.values import GeometryError

@@ -6,7 +6,7 @@ import pytest
 
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import Kind

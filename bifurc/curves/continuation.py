@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.checks import check_number, check_type, check_whole
+from bifurc.checks import check_type
 from bifurc.curves.bridges import MOST_ROOM, bridge_from
 from bifurc.curves.ends import end_of_curve, same_place
 from bifurc.curves.track import CAUTIOUS, End, Place, Track
@@ -18,6 +17,7 @@ from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Anchor, March, MarchSettings, MarchStatus, Problem
+from bifurc.settings import TraceSettings
 
 # Pieces made before the end of the curve is looked for: beside a bend, at least, and at
 # most.
@@ -25,10 +25,6 @@ AT_A_BEND, AT_ONCE, MOST_AT_ONCE = 14, 40, 1000
 # Times the width of the last piece: that of the first one that is tried after it.
 GROWTH = 1.5
 CLEAR = 10.0  # times the radius of least caution: from there on a bend is passed
-# Radius, in scales, of pieces along an ordinary curve, at least: three times that which
-# is taken for a sign of a crossing.
-ORDINARY = 3e-4
-HIGHEST_ORDER = 30
 # Outcomes after which a curve is not followed the other way.
 WHOLE = (Outcome.CLOSED, Outcome.OPEN, Outcome.STEP_LIMIT, Outcome.TIME_LIMIT)
 
@@ -52,61 +48,6 @@ class _Ways(NamedTuple):
             # it came through where the other way stalled
             return backward.reversed()
         return joined_branch(backward.reversed(), forward)
-
-
-@dataclass(frozen=True)
-class TraceSettings:
-    """How a curve is followed. Lengths are in units of the problem's ``scale``, the
-    ``longest`` radius in those of its ``stride`` and the ``max_length`` in those of its
-    ``reach``.
-
-    ``order`` of the pieces and the ``tolerance`` to which they meet the curve, the
-    ``shortest`` and ``longest`` trusted radius, and the ``max_length`` after which
-    tracing gives up. The order is at least `lowest_order` of the tolerance. Raises
-    `ProblemError` outside the ranges.
-    """
-
-    order: int = 16
-    tolerance: float = 1e-13
-    shortest: float = 1e-9
-    longest: float = 2.0
-    max_length: float = 1000.0
-
-    def __post_init__(self) -> None:
-        check_whole("order", self.order)
-        for name in ("tolerance", "shortest", "longest", "max_length"):
-            check_number(name, getattr(self, name))
-        if not 1e-14 <= self.tolerance <= 1e-2:
-            raise ProblemError("tolerance", self.tolerance, "from 1e-14 to 1e-2")
-        lowest = lowest_order(self.tolerance)
-        if not lowest <= self.order <= HIGHEST_ORDER:
-            allowed = (
-                f"from {lowest} to {HIGHEST_ORDER} for a tolerance of "
-                f"{self.tolerance:g}; pieces of a lower order are too short"
-            )
-            raise ProblemError("order", self.order, allowed)
-        if not 0 < self.shortest < self.longest < self.max_length:
-            raise ProblemError(
-                "shortest, longest, max_length",
-                (self.shortest, self.longest, self.max_length),
-                "positive and increasing",
-            )
-
-    def to_tolerance(self, tolerance: float) -> TraceSettings:
-        """The same to another tolerance, of a higher order where that needs one."""
-        order = max(self.order, lowest_order(tolerance))
-        return replace(self, order=order, tolerance=tolerance)
-
-
-def lowest_order(tolerance: float) -> int:
-    """The lowest order of pieces with which a curve can be followed to a ``tolerance``.
-
-    Along a curve of curvature 1 a piece of order p is trusted within about the root of
-    order p - 1 of the tolerance. At 1e-13 that is 0.1 of the scale for order 16, 6e-4
-    for order 5 and 5e-5 for order 4: 40,000 pieces for a circle.
-    """
-    power = math.log(tolerance) / math.log(ORDINARY)
-    return 1 + math.ceil(power)
 
 
 DEFAULT_SETTINGS = TraceSettings()

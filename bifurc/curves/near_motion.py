@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import repeats_itself
 from bifurc.curves.misclosure import largest_of, misclosures
 from bifurc.curves.monitor import NODES
@@ -34,6 +34,7 @@ from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.settings import TraceSettings
 
 LONGEST = 200.0  # scales along which a near motion is followed
 # Of the misclosure: tolerance of the pieces, within these bounds. Pieces that may miss as

@@ -12,8 +12,7 @@ from bifurc.diagrams.events import CircleCut, EventFunction, event_zeros, on_cir
 from bifurc.diagrams.turnings import unknown_sizes
 from bifurc.diagrams.zeros import Zero, ZeroKind, Zeros
 from bifurc.problem import Problem
-from bifurc.search.canonical_course import wrapped_periods
-from bifurc.torus import wrap
+from bifurc.torus import wrap, wrapped_periods
 
 SAMPLES = 16  # places on each form at which a function is seen round the circles
 SHOWN = 3  # jumps that a remark names
@@ -28,7 +27,7 @@ def events_along(
     if not events or not atlas.forms:
         return points, remarks
     sizes = unknown_sizes(problem)
-    periods = wrapped_periods(problem)
+    periods = wrapped_periods(problem.periods, problem.bounds)
     cut = _cut_of(problem)
     samples = np.concatenate([form.branch.sample(SAMPLES) for form in atlas.forms])
     for event in on_circles(events, cut.wrapped(samples), cut):
@@ -48,7 +47,7 @@ def events_along(
 
 def _cut_of(problem: Problem) -> CircleCut:
     """Circles cut open opposite to the middle of their bounds, or to 0."""
-    is_wrapped = np.isfinite(wrapped_periods(problem))
+    is_wrapped = np.isfinite(wrapped_periods(problem.periods, problem.bounds))
     is_bounded = np.isfinite(problem.bounds).all(axis=1)
     middle = np.zeros(problem.n)
     has_middle = is_bounded & ~is_wrapped

@@ -29,8 +29,7 @@ from bifurc.diagrams.stability import (
 from bifurc.diagrams.turnings import Turnings, turnings_of, unknown_sizes
 from bifurc.errors import ProblemError
 from bifurc.problem import Problem
-from bifurc.search.canonical_course import wrapped_periods
-from bifurc.torus import wrap
+from bifurc.torus import wrap, wrapped_periods
 
 INITIALS = {
     PointKind.FOLD: "F",
@@ -143,7 +142,7 @@ def _named(
 ) -> tuple[DiagramPoint, ...]:
     """The points with wrapped unknowns, numbered kind by kind, in the order of forms
     and arclengths."""
-    periods = wrapped_periods(problem)
+    periods = wrapped_periods(problem.periods, problem.bounds)
     named = []
     for kind, initial in INITIALS.items():
         of_kind = [point for point in points if point.kind is kind]

@@ -18,7 +18,6 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Provenance
 from bifurc.checks import check_type
-from bifurc.curves.continuation import TraceSettings
 from bifurc.diagrams.diagram import Diagram
 from bifurc.files.atomic import replace_file
 from bifurc.files.checksum import checksum
@@ -56,8 +55,8 @@ from bifurc.files.seal import append_seal, is_seal_broken
 from bifurc.files.surface_layout import SURFACES, read_surface
 from bifurc.files.table import JOINT, Frame, make_variable
 from bifurc.files.variable import Attribute, Variable
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Completeness, Level
+from bifurc.settings import SearchSettings, TraceSettings
 
 if TYPE_CHECKING:
     import xarray as xr

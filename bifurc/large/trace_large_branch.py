@@ -9,7 +9,7 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.checks import check_type, check_whole, floats_of
-from bifurc.curves.continuation import TraceSettings, follow_curve, joined_branch
+from bifurc.curves.continuation import follow_curve, joined_branch
 from bifurc.curves.track import Place
 from bifurc.decisions import (
     is_derivative_along,
@@ -25,6 +25,7 @@ from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_profile import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
 from bifurc.numerics.null_spaces import null_vector
+from bifurc.settings import TraceSettings
 
 NEWTON_STEPS = 12
 RESIZINGS = 4  # tracings at most, each with the size that was seen by the one before

@@ -25,7 +25,6 @@ from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
-from bifurc.search.canonical_course import wrapped_periods
 from bifurc.search.canonical_order import (
     order_branches,
     order_points,
@@ -41,7 +40,7 @@ from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.text_tables import count_of
-from bifurc.torus import wrap
+from bifurc.torus import wrap, wrapped_periods
 
 # Decades by which the misclosures of two near motions differ that are not alike.
 SAME_MISCLOSURE = 1e-3
@@ -62,7 +61,7 @@ def assemble_atlas(
     Every point in it is wrapped: see `Atlas`. Past the ``deadline`` of the search a
     closure gap is measured at few points.
     """
-    periods = wrapped_periods(problem)
+    periods = wrapped_periods(problem.periods, problem.bounds)
     order = order_branches(problem, findings.branches)
     traced = [findings.traced[k] for k in order]
     branches = [branch.branch for branch in traced]

@@ -16,7 +16,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_slow_at_start, is_unclear_start
 from bifurc.problem import Problem
-from bifurc.torus import wrap
+from bifurc.torus import wrap, wrapped_periods
 
 FUNCTIONS = 8  # that are tried
 # By how much a maximum stands above all others, over the range of the function.
@@ -51,19 +51,9 @@ def canonical_course(problem: Problem, branch: Branch) -> Branch:
     elif _begins_at_the_lower_end(problem, branch):
         branch = branch.reversed()
     start = branch(0.0)
-    periods = wrapped_periods(problem)
+    periods = wrapped_periods(problem.periods, problem.bounds)
     wrapped = wrap(start, periods, within=SEAM)
     return branch.moved_by_periods(_turns(wrapped - start, periods))
-
-
-def wrapped_periods(problem: Problem) -> np.ndarray:
-    """Periods (n,) of the unknowns to wrap; inf for those whose bounds reach
-    farther."""
-    half = 0.5 * problem.periods
-    low, high = problem.bounds.T
-    is_bounded = np.isfinite(problem.bounds).any(axis=1)
-    reaches_farther = is_bounded & ((low < -half) | (high > half))
-    return np.where(reaches_farther, np.inf, problem.periods)
 
 
 def _turns(gaps: np.ndarray, periods: np.ndarray) -> np.ndarray:

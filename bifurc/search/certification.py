@@ -15,12 +15,12 @@ from bifurc.curves.certificate import (
     certify_branch,
     is_certifiable,
 )
-from bifurc.curves.continuation import TraceSettings
 from bifurc.curves.jumps import changes_of_course, kinks, repeats_itself
 from bifurc.curves.monitor import Profile
 from bifurc.numerics.blur import known_to
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
+from bifurc.settings import TraceSettings
 
 CUSP_REACH = 0.2  # of a cusp, in scales: so far from it a branch may end
 FINEST = 1e-14  # tolerance with which a refused branch is traced again

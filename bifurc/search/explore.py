@@ -20,9 +20,9 @@ from bifurc.problem import Problem
 from bifurc.search.assemble import assemble_atlas
 from bifurc.search.restated import restated
 from bifurc.search.search import Search
-from bifurc.search.settings import SearchSettings
 from bifurc.search.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.seeds import Seeds
+from bifurc.settings import SearchSettings
 
 DEFAULT_SEARCH = SearchSettings()
 

@@ -16,12 +16,13 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.continuation import TraceSettings, follow_curve
+from bifurc.curves.continuation import follow_curve
 from bifurc.curves.track import Place
 from bifurc.decisions import is_same_point
 from bifurc.problem import Problem
 from bifurc.search.branch_parts import followed_by, joined_outcome, part_of
 from bifurc.search.local_curves import curve_through, half_curve
+from bifurc.settings import TraceSettings
 from bifurc.singular.germ import Germ
 
 INSIDE = 0.98  # of the radius of a neighbourhood: nearer than its ends

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.problem import Problem
 from bifurc.search.findings import Findings
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 
 @dataclass(frozen=True)

@@ -48,13 +48,13 @@ from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
 from bifurc.search.run import Run
 from bifurc.search.seed_fates import Fate, SeedFate
-from bifurc.search.settings import SearchSettings
 from bifurc.search.singular_curves import singular_curve_through
 from bifurc.search.start import Start, half_branch_starts
 from bifurc.search.subdivision import Subdivision, can_be_subdivided, subdivide
 from bifurc.search.subdivision_audit import audit_of, refuted_at
 from bifurc.search.weak_seeds import sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
+from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_from_nearby
 from bifurc.singular.point import Kind
 

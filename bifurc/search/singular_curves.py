@@ -12,11 +12,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.curves.rank_deflation import LARGEST, RankDeflated
 from bifurc.decisions import is_same_point
 from bifurc.limits import Deadline
 from bifurc.problem import Problem
+from bifurc.settings import TraceSettings
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.point import SingularPoint
 from bifurc.text_tables import count_of

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.decisions import (
     is_factor_of_form,
     is_far_smaller,
@@ -38,6 +38,7 @@ from bifurc.problem import PreciseResidual, Problem
 from bifurc.search.restated import restated_branch
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Audit, Seeds
+from bifurc.settings import TraceSettings
 from bifurc.units import Units
 
 if TYPE_CHECKING:

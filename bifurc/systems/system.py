@@ -10,7 +10,7 @@ from bifurc.atlas import Atlas
 from bifurc.equations.symbolic import SymbolicFunction, SymbolicProblem
 from bifurc.errors import BifurcError
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 DEFAULT_SETTINGS = SearchSettings()
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from bifurc.search.settings import SearchSettings
+    from bifurc.settings import SearchSettings
 
 Command = Callable[..., None]
 
@@ -130,8 +130,7 @@ class SearchOptions:
 
     def settings(self) -> SearchSettings:
         """The settings of the search; raises `bifurc.ProblemError`."""
-        from bifurc.curves.continuation import TraceSettings
-        from bifurc.search.settings import SearchSettings
+        from bifurc.settings import SearchSettings, TraceSettings
 
         tracing = TraceSettings(tolerance=self.tolerance)
         return SearchSettings(

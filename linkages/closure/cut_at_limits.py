@@ -20,8 +20,8 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.decisions import is_same_point
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Audit, Level
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from bifurc.text_tables import count_of
 from linkages.closure.loop_closure import LARGEST_SLICED, LoopClosure

@@ -8,7 +8,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.branch import Branch
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
 from linkages.catalogue import entry
 from linkages.entry import ParameterKind

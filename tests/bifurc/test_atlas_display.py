@@ -9,8 +9,8 @@ import pytest
 from bifurc.atlas import SHOWN, SHOWN_IN_NOTEBOOK, Atlas, Surface
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
+from bifurc.settings import SearchSettings
 
 
 @pytest.fixture(scope="module")

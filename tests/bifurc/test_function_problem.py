@@ -10,7 +10,7 @@ import pytest
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 

@@ -97,7 +97,7 @@ SEARCH = """
 import os, signal, threading
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
 

@@ -6,7 +6,7 @@ import pytest
 from bifurc.function_problem import FunctionProblem
 from bifurc.noisy_problem import RoundingNoise, with_rounding_noise
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 CURVES = {
     "circle": lambda x, y: x * x + y * y - 1,

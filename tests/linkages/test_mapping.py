@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import UnknownParameterError
 from linkages.labels import FormLabels

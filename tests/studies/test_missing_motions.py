@@ -4,7 +4,7 @@ import numpy as np
 from click.testing import CliRunner
 
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from studies.missing_motions import linkages, main, same_motions

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from click.testing import CliRunner
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Limits

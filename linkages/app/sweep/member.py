@@ -16,7 +16,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.app.answer.mobility import mobility_of
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.sweep.subjects import JointName, Member, Subject

@@ -18,7 +18,7 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.chebyshev import NODE_COUNT
 from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.limits import Deadline
+from bifurc.settings import TraceSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from tests.bifurc.near_surfaces import CirclesBesideSphere

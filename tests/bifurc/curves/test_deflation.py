@@ -7,7 +7,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 
 def double_circle() -> FunctionProblem:

@@ -7,7 +7,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.near_miss import near_miss_value
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.loop import Loop
 from linkages.mapping import map_linkage

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from bifurc.curves import bridges, near_motion
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.curves.near_motion import trace_near_motion
 from bifurc.decisions import nearly_closes
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings, TraceSettings
 
 SETTINGS = TraceSettings()
 

@@ -10,7 +10,7 @@ from bifurc.curves.misclosure import largest_misclosure
 from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.singular_values import singular_values
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 BOX = [(-2.0, 2.0)] * 4
 

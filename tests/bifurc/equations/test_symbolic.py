@@ -11,7 +11,7 @@ import sympy
 from bifurc.equations.symbolic import SymbolicProblem
 from bifurc.errors import ProblemError
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.singular.confirm import Convergence, confirm_singular_point
 
 X, Y, Z = sympy.symbols("x y z")

@@ -5,9 +5,10 @@ import pytest
 from scipy.sparse import issparse
 
 from bifurc.branch import Outcome
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.problem import Anchor, MarchSettings, MarchStatus
+from bifurc.settings import TraceSettings
 from studies.methods.cases import bratu
 
 

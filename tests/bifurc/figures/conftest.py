@@ -8,7 +8,7 @@ import pytest
 from bifurc.atlas import Atlas
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 
 @pytest.fixture(scope="package")

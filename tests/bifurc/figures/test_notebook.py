@@ -8,7 +8,7 @@ from bifurc.atlas import Atlas
 from bifurc.figures.notebook import atlas_page, load_ipython_extension
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 
 def circle_and_line():

@@ -21,7 +21,7 @@ from bifurc.figures.planes import (
 from bifurc.figures.quantities import quantity_of
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 TORUS = (Scale(180 / np.pi, 180.0, "x"), Scale(180 / np.pi, 180.0, "y"))
 PLAIN = (Scale(1.0, np.inf, "x"), Scale(1.0, np.inf, "y"))

@@ -25,7 +25,7 @@ from bifurc.figures.plotting import (
 )
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 
 

@@ -7,7 +7,7 @@ from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.surface_plot import plot_charts
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.surfaces.chart_atlas import ChartAtlas
 
 

@@ -20,7 +20,7 @@ from bifurc.diagrams.diagram import (
 )
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 
 

@@ -23,7 +23,7 @@ from bifurc.files.dataset import (
 from bifurc.files.seal import MARK
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 
 
 def test_a_dataset_gives_back_the_identical_atlas(atlas: Atlas, difference) -> None:

@@ -14,7 +14,7 @@ from scipy.sparse.linalg import LinearOperator, splu
 import bifurc
 from bifurc import LargeKind, LargeProblem, LargeSettings, trace_large_branch
 from bifurc.branch import Outcome
-from bifurc.curves.continuation import TraceSettings
+from bifurc.settings import TraceSettings
 from studies.methods.fields import (
     FOLD_IN_1D,
     SwiftHohenberg,

@@ -11,7 +11,7 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.graphs import arc_graph
 from bifurc.routes.route import Leg, Route, find_route
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
 from tests.bifurc.drawn_atlas import PERIOD, bridge, draw, figure_eight, polygon, ring
 

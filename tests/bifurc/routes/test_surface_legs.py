@@ -15,8 +15,8 @@ from bifurc.graphs import arc_graph
 from bifurc.problem import Problem
 from bifurc.routes.route import Route, find_route
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
+from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
 from tests.bifurc.known_surfaces import Union, equal_double_goldberg, planar, sarrus
 

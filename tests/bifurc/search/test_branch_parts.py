@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.branch_parts import followed_by, part_of, with_piece_between
+from bifurc.settings import TraceSettings
 
 CIRCLE = FunctionProblem(lambda u: [u @ u - 1], [(-2, 2)] * 2)
 START = np.array([1.0, 0.0])

@@ -8,7 +8,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.canonical_course import canonical_course
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 

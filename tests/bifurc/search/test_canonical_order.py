@@ -12,7 +12,7 @@ from bifurc.search.canonical_order import (
     order_values,
 )
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.surfaces.covering import cover_surface
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

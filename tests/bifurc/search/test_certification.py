@@ -8,8 +8,8 @@ from bifurc.curves.certificate import CertificateStatus
 from bifurc.function_problem import FunctionProblem
 from bifurc.search import search as search_module
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Audit, Level, Seeds
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.bricard import bricard_line_symmetric_zero_offset

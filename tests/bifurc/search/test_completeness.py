@@ -8,9 +8,9 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.search.completeness import judge_completeness
 from bifurc.search.findings import Findings
 from bifurc.search.seed_fates import Fate, SeedFate
-from bifurc.search.settings import SearchSettings
 from bifurc.seeding import missed_probability
 from bifurc.seeds import Audit, Level, Seeds
+from bifurc.settings import SearchSettings
 
 PROBLEM = FunctionProblem(lambda u: np.array([u @ u - 1]), [(-2, 2)] * 2)
 FORM, OTHER_FORM = SeedFate(Fate.ON_FORM, 0), SeedFate(Fate.ON_FORM, 1)

@@ -13,8 +13,8 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.graphs import transition_graph
 from bifurc.problem import Problem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from bifurc.surfaces.chart_atlas import Covering
 from tests.bifurc.known_surfaces import (

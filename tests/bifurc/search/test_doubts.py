@@ -17,8 +17,8 @@ from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Audit, Level
+from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import Kind, SingularPoint

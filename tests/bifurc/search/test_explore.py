@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
-from bifurc.curves.continuation import TraceSettings
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Seeds
+from bifurc.settings import SearchSettings, TraceSettings
 from bifurc.singular.point import Kind
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure

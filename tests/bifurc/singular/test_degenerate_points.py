@@ -5,12 +5,12 @@ import pytest
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import certify_branch
-from bifurc.curves.continuation import TraceSettings, trace_branch
+from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.search.meeting_points import meeting_points
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings, TraceSettings
 from bifurc.singular.point import Kind, SingularPoint
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure

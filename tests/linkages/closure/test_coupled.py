@@ -8,7 +8,7 @@ import pytest
 from bifurc.curves.continuation import trace_branch
 from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
 from linkages.closure.coupled import CoupledClosure, locked_joints

@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.closure.driving import joints_to_hold
 from linkages.files.bars import read_bars
 from linkages.values import GeometryError

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
+from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.dyads.slices import SLICES, slice_by_dyads
 from linkages.files.arcs import read_arcs

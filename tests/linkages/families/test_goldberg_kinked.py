@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.construction.constructions import lock, locked_angles
 from linkages.construction.spatial_triangle import Kink

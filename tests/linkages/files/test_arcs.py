@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.file import LinkageFileError
 from linkages.files.arcs import read_arcs
 from linkages.readout.readout import Readout

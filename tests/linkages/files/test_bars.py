@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.files.bars import read_bars
 from linkages.values import GeometryError
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError

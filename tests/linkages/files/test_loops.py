@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.axes import loop_from_axes
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages import load, map_linkage
 from linkages.app.answer.mobility import mobility_of
 from linkages.closure.mechanism_closure import MechanismClosure

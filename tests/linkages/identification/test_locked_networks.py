@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.identification.identify import identify

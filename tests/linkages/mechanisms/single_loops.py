@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.linkage import load_linkage
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint

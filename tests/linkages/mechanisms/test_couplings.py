@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.driving import joints_to_hold
 from linkages.closure.mechanism_closure import MechanismClosure

@@ -9,8 +9,8 @@ import pytest
 import linkages
 from bifurc.atlas import Atlas
 from bifurc.branch import Outcome
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism

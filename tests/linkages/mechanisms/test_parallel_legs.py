@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.app.answer.document import make_document
 from linkages.app.texts.summary import make_summary
 from linkages.mechanisms.joint import Joint

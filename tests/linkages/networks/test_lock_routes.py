@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.mapping import map_linkage
 from linkages.networks.lock_routes import (
     NetworkPlace,

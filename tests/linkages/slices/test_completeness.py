@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bifurc.search.explore import explore
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

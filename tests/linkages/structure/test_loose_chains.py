@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.app.texts.mechanism_text import describe_loops
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint

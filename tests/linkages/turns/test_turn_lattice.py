@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.app.answer.configurations import readout_of
 from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.app.answer.verdict import judge

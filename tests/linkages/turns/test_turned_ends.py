@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.turns.turn_classes import passes_but_for_turns
 from linkages.turns.turn_lattice import TurnLattice

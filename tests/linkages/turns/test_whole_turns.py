@@ -5,8 +5,8 @@ import pytest
 
 import linkages
 from bifurc.curves.continuation import trace_branch
-from bifurc.search.settings import SearchSettings
 from bifurc.seeds import Level
+from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint

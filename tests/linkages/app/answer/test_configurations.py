@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.app.answer.configurations import heading, numbers_at, readout_of
 from linkages.app.texts.summary import make_summary
 from linkages.mapping import map_linkage

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.search.settings import SearchSettings
+from bifurc.settings import SearchSettings
 from linkages.app.answer.verdict import judge
 from linkages.app.exit_codes import ExitCode
 from linkages.app.reports.beyond_limits import LimitedRange
