@@ -1,7 +1,9 @@
 """Data flows one way: studies know linkages, linkages know bifurc, and never the other
-way round; and no module leads back to itself, however it imports."""
+way round; no module leads back to itself, however it imports; and every module knows
+its own row of the table in docs/architecture.md and the rows above it."""
 
 import ast
+import re
 from pathlib import Path
 
 import networkx as nx
@@ -46,6 +48,53 @@ def imported_modules(path):
 def calls_import(node):
     name = getattr(node.func, "id", getattr(node.func, "attr", ""))
     return name in ("import_module", "__import__")
+
+
+def rows_of_rooms():
+    """The rooms of each row of the table in docs/architecture.md, as dotted names."""
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    table = page.partition("## The rooms")[2].partition("### ")[0]
+    rows = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
+    return [
+        [room.rstrip("/").replace("/", ".") for room in re.findall(r"`([^`]+)`", row)]
+        for row in rows
+    ]
+
+
+ROW_OF_ROOM = {room: n for n, row in enumerate(rows_of_rooms()) for room in row}
+
+
+def row_of(name):
+    """The number of the row that names a module, or else the nearest folder that it is
+    in; None where there is none."""
+    while name and name not in ROW_OF_ROOM:
+        name = name.rpartition(".")[0]
+    return ROW_OF_ROOM.get(name)
+
+
+IN_ROWS = [
+    name
+    for name, path in MODULES.items()
+    if not name.startswith("studies") and path.name != "__init__.py"
+]
+
+
+@pytest.mark.parametrize("name", IN_ROWS)
+def test_a_module_knows_its_own_row_of_rooms_and_those_above_it(name):
+    row = row_of(name)
+    assert row is not None, "it stands in no row of docs/architecture.md"
+    below = [
+        module
+        for module in imported_modules(MODULES[name])
+        if module in IN_ROWS and row_of(module) > row
+    ]
+    assert not below
+
+
+def test_every_row_of_rooms_names_modules_or_folders_that_there_are():
+    rooms = {module.rpartition(".")[0] for module in MODULES} | MODULES.keys()
+    assert ROW_OF_ROOM.keys() <= rooms
+    assert sum(map(len, rows_of_rooms())) == len(ROW_OF_ROOM)
 
 
 @pytest.mark.parametrize("name", MODULES)
