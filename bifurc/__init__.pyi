@@ -6,6 +6,11 @@ from .atlas import Provenance as Provenance
 from .atlas import Surface as Surface
 from .branch import Branch as Branch
 from .branch import Outcome as Outcome
+from .completeness import Claim as Claim
+from .completeness import Completeness as Completeness
+from .completeness import Doubt as Doubt
+from .completeness import Level as Level
+from .completeness import Scope as Scope
 from .curves.certificate import Certificate as Certificate
 from .curves.continuation import trace_branch as trace_branch
 from .curves.monitor import Profile as Profile
@@ -49,8 +54,6 @@ from .routes.route import find_route as find_route
 from .search.certify_atlas import certify_atlas as certify_atlas
 from .search.explore import explore as explore
 from .seeds import Audit as Audit
-from .seeds import Completeness as Completeness
-from .seeds import Level as Level
 from .seeds import Seeds as Seeds
 from .settings import SearchSettings as SearchSettings
 from .settings import TraceSettings as TraceSettings

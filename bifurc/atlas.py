@@ -10,12 +10,12 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.checks import check_type
+from bifurc.completeness import Completeness
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
 from bifurc.diagrams.diagram import Diagram
 from bifurc.errors import ProblemError, RouteError
 from bifurc.html_tables import html_paragraph, html_table
-from bifurc.seeds import Completeness
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas

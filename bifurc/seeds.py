@@ -1,43 +1,29 @@
-"""Starting points of a search, and what is known of how complete it is."""
+"""Starting points of a search, and what a problem says of what comes of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.completeness import Claim, Level, worst_level
 from bifurc.limits import Deadline
-
-
-class Level(StrEnum):
-    """How sure it is that no branch is missing."""
-
-    # None is missing.
-    PROVED = "proved"
-    # None is missing that is larger than the statement says.
-    CERTIFIED = "certified"
-    # One more random start finds something new with at most the stated probability.
-    ESTIMATED = "estimated"
-    # The time was over before all starts were looked at.
-    OUT_OF_TIME = "out of time"
-    # Ctrl-C ended the search.
-    INTERRUPTED = "interrupted"
 
 
 @dataclass(frozen=True, eq=False)
 class Audit:
-    """What a problem can say of a list of branches.
+    """What a problem can say of a list of branches: its ``claims``, and ``starts``
+    (k, n) from which a missing branch may be reached."""
 
-    ``level`` is proved, certified or estimated, and ``statement`` says why. From
-    ``starts`` (k, n) a missing branch may be reached.
-    """
-
-    level: Level
-    statement: str
+    claims: tuple[Claim, ...]
     starts: np.ndarray
+
+    @property
+    def level(self) -> Level:
+        """That of the worst claim."""
+        return worst_level(self.claims) or Level.ESTIMATED
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,16 +67,3 @@ class Seeds:
             points=np.concatenate([self.points, points]),
             random=np.concatenate([self.random, constructed]),
         )
-
-
-@dataclass(frozen=True)
-class Completeness:
-    """How sure it is that nothing is missing, and why.
-
-    ``missed_probability`` bounds the chance that one more random start would reach
-    something new.
-    """
-
-    level: Level
-    statement: str
-    missed_probability: float

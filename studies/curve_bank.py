@@ -28,7 +28,6 @@ import click
 import numpy as np
 
 from bifurc import Atlas, FunctionProblem, Kind, Level, SearchSettings, explore
-from bifurc.search.completeness import IN_DOUBT
 
 BANK = Path(__file__).parent.parent / "data" / "curves.json"
 SCALES = (1e-6, 1e-3, 10.0, 1e3, 1e6)
@@ -212,7 +211,7 @@ def judge(curve: Curve, atlas: Atlas) -> Verdict:
     is_undecided = any(
         point.kind is Kind.UNDECIDED or point.note for point in atlas.points
     )
-    is_in_doubt = atlas.completeness.statement.startswith(IN_DOUBT)
+    is_in_doubt = atlas.completeness.is_in_doubt
     is_late = atlas.completeness.level is Level.OUT_OF_TIME
     is_open = is_undecided or is_in_doubt or is_late
     return Verdict.IN_DOUBT if is_open else Verdict.WRONG

@@ -21,8 +21,8 @@ import click
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.completeness import Level
 from bifurc.search.explore import explore
-from bifurc.seeds import Level
 from bifurc.settings import SearchSettings
 from bifurc.text_tables import table
 from linkages.catalogue import catalogue, entry

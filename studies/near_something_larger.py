@@ -24,7 +24,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from bifurc.atlas import Atlas
-from bifurc.search.completeness import IN_DOUBT
 from bifurc.settings import SearchSettings
 from bifurc.text_tables import table
 from linkages.app.options import NamedPath
@@ -146,7 +145,7 @@ def judge(family: Family, atlas: Atlas) -> Verdict:
     has_nothing_else = not (len(atlas.rigid) or atlas.surfaces)
     expected = (family.forms, family.bifurcations, family.bifurcations)
     is_right = counts == expected and are_closed and has_nothing_else
-    is_in_doubt = atlas.completeness.statement.startswith(IN_DOUBT)
+    is_in_doubt = atlas.completeness.is_in_doubt
     if is_right:
         return Verdict.RIGHT_IN_DOUBT if is_in_doubt else Verdict.RIGHT
     return Verdict.IN_DOUBT if is_in_doubt else Verdict.WRONG

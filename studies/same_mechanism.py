@@ -94,7 +94,7 @@ def answer_of(atlas: Atlas) -> Answer:
         surfaces=tuple(sorted(surface.dimension for surface in atlas.surfaces)),
         rigid=len(atlas.rigid),
         level=atlas.completeness.level.value,
-        in_doubt="in doubt" in atlas.completeness.statement,
+        in_doubt=atlas.completeness.is_in_doubt,
         is_finished=not atlas.provenance.out_of_time,
         lengths=tuple(sorted(form.branch.length for form in atlas.forms)),
     )

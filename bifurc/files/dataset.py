@@ -12,12 +12,13 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Provenance
 from bifurc.checks import check_type
+from bifurc.completeness import Claim, Completeness, Doubt, Level, Scope
 from bifurc.diagrams.diagram import Diagram
 from bifurc.files.atomic import replace_file
 from bifurc.files.checksum import checksum
@@ -55,14 +56,13 @@ from bifurc.files.seal import append_seal, is_seal_broken
 from bifurc.files.surface_layout import SURFACES, read_surface
 from bifurc.files.table import JOINT, Frame, make_variable
 from bifurc.files.variable import Attribute, Variable
-from bifurc.seeds import Completeness, Level
 from bifurc.settings import SearchSettings, TraceSettings
 
 if TYPE_CHECKING:
     import xarray as xr
 
 FORMAT = "bifurc atlas"
-FORMAT_VERSION = 8
+FORMAT_VERSION = 9
 CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 
@@ -70,9 +70,7 @@ LINKAGE_UNITS = {"twists": "rad"}
 NEEDED_ATTRIBUTES = (
     "unknown_dimension",
     "closure_gap",
-    "completeness_level",
-    "completeness_statement",
-    "missed_probability",
+    "completeness",
     "provenance",
     "subject",
     "has_diagram",
@@ -224,6 +222,7 @@ def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
         "completeness_level": atlas.completeness.level.value,
         "completeness_statement": atlas.completeness.statement,
         "missed_probability": float(atlas.completeness.missed_probability),
+        "completeness": to_text(_completeness_values(atlas.completeness)),
         "provenance": to_text(asdict(provenance)),
         "subject": to_text(dict(atlas.subject)),
         **_subject_attributes(atlas),
@@ -338,16 +337,34 @@ def _make_atlas(dataset: xr.Dataset, frame: Frame) -> Atlas:
             read_surface(row, periods) for row in SURFACES.rows(dataset, frame)
         ),
         near_motions=tuple(map(read_near_motion, NEAR_MOTIONS.rows(dataset, frame))),
-        completeness=Completeness(
-            Level(str(attributes["completeness_level"])),
-            str(attributes["completeness_statement"]),
-            float(attributes["missed_probability"]),
-        ),
+        completeness=_read_completeness(str(attributes["completeness"])),
         closure_gap=float(attributes["closure_gap"]),
         provenance=_read_provenance(str(attributes["provenance"])),
         subject=mapping_from_text(str(attributes["subject"])),
         diagram=_read_diagram(dataset, frame),
     )
+
+
+def _completeness_values(completeness: Completeness) -> dict[str, Any]:
+    """Claims and doubts in plain values."""
+    values = asdict(completeness)
+    for claim in values["claims"]:
+        claim["scope"] = claim["scope"].value
+        claim["level"] = None if claim["level"] is None else claim["level"].value
+    return values
+
+
+def _read_completeness(text: str) -> Completeness:
+    values = mapping_from_text(text)
+    claims = []
+    for claim in values["claims"]:
+        level = None if claim["level"] is None else Level(claim["level"])
+        claims.append(
+            Claim(**{**claim, "scope": Scope(claim["scope"]), "level": level})
+        )
+    doubts = tuple(Doubt(**doubt) for doubt in values["doubts"])
+    missed = float(values["missed_probability"])
+    return Completeness(tuple(claims), doubts, missed)
 
 
 def _read_diagram(dataset: xr.Dataset, frame: Frame) -> Diagram | None:

@@ -16,6 +16,7 @@ from bifurc.atlas import (
     Provenance,
     Surface,
 )
+from bifurc.completeness import Doubt
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
@@ -34,20 +35,15 @@ from bifurc.search.canonical_order import (
 from bifurc.search.certification import certificate_of
 from bifurc.search.closure_gap import closure_gap
 from bifurc.search.completeness import judge_completeness
-from bifurc.search.components import Components
 from bifurc.search.doubts import doubts_of, doubts_of_near_misses, doubts_of_others
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
+from bifurc.search.statements import SearchDoubt
 from bifurc.singular.point import Kind, SingularPoint
-from bifurc.text_tables import count_of
 from bifurc.torus import wrap, wrapped_periods
 
 # Decades by which the misclosures of two near motions differ that are not alike.
 SAME_MISCLOSURE = 1e-3
-NEAR_ASSEMBLIES = (
-    "on near motions there may be more isolated solutions than are listed, where the "
-    "misclosure passes zero"
-)
 
 
 def assemble_atlas(
@@ -79,16 +75,19 @@ def assemble_atlas(
     near_misses = near_misses_of(problem, traced, findings.points, points, periods)
     deflated = findings.components.deflated
     doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
-    doubts = (*doubts, *doubts_of_near_misses(problem, near_misses))
+    doubts += doubts_of_near_misses(problem, near_misses)
     others = [other for germ in findings.germs for other in germ.others]
-    doubts = (*doubts, *doubts_of_others(problem, others, located))
+    doubts += doubts_of_others(problem, others, located)
     near_motions = _near_motions(problem, findings, periods)
     if near_motions:
-        doubts = (*doubts, *_doubts_of_near_motions(findings), NEAR_ASSEMBLIES)
-    doubts = (*doubts, *_doubts_of_assemblies(problem, findings))
-    doubts = (*doubts, *_doubts_of_uncharted(findings.components))
+        doubts += _doubts_of_near_motions(findings)
+    doubts += _doubts_of_assemblies(problem, findings)
+    if findings.components.off_charts:
+        starts = findings.components.off_charts
+        doubts.append(SearchDoubt.UNCHARTED.doubt(starts=starts))
     if findings.gaps_of_stops:
-        doubts = (*doubts, _doubt_of_stops(findings.gaps_of_stops))
+        gap = min(findings.gaps_of_stops)
+        doubts.append(SearchDoubt.SHORT_STOPS.doubt(amount=gap))
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
@@ -228,66 +227,32 @@ def _near_motions(
     return tuple(near_motions)
 
 
-def _doubts_of_uncharted(components: Components) -> list[str]:
-    """Whether there may be surfaces without charts beside those that are covered."""
-    if not components.off_charts:
-        return []
-    starts = count_of(components.off_charts, "start")
-    return [
-        f"no charted surface is known to hold {starts}, at which no chart fits: there "
-        "may be more surfaces, or small parts of them"
+def _doubts_of_near_motions(findings: Findings) -> list[Doubt]:
+    """What is open about near motions."""
+    traces = findings.near_motions
+    counts = {
+        SearchDoubt.FAINT_NEAR_MOTIONS: sum(is_faint(t.misclosure) for t in traces),
+        SearchDoubt.LOOSE_NEAR_MOTIONS: sum(t.has_loose_end for t in traces),
+        SearchDoubt.REPEATED_NEAR_MOTIONS: sum(t.is_repeated for t in traces),
+        SearchDoubt.BLURRED_NEAR_MOTIONS: sum(t.is_blurred for t in traces),
+    }
+    faintest = is_faint.threshold
+    doubts = [
+        kind.doubt(amount=faintest, count=int(count))
+        for kind, count in counts.items()
+        if count
     ]
+    return [*doubts, SearchDoubt.NEAR_ASSEMBLIES.doubt()]
 
 
-def _doubt_of_stops(gaps: Sequence[float]) -> str:
-    """What may be where starts end short of a solution with these ``gaps``."""
-    return (
-        f"starts end where the equations are solved to {min(gaps):.1e}, about nothing "
-        "that is listed, and there may be more solutions"
-    )
-
-
-def _doubts_of_near_motions(findings: Findings) -> list[str]:
-    """What is open about near motions, a sentence for each."""
-    loose = sum(trace.has_loose_end for trace in findings.near_motions)
-    blurred = sum(trace.is_blurred for trace in findings.near_motions)
-    repeated = sum(trace.is_repeated for trace in findings.near_motions)
-    faint = sum(is_faint(trace.misclosure) for trace in findings.near_motions)
-    doubts = []
-    if faint:
-        doubts.append(
-            f"{faint} of the near motions miss by less than {is_faint.threshold:.0e}: "
-            "where forms crossed, doubles may not tell which of them are one"
-        )
-    if loose:
-        doubts.append(
-            f"{loose} of the near motions end where they cannot be followed, and may go "
-            "on"
-        )
-    if repeated:
-        doubts.append(
-            f"{repeated} of the near motions pass the same places twice: they went over "
-            "to another one on the way, and their lengths are wrong"
-        )
-    if blurred:
-        doubts.append(
-            f"{blurred} of the near motions pass where the rank drops but for the "
-            "misclosure; there they may be interrupted"
-        )
-    return doubts
-
-
-def _doubts_of_assemblies(problem: Problem, findings: Findings) -> list[str]:
+def _doubts_of_assemblies(problem: Problem, findings: Findings) -> list[Doubt]:
     """How many isolated solutions there are where rounding hides it."""
     hidden = np.array(findings.hidden)
     hidden = hidden[~is_known_assembly(hidden, problem.scale)]
     if not len(hidden):
         return []
     reach = hidden.max() / problem.scale
-    return [
-        f"rounding does not tell how many isolated solutions lie together, up to "
-        f"{reach:.1e} of the scale apart, at {len(hidden)} of the places listed"
-    ]
+    return [SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))]
 
 
 def _with_misclosure(

@@ -4,65 +4,47 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import replace
 
 from bifurc.atlas import Provenance
+from bifurc.completeness import Claim, Completeness, Doubt, Level, Scope
 from bifurc.decisions import closes_to_rounding
 from bifurc.search.findings import Findings
 from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.search.statements import SearchClaim
 from bifurc.seeding import missed_probability
-from bifurc.seeds import Completeness, Level
-
-IN_DOUBT = "in doubt: "  # how the statement on an answer begins that is not decided
 
 NO_SOLUTION = SeedFate(Fate.NO_SOLUTION)
 
 
 def judge_completeness(
-    findings: Findings, provenance: Provenance, doubts: Sequence[str] = ()
+    findings: Findings, provenance: Provenance, doubts: Sequence[Doubt] = ()
 ) -> Completeness:
-    """What the audit proves, and the estimate for the rest.
-
-    Of an answer that holds ``doubts`` nothing is proved: the statement begins with
-    them.
-    """
-    completeness = _without_doubts(findings, provenance)
-    if not doubts:
-        return completeness
-    level = completeness.level
-    if level in (Level.PROVED, Level.CERTIFIED):
-        level = Level.ESTIMATED
-    statement = f"{IN_DOUBT}{'; '.join(doubts)}; {completeness.statement}"
-    return replace(completeness, level=level, statement=statement)
-
-
-def _without_doubts(findings: Findings, provenance: Provenance) -> Completeness:
-    """The same, where everything is decided."""
+    """What the audit proves, the estimate for the rest, and what is in doubt."""
     hits = _count_hits(findings)
     missed = missed_probability(list(hits.values()))
-    estimate = _estimate(hits, missed)
-    audit = findings.audit
+    left = len(findings.open_seeds)
+    missed_at_most = 1.0 if provenance.out_of_time and left else missed
+    claims = (*_claims(findings, provenance, left), _estimate(hits, missed))
+    return Completeness(claims, tuple(doubts), missed_at_most)
+
+
+def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Claim, ...]:
+    """What is claimed beside the estimate, with so many starts ``left``."""
     # what an audit says holds once all that it led to is looked at
     if provenance.out_of_time:
-        left = len(findings.open_seeds)
-        statement = (
-            f"the budget of {provenance.settings.budget:.4g} s was used up with "
-            f"{left} starts not looked at; {estimate}"
-        )
-        bound = 1.0 if left else missed
-        return Completeness(Level.OUT_OF_TIME, statement, bound)
+        budget = provenance.settings.budget
+        level = Level.OUT_OF_TIME
+        out_of_time = SearchClaim.OUT_OF_TIME
+        return (out_of_time.claim(Scope.SEARCH, level, budget=budget, left=left),)
     if provenance.interrupted:
-        statement = f"the search was interrupted; {estimate}"
-        return Completeness(Level.INTERRUPTED, statement, missed)
-    if audit is None:
-        return Completeness(Level.ESTIMATED, estimate, missed)
+        return (SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED),)
+    if findings.audit is None:
+        return ()
     loose = sum(not closes_to_rounding(t.misclosure) for t in findings.traced)
     if loose:
-        statement = (
-            f"{loose} of the forms close within the closing tolerance only; {estimate}"
-        )
-        return Completeness(Level.ESTIMATED, statement, missed)
-    return Completeness(audit.level, f"{audit.statement}; {estimate}", missed)
+        kind = SearchClaim.CLOSING_TOLERANCE
+        return (kind.claim(Scope.MOTIONS, Level.ESTIMATED, forms=loose),)
+    return findings.audit.claims
 
 
 def _count_hits(findings: Findings) -> Counter[SeedFate]:
@@ -75,17 +57,9 @@ def _count_hits(findings: Findings) -> Counter[SeedFate]:
     return hits
 
 
-def _estimate(hits: Counter[SeedFate], missed: float) -> str:
-    """What random starts reached, and what one more of them would, as a sentence."""
+def _estimate(hits: Counter[SeedFate], missed: float) -> Claim:
+    """What random starts reached, and what one more of them would."""
     total = hits.total()
     reached = total - hits[NO_SOLUTION]
-    if reached:
-        outcome = (
-            f"{reached} of {total} random starts reached a solution, each listed here"
-        )
-    else:
-        outcome = f"none of {total} random starts reached a solution"
-    return (
-        f"{outcome}: one more start would reach something new with a probability of "
-        f"at most {missed:.2g} (95 % confidence)"
-    )
+    kind = SearchClaim.REACHED if reached else SearchClaim.NOTHING_REACHED
+    return kind.claim(Scope.STARTS, None, reached=reached, starts=total, missed=missed)

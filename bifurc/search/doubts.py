@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.atlas import Event, Form, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
+from bifurc.completeness import Doubt
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.misclosure import misclosure_at
 from bifurc.curves.monitor import largest_rates
@@ -31,9 +32,9 @@ from bifurc.numerics.blur import (
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
+from bifurc.search.statements import SearchDoubt
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
-from bifurc.text_tables import count_of
 
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
@@ -45,30 +46,30 @@ def doubts_of(
     points: Sequence[MeetingPoint],
     surfaces: Sequence[Surface],
     of_surfaces: Problem | None = None,
-) -> tuple[str, ...]:
-    """One sentence for each thing that doubles do not decide: surfaces that may be
+) -> list[Doubt]:
+    """One doubt for each thing that doubles do not decide: surfaces that may be
     curves, curves that may be surfaces, stretches of forms that are not certified, ends
     of forms at nothing known, singular points of no certain kind.
 
     The ``forms`` are those of the branches ``traced``. Solutions on the ``surfaces``
     are regular ones of the problem ``of_surfaces``, where it is another one.
     """
-    doubts: list[str] = []
+    doubts: list[Doubt] = []
     for surface in surfaces:
         doubts += _doubts_of_surface(of_surfaces or problem, surface)
     for index, branch in enumerate(traced):
         doubts += _doubts_of_form(problem, index, branch, points)
     for index, form in enumerate(forms):
         if form.certificate is not None and form.certificate.leaves_doubt:
-            doubts.append(f"form {index + 1} {_refusal(form.certificate)}")
+            doubts.append(_doubt_of_certificate(_name(index), form.certificate))
     for point in points:
         doubts += _doubts_of_point(problem, point)
         doubts += _doubts_of_halves(traced, point)
     doubts += _doubts_of_double_solutions(problem, points)
-    return tuple(doubts)
+    return doubts
 
 
-def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> list[str]:
+def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> list[Doubt]:
     """Whether the numbers that the equations are made of tell near misses from
     bifurcations.
 
@@ -85,16 +86,14 @@ def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> list[str
     if not hanging:
         return []
     smallest = min(miss.value for miss in hanging)
-    return [
-        f"{count_of(len(hanging), 'near miss')} may be at bifurcations: the numbers of "
-        f"the geometry are known to {problem.data_rounding:.1e} only, which explains a "
-        f"singular value of {smallest:.1e}"
-    ]
+    count, rounding = len(hanging), float(problem.data_rounding)
+    kind = SearchDoubt.NEAR_MISSES
+    return [kind.doubt(amount=smallest, count=count, rounding=rounding)]
 
 
 def doubts_of_others(
     problem: Problem, others: Sequence[np.ndarray], points: Sequence[SingularPoint]
-) -> list[str]:
+) -> list[Doubt]:
     """Whether the ``others``, singular points (n,) that the exact equations have beside
     ``points``, are not among these: doubles do not tell them apart."""
     places = np.array([point.u for point in points]).reshape(-1, problem.n)
@@ -106,22 +105,15 @@ def doubts_of_others(
             hidden.append(other)
     if not hidden:
         return []
-    return [
-        f"the exact equations have {count_of(len(hidden), 'more singular point')} beside "
-        "those listed, where the same branches meet again: doubles do not tell them "
-        "apart"
-    ]
+    return [SearchDoubt.HIDDEN_POINTS.doubt(count=len(hidden))]
 
 
-def _doubts_of_surface(problem: Problem, surface: Surface) -> list[str]:
+def _doubts_of_surface(problem: Problem, surface: Surface) -> list[Doubt]:
     """Whether what a surface misses is more than rounding."""
     missed = _misclosure(problem, surface)
     if _is_rounding(problem, missed, surface.samples[:MOST_SAMPLES]):
         return []
-    return [
-        f"{surface.name} may be a surface, or curves on one that misses the equations "
-        f"by {missed:.1e}, more than rounding"
-    ]
+    return [SearchDoubt.SURFACE_OR_CURVES.doubt(surface.name, missed)]
 
 
 def _is_rounding(problem: Problem, missed: float, points: np.ndarray) -> bool:
@@ -159,41 +151,28 @@ def _misclosure(problem: Problem, surface: Surface) -> float:
 
 def _doubts_of_form(
     problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
-) -> list[str]:
+) -> list[Doubt]:
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
     branch, profile = traced.branch, traced.profile
+    name = _name(index)
     doubts = []
     is_regular = profile.rank == branch.n - 1
     if is_regular and not is_known_curve(traced.blur):
-        doubts.append(
-            f"form {index + 1} may be a curve or a part of a surface: its place is "
-            f"known to {traced.blur:.1e} of the scale"
-        )
+        doubts.append(SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur))
     if not traced.multiplicity:
-        doubts.append(
-            f"form {index + 1} has a multiplicity, F' having rank {profile.rank} all "
-            "along it: how large it is, and what meets it, is not known"
-        )
+        doubts.append(SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank))
     hidden = _hidden_by_rounding(traced)
     if len(hidden):
-        numbers = ", ".join(str(k + 1) for k in hidden)
-        doubts.append(
-            f"on form {index + 1} rounding hides whether these unknowns stand still: "
-            f"{numbers}"
-        )
+        numbers = [int(k) + 1 for k in hidden]
+        doubts.append(SearchDoubt.STILL_UNKNOWNS.doubt(name, unknowns=numbers))
     if traced.missing and traced.certificate is None:
-        doubts.append(
-            f"form {index + 1} is singular to within rounding about s = "
-            f"{traced.missing[0]:.6g}, where no singular point was located"
-        )
+        place = traced.missing[0]
+        doubts.append(SearchDoubt.UNLOCATED_POINT.doubt(name, place))
     names = _ended_at_assumed_bounds(problem, branch)
     if names:
-        doubts.append(
-            f"form {index + 1} is known as far as it was followed: there are no bounds "
-            f"on {', '.join(names)}"
-        )
+        doubts.append(SearchDoubt.NO_BOUNDS.doubt(name, unknowns=names))
     if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
-        doubts.append(f"form {index + 1} is longer than it was traced")
+        doubts.append(SearchDoubt.TOO_LONG.doubt(name))
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}
         loose = [
@@ -202,21 +181,25 @@ def _doubts_of_form(
             if s not in ends and not _is_at_bounds(problem, branch(s))
         ]
         if loose:
-            doubts.append(
-                f"form {index + 1} stalls at {len(loose)} of its 2 ends, where it may "
-                f"end or go on{_rim(problem, loose)}"
-            )
+            doubts.append(_doubt_of_loose_ends(problem, name, loose))
     return doubts
 
 
-def _rim(problem: Problem, ends: Sequence[np.ndarray]) -> str:
-    """What is said of F' next to the ends (n,) of a form that stalled, empty where it is
+def _name(index: int) -> str:
+    """What a form is called before it has a name of its own."""
+    return f"form {index + 1}"
+
+
+def _doubt_of_loose_ends(
+    problem: Problem, name: str, ends: Sequence[np.ndarray]
+) -> Doubt:
+    """That a form stalls at its ``ends`` (n,), and at how many of them F' is not
     finite."""
     reach = is_stub.threshold * problem.scale
     rough = sum(not problem.is_smooth_within(end, reach) for end in ends)
     if not rough:
-        return ""
-    return f"; F' is not finite beside {rough} of them"
+        return SearchDoubt.STALLED.doubt(name, ends=len(ends))
+    return SearchDoubt.STALLED_AT_RIM.doubt(name, ends=len(ends), rough=rough)
 
 
 def _hidden_by_rounding(traced: TracedBranch) -> np.ndarray:
@@ -247,27 +230,17 @@ def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     return [problem.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
 
 
-def _refusal(certificate: Certificate) -> str:
-    """Where nothing is certified, in words."""
+def _doubt_of_certificate(name: str, certificate: Certificate) -> Doubt:
+    """Where nothing is certified of a form."""
     if len(certificate.gaps):
-        return f"is not certified {_places(certificate.gaps)}"
-    where = _places(certificate.blurred)
-    return f"is singular to within rounding {where}, where no singular point is known"
-
-
-def _places(intervals: np.ndarray) -> str:
-    """The first of some intervals (k, 2), in words, and how many more there are."""
-    low, high = intervals[0]
-    places = f"between s = {low:.6g} and {high:.6g}"
-    more = len(intervals) - 1
-    if more:
-        places += f" and at {more} more places"
-    return places
+        places = certificate.gaps.tolist()
+        return SearchDoubt.UNCERTIFIED.doubt(name, places=places)
+    return SearchDoubt.BLURRED.doubt(name, places=certificate.blurred.tolist())
 
 
 def _doubts_of_double_solutions(
     problem: Problem, points: Sequence[MeetingPoint]
-) -> list[str]:
+) -> list[Doubt]:
     """How many solutions there are where two come together."""
     double = [
         point.name
@@ -276,12 +249,12 @@ def _doubts_of_double_solutions(
     ]
     if not double:
         return []
-    return [
-        f"rounding does not tell a double solution from two, or none: {', '.join(double)}"
-    ]
+    return [SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)]
 
 
-def _doubts_of_halves(traced: Sequence[TracedBranch], point: MeetingPoint) -> list[str]:
+def _doubts_of_halves(
+    traced: Sequence[TracedBranch], point: MeetingPoint
+) -> list[Doubt]:
     """Whether forms that stall at a point in opposite directions are one, which goes on
     through it."""
     ends: list[tuple[int, np.ndarray]] = []
@@ -294,17 +267,14 @@ def _doubts_of_halves(traced: Sequence[TracedBranch], point: MeetingPoint) -> li
     for (one, along), (other, back) in itertools.combinations(ends, 2):
         if not is_same_line(1.0 + float(along @ back)):
             continue
-        names = f"the ends of form {one + 1}"
+        names = f"the ends of {_name(one)}"
         if one != other:
             names = f"forms {one + 1} and {other + 1}"
-        doubts.append(
-            f"{names} stall at {point.name} in opposite directions and may be one curve "
-            "through it"
-        )
+        doubts.append(SearchDoubt.ONE_CURVE.doubt(names, point=point.name))
     return doubts
 
 
-def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
+def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[Doubt]:
     """Whether a singular point is one, and of which kind."""
     place = point.point.u[None]
     gap = float(problem.gaps(place)[0])
@@ -314,15 +284,15 @@ def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[str]:
         rank = problem.n - point.point.null_space.shape[1]
         missed = misclosure_at(problem, point.point.u, rank)
         if not misses_by_rounding(missed - explained):
-            return [
-                f"{point.name} ({point.kind.value}) may be a near miss: it misses the "
-                f"equations by {missed:.1e}"
-            ]
+            doubt = SearchDoubt.POINT_OR_NEAR_MISS
+            return [doubt.doubt(point.name, missed, point_kind=point.kind.value)]
     if point.kind is Kind.UNDECIDED:
         reason = point.note or "sections of two radii disagree"
-        return [f"{point.name} is undecided: {reason}"]
+        return [SearchDoubt.UNDECIDED.doubt(point.name, reason=reason)]
     if point.note:
-        return [f"{point.name} ({point.kind.value}) is not whole: {point.note}"]
+        kind, reason = point.kind.value, point.note
+        doubt = SearchDoubt.NOT_WHOLE
+        return [doubt.doubt(point.name, point_kind=kind, reason=reason)]
     if not point.point.is_confirmed:
-        return [f"{point.name} is seen in doubles, and more digits do not show it"]
+        return [SearchDoubt.UNCONFIRMED.doubt(point.name)]
     return []

@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from bifurc.completeness import Level, Scope
 from bifurc.curves.certificate import Certificate, CertificateStatus
 from bifurc.search.findings import TracedBranch
+from bifurc.search.statements import SearchClaim
 from bifurc.search.subdivision import Subdivision
-from bifurc.seeds import Audit, Level
+from bifurc.seeds import Audit
 
 WIDTH = 1e-6  # of the length: of the gap in a certificate where a branch is refuted
 
@@ -18,17 +20,11 @@ def audit_of(division: Subdivision) -> Audit:
     """What a complete subdivision says: nothing is missing; next to singular points
     that is not claimed."""
     nowhere = np.empty((0, division.left.shape[1]))
-    text = (
-        f"the bounds were divided into {division.count} boxes, and each one holds no "
-        "solution, or a single arc of a form listed here"
-    )
-    if not division.beside:
-        return Audit(Level.PROVED, text, nowhere)
-    text += (
-        f"; next to singular points, within {division.beside:.1g} of a quarter of the "
-        "region in which solutions were found, nothing is claimed"
-    )
-    return Audit(Level.CERTIFIED, text, nowhere)
+    kind, level = SearchClaim.BOXES, Level.PROVED
+    if division.beside:
+        kind, level = SearchClaim.BOXES_BESIDE_POINTS, Level.CERTIFIED
+    data = {"boxes": int(division.count), "beside": float(division.beside)}
+    return Audit((kind.claim(Scope.MOTIONS, level, **data),), nowhere)
 
 
 def refuted_at(traced: TracedBranch, s: float) -> TracedBranch:

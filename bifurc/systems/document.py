@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import TypeAlias
+from typing import TypeAlias, cast
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.completeness import completeness_document
 from bifurc.diagrams.diagram import Diagram, DiagramPoint
 from bifurc.singular.invariants import Invariants
 from bifurc.systems.verdict import verdict_of
@@ -57,11 +58,7 @@ def make_document(atlas: Atlas) -> dict[str, Json]:
             }
             for near in atlas.near_motions
         ],
-        "completeness": {
-            "level": atlas.completeness.level.value,
-            "statement": atlas.completeness.statement,
-            "missed_probability": atlas.completeness.missed_probability,
-        },
+        "completeness": cast(Json, completeness_document(atlas.completeness)),
         "seconds": provenance.seconds,
         "version": version("bifurc"),
         "seed": provenance.seed,

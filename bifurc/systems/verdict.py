@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from bifurc.atlas import Atlas
+from bifurc.completeness import Level
 from bifurc.decisions import closes_to_rounding
-from bifurc.seeds import Level
 from bifurc.singular.point import Kind
 from bifurc.text_tables import count_of
 

@@ -19,12 +19,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.completeness import Claim, Completeness, Level, Scope
 from bifurc.decisions import is_same_point
-from bifurc.seeds import Audit, Level
+from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from bifurc.text_tables import count_of
 from linkages.closure.loop_closure import LARGEST_SLICED, LoopClosure
+from linkages.statements import LinkageClaim, estimated
 from linkages.structure.single_loop import SingleLoop, as_single_loop
 from linkages.structure.structure import Structure
 from linkages.turns.turn_classes import passes_but_for_turns
@@ -86,23 +87,19 @@ class CutMotions:
         stretches = self._stretches(atlas)
         is_missed = ~_lie_on(stretches.points, branches, self.lattice)
         starts = np.concatenate([stretches.points[is_missed], self._others(atlas)])
-        level, text = Level.ESTIMATED, atlas.completeness.statement
+        level, inner = Level.ESTIMATED, _claims_of(atlas.completeness)
         is_known = atlas.completeness.level in (Level.PROVED, Level.CERTIFIED)
         if is_known and audit is not None and stretches.are_all:
-            level, text = Level.CERTIFIED, audit.statement
-        statement = (
-            "every motion within the limits is part of one without them, and these were "
-            f"mapped and cut at the limits; of them: {text}"
-        )
+            level, inner = Level.CERTIFIED, audit.claims
+        first = replace(inner[0], words=f"of them: {inner[0].words}")
+        cut = LinkageClaim.CUT_AT_LIMITS.claim(Scope.MOTIONS, level)
+        claims = (cut, first, *inner[1:])
         if np.any(is_missed):
-            level = Level.ESTIMATED
-            count = count_of(int(np.count_nonzero(is_missed)), "part")
+            count = int(np.count_nonzero(is_missed))
             longest = float(stretches.lengths[is_missed].max())
-            statement = (
-                f"{count} of motions without limits, the longest of {longest:.1g} rad, "
-                f"lie within them and are not listed; {statement}"
-            )
-        return Audit(level, statement, starts)
+            kind = LinkageClaim.PARTS_NOT_LISTED
+            claims = (estimated(kind, count=count, longest=longest), *claims)
+        return Audit(claims, starts)
 
     def _mapped(self, seconds: float) -> tuple[Atlas, Audit | None]:
         """The map of the loop without limits, and what slices say of it."""
@@ -151,6 +148,15 @@ class CutMotions:
         limits = _limits(self.structure)
         lifted = [one for row in unknowns for one in _lifts(row, limits)]
         return np.array(lifted).reshape(-1, unknowns.shape[1])
+
+
+def _claims_of(completeness: Completeness) -> tuple[Claim, ...]:
+    """All that is said of a map, as claims: its doubts are one of them."""
+    if not completeness.doubts:
+        return completeness.claims
+    doubts = "; ".join(doubt.text for doubt in completeness.doubts)
+    claim = estimated(LinkageClaim.DOUBT_WITHOUT_LIMITS, doubts=doubts)
+    return (claim, *completeness.claims)
 
 
 def cut_motions(structure: Structure, single: SingleLoop, branch: Branch) -> Stretches:

@@ -18,12 +18,13 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.seeds import Audit, Level
-from linkages.assembly_statements import ALL_BUILT, RANDOM_ASSEMBLIES
+from bifurc.completeness import Level, Scope
+from bifurc.seeds import Audit
 from linkages.dyads.build import Builder, Geometry, TooManyError
 from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
 from linkages.dyads.plan import make_plan
 from linkages.dyads.space import SpaceGeometry
+from linkages.statements import LinkageClaim, random_assemblies
 from linkages.structure.plane import normal_of_plane
 from linkages.structure.structure import Structure
 
@@ -63,12 +64,13 @@ class DyadSlices:
         every configuration in the slices."""
         nowhere = np.empty((0, len(self.structure.unknowns)))
         if not self.drivers:
-            return Audit(Level.CERTIFIED, ALL_BUILT, nowhere)
-        text = f"complete slices, built of dyads: every motion is here {self._moves()}"
+            kind = LinkageClaim.ALL_BUILT
+            return Audit((kind.claim(Scope.MOTIONS, Level.CERTIFIED),), nowhere)
+        kind, level = LinkageClaim.DYADS, Level.CERTIFIED
         if not self.misses_none:
-            text += ", and others may be missing"
-        level = Level.CERTIFIED if self.misses_none else Level.ESTIMATED
-        return Audit(level, f"{text}; {RANDOM_ASSEMBLIES}", nowhere)
+            kind, level = LinkageClaim.DYADS_MISSING, Level.ESTIMATED
+        claim = kind.claim(Scope.MOTIONS, level, moves=self._moves())
+        return Audit((claim, random_assemblies()), nowhere)
 
     def _moves(self) -> str:
         """On which motions a driver passes a slice, as text."""

@@ -35,21 +35,23 @@ import numpy as np
 
 from bifurc import torus
 from bifurc.branch import Branch
+from bifurc.completeness import Claim, Level, Scope
 from bifurc.curves.monitor import dead_points
 from bifurc.decisions import is_tied
 from bifurc.limits import Deadline
 from bifurc.search.canonical_order import order_values
-from bifurc.seeds import Audit, Level
-from linkages.assembly_statements import (
-    ALL_FOLLOWED,
-    MISSING_ASSEMBLIES,
-    RANDOM_ASSEMBLIES,
-)
+from bifurc.seeds import Audit
 from linkages.decisions import is_same_dead_point
 from linkages.loop import Loop
 from linkages.slices.assemblies import Assemblies, isolated_assemblies
 from linkages.slices.elimination import Slice, slice_configurations
 from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets
+from linkages.statements import (
+    LinkageClaim,
+    estimated,
+    joint_names,
+    random_assemblies,
+)
 
 FEWEST = 4  # joints that move on a motion, at least
 CUT = 0.3819660112501051  # of its length: where a curve without dead points is cut
@@ -76,8 +78,7 @@ class SliceAudit:
         deadline = Deadline(seconds)
         motions = self._judge_motions(branches, deadline)
         if deadline.passed:
-            statement = f"{motions.statement}; {RANDOM_ASSEMBLIES}"
-            return replace(motions, statement=statement)
+            return replace(motions, claims=(*motions.claims, random_assemblies()))
         assemblies = isolated_assemblies(self.loop, deadline.left)
         return _with_assemblies(motions, assemblies)
 
@@ -85,29 +86,22 @@ class SliceAudit:
         """How sure it is that ``branches`` are all motions."""
         nowhere = np.empty((0, self.loop.n))
         if not all(cut.is_complete for cut in self.slices):
-            return Audit(Level.ESTIMATED, self._incompleteness(), nowhere)
+            return Audit((self._incompleteness(),), nowhere)
         passes = self._passes(branches)
         differing = self._differing_joints(passes)
         if differing:
-            text = (
-                f"at some angles of {_joint_names(differing)} the slices and the "
-                "motions hold different configurations"
-            )
-            return Audit(Level.ESTIMATED, text, nowhere)
+            joints = joint_names(differing)
+            claim = estimated(LinkageClaim.SLICES_DIFFER, joints=joints)
+            return Audit((claim,), nowhere)
         if not branches and not any(_number(cut) for cut in self.slices):
-            text = (
-                "there is no motion: no angle of any joint but a few has a "
-                "configuration"
-            )
-            return Audit(Level.PROVED, text, nowhere)
+            claim = LinkageClaim.NO_MOTION.claim(Scope.MOTIONS, Level.PROVED)
+            return Audit((claim,), nowhere)
         room = self._room(passes)
         following = self._follow_nonreal(passes, room, deadline)
         starts = np.concatenate([nowhere, *following.halts])
         if len(following.room) >= FEWEST:
-            return Audit(
-                Level.CERTIFIED, self._what_is_certified(following.room), starts
-            )
-        return Audit(Level.PROVED, self._what_is_proved(following), starts)
+            return Audit((self._what_is_certified(following.room),), starts)
+        return Audit((self._what_is_proved(following),), starts)
 
     def _passes(self, branches: Sequence[Branch]) -> list[Passes]:
         """How the motions pass the angles of every joint."""
@@ -166,54 +160,54 @@ class SliceAudit:
                 halts.append(halted)
         return Following(room=sorted(waiting), closed=sorted(closed), halts=halts)
 
-    # --- statements -------------------------------------------------------------------
+    # --- claims -----------------------------------------------------------------------
 
-    def _incompleteness(self) -> str:
+    def _incompleteness(self) -> Claim:
         degenerate = sum(int(np.count_nonzero(cut.degenerate)) for cut in self.slices)
         total = sum(len(cut.angles) for cut in self.slices)
         reason = next(cut.reason for cut in self.slices if cut.reason)
-        return f"{degenerate} of {total} slices could not be made complete ({reason})"
+        kind = LinkageClaim.SLICES_INCOMPLETE
+        return estimated(kind, degenerate=degenerate, slices=total, reason=reason)
 
-    def _what_is_certified(self, room: Sequence[int]) -> str:
+    def _what_is_certified(self, room: Sequence[int]) -> Claim:
         degrees = 360 // min(len(cut.angles) for cut in self.slices)
-        return (
-            f"complete slices of all {self.loop.n} joints every {degrees} degrees: "
-            f"every motion in which some joint turns by more than {degrees} degrees is "
-            f"here; a smaller one has room in {_joint_names(room)}"
-        )
+        data = {
+            "joints": self.loop.n,
+            "degrees": degrees,
+            "room": joint_names(room),
+        }
+        return LinkageClaim.SLICES.claim(Scope.MOTIONS, Level.CERTIFIED, **data)
 
-    def _what_is_proved(self, following: Following) -> str:
+    def _what_is_proved(self, following: Following) -> Claim:
         decided = {*following.room, *following.closed}
         counted = [joint for joint in range(self.loop.n) if joint not in decided]
         parts = []
         if counted:
             parts.append(
-                f"of {_joint_names(counted)} all configurations, real or not, lie on "
+                f"of {joint_names(counted)} all configurations, real or not, lie on "
                 "motions listed here"
             )
         if following.closed:
             parts.append(
-                f"of {_joint_names(following.closed)} those that do not lie on one "
+                f"of {joint_names(following.closed)} those that do not lie on one "
                 "never become real"
             )
         rest = ""
         if following.room:
-            rest = f"; no motion turns {_joint_names(following.room)} alone"
-        return f"no motion is missing: at every angle {', and '.join(parts)}{rest}"
+            rest = f"; no motion turns {joint_names(following.room)} alone"
+        counts = f"{', and '.join(parts)}{rest}"
+        return LinkageClaim.COUNTED.claim(Scope.MOTIONS, Level.PROVED, counts=counts)
 
 
 def _with_assemblies(motions: Audit, assemblies: Assemblies) -> Audit:
     """The audit of motions with what is known of isolated assemblies."""
-    level = motions.level
-    known = ALL_FOLLOWED
+    claim = LinkageClaim.ALL_FOLLOWED.claim(Scope.ASSEMBLIES, Level.PROVED)
     if not assemblies.complete:
-        known = f"{MISSING_ASSEMBLIES}: {assemblies.statement}"
-        level = Level.CERTIFIED if level is Level.PROVED else level
-    return Audit(
-        level=level,
-        statement=f"{motions.statement}; {known}",
-        starts=np.concatenate([motions.starts, assemblies.configurations]),
-    )
+        ends = assemblies.statement
+        lost = LinkageClaim.PATHS_LOST
+        claim = lost.claim(Scope.ASSEMBLIES, Level.CERTIFIED, ends=ends)
+    starts = np.concatenate([motions.starts, assemblies.configurations])
+    return Audit((*motions.claims, claim), starts)
 
 
 @dataclass(frozen=True)
@@ -458,11 +452,3 @@ def _real_numbers(cut: Slice) -> np.ndarray:
 def _number(cut: Slice) -> int:
     """Number of configurations, real or not, at almost every angle."""
     return int(cut.n_complex.max(initial=0))
-
-
-def _joint_names(joints: Sequence[int]) -> str:
-    """Joints, counted from 0, in words."""
-    names = [str(joint + 1) for joint in joints]
-    if len(names) == 1:
-        return f"joint {names[0]}"
-    return f"joints {', '.join(names[:-1])} and {names[-1]}"

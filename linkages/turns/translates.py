@@ -10,8 +10,10 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
+from bifurc.completeness import Scope
 from bifurc.singular.point import Kind
 from bifurc.text_tables import count_of
+from linkages.statements import LinkageClaim
 
 if TYPE_CHECKING:
     # they import networkx, which a verdict does not need
@@ -93,11 +95,13 @@ def with_translates(atlas: Atlas, structure: Structure, lattice: TurnLattice) ->
     counts = (translates.forms, translates.assemblies)
     if translates.are_all and counts == listed and not atlas.surfaces:
         return atlas
-    completeness = atlas.completeness
-    statement = f"{completeness.statement}; {translates.sentence}"
+    listed_once = LinkageClaim.UP_TO_TURNS.claim(
+        Scope.MOTIONS, None, translates=translates.sentence
+    )
+    claims = (*atlas.completeness.claims, listed_once)
     return replace(
         atlas,
-        completeness=replace(completeness, statement=statement),
+        completeness=replace(atlas.completeness, claims=claims),
         subject={**atlas.subject, KEY: translates._asdict()},
     )
 

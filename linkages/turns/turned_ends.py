@@ -13,10 +13,9 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.problem import Problem
-from bifurc.seeds import Audit, Level
+from bifurc.seeds import Audit
+from linkages.statements import LinkageClaim, estimated
 from linkages.turns.turn_lattice import TurnLattice
-
-FOLLOWED = "where limits cut a form off, it was followed from whole turns away"
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +31,8 @@ class TurnedEnds:
         """What is said of the ``branches`` in about so many ``seconds``, and the ends of
         those that are cut off among the starts."""
         nowhere = np.empty((0, self.problem.n))
-        audit = Audit(Level.ESTIMATED, FOLLOWED, nowhere)
+        claim = estimated(LinkageClaim.FOLLOWED_FROM_TURNS)
+        audit = Audit((claim,), nowhere)
         if self.judge is not None:
             audit = self.judge(branches, seconds)
         starts = [self._turned(branch) for branch in branches if not branch.closed]

@@ -19,10 +19,9 @@ from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.problem import Problem
 from bifurc.seeding import start_region
-from bifurc.seeds import Audit, Level
-from bifurc.text_tables import count_of
+from bifurc.seeds import Audit
 from bifurc.torus import common_period
-from linkages.assembly_statements import RANDOM_ASSEMBLIES
+from linkages.statements import LinkageClaim, estimated, random_assemblies
 from linkages.structure.structure import Structure
 from linkages.turns.turn_lattice import TurnLattice
 
@@ -78,18 +77,11 @@ class WholeTurns:
         many branches, that there may be more."""
         nowhere = np.empty((0, self.problem.n))
         if len(branches) > MOST_FORMS or seconds <= 0.0:
-            forms = count_of(len(branches), "form")
-            text = (
-                f"at least {forms} in all: joints that advance may stand whole turns "
-                "away within their limits, and not all of that was tried"
-            )
-            return Audit(Level.ESTIMATED, text, nowhere)
-        text = (
-            "beside every form listed here others a whole turn of a joint away, which "
-            f"advances, were looked for within the limits; {RANDOM_ASSEMBLIES}"
-        )
+            claim = estimated(LinkageClaim.MORE_TURNS, forms=len(branches))
+            return Audit((claim,), nowhere)
+        claims = (estimated(LinkageClaim.TURNS_TRIED), random_assemblies())
         starts = [self._beside(branch) for branch in branches]
-        return Audit(Level.ESTIMATED, text, np.concatenate([nowhere, *starts]))
+        return Audit(claims, np.concatenate([nowhere, *starts]))
 
     def _beside(self, branch: Branch) -> np.ndarray:
         """Closed configurations (k, n) within the limits, a whole turn beside a

@@ -8,8 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from bifurc import Atlas, Kind, diagram_of
-from bifurc.search.completeness import IN_DOUBT
-from bifurc.seeds import Level
+from bifurc.completeness import Level
 from studies.textbook.problems import PointKind, PrintedPoint, TextbookProblem
 
 UNITS = 1.0  # of the last digit: some sources round, and some cut off
@@ -61,9 +60,8 @@ def compare(problem: TextbookProblem, atlas: Atlas, seconds: float) -> Compariso
     """How an atlas answers a problem."""
     matches = tuple(_match(problem, atlas, point) for point in problem.points)
     assert atlas.diagram is not None
-    statement = atlas.completeness.statement
     is_open = (
-        statement.startswith(IN_DOUBT)
+        atlas.completeness.is_in_doubt
         or atlas.completeness.level is Level.OUT_OF_TIME
         or any(point.kind is Kind.UNDECIDED for point in atlas.points)
     )
@@ -77,7 +75,7 @@ def compare(problem: TextbookProblem, atlas: Atlas, seconds: float) -> Compariso
         bifurcations=len(atlas.bifurcations),
         hopf_points=len(atlas.diagram.hopf_points),
         verdict=Verdict.IN_DOUBT if is_open else verdict,
-        statement=statement,
+        statement=atlas.completeness.statement,
         seconds=seconds,
     )
 

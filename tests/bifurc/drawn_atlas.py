@@ -4,8 +4,8 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint
 from bifurc.branch import Branch, Outcome
+from bifurc.completeness import Completeness
 from bifurc.curves.monitor import Profile
-from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind, SingularPoint
 
 PERIOD = 6.0
@@ -68,7 +68,7 @@ def draw(
         dead_points=dead,
         rigid=np.empty((0, 2)),
         surfaces=(),
-        completeness=Completeness(Level.ESTIMATED, "", 0.0),
+        completeness=Completeness((), (), 0.0),
     )
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from bifurc.atlas import SHOWN, SHOWN_IN_NOTEBOOK, Atlas, Surface
+from bifurc.completeness import Level
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from bifurc.seeds import Level
 from bifurc.settings import SearchSettings
 
 

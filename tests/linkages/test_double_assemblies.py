@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bifurc.atlas import Kind
-from bifurc.seeds import Level
+from bifurc.completeness import Level
 from linkages.app.answer.document import make_document
 from linkages.app.answer.verdict import judge
 from linkages.axes import loop_from_axes

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bifurc import SymbolicProblem
-from bifurc.search.completeness import IN_DOUBT
+from bifurc.completeness import Doubt
 from studies.textbook.comparison import Verdict, compare
 from studies.textbook.discretised import DISCRETISED
 from studies.textbook.fortran import fortran_of
@@ -134,8 +134,8 @@ def test_a_printed_point_that_is_not_there_is_wrong_without_a_doubt():
     atlas = problem.explore(0, 60.0)
     changed = replace(problem, points=(other,), accuracy=0.0)
     assert compare(changed, atlas, 0.0).verdict is Verdict.WRONG
-    statement = f"{IN_DOUBT}something"
-    doubtful = replace(atlas.completeness, statement=statement)
+    doubt = Doubt("something", "something may be otherwise")
+    doubtful = replace(atlas.completeness, doubts=(doubt,))
     atlas = replace(atlas, completeness=doubtful)
     assert compare(changed, atlas, 0.0).verdict is Verdict.IN_DOUBT
 

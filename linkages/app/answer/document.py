@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
+from bifurc.completeness import CompletenessDocument, completeness_document
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
 from linkages.app.answer.configurations import (
@@ -142,13 +143,11 @@ class DeadPointDocument(PlaceDocument):
     variable: NotRequired[str]
 
 
-class CompletenessDocument(TypedDict):
-    """How sure it is that nothing is missing."""
+class LinkageCompleteness(CompletenessDocument):
+    """How sure it is that nothing is missing: ``certainty`` is the level, ``level``
+    whether slices were complete."""
 
-    level: str
     certainty: str
-    statement: str
-    missed_probability: float
 
 
 class NetworkDocument(TypedDict):
@@ -176,7 +175,7 @@ class MapDocument(TypedDict):
     dead_points: list[DeadPointDocument]
     rigid_assemblies: list[list[float] | AssemblyDocument]
     near_motions: list[NearMotionDocument]
-    completeness: CompletenessDocument
+    completeness: LinkageCompleteness
     seconds: float
     version: str
     seed: int
@@ -413,15 +412,11 @@ def _dead_point(atlas: Atlas, event: Event) -> DeadPointDocument:
     return document
 
 
-def _completeness(atlas: Atlas) -> CompletenessDocument:
-    completeness = atlas.completeness
-    slices = is_without_gaps(completeness)
-    return {
-        "level": "complete slices" if slices else "estimated",
-        "certainty": completeness.level.value,
-        "statement": completeness.statement,
-        "missed_probability": completeness.missed_probability,
-    }
+def _completeness(atlas: Atlas) -> LinkageCompleteness:
+    values = completeness_document(atlas.completeness)
+    slices = is_without_gaps(atlas.completeness)
+    level = "complete slices" if slices else "estimated"
+    return {**values, "level": level, "certainty": values["level"]}
 
 
 def _clear_arclength(atlas: Atlas, index: int) -> float:

@@ -10,16 +10,15 @@ from typing import NoReturn
 import click
 
 from bifurc.atlas import Atlas, NearMotion
+from bifurc.completeness import Completeness, Level
 from bifurc.decisions import closes_to_rounding
-from bifurc.search.completeness import IN_DOUBT
-from bifurc.seeds import Completeness, Level
 from bifurc.singular.point import Kind
 from bifurc.systems.verdict import has_only_open_points
 from bifurc.text_tables import count_of
 from linkages.app.answer.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
 from linkages.app.texts.limits_text import kept_out_by_limits
-from linkages.assembly_statements import has_all_assemblies
+from linkages.statements import has_all_assemblies
 from linkages.turns.translates import translates_of
 
 
@@ -69,8 +68,9 @@ def _interrupted(atlas: Atlas) -> str:
 
 def _remark(atlas: Atlas) -> str:
     """What to add where the answer is in doubt."""
-    is_in_doubt = atlas.completeness.statement.startswith(IN_DOUBT)
-    return " Some of it is in doubt: see its completeness." if is_in_doubt else ""
+    if not atlas.completeness.is_in_doubt:
+        return ""
+    return " Some of it is in doubt: see its completeness."
 
 
 def _mobile(atlas: Atlas) -> str:
@@ -164,7 +164,7 @@ def _near_motion(motion: NearMotion, unit: ArclengthUnit) -> str:
 def _assemblies(atlas: Atlas, count: int, shaky: int) -> str:
     """In how many assemblies a linkage closes, at least where random starts alone led to
     them."""
-    least = "" if has_all_assemblies(atlas.completeness.statement) else "at least "
+    least = "" if has_all_assemblies(atlas.completeness) else "at least "
     remark = f", {shaky} of them shaky (of lower rank)" if shaky else ""
     if count == shaky == 1:
         remark = ", which is shaky (of lower rank)"

@@ -118,7 +118,7 @@ def explore_system(system: EquationSystem, search: SearchOptions) -> Atlas:
 
 def exit_code_of(atlas: Atlas) -> ExitCode:
     """Whether there are curves, there are none, or nothing is known."""
-    from bifurc.seeds import Level
+    from bifurc.completeness import Level
     from bifurc.systems.verdict import has_only_open_points
 
     if atlas.provenance.interrupted:

@@ -4,11 +4,12 @@ left."""
 import numpy as np
 import pytest
 
+from bifurc.completeness import Claim, Level
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.function_problem import FunctionProblem
 from bifurc.search import search as search_module
 from bifurc.search.explore import explore
-from bifurc.seeds import Audit, Level, Seeds
+from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
@@ -35,7 +36,9 @@ class Hyperbola(FunctionProblem):
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
         seeds = super().seeds(rng, count)
-        audit = Audit(Level.PROVED, "nothing is missing", np.empty((0, 2)))
+        audit = Audit(
+            (Claim("test", "nothing is missing", level=Level.PROVED),), np.empty((0, 2))
+        )
         return Seeds(*list(vars(seeds).values())[:4], lambda branches, seconds: audit)
 
 

@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 
 from bifurc.atlas import Provenance
+from bifurc.completeness import Claim, Level
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.completeness import judge_completeness
 from bifurc.search.findings import Findings
 from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeding import missed_probability
-from bifurc.seeds import Audit, Level, Seeds
+from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
 
 PROBLEM = FunctionProblem(lambda u: np.array([u @ u - 1]), [(-2, 2)] * 2)
@@ -51,7 +52,7 @@ def test_a_start_that_cannot_be_corrected_reached_no_solution():
 @pytest.mark.parametrize("level", ["proved", "certified", "estimated"])
 def test_the_word_of_the_audit_stands_before_the_estimate(level):
     findings = findings_of([FORM] * 10)
-    audit = Audit(Level(level), "so it is", np.empty((0, 2)))
+    audit = Audit((Claim("test", "so it is", level=Level(level)),), np.empty((0, 2)))
     findings.set_audit(audit)
     completeness = judge_completeness(findings, Provenance())
     assert completeness.level == level
@@ -65,10 +66,14 @@ def test_what_ended_a_search_early_is_said_first():
     assert "budget of 2 s was used up with 2 starts not looked at" in late.statement
     assert late.missed_probability == 1.0
     findings = findings_of([FORM, None])
-    findings.set_audit(Audit(Level.PROVED, "so it is", np.empty((0, 2))))
+    findings.set_audit(
+        Audit((Claim("test", "so it is", level=Level.PROVED),), np.empty((0, 2)))
+    )
     assert judge_completeness(findings, provenance).level is Level.OUT_OF_TIME
     proven = findings_of([FORM])
-    proven.set_audit(Audit(Level.PROVED, "so it is", np.empty((0, 2))))
+    proven.set_audit(
+        Audit((Claim("test", "so it is", level=Level.PROVED),), np.empty((0, 2)))
+    )
     assert judge_completeness(proven, provenance).level is Level.OUT_OF_TIME
     stopped = judge_completeness(findings_of([FORM]), Provenance(interrupted=True))
     assert stopped.level is Level.INTERRUPTED

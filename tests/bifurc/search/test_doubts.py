@@ -7,17 +7,18 @@ import pytest
 
 from bifurc.atlas import Provenance
 from bifurc.branch import Branch, Outcome
+from bifurc.completeness import Claim, Doubt, Level
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.blur import blur_along
 from bifurc.search.branch_parts import part_of
-from bifurc.search.completeness import IN_DOUBT, judge_completeness
+from bifurc.search.completeness import judge_completeness
 from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.meeting_points import meeting_points
-from bifurc.seeds import Audit, Level
+from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint
@@ -36,21 +37,21 @@ def test_curves_beside_a_surface_are_told_from_it():
     assert [len(atlas.forms), len(atlas.bifurcations)] == [2, 2]
     assert all(form.branch.closed for form in atlas.forms)
     assert not atlas.surfaces and not len(atlas.rigid)
-    assert IN_DOUBT not in atlas.completeness.statement
+    assert not atlas.completeness.is_in_doubt
 
 
 def test_a_surface_that_misses_by_more_than_rounding_is_in_doubt():
     atlas = explore(CirclesBesideSphere(1e-13), settings=FEW)
     assert len(atlas.surfaces) == 1
     statement = atlas.completeness.statement
-    assert statement.startswith(f"{IN_DOUBT}surface 1 may be a surface, or curves")
+    assert statement.startswith("in doubt: surface 1 may be a surface, or curves")
     assert atlas.completeness.level is Level.ESTIMATED
 
 
 def test_a_surface_is_not_in_doubt():
     atlas = explore(SPHERE, settings=FEW)
     assert len(atlas.surfaces) == 1
-    assert IN_DOUBT not in atlas.completeness.statement
+    assert not atlas.completeness.is_in_doubt
 
 
 def traced(problem, branch: Branch) -> TracedBranch:
@@ -63,28 +64,32 @@ def traced(problem, branch: Branch) -> TracedBranch:
 def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
     clear = CirclesBesideSphere(1e-3)
     branch = trace_branch(clear, clear.points(3)[1])
-    assert doubts_of(clear, [traced(clear, branch)], [], [], []) == ()
+    assert doubts_of(clear, [traced(clear, branch)], [], [], []) == []
     # the great circle is a solution whatever e is
     blurred = CirclesBesideSphere(1e-10)
     (doubt,) = doubts_of(blurred, [traced(blurred, branch)], [], [], [])
-    assert doubt.startswith("form 1 may be a curve or a part of a surface")
+    assert doubt.text.startswith("form 1 may be a curve or a part of a surface")
 
 
 def test_a_form_that_stalls_at_nothing_known_is_in_doubt():
     problem = CirclesBesideSphere(1.0)
     branch = trace_branch(problem, problem.points(3)[1])
-    assert doubts_of(problem, [traced(problem, branch)], [], [], []) == ()
+    assert doubts_of(problem, [traced(problem, branch)], [], [], []) == []
     loose = replace(branch, outcome=Outcome.STALLED)
     (doubt,) = doubts_of(problem, [traced(problem, loose)], [], [], [])
-    assert doubt.startswith("form 1 stalls at 2 of its 2 ends")
+    assert doubt.text.startswith("form 1 stalls at 2 of its 2 ends")
 
 
 @pytest.mark.parametrize("level", [Level.PROVED, Level.CERTIFIED])
 def test_nothing_is_proved_of_an_answer_in_doubt(level):
     findings = Findings(SPHERE)
-    findings.set_audit(Audit(level, "no motion is missing", np.empty((0, 3))))
+    findings.set_audit(
+        Audit((Claim("test", "no motion is missing", level=level),), np.empty((0, 3)))
+    )
     assert judge_completeness(findings, Provenance()).level is level
-    completeness = judge_completeness(findings, Provenance(), ["B1 is undecided"])
+    completeness = judge_completeness(
+        findings, Provenance(), [Doubt("undecided", "B1 is undecided")]
+    )
     assert completeness.level is Level.ESTIMATED
     assert completeness.statement.startswith("in doubt: B1 is undecided; no motion")
 
@@ -96,7 +101,7 @@ def test_a_form_that_ends_at_a_cusp_and_at_the_bounds_is_not_in_doubt(power):
     )
     atlas = explore(problem, settings=SearchSettings(starts=40))
     assert [point.kind for point in atlas.points] == [Kind.CUSP]
-    assert IN_DOUBT not in atlas.completeness.statement
+    assert not atlas.completeness.is_in_doubt
 
 
 def test_a_point_is_in_doubt_for_what_it_misses_in_many_digits():
@@ -104,25 +109,24 @@ def test_a_point_is_in_doubt_for_what_it_misses_in_many_digits():
     for error, is_doubtful in ((1e-14, True), (0.0, False)):
         loop = four_bar(1.0, 2.0, 2.0 + error, 1.0)
         atlas = explore(LoopClosure(loop), settings=FEW)
-        statement = atlas.completeness.statement
-        assert (IN_DOUBT in statement) is is_doubtful
+        assert atlas.completeness.is_in_doubt is is_doubtful
 
 
 def test_an_unknown_that_rounding_may_move_is_in_doubt():
     atlas = map_linkage(kite(1.0, 1e-7))
     statement = atlas.completeness.statement
-    assert statement.startswith(IN_DOUBT)
+    assert statement.startswith("in doubt: ")
     assert "rounding hides whether these unknowns stand still" in statement
     plain = map_linkage(kite(1.0, 1e-2))
-    assert IN_DOUBT not in plain.completeness.statement
+    assert not plain.completeness.is_in_doubt
 
 
 def test_forms_that_end_where_no_bounds_are_given_are_in_doubt():
     parabola = FunctionProblem(lambda u: [u[1] - u[0] ** 2], [(-2, 2), (-1, np.inf)])
-    assert IN_DOUBT not in explore(parabola).completeness.statement
+    assert not explore(parabola).completeness.is_in_doubt
     free = FunctionProblem(lambda u: [u[1] - u[0] ** 2], [(-np.inf, np.inf)] * 2)
     statement = explore(free).completeness.statement
-    assert statement.startswith(IN_DOUBT)
+    assert statement.startswith("in doubt: ")
     assert "no bounds on u2" in statement
 
 
@@ -144,10 +148,10 @@ def test_a_point_with_fewer_branches_traced_than_seen_is_in_doubt():
     whole = meeting_points(problem, [point], branches, (), periods)
     assert whole[0].note == ""
     lines = [traced(problem, branch) for branch in branches]
-    assert doubts_of(problem, lines, [], whole, ()) == ()
+    assert doubts_of(problem, lines, [], whole, ()) == []
     lacking = meeting_points(problem, [point], branches[:1], (), periods)
     (doubt,) = doubts_of(problem, lines[:1], [], lacking, ())
-    assert "2 half-branches were traced, the section shows 4" in doubt
+    assert "2 half-branches were traced, the section shows 4" in doubt.text
 
 
 def test_a_bifurcation_with_another_count_of_branches_is_said_not_to_be_whole():
@@ -190,7 +194,7 @@ def test_crossings_that_doubles_do_not_tell_apart_are_in_doubt(distance, seed):
     problem = FunctionProblem(function, [(-2, 2)] * 2)
     atlas = explore(problem, settings=FEW, seed=seed)
     missing = 3 - len(atlas.bifurcations)
-    assert (IN_DOUBT in atlas.completeness.statement) == (missing > 0)
+    assert atlas.completeness.is_in_doubt == (missing > 0)
     if missing:
         more = f"the exact equations have {missing} more singular point"
         assert more in atlas.completeness.statement

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
+from bifurc.completeness import Claim, Level
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
@@ -13,7 +14,7 @@ from bifurc.decisions import is_same_point
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.seed_fates import Fate, SeedFate
-from bifurc.seeds import Audit, Level, Seeds
+from bifurc.seeds import Audit, Seeds
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import Neighbourhood
 from bifurc.singular.point import SingularPoint
@@ -117,7 +118,9 @@ def test_a_rigid_assembly_keeps_its_number(findings):
 
 
 def test_an_audit_is_due_until_it_has_seen_every_branch(findings):
-    audit = Audit(Level.PROVED, "none is missing", np.empty((0, 2)))
+    audit = Audit(
+        (Claim("test", "none is missing", level=Level.PROVED),), np.empty((0, 2))
+    )
     assert findings.awaits_audit
     findings.set_audit(audit)
     assert not findings.awaits_audit

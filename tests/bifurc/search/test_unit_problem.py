@@ -10,6 +10,7 @@ from scipy.special import ellipe
 
 import bifurc
 from bifurc.branch import Outcome
+from bifurc.completeness import Claim
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.search.unit_problem import in_own_units
 from bifurc.seeds import Audit
@@ -315,7 +316,10 @@ class Hyperbola(bifurc.FunctionProblem):
     def seeds(self, rng, count):
         def audit(branches, seconds):
             self.audited.extend(branches)
-            return Audit(bifurc.Level.PROVED, "nothing is missing", np.empty((0, 2)))
+            return Audit(
+                (Claim("test", "nothing is missing", level=bifurc.Level.PROVED),),
+                np.empty((0, 2)),
+            )
 
         return replace(super().seeds(rng, count), audit=audit)
 

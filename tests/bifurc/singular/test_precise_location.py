@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc import FunctionProblem, explore
-from bifurc.seeds import Level
+from bifurc.completeness import Level
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.precise_location import precisely_located
 

@@ -9,8 +9,8 @@ import pytest
 import linkages
 from bifurc import SearchSettings
 from bifurc.branch import Outcome
+from bifurc.completeness import Level
 from bifurc.curves.continuation import trace_branch
-from bifurc.seeds import Level
 from linkages.closure.cut_at_limits import (
     CutMotions,
     cut_motions,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.seeds import Level
+from bifurc.completeness import Level
 from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.dyads.slices import SLICES, slice_by_dyads

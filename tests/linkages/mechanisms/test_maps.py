@@ -9,7 +9,7 @@ import pytest
 import linkages
 from bifurc.atlas import Atlas
 from bifurc.branch import Outcome
-from bifurc.seeds import Level
+from bifurc.completeness import Level
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from linkages.mechanisms.joint import Joint

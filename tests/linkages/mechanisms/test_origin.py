@@ -6,8 +6,8 @@ from decimal import Decimal
 import pytest
 
 import linkages
+from bifurc.completeness import Level
 from bifurc.files.dataset import load_atlas, save_atlas
-from bifurc.seeds import Level
 from linkages.app.texts.summary import make_summary
 from linkages.file import LinkageFileError, read_file
 from linkages.files.toml_text import mechanism_toml

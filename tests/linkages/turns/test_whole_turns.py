@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import linkages
+from bifurc.completeness import Level
 from bifurc.curves.continuation import trace_branch
-from bifurc.seeds import Level
 from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling

@@ -1,0 +1,243 @@
+"""How sure it is that nothing is missing from an answer: claims and doubts as records.
+
+What was shown is a `Claim`, what is open a `Doubt`: a kind, numbers, and the words into
+which these are put at last. A program asks the records; the words are for people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from enum import Enum, StrEnum
+from typing import Any, TypedDict
+
+from bifurc.text_tables import count_of
+
+
+class Level(StrEnum):
+    """How sure it is that nothing is missing."""
+
+    # None is missing.
+    PROVED = "proved"
+    # None is missing that is larger than the statement says.
+    CERTIFIED = "certified"
+    # One more random start finds something new with at most the stated probability.
+    ESTIMATED = "estimated"
+    # The time was over before all starts were looked at.
+    OUT_OF_TIME = "out of time"
+    # Ctrl-C ended the search.
+    INTERRUPTED = "interrupted"
+
+
+BEST_FIRST = tuple(Level)
+
+
+class Scope(StrEnum):
+    """What a claim is about."""
+
+    # Branches and surfaces.
+    MOTIONS = "motions"
+    # Isolated solutions.
+    ASSEMBLIES = "assemblies"
+    # All that random starts reached.
+    STARTS = "starts"
+    # The search itself: whether it came to its end.
+    SEARCH = "search"
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A ``kind`` of statement with its ``data``, values that JSON can hold, and the
+    ``words`` with fields for these."""
+
+    kind: str
+    words: str
+    data: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def text(self) -> str:
+        """The statement in English."""
+        return self.words.format(**_shown(self.data))
+
+
+@dataclass(frozen=True)
+class Claim(Statement):
+    """What is known of a ``scope``: nothing is missing from it to this ``level``. None
+    where the statement says how something is listed, and claims nothing."""
+
+    scope: Scope = Scope.MOTIONS
+    level: Level | None = None
+
+
+@dataclass(frozen=True)
+class Doubt(Statement):
+    """What is open of a ``subject``, a form or a point by name, all where it is empty;
+    ``amount`` is the number on which that hangs, 0 where there is none."""
+
+    subject: str = ""
+    amount: float = 0.0
+
+    @property
+    def text(self) -> str:
+        """The doubt in English."""
+        own = {"subject": self.subject, "amount": self.amount}
+        return self.words.format(**own, **_shown(self.data))
+
+
+class ClaimKind(Enum):
+    """Kinds of claims; the value of each is its words."""
+
+    def claim(self, scope: Scope, level: Level | None, **data: Any) -> Claim:
+        """A claim of this kind."""
+        kind = self.name.lower().replace("_", " ")
+        return Claim(kind, self.value, data, scope, level)
+
+    def is_kind_of(self, claim: Claim) -> bool:
+        """Whether a claim is of this kind."""
+        return claim.kind == self.name.lower().replace("_", " ")
+
+
+class DoubtKind(Enum):
+    """Kinds of doubts; the value of each is its words."""
+
+    def doubt(self, subject: str = "", amount: float = 0.0, **data: Any) -> Doubt:
+        """A doubt of this kind."""
+        kind = self.name.lower().replace("_", " ")
+        return Doubt(kind, self.value, data, subject, float(amount))
+
+
+def worst_level(claims: Iterable[Claim]) -> Level | None:
+    """The level of what the claims say together; None where they claim nothing."""
+    levels = [claim.level for claim in claims if claim.level is not None]
+    return max(levels, key=BEST_FIRST.index, default=None)
+
+
+@dataclass(frozen=True)
+class Completeness:
+    """How sure it is that nothing is missing: what is claimed, and what is in doubt.
+
+    ``missed_probability`` bounds the chance that one more random start would reach
+    something new.
+    """
+
+    claims: tuple[Claim, ...]
+    doubts: tuple[Doubt, ...]
+    missed_probability: float
+
+    @property
+    def level(self) -> Level:
+        """That of the worst claim; of an answer in doubt nothing is proved."""
+        level = worst_level(self.claims) or Level.ESTIMATED
+        if self.doubts:
+            return max(level, Level.ESTIMATED, key=BEST_FIRST.index)
+        return level
+
+    @property
+    def is_in_doubt(self) -> bool:
+        """Whether something in the answer is not decided."""
+        return bool(self.doubts)
+
+    @property
+    def statement(self) -> str:
+        """All of it in English."""
+        claims = "; ".join(claim.text for claim in self.claims)
+        if not self.doubts:
+            return claims
+        doubts = "; ".join(doubt.text for doubt in self.doubts)
+        return f"in doubt: {doubts}; {claims}"
+
+
+class ClaimDocument(TypedDict):
+    """A claim in values that JSON can hold."""
+
+    kind: str
+    scope: str
+    level: str | None
+    data: dict[str, Any]
+    text: str
+
+
+class DoubtDocument(TypedDict):
+    """A doubt in values that JSON can hold."""
+
+    kind: str
+    subject: str
+    amount: float
+    data: dict[str, Any]
+    text: str
+
+
+class CompletenessDocument(TypedDict):
+    """All that is known of completeness, in values that JSON can hold."""
+
+    level: str
+    claims: list[ClaimDocument]
+    doubts: list[DoubtDocument]
+    statement: str
+    missed_probability: float
+
+
+def completeness_document(completeness: Completeness) -> CompletenessDocument:
+    """What JSON documents say of completeness: every claim and every doubt with its
+    numbers and its text, and all of it in one sentence."""
+    return {
+        "level": completeness.level.value,
+        "claims": [
+            {
+                "kind": claim.kind,
+                "scope": claim.scope.value,
+                "level": None if claim.level is None else claim.level.value,
+                "data": dict(claim.data),
+                "text": claim.text,
+            }
+            for claim in completeness.claims
+        ],
+        "doubts": [
+            {
+                "kind": doubt.kind,
+                "subject": doubt.subject,
+                "amount": doubt.amount,
+                "data": dict(doubt.data),
+                "text": doubt.text,
+            }
+            for doubt in completeness.doubts
+        ],
+        "statement": completeness.statement,
+        "missed_probability": completeness.missed_probability,
+    }
+
+
+# --- how data are shown in words ------------------------------------------------------
+
+
+class _Count(int):
+    """A number that "{forms:form}" shows with its noun: 1 form, 2 forms."""
+
+    def __format__(self, noun: str) -> str:
+        return count_of(self, noun) if noun else str(int(self))
+
+
+def _shown(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The data as words show them: numbers of things with nouns, lists by commas,
+    ``places``, intervals of arclengths, by the first one."""
+    shown: dict[str, Any] = {}
+    for key, value in data.items():
+        if key == "places":
+            shown[key] = _places(value)
+        elif isinstance(value, list | tuple):
+            shown[key] = ", ".join(map(str, value))
+        elif isinstance(value, int):
+            shown[key] = _Count(value)
+        else:
+            shown[key] = value
+    return shown
+
+
+def _places(intervals: list[tuple[float, float]]) -> str:
+    """The first of some intervals, and how many more there are."""
+    low, high = intervals[0]
+    places = f"between s = {low:.6g} and {high:.6g}"
+    more = len(intervals) - 1
+    if more:
+        places += f" and at {more} more places"
+    return places
