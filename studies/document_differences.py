@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from bifurc import Scope
 from linkages.app.answer.document import MapDocument
 
 Json: TypeAlias = Any  # a value that JSON can hold
@@ -20,7 +21,6 @@ OF_THE_RUN = frozenset(
     {"seconds", "seed", "version", "missed_probability", "error", "max_residual"}
 )
 ANGLES = frozenset({"theta", "sample"})  # compared modulo full turns
-RANDOM_STARTS = "random starts"  # what a statement says of these belongs to the run
 CLOSE = 1e-9  # of two numbers: their difference, over 1 or their size
 # A minimum of height v is flat: its place is known to the root of what its value is.
 NEAR_MISS = 1e-6
@@ -42,15 +42,11 @@ def _of_the_linkage(key: str, document: Mapping[str, Json]) -> Json:
     """The value of a key without what belongs to the run."""
     value = document[key]
     if key == "completeness":
-        return {**value, "statement": _without_estimate(value["statement"])}
+        claims = [one for one in value["claims"] if one["scope"] != Scope.STARTS]
+        return {**value, "claims": claims, "statement": None}
     if key == "forms":
         return [_without_random_sample(form) for form in value]
     return value
-
-
-def _without_estimate(statement: str) -> str:
-    parts = statement.split("; ")
-    return "; ".join(part for part in parts if RANDOM_STARTS not in part)
 
 
 def _without_random_sample(form: Mapping[str, Json]) -> Json:

@@ -37,6 +37,7 @@ from bifurc.files.faults import missing_variables, table_faults
 from bifurc.files.form_layout import FORMS, read_form
 from bifurc.files.json_values import mapping_from_text, to_text
 from bifurc.files.layout import (
+    ASSEMBLIES,
     TABLES,
     UNKNOWNS,
     atlas_frame,
@@ -69,6 +70,7 @@ LINKAGE_UNITS = {"twists": "rad"}
 # Attributes of the dataset from which an atlas is read; the others are for the reader.
 NEEDED_ATTRIBUTES = (
     "unknown_dimension",
+    "filled_dimensions",
     "closure_gap",
     "completeness",
     "provenance",
@@ -94,11 +96,11 @@ def save_atlas(
     check_type("atlas", atlas, Atlas)
     frame = atlas_frame(atlas)
     variables = _variables(atlas, frame)
+    attributes = _attributes(atlas, frame, variables)
     twice = sorted(variables.keys() & more.keys())
     if twice:
         raise ValueError(f"more: {', '.join(twice)} are variables of the atlas")
-    variables |= more
-    attributes = _attributes(atlas, frame)
+    variables |= {name: one for name, one in more.items() if one.values.size}
     now = datetime.now(UTC).isoformat(timespec="seconds")
     attributes["date_created"] = now
     attributes["history"] = f"{now} written by {attributes['source']}"
@@ -163,7 +165,7 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
 
     Its dimensions are ``form``, ``sample``, ``joint`` (``unknown`` where the unknowns
     are not all angles), ``singular_value``, ``piece``, ``power``, ``point`` (singular
-    points), ``pass`` and others named after what they count. ``sample`` runs over the
+    points), ``pass`` and others named after what they count, those that the atlas fills. ``sample`` runs over the
     points at which the singular values were taken, denser where the curve bends more.
     Entries of ``atlas.subject`` become variables along ``joint`` and attributes
     called ``linkage_...``, or after the ``kind`` of the subject.
@@ -173,16 +175,17 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
     check_type("atlas", atlas, Atlas)
     frame = atlas_frame(atlas)
     no_value_is_missing = {"_FillValue": None}
-    variables = {
+    variables = _variables(atlas, frame)
+    of_xarray = {
         name: xr.Variable(
             variable.dimensions,
             variable.values,
             variable.attributes,
             encoding=no_value_is_missing,
         )
-        for name, variable in _variables(atlas, frame).items()
+        for name, variable in variables.items()
     }
-    return xr.Dataset(variables, attrs=_attributes(atlas, frame))
+    return xr.Dataset(of_xarray, attrs=_attributes(atlas, frame, variables))
 
 
 def _variables(atlas: Atlas, frame: Frame) -> dict[str, Variable]:
@@ -193,9 +196,12 @@ def _variables(atlas: Atlas, frame: Frame) -> dict[str, Variable]:
     return variables | _subject_variables(atlas, frame)
 
 
-def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
+def _attributes(
+    atlas: Atlas, frame: Frame, variables: Mapping[str, Variable]
+) -> dict[str, Attribute]:
     """Attributes of the whole dataset: what it is and where it comes from."""
     release = _release()
+    filled = {name for one in variables.values() for name in one.dimensions}
     provenance = atlas.provenance
     settings = provenance.settings
     attributes: dict[str, Attribute] = {
@@ -218,6 +224,7 @@ def _attributes(atlas: Atlas, frame: Frame) -> dict[str, Attribute]:
         "source": f"bifurc {release}",
         "version": release,
         "unknown_dimension": frame.joint,
+        "filled_dimensions": " ".join(sorted(filled)),
         "closure_gap": float(atlas.closure_gap),
         "completeness_level": atlas.completeness.level.value,
         "completeness_statement": atlas.completeness.statement,
@@ -316,6 +323,11 @@ def _check_content(dataset: xr.Dataset, frame: Frame, source: str) -> None:
     for table in TABLES:
         for fault in table_faults(table, dataset, frame):
             raise AtlasFileError(source, fault)
+        for column in table.columns:
+            name = frame.name(column.name)
+            if name in dataset.variables and not table.is_filled(column, frame):
+                reason = f"its attribute 'filled_dimensions' leaves out those of {name}"
+                raise AtlasFileError(source, reason, ["filled_dimensions"])
 
 
 def _make_atlas(dataset: xr.Dataset, frame: Frame) -> Atlas:
@@ -332,7 +344,7 @@ def _make_atlas(dataset: xr.Dataset, frame: Frame) -> Atlas:
         points=tuple(read_point(row) for row in POINTS.rows(dataset, frame)),
         near_misses=tuple(map(read_near_miss, NEAR_MISSES.rows(dataset, frame))),
         dead_points=tuple(map(read_dead_point, DEAD_POINTS.rows(dataset, frame))),
-        rigid=dataset["rigid_assembly"].values,
+        rigid=_read_rigid(dataset, frame),
         surfaces=tuple(
             read_surface(row, periods) for row in SURFACES.rows(dataset, frame)
         ),
@@ -365,6 +377,11 @@ def _read_completeness(text: str) -> Completeness:
     doubts = tuple(Doubt(**doubt) for doubt in values["doubts"])
     missed = float(values["missed_probability"])
     return Completeness(tuple(claims), doubts, missed)
+
+
+def _read_rigid(dataset: xr.Dataset, frame: Frame) -> np.ndarray:
+    rows = [row["rigid_assembly"] for row in ASSEMBLIES.rows(dataset, frame)]
+    return np.array(rows).reshape(-1, frame.sizes[JOINT])
 
 
 def _read_diagram(dataset: xr.Dataset, frame: Frame) -> Diagram | None:

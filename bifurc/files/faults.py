@@ -31,7 +31,8 @@ def table_faults(
     Dimensions and types must be those of the columns, counts must add up, and indices
     must be those of something.
     """
-    for column in table.columns:
+    columns = [one for one in table.columns if table.is_filled(one, frame)]
+    for column in columns:
         variable = dataset.variables[frame.name(column.name)]
         dimensions = table.dimensions(column, frame)
         if variable.dims != dimensions:
@@ -47,7 +48,8 @@ def table_faults(
         else:
             yield from _size_faults(column, dataset, frame)
             yield from _index_faults(column, dataset, frame)
-    for dimension, is_padded in table.entry_dimensions.items():
+    padded = {one.entries: one.is_padded for one in columns if one.entries}
+    for dimension, is_padded in padded.items():
         yield from _count_faults(table.owner, dimension, is_padded, dataset)
 
 
@@ -66,7 +68,7 @@ def _index_faults(
 ) -> Iterator[str]:
     if not column.index_of:
         return
-    count = dataset.sizes[frame.name(column.index_of)]
+    count = dataset.sizes.get(frame.name(column.index_of), 0)
     indices = dataset[column.name].values
     if np.any((indices < 0) | (indices >= count)):
         yield f"{column.name} holds an index that none of {count} has"

@@ -87,9 +87,12 @@ def atlas_frame(atlas: Atlas) -> Frame:
 
 
 def dataset_frame(dataset: xr.Dataset) -> Frame:
-    """The same of a dataset, but for the unit and the degree of the pieces."""
+    """The same of a dataset that is read, but for the unit."""
     joint = str(dataset.attrs.get("unknown_dimension", JOINT))
-    return Frame(joint, "", _sizes(dataset.sizes.get(joint, 0)))
+    filled = frozenset(str(dataset.attrs.get("filled_dimensions", "")).split())
+    sizes = _sizes(dataset.sizes.get(joint, 0))
+    sizes |= {"power": dataset.sizes.get("power", 1)}
+    return Frame(joint, "", sizes, filled)
 
 
 def _sizes(n: int) -> dict[str, int]:

@@ -5,6 +5,8 @@ A table has a row for each record and a column for each variable. Where a record
 several values in a column, those of all records are joined, one behind the other (CF:
 contiguous ragged array), or padded with NaN. How many values each record has stands in
 the variable ``..._count``; its attribute ``sample_dimension`` names what it counts.
+A dataset has the variables that its atlas fills: a table without records, and a column
+without a single value, are left out of it, and read as empty.
 """
 
 from __future__ import annotations
@@ -35,12 +37,14 @@ class Frame:
     """What all variables of one dataset share.
 
     ``joint`` is the name of the dimension of the unknowns, ``unit`` the unit that all
-    of them have. ``sizes`` are those of the dimensions of single values.
+    of them have. ``sizes`` are those of the dimensions of single values, ``filled`` the
+    dimensions of a dataset that is read.
     """
 
     joint: str
     unit: str
     sizes: Mapping[str, int]
+    filled: frozenset[str] = frozenset()
 
     def name(self, name: str) -> str:
         """What a variable or dimension is called in this dataset."""
@@ -90,8 +94,7 @@ class Column(Generic[Record]):
                 row[: len(cell)] = cell
             return out
         if self.entries:
-            nothing: np.ndarray = np.empty((0, *shape), dtype=self.dtype)
-            return np.concatenate([nothing, *cells])
+            return np.concatenate([self.no_values(frame), *cells])
         return np.array(cells, dtype=self.dtype).reshape(len(cells), *shape)
 
     def split(self, values: np.ndarray, counts: np.ndarray) -> list[np.ndarray]:
@@ -107,6 +110,10 @@ class Column(Generic[Record]):
         if self.entries:
             return np.split(values, np.cumsum(counts))[: len(counts)]
         return list(values)
+
+    def no_values(self, frame: Frame) -> np.ndarray:
+        """What a record without a single value has."""
+        return np.empty((0, *self._shape(frame)), dtype=self.dtype)
 
     def _shape(self, frame: Frame) -> tuple[int, ...]:
         """Shape of a single value."""
@@ -124,20 +131,17 @@ class Table(Generic[Record]):
     records: Callable[[Atlas], Sequence[Record]]
     columns: tuple[Column[Record], ...]
 
-    @property
-    def entry_dimensions(self) -> dict[str, bool]:
-        """The dimensions that count the entries of a record, and whether these are
-        padded."""
-        return {
-            column.entries: column.is_padded
-            for column in self.columns
-            if column.entries
-        }
+    def is_filled(self, column: Column[Record], frame: Frame) -> bool:
+        """Whether a dataset that is read has the variable of a column."""
+        counting = column.entries or self.owner
+        return {frame.name(self.owner), frame.name(counting)} <= frame.filled
 
     def names(self, frame: Frame) -> list[str]:
-        """Names of all variables."""
-        names = [frame.name(column.name) for column in self.columns]
-        return names + [count_name(dimension) for dimension in self.entry_dimensions]
+        """Names of all variables that a dataset has which is read."""
+        columns = [column for column in self.columns if self.is_filled(column, frame)]
+        counts = [count_name(column.entries) for column in columns if column.entries]
+        names = [frame.name(column.name) for column in columns]
+        return names + list(dict.fromkeys(counts))
 
     def dimensions(self, column: Column[Record], frame: Frame) -> tuple[str, ...]:
         """Dimensions of the variable of a column."""
@@ -149,11 +153,15 @@ class Table(Generic[Record]):
         return tuple(frame.name(name) for name in names)
 
     def variables(self, atlas: Atlas, frame: Frame) -> dict[str, Variable]:
-        """The variables of an atlas by their names."""
+        """The variables of an atlas by their names, but for those without values."""
         records = self.records(atlas)
-        variables = {}
+        variables: dict[str, Variable] = {}
+        if not len(records):
+            return variables
         for column in self.columns:
             cells = [column.cell(record, frame) for record in records]
+            if column.entries and not any(map(len, cells)):
+                continue
             units = frame.unit if column.units == UNIT else column.units
             variables[frame.name(column.name)] = make_variable(
                 self.dimensions(column, frame),
@@ -174,14 +182,19 @@ class Table(Generic[Record]):
 
     def rows(self, dataset: xr.Dataset, frame: Frame) -> list[Row]:
         """What each record has, from a dataset whose variables fit the columns."""
+        if frame.name(self.owner) not in frame.filled:
+            return []
+        count = dataset.sizes[frame.name(self.owner)]
         cells = {}
         for column in self.columns:
             name = frame.name(column.name)
+            if not self.is_filled(column, frame):
+                cells[column.name] = count * [column.no_values(frame)]
+                continue
             counts = np.empty(0, dtype=int)
             if column.entries:
                 counts = dataset[count_name(column.entries)].values
             cells[column.name] = column.split(dataset[name].values, counts)
-        count = dataset.sizes[frame.name(self.owner)]
         return [{name: cells[name][i] for name in cells} for i in range(count)]
 
 

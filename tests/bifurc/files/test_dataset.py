@@ -129,7 +129,7 @@ def test_a_file_of_an_older_layout_is_refused_with_both_versions(
     dataset.attrs["format_version"] = 1
     dataset.to_netcdf(tmp_path / "old.nc")
     with pytest.raises(
-        AtlasFileError, match=r"old\.nc: its format version is 1; this release reads 8"
+        AtlasFileError, match=r"old\.nc: its format version is 1; this release reads 9"
     ):
         load_atlas(tmp_path / "old.nc")
 
@@ -362,7 +362,10 @@ def test_values_that_do_not_fit_together_are_refused(
         ("unknown_dimension", "nowhere"),
         ("unknown_dimension", 1.0),
         ("closure_gap", "small"),
-        ("missed_probability", np.array([0.1, 0.2])),
+        ("completeness", "{}"),
+        ("completeness", '{"claims": [], "doubts": [1], "missed_probability": 0.1}'),
+        ("filled_dimensions", "joint"),
+        ("filled_dimensions", 1.0),
         ("provenance", "{"),
         ("provenance", "{}"),
         ("provenance", '{"settings": 1}'),
@@ -383,11 +386,30 @@ def test_an_attribute_of_a_wrong_kind_is_refused(
 
 
 def test_every_missing_attribute_that_is_read_is_named(atlas: Atlas) -> None:
-    for name in ("closure_gap", "provenance", "subject", "completeness_level"):
+    for name in ("closure_gap", "provenance", "subject", "completeness"):
         dataset = to_dataset(atlas)
         del dataset.attrs[name]
         with pytest.raises(AtlasFileError, match=f"it lacks {name}"):
             from_dataset(dataset)
+
+
+def test_a_dataset_has_no_variable_that_its_atlas_does_not_fill(difference) -> None:
+    circle = FunctionProblem(lambda u: [u @ u - 1.0], [(-2.0, 2.0)] * 2)
+    atlas = explore(circle)
+    dataset = to_dataset(atlas)
+    assert {"form", "sample", "piece"} <= set(dataset.dims)
+    assert not {"point", "near_miss", "surface", "assembly"} & set(dataset.dims)
+    assert all(variable.size for variable in dataset.variables.values())
+    assert difference(from_dataset(dataset), atlas) == ""
+
+
+def test_what_is_left_out_of_a_dataset_is_not_lost_in_silence(atlas: Atlas) -> None:
+    dataset = to_dataset(atlas)
+    filled = dataset.attrs["filled_dimensions"].split()
+    filled.remove("point")
+    dataset.attrs["filled_dimensions"] = " ".join(filled)
+    with pytest.raises(AtlasFileError, match="'filled_dimensions' leaves out"):
+        from_dataset(dataset)
 
 
 # --- writing --------------------------------------------------------------------------

@@ -160,7 +160,7 @@ def test_a_bifurcation_with_another_count_of_branches_is_said_not_to_be_whole():
     met = meeting_points(problem, [fewer], branches, (), np.full(2, np.inf))
     lines = [traced(problem, branch) for branch in branches]
     (doubt,) = doubts_of(problem, lines, [], met, ())
-    assert doubt == (
+    assert doubt.text == (
         f"{met[0].name} (bifurcation) is not whole: 4 half-branches were traced, the "
         "section shows 2"
     )
@@ -178,7 +178,7 @@ def test_halves_of_a_curve_that_stall_at_a_bifurcation_are_in_doubt():
     assert met[0].note == ""
     forms = [traced(problem, branch) for branch in branches]
     (doubt,) = doubts_of(problem, forms, [], met, ())
-    assert doubt == (
+    assert doubt.text == (
         f"forms 1 and 2 stall at {met[0].name} in opposite directions and may be one "
         "curve through it"
     )
