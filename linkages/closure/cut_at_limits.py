@@ -151,12 +151,16 @@ class CutMotions:
 
 
 def _claims_of(completeness: Completeness) -> tuple[Claim, ...]:
-    """All that is said of a map, as claims: its doubts are one of them."""
+    """All that is said of a map, as claims: its doubts are one of them, and that it
+    ended early leaves open what is missing."""
+    claims = tuple(
+        replace(claim, level=Level.ESTIMATED) if claim.scope is Scope.SEARCH else claim
+        for claim in completeness.claims
+    )
     if not completeness.doubts:
-        return completeness.claims
+        return claims
     doubts = "; ".join(doubt.text for doubt in completeness.doubts)
-    claim = estimated(LinkageClaim.DOUBT_WITHOUT_LIMITS, doubts=doubts)
-    return (claim, *completeness.claims)
+    return (estimated(LinkageClaim.DOUBT_WITHOUT_LIMITS, doubts=doubts), *claims)
 
 
 def cut_motions(structure: Structure, single: SingleLoop, branch: Branch) -> Stretches:

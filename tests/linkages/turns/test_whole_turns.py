@@ -60,12 +60,14 @@ def audit_of(number, seconds):
 
 def test_of_many_forms_it_is_said_that_there_are_more():
     audit = audit_of(whole_turns.MOST_FORMS + 1, 1.0)
-    assert f"at least {whole_turns.MOST_FORMS + 1} forms" in audit.statement
+    (claim,) = audit.claims
+    assert f"at least {whole_turns.MOST_FORMS + 1} forms" in claim.text
     assert not len(audit.starts)
 
 
 def test_without_time_for_proofs_none_are_looked_for():
-    assert "at least 1 form in all" in audit_of(1, 0.0).statement
+    (claim,) = audit_of(1, 0.0).claims
+    assert "at least 1 form in all" in claim.text
 
 
 def test_what_is_beside_a_form_is_moved_to_where_it_is_listed():
