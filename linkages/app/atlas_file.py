@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from bifurc.atlas import Atlas
 from bifurc.files.dataset import load_atlas
+from linkages.app.answer.subject import subject_at
 from linkages.app.exit_codes import CommandError
-from linkages.labels import NoLinkageError, loop_of
-from linkages.mechanisms.subject import mechanism_of
+from linkages.labels import NoLinkageError
 
 
 def open_linkage_atlas(path: str) -> Atlas:
@@ -17,8 +17,7 @@ def open_linkage_atlas(path: str) -> Atlas:
     except FileNotFoundError:
         raise CommandError(f"{path}: there is no such file") from None
     try:
-        if mechanism_of(atlas) is None:
-            loop_of(atlas)
+        subject_at(atlas)
     except NoLinkageError as error:
         raise CommandError(f"{path}: {error}") from None
     return atlas

@@ -6,15 +6,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from linkages.app.answer.configurations import readout_of
+from linkages.app.answer.subject import subject_at
 from linkages.app.atlas_file import open_linkage_atlas
-from linkages.app.choice import require_loop
+from linkages.app.choice import require_loop, require_table
 from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
 from linkages.app.inputs import choose_held
 from linkages.app.options import HoldOptions, SearchOptions
 from linkages.linkage import Linkage
-from linkages.mechanisms.subject import mechanism_of
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -67,19 +66,12 @@ def loop_atlas_of(
     a mechanism as well."""
     if is_atlas_file(source):
         atlas = atlas_of(source, parameters, search, hold)
-        mechanism = mechanism_of(atlas)
-        if mechanism is not None:
-            require_loop(source, mechanism)
+        require_table(source, subject_at(atlas).table)
     else:
         linkage = choose_held(source, parameters, hold)
         require_loop(source, linkage)
         atlas = _explored(linkage, search)
-    readout = readout_of(atlas)
-    if readout is None:
-        return atlas
-    from linkages.readout.loop_atlas import in_loop_angles
-
-    return in_loop_angles(atlas, readout)
+    return subject_at(atlas).in_loop_angles()
 
 
 def _explored(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:

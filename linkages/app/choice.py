@@ -30,13 +30,19 @@ def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
     from linkages.readout.readout import Readout
 
     single = Readout(linkage).single_loop
-    if single is None:
+    return require_table(text, None if single is None else single.loop)
+
+
+def require_table(text: str, table: Loop | None) -> Loop:
+    """The table of what is called ``text``; raises `CommandError` where there is
+    none."""
+    if table is None:
         raise CommandError(
             f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, `sweep`, "
             "`clearance`, `tolerance`, `convert` and `export` to .glb and .csv take; "
             "this takes single loops of 4 to 12 revolute joints so far"
         )
-    return single.loop
+    return table
 
 
 def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mechanism:

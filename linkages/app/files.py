@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
-from linkages.app.answer.configurations import readout_of
 from linkages.app.figure_axes import FigureAxes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from bifurc.files.variable import Variable
 
 
 def prepare_folder(folder: Path) -> list[Path]:
@@ -40,36 +42,27 @@ def remove_empty(folders: Iterable[Path]) -> None:
             folder.rmdir()
 
 
-def write_data(atlas: Atlas, folder: Path, summary: str) -> list[Path]:
-    """The paths of atlas.nc, graph.graphml, of a mechanism mechanism.graphml, and
-    summary.txt, just written to ``folder``, all or none; raises `OSError`."""
+def write_data(
+    atlas: Atlas,
+    folder: Path,
+    summary: str,
+    more: Mapping[str, Variable] = MappingProxyType({}),
+    others: Mapping[str, Callable[[Path], object]] = MappingProxyType({}),
+) -> list[Path]:
+    """The paths of atlas.nc, with ``more`` variables, graph.graphml, summary.txt and
+    ``others``, by what writes them, just written to ``folder``, all or none; raises
+    `OSError`."""
+    from bifurc.files.dataset import save_atlas
     from bifurc.files.graphml import write_graphml
 
     def write(stage: Path) -> None:
-        _write_dataset(atlas, stage / "atlas.nc")
+        save_atlas(atlas, stage / "atlas.nc", more)
         write_graphml(atlas, stage / "graph.graphml")
-        readout = readout_of(atlas)
-        if readout is not None:
-            from linkages.mechanisms.graphml import write_mechanism_graph
-
-            write_mechanism_graph(readout.mechanism, stage / "mechanism.graphml")
+        for name, write_other in others.items():
+            write_other(stage / name)
         (stage / "summary.txt").write_text(summary + "\n", encoding="utf-8")
 
     return replace_files(folder, write)
-
-
-def _write_dataset(atlas: Atlas, path: Path) -> None:
-    """Write the dataset of an atlas, of a mechanism with the variables of all joints;
-    raises `OSError`."""
-    from bifurc.files.dataset import save_atlas
-
-    readout = readout_of(atlas)
-    if readout is None:
-        save_atlas(atlas, path)
-        return
-    from linkages.readout.dataset_variables import dataset_variables
-
-    save_atlas(atlas, path, dataset_variables(atlas, readout))
 
 
 USUAL_AXES = FigureAxes()

@@ -6,7 +6,7 @@ for a mechanism that is a single loop."""
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import TYPE_CHECKING, NotRequired, TypedDict
+from typing import TYPE_CHECKING, NotRequired, TypedDict, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,15 +15,11 @@ from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.completeness import CompletenessDocument, completeness_document
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
-from linkages.app.answer.configurations import (
-    loop_angles_of,
-    network_at,
-    numbers_at,
-    readout_of,
-)
-from linkages.app.answer.mobility import gruebler_of, mobility_of
+from linkages.app.answer.configurations import numbers_at
+from linkages.app.answer.mobility import mobility_of
+from linkages.app.answer.subject import subject_at
 from linkages.app.answer.verdict import is_without_gaps
-from linkages.labels import FormLabels, loop_of
+from linkages.labels import FormLabels
 
 if TYPE_CHECKING:
     # they import networkx, which loops do not need
@@ -189,7 +185,7 @@ def make_document(atlas: Atlas) -> MapDocument:
     document: MapDocument = {
         "linkage": _linkage(atlas),
         "mobility": mobility_of(atlas),
-        "gruebler": gruebler_of(atlas),
+        "gruebler": subject_at(atlas).gruebler,
         "forms": forms + surfaces,
         "bifurcations": [_bifurcation(atlas, point) for point in atlas.bifurcations],
         "rank_drops": [_rank_drop(atlas, point) for point in atlas.rank_drops],
@@ -208,58 +204,31 @@ def make_document(atlas: Atlas) -> MapDocument:
         "seed": atlas.provenance.seed,
         "tolerance": atlas.provenance.settings.tracing.tolerance,
     }
-    readout = readout_of(atlas)
-    if readout is not None:
-        from linkages.app.answer.mechanism_document import describe_mechanism
-
-        document["mechanism"] = describe_mechanism(atlas, readout)
-    network = network_at(atlas)
-    if network is not None:
-        document["network"] = {
-            "name": network.placed.network.name,
-            "parameters": dict(network.placed.network.parameters),
-            "kinks": network.kinks,
-        }
-    return document
+    return cast(MapDocument, {**document, **subject_at(atlas).document()})
 
 
 def _add_variables(
     atlas: Atlas, document: PlaceDocument, theta: NDArray[np.float64]
 ) -> None:
     """Add the variables of a mechanism at a configuration (n,); nothing for a loop."""
-    readout = readout_of(atlas)
-    if readout is not None:
-        document["variables"] = readout.variables(theta)
-    network = network_at(atlas)
-    if readout is not None and network is not None:
-        from linkages.app.texts.network_text import ring_values
-
-        values = readout.values(theta[None])[0].tolist()
-        by_label = dict(zip(readout.labels(), values, strict=True))
-        document["ring_angles"] = ring_values(network, by_label)
+    document.update(cast(PlaceDocument, subject_at(atlas).place(theta)))
 
 
 def _assembly(
     atlas: Atlas, theta: NDArray[np.float64]
 ) -> list[float] | AssemblyDocument:
-    if readout_of(atlas) is None:
-        return numbers_at(atlas, theta)
-    document: AssemblyDocument = {"theta": numbers_at(atlas, theta)}
-    _add_variables(atlas, document, theta)
-    return document
+    numbers = numbers_at(atlas, theta)
+    place = subject_at(atlas).place(theta)
+    return cast(AssemblyDocument, {"theta": numbers, **place}) if place else numbers
 
 
 def _linkage(atlas: Atlas) -> LinkageDocument:
-    readout = readout_of(atlas)
-    if readout is None:
-        loop = loop_of(atlas)
-    elif readout.single_loop is not None:
-        loop = readout.single_loop.loop
-    else:
-        return {"name": readout.mechanism.name}
-    lengths, twists, offsets = loop.arrays
+    subject = subject_at(atlas)
+    if subject.table is None:
+        return {"name": subject.name}
+    lengths, twists, offsets = subject.table.arrays
     return {
-        "name": loop.name,
+        "name": subject.table.name,
         "lengths": lengths.tolist(),
         "twists": twists.tolist(),
         "offsets": offsets.tolist(),
@@ -269,7 +238,7 @@ def _linkage(atlas: Atlas) -> LinkageDocument:
 def _form(atlas: Atlas, index: int) -> FormDocument:
     form = atlas.forms[index]
     labels = FormLabels.of(form)
-    to_angles = loop_angles_of(atlas)
+    to_angles = subject_at(atlas).to_angles
     winding = to_angles.directions(form.branch.winding).astype(int)
     inactive = [to_angles.index(joint - 1) + 1 for joint in labels.inactive_joints]
     sample = form.branch(_clear_arclength(atlas, index))
@@ -289,15 +258,7 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "certificate": _certificate(form),
     }
     _add_variables(atlas, document, sample)
-    readout = readout_of(atlas)
-    if readout is not None:
-        from linkages.app.answer.mechanism_document import describe_motion
-
-        motion = describe_motion(atlas, index, readout)
-        document["ranges"] = motion["ranges"]
-        document["still_joints"] = motion["still_joints"]
-        document["bodies_as_one"] = motion["bodies_as_one"]
-    return document
+    return cast(FormDocument, {**document, **subject_at(atlas).motion(index)})
 
 
 def _certificate(form: Form) -> CertificateDocument | None:
@@ -339,7 +300,7 @@ def _bifurcation(atlas: Atlas, point: MeetingPoint) -> BifurcationDocument:
         "theta": numbers_at(atlas, point.point.u),
         "rank": point.point.rank,
         "forms": [atlas.forms[index].name for index, _ in point.passes],
-        "tangents": loop_angles_of(atlas).directions(point.tangents).tolist(),
+        "tangents": subject_at(atlas).to_angles.directions(point.tangents).tolist(),
         "error": point.point.error,
     }
     _add_variables(atlas, document, point.point.u)
@@ -402,14 +363,13 @@ def _near_motion(atlas: Atlas, near: NearMotion) -> NearMotionDocument:
 def _dead_point(atlas: Atlas, event: Event) -> DeadPointDocument:
     document: DeadPointDocument = {
         "theta": numbers_at(atlas, event.u),
-        "joint": loop_angles_of(atlas).index(event.index) + 1,
+        "joint": subject_at(atlas).to_angles.index(event.index) + 1,
         "form": atlas.forms[event.form].name,
     }
     _add_variables(atlas, document, event.u)
-    readout = readout_of(atlas)
-    if readout is not None:
-        document["variable"] = readout.label_of_unknown(event.index)
-    return document
+    return cast(
+        DeadPointDocument, {**document, **subject_at(atlas).variable(event.index)}
+    )
 
 
 def _completeness(atlas: Atlas) -> LinkageCompleteness:

@@ -1,11 +1,8 @@
-"""Mobility and Grübler's count of what was mapped."""
+"""Mobility of what was mapped."""
 
 from __future__ import annotations
 
 from bifurc.atlas import Atlas
-from linkages.app.answer.configurations import readout_of
-
-SPACE = 6  # freedoms of a body
 
 
 def mobility_of(atlas: Atlas) -> int:
@@ -13,12 +10,3 @@ def mobility_of(atlas: Atlas) -> int:
     dimensions = [surface.dimension for surface in atlas.surfaces]
     dimensions += [1] * bool(atlas.forms)
     return max(dimensions, default=0)
-
-
-def gruebler_of(atlas: Atlas) -> int:
-    """Grübler's count: the freedoms of the joints, less six for every independent
-    loop."""
-    readout = readout_of(atlas)
-    if readout is None:
-        return len(atlas.names) - SPACE
-    return readout.mechanism.gruebler

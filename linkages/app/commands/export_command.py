@@ -279,7 +279,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     """
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.app.answer.equations import equations_of
+    from linkages.app.answer.subject import subject_at
     from linkages.export.motion import motion_of_route
 
     option = f"--route {start!r} {goal!r}"
@@ -287,7 +287,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
         first, last = atlas.full_name(start), atlas.full_name(goal)
     except RouteError as error:
         raise CommandError(f"{option}: {error}") from None
-    problem = equations_of(atlas)
+    problem = subject_at(atlas).equations()
     try:
         route = find_route(atlas, first, last, problem=problem)
     except RouteError as error:
@@ -319,38 +319,24 @@ def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
 def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
-    import numpy as np
-
-    from linkages.app.answer.configurations import readout_of
+    from linkages.app.answer.subject import subject_at
     from linkages.export.angle_table import make_angle_table
-    from linkages.export.motion import quaternions_without_jumps
 
-    readout = readout_of(atlas)
-    if readout is None:
-        return make_angle_table(motion.arclength, motion.configurations, atlas.names)
-    columns = [readout.values(motion.configurations)]
-    names = readout.labels()
-    for label, rotations in readout.rotations(motion.configurations).items():
-        quaternions = quaternions_without_jumps(rotations[None])[0]
-        columns.append(quaternions)
-        names += [f"{label}.q{part}" for part in "xyzw"]
-    return make_angle_table(motion.arclength, np.hstack(columns), names)
+    joints = subject_at(atlas).joint_values(motion.configurations)
+    return make_angle_table(motion.arclength, joints.values, joints.names)
 
 
 def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:
     """The linkage of an atlas with its motions, to be animated."""
-    from linkages.app.answer.configurations import loop_angles_of, readout_of
+    from linkages.app.answer.subject import MechanismSubject, subject_at
     from linkages.export.model import model_of_loop, model_of_mechanism
-    from linkages.labels import loop_of
 
-    readout = readout_of(atlas)
-    if readout is None:
-        return model_of_loop(loop_of(atlas), motions)
-    if readout.single_loop is None:
-        return model_of_mechanism(readout, motions)
-    to_angles = loop_angles_of(atlas)
+    subject = subject_at(atlas)
+    if subject.table is None:
+        assert isinstance(subject, MechanismSubject)
+        return model_of_mechanism(subject.readout, motions)
     of_loop = [
-        replace(motion, configurations=to_angles.points(motion.configurations))
+        replace(motion, configurations=subject.to_angles.points(motion.configurations))
         for motion in motions
     ]
-    return model_of_loop(readout.single_loop.loop, of_loop)
+    return model_of_loop(subject.table, of_loop)

@@ -149,12 +149,15 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
     one."""
     if out is None:
         return []
+    from linkages.app.answer.subject import subject_at
     from linkages.app.files import write_data
     from linkages.app.output import writing_to
     from linkages.app.texts.summary import make_summary
 
     with writing_to(out):
-        return write_data(atlas, out, make_summary(atlas))
+        subject = subject_at(atlas)
+        more, others = subject.dataset_variables(), subject.files()
+        return write_data(atlas, out, make_summary(atlas), more, others)
 
 
 def write_map_page(atlas: Atlas, out: Path) -> Path:

@@ -147,9 +147,9 @@ def _route_between(atlas: Atlas, start: str, goal: str) -> Route:
     there is none."""
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.app.answer.equations import equations_of
+    from linkages.app.answer.subject import subject_at
 
     try:
-        return find_route(atlas, start, goal, problem=equations_of(atlas))
+        return find_route(atlas, start, goal, problem=subject_at(atlas).equations())
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None

@@ -106,18 +106,14 @@ def as_made(
 ) -> tuple[Loop | Mechanism, Atlas]:
     """What is made with errors, the loop of a linkage or of a mechanism that is a single
     one of revolute joints, and its atlas in the unknowns of its equations."""
-    from linkages.app.answer.configurations import readout_of
+    from linkages.app.answer.subject import subject_at
     from linkages.linkage import Linkage
 
-    if isinstance(linkage, Linkage):
-        return linkage.loop, atlas
-    from linkages.readout.loop_atlas import in_loop_angles
-
-    readout = readout_of(atlas)
-    assert readout is not None
-    if readout.single_loop is None:
-        return linkage, atlas
-    return readout.single_loop.loop, in_loop_angles(atlas, readout)
+    subject = subject_at(atlas)
+    if subject.table is not None:
+        return subject.table, subject.in_loop_angles()
+    assert not isinstance(linkage, Linkage)
+    return linkage, atlas
 
 
 def _require_forms(atlas: Atlas) -> None:

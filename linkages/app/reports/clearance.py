@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypedDict
 
 from bifurc.atlas import Atlas, Form
-from linkages.app.answer.configurations import loop_angles_of, numbers_at, readout_of
-from linkages.app.texts.numbers import link_name
-from linkages.labels import loop_of
-from linkages.links.clearance import Approach, approaches_along
-from linkages.loop import Loop
+from linkages.app.answer.configurations import numbers_at
+from linkages.app.answer.subject import subject_at
+from linkages.links.clearance import Approach
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,30 +52,9 @@ class FormClearanceDocument(TypedDict):
 
 def clearance_of(atlas: Atlas, form: Form, diameter: float) -> FormClearance:
     """The clearance of links of a diameter along a form."""
-    readout = readout_of(atlas)
-    if readout is None:
-        loop = loop_of(atlas)
-    elif readout.single_loop is not None:
-        loop = readout.single_loop.loop
-    else:
-        from linkages.links.body_clearance import approaches_of_bodies
-
-        bodies = readout.mechanism.bodies
-        nearest = approaches_of_bodies(readout.structure, form.branch)
-        return FormClearance(form, diameter, bodies, tuple(nearest))
-    names = tuple(link_name(link, loop.n) for link in range(loop.n))
-    approaches = _approaches_of_links(atlas, form, loop)
-    return FormClearance(form, diameter, names, approaches)
-
-
-def _approaches_of_links(atlas: Atlas, form: Form, loop: Loop) -> tuple[Approach, ...]:
-    """Where the links of the loop that an atlas is of are nearest, in the unknowns of
-    the atlas."""
-    to_angles = loop_angles_of(atlas)
-    return tuple(
-        replace(approach, theta=to_angles.inverse.points(approach.theta))
-        for approach in approaches_along(loop, to_angles.branch(form.branch))
-    )
+    subject = subject_at(atlas)
+    approaches = subject.approaches(form.branch)
+    return FormClearance(form, diameter, subject.part_names, approaches)
 
 
 def clearance_document(

@@ -15,8 +15,7 @@ from bifurc.singular.confirm import (
     confirm_singular_point,
 )
 from bifurc.text_tables import table
-from linkages.app.answer.configurations import readout_of
-from linkages.app.answer.equations import equations_of
+from linkages.app.answer.subject import LoopSubject, subject_at
 from linkages.app.choice import choose_precisely
 from linkages.closure.precise import precise_residual
 from linkages.linkage import is_linkage_file
@@ -31,17 +30,14 @@ def confirm_points(
     """Every singular point of the map of a linkage with its `Confirmation`, the
     geometry at the same precision; that of a mechanism is taken from its doubles."""
     residual: PreciseResidual | None
-    readout = readout_of(atlas)
-    if readout is None:
+    if isinstance(subject_at(atlas), LoopSubject):
         with mpmath.workdps(3 * digits + 30):
             residual = precise_residual(choose_precisely(linkage, parameters))
     else:
-        from linkages.readout.loop_atlas import in_loop_angles
-
         # the equations in which the points were located: others, as they are rounded,
         # have their singular points elsewhere
-        atlas = in_loop_angles(atlas, readout)
-        residual = equations_of(atlas).precise_residual()
+        atlas = subject_at(atlas).in_loop_angles()
+        residual = subject_at(atlas).equations().precise_residual()
     assert residual is not None
     for meeting in atlas.points:
         point = meeting.point
@@ -59,7 +55,8 @@ def describe_confirmation(
     rows = []
     endings = {}
     gap = 0.0
-    is_rounded = readout_of(atlas) is not None or is_linkage_file(linkage)
+    is_table = isinstance(subject_at(atlas), LoopSubject)
+    is_rounded = not is_table or is_linkage_file(linkage)
     for point, confirmation in confirm_points(atlas, linkage, parameters, digits):
         word = confirmation.convergence.name.lower().replace("_", " ")
         if is_rounded and confirmation.convergence is Convergence.INCONSISTENT:

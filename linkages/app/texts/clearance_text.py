@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from bifurc.atlas import Atlas
 from bifurc.text_tables import table
-from linkages.app.answer.configurations import (
-    arclength_unit,
-    heading,
-    readout_of,
-    show_configuration,
-)
+from linkages.app.answer.configurations import arclength_unit, show_configuration
+from linkages.app.answer.subject import subject_at
 from linkages.app.reports.clearance import FormClearance
-from linkages.labels import loop_of
 
 SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
 HEADS = ("clearance", "at most less by")
@@ -20,7 +15,7 @@ HEADS = ("clearance", "at most less by")
 def describe_clearance(atlas: Atlas, clearances: list[FormClearance]) -> str:
     """A sentence and a table for every form."""
     parts = [_of_form(atlas, clearance) for clearance in clearances]
-    links = _word(atlas)
+    links = subject_at(atlas).parts
     explanation = (
         f"Lengths are in the unit of the linkage; {links} that share a joint are left "
         "out."
@@ -33,7 +28,8 @@ def describe_clearance(atlas: Atlas, clearances: list[FormClearance]) -> str:
 def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
     if not clearance.approaches:
         return f"{clearance.form.name}: every two bodies share a joint"
-    smallest = SHOWN * _size(atlas)
+    subject = subject_at(atlas)
+    smallest = SHOWN * subject.size
     unit = arclength_unit(atlas)
     rows = []
     for approach in clearance.approaches:
@@ -47,25 +43,10 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
             )
         )
     links, least, *_ = rows[0]
-    word = _word(atlas)
+    word = subject.parts
     title = f"{clearance.form.name}: the least clearance is {least} ({word} {links})"
-    heads = (word, *HEADS, f"arclength ({unit.name})", heading(atlas))
+    heads = (word, *HEADS, f"arclength ({unit.name})", subject.heading)
     return f"{title}\n{table(heads, rows)}"
-
-
-def _word(atlas: Atlas) -> str:
-    """What those are called of which the clearance is shown."""
-    readout = readout_of(atlas)
-    is_loop = readout is None or readout.single_loop is not None
-    return "links" if is_loop else "bodies"
-
-
-def _size(atlas: Atlas) -> float:
-    """The characteristic length."""
-    readout = readout_of(atlas)
-    if readout is None:
-        return loop_of(atlas).characteristic_length
-    return readout.structure.unit
 
 
 def _length(length: float, smallest: float) -> str:

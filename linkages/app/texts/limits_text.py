@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from linkages.app.answer.configurations import readout_of
+from linkages.app.answer.subject import subject_at
 from linkages.app.texts.numbers import in_degrees, in_lengths
 
 if TYPE_CHECKING:
@@ -22,15 +22,10 @@ def kept_out_by_limits(atlas: Atlas) -> str:
     Where every variable alone is within its limits in some configurations, all that is
     known is that none was found.
     """
-    readout = readout_of(atlas)
-    if readout is None:
-        return ""
-    from linkages.app.reports.beyond_limits import ranges_beyond_limits
-
-    limited = ranges_beyond_limits(readout.mechanism)
+    limited = subject_at(atlas).ranges_beyond_limits()
     if not limited:
         return ""
-    unit = readout.structure.unit
+    unit = subject_at(atlas).size
     words = [_where(variable, unit) for variable in limited]
     start = "The linkage has no real configuration within its limits."
     if all(variable.meets_limits for variable in limited):

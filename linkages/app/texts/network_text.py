@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-import numpy as np
-
 from bifurc.atlas import Atlas
 from bifurc.text_tables import section, table
 from linkages.app.texts.entry_text import list_below, parameter_table
@@ -86,16 +82,3 @@ def _range(one: VariableRange, reference: float) -> str:
         return f"{one.turns:+d} turns" if abs(one.turns) > 1 else f"{one.turns:+d} turn"
     low, high = in_degrees(one.low + reference, 2), in_degrees(one.high + reference, 2)
     return low if low == high else f"{low} to {high}"
-
-
-def ring_values(
-    network: NetworkMechanism, values: Mapping[str, float]
-) -> dict[str, float]:
-    """The D-H angles (rad) of the outer joints, by name, for ``values`` (rad) of the
-    variables by label."""
-    placed = network.placed
-    angles = {}
-    for axis in placed.network.plan.ring:
-        turned = placed.turns[axis] + values[placed.label(axis)]
-        angles[axis] = float(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
-    return angles

@@ -9,10 +9,10 @@ from bifurc.routes.route import Route
 from bifurc.text_tables import count_of, table
 from linkages.app.answer.configurations import (
     arclength_unit,
-    joint_names,
     show_configuration,
     show_travel,
 )
+from linkages.app.answer.subject import subject_at
 
 
 def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
@@ -22,7 +22,7 @@ def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
     length = f"{unit.factor * route.length:.6g} {unit.name}"
     if unit.name != "deg":
         length = f"{unit.factor * route.length:.6g} ({unit.name})"
-    turns = [f"turn {name}" for name in joint_names(atlas)]
+    turns = [f"turn {name}" for name in subject_at(atlas).labels]
     heads = ("", "along", "to", *turns, "configuration reached")
     explanation = "All in degrees; a turn is the sum of a joint's movements both ways."
     if set(atlas.units) != {"rad"}:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,17 +14,13 @@ from bifurc.singular.point import Kind
 from bifurc.text_tables import section
 from linkages.app.answer.configurations import (
     arclength_unit,
-    heading,
-    joint_names,
-    network_at,
-    readout_of,
     show_configuration,
     unit_of_arclengths,
 )
+from linkages.app.answer.subject import MechanismSubject, subject_at
 from linkages.app.answer.verdict import judge
 from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
-from linkages.app.texts.numbers import in_degrees
 from linkages.labels import FormLabels, loop_of
 
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
@@ -44,9 +41,10 @@ def make_summary(atlas: Atlas) -> str:
     and time."""
     completeness = atlas.completeness
     provenance = atlas.provenance
+    tables = _tables(atlas)
     parts = [
         f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
-        *_geometry(atlas),
+        *tables.geometry,
         _forms(atlas),
         _surfaces(atlas),
         *(_points(atlas, title, kinds) for title, kinds in POINT_TABLES),
@@ -54,43 +52,40 @@ def make_summary(atlas: Atlas) -> str:
         _rigid_assemblies(atlas),
         _near_motions(atlas),
         _certificates(atlas),
-        *_motions(atlas),
+        *tables.motions,
         f"Completeness ({completeness.level}): {completeness.statement}.",
         f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def _geometry(atlas: Atlas) -> list[str]:
-    """Tables of what was mapped."""
-    readout = readout_of(atlas)
-    if readout is None:
-        return [describe_geometry(loop_of(atlas))]
-    from linkages.app.texts.mechanism_text import describe_joints, describe_loops
+class _Tables(NamedTuple):
+    """Tables of what was mapped, and of what it does along its forms."""
 
-    parts = [describe_joints(readout), describe_loops(atlas, readout)]
-    network = network_at(atlas)
+    geometry: list[str]
+    motions: list[str]
+
+
+def _tables(atlas: Atlas) -> _Tables:
+    subject = subject_at(atlas)
+    if not isinstance(subject, MechanismSubject):
+        return _Tables([describe_geometry(loop_of(atlas))], [])
+    from linkages.app.texts import mechanism_text, network_text
+
+    readout, network = subject.readout, subject.network
+    geometry = [mechanism_text.describe_joints(readout)]
     if network is not None:
-        from linkages.app.texts.network_text import describe_kinks
-
-        parts.insert(1, describe_kinks(network))
-    return parts
-
-
-def _motions(atlas: Atlas) -> list[str]:
-    """What the joints and bodies of a mechanism do along its forms."""
-    readout = readout_of(atlas)
-    if readout is None or not atlas.forms:
-        return []
-    from linkages.app.texts.mechanism_text import describe_dead_points, describe_motions
-
-    parts = [describe_motions(atlas, readout), describe_dead_points(atlas, readout)]
-    network = network_at(atlas)
+        geometry.append(network_text.describe_kinks(network))
+    geometry.append(mechanism_text.describe_loops(atlas, readout))
+    if not atlas.forms:
+        return _Tables(geometry, [])
+    motions = [
+        mechanism_text.describe_motions(atlas, readout),
+        mechanism_text.describe_dead_points(atlas, readout),
+    ]
     if network is not None:
-        from linkages.app.texts.network_text import describe_ring
-
-        parts.append(describe_ring(atlas, readout, network))
-    return parts
+        motions.append(network_text.describe_ring(atlas, readout, network))
+    return _Tables(geometry, motions)
 
 
 def _forms(atlas: Atlas) -> str:
@@ -146,12 +141,9 @@ def _winding(atlas: Atlas, branch: Branch) -> str:
 
 def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:
     """The joints that stand still, those of a mechanism by name; where, of a loop."""
-    names = joint_names(atlas)
-    if readout_of(atlas) is not None:
-        return ", ".join(names[joint - 1] for joint in labels.inactive_joints) or "-"
     pairs = zip(labels.inactive_joints, labels.inactive_angles, strict=True)
-    shown = ", ".join(f"{joint} at {in_degrees(angle)}" for joint, angle in pairs)
-    return shown or "-"
+    shown = [subject_at(atlas).still(joint - 1, angle) for joint, angle in pairs]
+    return ", ".join(shown) or "-"
 
 
 def _surfaces(atlas: Atlas) -> str:
@@ -187,7 +179,7 @@ def _points(atlas: Atlas, title: str, kinds: Sequence[Kind]) -> str:
                 point.kind.value + remark,
             )
         )
-    heads = ("name", heading(atlas), "rank", "error", "forms", "kind")
+    heads = ("name", subject_at(atlas).heading, "rank", "error", "forms", "kind")
     return section(title, heads, rows)
 
 
@@ -208,13 +200,13 @@ def _near_misses(atlas: Atlas) -> str:
         angles = show_configuration(atlas, miss.u)
         value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
         rows.append((angles, value, error, atlas.forms[miss.form].name))
-    heads = (heading(atlas), "singular value", "error", "form")
+    heads = (subject_at(atlas).heading, "singular value", "error", "form")
     return _beginning("Near misses (no bifurcation)", heads, rows)
 
 
 def _rigid_assemblies(atlas: Atlas) -> str:
     rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
-    return _beginning("Rigid assemblies", (heading(atlas),), rows)
+    return _beginning("Rigid assemblies", (subject_at(atlas).heading,), rows)
 
 
 def _near_motions(atlas: Atlas) -> str:
@@ -229,7 +221,7 @@ def _near_motions(atlas: Atlas) -> str:
         mobility = str(near.mobility)
         rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
     length = f"length ({unit.name})"
-    heads = (heading(atlas), "mobility", "closed", length, "misclosure")
+    heads = (subject_at(atlas).heading, "mobility", "closed", length, "misclosure")
     return _beginning("Near motions (the loop nearly closes)", heads, rows)
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.curves.valley import Unfolding, ValleyEnd
 from bifurc.text_tables import count_of, section
-from linkages.app.answer.configurations import readout_of, unit_of_arclengths
+from linkages.app.answer.configurations import unit_of_arclengths
+from linkages.app.answer.subject import subject_at
 from linkages.app.reports.tolerance import (
     Ladder,
     Tolerance,
@@ -24,9 +25,8 @@ def describe_tolerance(
 ) -> str:
     """Closure gaps of the forms, what became of the bifurcations, and the powers of the
     error with which they grow."""
-    places = "" if readout_of(atlas) is None else " of joints on bodies"
     head = (
-        f"Errors{places} of {copies[0].error:g} (standard deviation; rad, and "
+        f"Errors{subject_at(atlas).places} of {copies[0].error:g} (standard deviation; rad, and "
         f"characteristic lengths) in {count_of(len(copies), 'copy')}"
     )
     parts = [head, _gaps(atlas, copies, ladder)]

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
-from linkages.app.answer.configurations import readout_of
+from linkages.app.answer.subject import subject_at
 from linkages.app.cli import main
 from linkages.app.commands.export_command import make_table
 from linkages.app.exit_codes import ExitCode
@@ -161,7 +161,7 @@ def test_a_mechanism_with_locks_is_a_model_whose_bodies_move_as_in_python(tmp_pa
     gltf = pygltflib.GLTF2.load(out)
     kinks = {"2": np.radians(40), "6": np.radians(-75)}
     atlas = map_linkage(load(NET[0]).with_kinks(kinks))
-    readout = readout_of(atlas)
+    readout = subject_at(atlas).readout
     forms = {form.name: form for form in atlas.forms}
     assert {one.name for one in gltf.animations} == set(forms)
     for animation in gltf.animations:
@@ -178,7 +178,7 @@ def test_all_symbols_of_joints_are_closed_solids():
     trimesh = pytest.importorskip("trimesh", reason="it opens the model again")
     atlas = mapped("platform")
     motions = [motion_of_form(form, 5) for form in atlas.forms]
-    model = model_of_mechanism(readout_of(atlas), motions)
+    model = model_of_mechanism(subject_at(atlas).readout, motions)
     shapes = {symbol.shape for body in model.bodies for symbol in body.symbols}
     assert shapes == {Shape.BOX, Shape.BALL}
     content = make_glb(model, "a test")
@@ -201,7 +201,7 @@ def test_a_table_of_a_mechanism_has_its_joints_by_name(five_bar, tmp_path):
 
 def test_a_table_of_a_mechanism_has_the_rotations_of_spherical_joints():
     atlas = mapped("platform")
-    readout = readout_of(atlas)
+    readout = subject_at(atlas).readout
     motion = motion_of_form(atlas.forms[0], 60)
     head, *lines = make_table(atlas, motion).splitlines()
     names = head.split(",")

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from bifurc.files.dataset import load_atlas
-from linkages.app.answer.configurations import readout_of
+from linkages.app.answer.subject import subject_at
 from linkages.app.files import write_data
 from linkages.mapping import map_linkage
 from linkages.mechanisms.couplings import Coupling
@@ -77,13 +77,14 @@ def test_datasets_have_variables_of_locked_and_spherical_joints(tmp_path):
     mechanism = Mechanism(tuple(joints), "rods")
     atlas = map_linkage(mechanism)
     assert atlas.forms
-    write_data(atlas, tmp_path, "")
+    subject = subject_at(atlas)
+    write_data(atlas, tmp_path, "", subject.dataset_variables(), subject.files())
     data = xr.load_dataset(tmp_path / "atlas.nc")
     assert list(data.joint_variable_name.values) == ["R", "C.turn", "C.slide"]
     assert list(data.joint_variable_unit.values) == ["rad", "rad", "length"]
     assert list(data.rotation_name.values) == ["S1", "S2"]
     assert data.rotation_vector.attrs["units"] == "rad"
-    readout = readout_of(atlas)
+    readout = subject_at(atlas).readout
     for form in range(len(atlas.forms)):
         count = int(data.sample_count[form])
         points = data.configuration.values[form, :count]

@@ -7,8 +7,8 @@ import pytest
 
 import linkages
 from bifurc.settings import SearchSettings
-from linkages.app.answer.configurations import readout_of
 from linkages.app.answer.mechanism_document import describe_mechanism
+from linkages.app.answer.subject import subject_at
 from linkages.app.answer.verdict import judge
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling
@@ -194,7 +194,7 @@ def test_forms_that_bifurcations_join_are_counted_once():
     statement = atlas.completeness.statement
     assert "of 6 forms listed here 2 differ otherwise" in statement
     assert "stands for at least 6 forms within the limits" in statement
-    document = describe_mechanism(atlas, readout_of(atlas))
+    document = describe_mechanism(atlas, subject_at(atlas).readout)
     assert document["translates"] == {
         "joints": ["J2"],
         "forms": 6,
@@ -230,4 +230,4 @@ def test_nothing_is_said_of_turns_where_no_other_fits(limit):
     assert atlas.forms
     assert translates_of(atlas) is None
     assert "whole turns" not in atlas.completeness.statement + judge(atlas).sentence
-    assert describe_mechanism(atlas, readout_of(atlas))["translates"] is None
+    assert describe_mechanism(atlas, subject_at(atlas).readout)["translates"] is None

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from bifurc.settings import SearchSettings
-from linkages.app.answer.configurations import heading, numbers_at, readout_of
+from linkages.app.answer.configurations import numbers_at
+from linkages.app.answer.subject import subject_at
 from linkages.app.texts.summary import make_summary
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
@@ -36,7 +37,7 @@ def test_coordinates_of_a_plate_are_in_the_unit_of_the_file(size):
     mechanism = platform(size)
     atlas = map_linkage(mechanism, settings=FEW_STARTS)
     plate = mechanism.bodies.index("plate")
-    readout = readout_of(atlas)
+    readout = subject_at(atlas).readout
     (pair,) = readout.structure.free_pairs.values()
     assert len(atlas.rigid) > 1
     for assembly in atlas.rigid:
@@ -51,5 +52,5 @@ def test_coordinates_of_a_plate_are_in_the_unit_of_the_file(size):
 def test_the_heading_names_what_has_no_unit():
     atlas = map_linkage(platform(1.0), settings=FEW_STARTS)
     words = "plate.z (lengths, entries ax to bz of rotation matrices)"
-    assert heading(atlas).endswith(words)
+    assert subject_at(atlas).heading.endswith(words)
     assert words in make_summary(atlas)
