@@ -31,6 +31,11 @@ class Linkage:
         """What the linkage is called, in the catalogue or in its file."""
         return self.loop.name
 
+    @property
+    def extent(self) -> float:
+        """The characteristic length."""
+        return self.loop.characteristic_length
+
     def __repr__(self) -> str:
         if not self.patterns:
             return repr(self.loop)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from bifurc.atlas import Atlas
 from bifurc.files.dataset import load_atlas
-from linkages.app.answer.subject import subject_at
 from linkages.app.exit_codes import CommandError
+from linkages.app.subject import subject_at
 from linkages.labels import NoLinkageError
 
 

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from linkages.app.answer.subject import subject_at
 from linkages.app.atlas_file import open_linkage_atlas
-from linkages.app.choice import require_loop, require_table
+from linkages.app.choice import require_table
 from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
 from linkages.app.inputs import choose_held
 from linkages.app.options import HoldOptions, SearchOptions
+from linkages.app.subject import as_subject, subject_at
 from linkages.linkage import Linkage
 
 if TYPE_CHECKING:
@@ -69,9 +69,9 @@ def loop_atlas_of(
         require_table(source, subject_at(atlas).table)
     else:
         linkage = choose_held(source, parameters, hold)
-        require_loop(source, linkage)
+        require_table(source, as_subject(linkage).table)
         atlas = _explored(linkage, search)
-    return subject_at(atlas).in_loop_angles()
+    return subject_at(atlas).in_loop_angles(atlas)
 
 
 def _explored(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:

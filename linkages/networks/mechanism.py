@@ -15,6 +15,7 @@ from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.construction.constructions import lock, locked_angles
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.subject import mechanism_of
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.network import Network, wrap_angles
@@ -151,5 +152,9 @@ def network_of(atlas: Atlas) -> NetworkMechanism | None:
     if not isinstance(values, Mapping):
         return None
     network = NETWORKS[str(values["name"])].build(**values["parameters"])
-    reference: Sequence[float] = values["reference"]
-    return _mechanism(PlacedNetwork(network, np.array(reference), values["kinks"]))
+    reference = np.array(values["reference"])
+    placed = PlacedNetwork(network, reference, values["kinks"])
+    mechanism = mechanism_of(atlas)
+    assert mechanism is not None
+    # its joints, of which more may be locked than the kinks of the network say
+    return NetworkMechanism(mechanism.joints, mechanism.name, placed=placed)

@@ -17,8 +17,8 @@ from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
 from linkages.app.answer.configurations import numbers_at
 from linkages.app.answer.mobility import mobility_of
-from linkages.app.answer.subject import subject_at
 from linkages.app.answer.verdict import is_without_gaps
+from linkages.app.subject import subject_at
 from linkages.labels import FormLabels
 
 if TYPE_CHECKING:
@@ -204,7 +204,7 @@ def make_document(atlas: Atlas) -> MapDocument:
         "seed": atlas.provenance.seed,
         "tolerance": atlas.provenance.settings.tracing.tolerance,
     }
-    return cast(MapDocument, {**document, **subject_at(atlas).document()})
+    return cast(MapDocument, {**document, **subject_at(atlas).document(atlas)})
 
 
 def _add_variables(
@@ -258,7 +258,7 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "certificate": _certificate(form),
     }
     _add_variables(atlas, document, sample)
-    return cast(FormDocument, {**document, **subject_at(atlas).motion(index)})
+    return cast(FormDocument, {**document, **subject_at(atlas).motion(atlas, index)})
 
 
 def _certificate(form: Form) -> CertificateDocument | None:

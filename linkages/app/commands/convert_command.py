@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linkages.app.exit_codes import CommandError, exit_code_table
+from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import FILE, HoldOptions, hold_options
 from linkages.app.output import require_ending, require_writable, say, writing_to
-from linkages.linkage import Linkage
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -59,11 +58,11 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
 def _mechanism(source: str, hold: HoldOptions) -> Mechanism:
     """The mechanism of a file; raises `CommandError` for a single loop that is given as
     a table or as axes."""
+    from linkages.app.choice import require_kind
     from linkages.app.inputs import choose_held
+    from linkages.mechanisms.mechanism import Mechanism
 
-    chosen = choose_held(source, (), hold)
-    if isinstance(chosen, Linkage):
-        raise CommandError(
-            f"{source}: it is a single loop, a table or axes; convert takes mechanisms"
-        )
-    return chosen
+    refusal = (
+        f"{source}: it is a single loop, a table or axes; convert takes mechanisms"
+    )
+    return require_kind(choose_held(source, (), hold), Mechanism, refusal)

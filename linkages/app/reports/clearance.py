@@ -7,7 +7,7 @@ from typing import TypedDict
 
 from bifurc.atlas import Atlas, Form
 from linkages.app.answer.configurations import numbers_at
-from linkages.app.answer.subject import subject_at
+from linkages.app.subject import subject_at
 from linkages.links.clearance import Approach
 
 

@@ -19,9 +19,9 @@ from bifurc.graphs import arc_graph, transition_graph
 from bifurc.settings import SearchSettings
 from linkages.app.answer.mobility import mobility_of
 from linkages.app.answer.verdict import is_without_gaps
+from linkages.app.subject import subject_at
 from linkages.app.sweep.subjects import JointName, Member, Subject
 from linkages.labels import FormLabels
-from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
 from linkages.values import GeometryError
 
@@ -188,19 +188,13 @@ def _forms_without(
 
 def _still_joints(atlas: Atlas, member: Member) -> list[set[JointName]]:
     """For every form the joints that stand still along it."""
-    if isinstance(member.linkage, Linkage):
-        numbers = [FormLabels.of(form).inactive_joints for form in atlas.forms]
-        return [
-            {member.joints[number - 1] for number in of_form} | set(member.replaced)
-            for of_form in numbers
-        ]
-    # they import networkx, which loops do not need
-    from linkages.readout.facts import form_facts
-    from linkages.readout.readout import Readout
-
-    readout = Readout(member.linkage)
-    count = len(atlas.forms)
-    return [set(form_facts(atlas, index, readout).still) for index in range(count)]
+    subject = subject_at(atlas)
+    names: dict[JointName, JointName] = dict(enumerate(member.joints, start=1))
+    still_joints = []
+    for form in range(len(atlas.forms)):
+        still = subject.still_joints(atlas, form)
+        still_joints.append({names.get(one, one) for one in still} | {*member.replaced})
+    return still_joints
 
 
 def _is_one_cycle(atlas: Atlas) -> bool:

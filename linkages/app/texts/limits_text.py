@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from linkages.app.answer.subject import subject_at
+from linkages.app.subject import subject_at
 from linkages.app.texts.numbers import in_degrees, in_lengths
 
 if TYPE_CHECKING:

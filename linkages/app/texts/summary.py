@@ -17,8 +17,8 @@ from linkages.app.answer.configurations import (
     show_configuration,
     unit_of_arclengths,
 )
-from linkages.app.answer.subject import MechanismSubject, subject_at
 from linkages.app.answer.verdict import judge
+from linkages.app.subject import MechanismSubject, NetworkSubject, subject_at
 from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
 from linkages.labels import FormLabels, loop_of
@@ -72,7 +72,8 @@ def _tables(atlas: Atlas) -> _Tables:
         return _Tables([describe_geometry(loop_of(atlas))], [])
     from linkages.app.texts import mechanism_text, network_text
 
-    readout, network = subject.readout, subject.network
+    readout = subject.readout
+    network = subject.network if isinstance(subject, NetworkSubject) else None
     geometry = [mechanism_text.describe_joints(readout)]
     if network is not None:
         geometry.append(network_text.describe_kinks(network))
@@ -179,7 +180,7 @@ def _points(atlas: Atlas, title: str, kinds: Sequence[Kind]) -> str:
                 point.kind.value + remark,
             )
         )
-    heads = ("name", subject_at(atlas).heading, "rank", "error", "forms", "kind")
+    heads = ("name", subject_at(atlas).heading(atlas), "rank", "error", "forms", "kind")
     return section(title, heads, rows)
 
 
@@ -200,13 +201,13 @@ def _near_misses(atlas: Atlas) -> str:
         angles = show_configuration(atlas, miss.u)
         value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
         rows.append((angles, value, error, atlas.forms[miss.form].name))
-    heads = (subject_at(atlas).heading, "singular value", "error", "form")
+    heads = (subject_at(atlas).heading(atlas), "singular value", "error", "form")
     return _beginning("Near misses (no bifurcation)", heads, rows)
 
 
 def _rigid_assemblies(atlas: Atlas) -> str:
     rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
-    return _beginning("Rigid assemblies", (subject_at(atlas).heading,), rows)
+    return _beginning("Rigid assemblies", (subject_at(atlas).heading(atlas),), rows)
 
 
 def _near_motions(atlas: Atlas) -> str:
@@ -221,7 +222,13 @@ def _near_motions(atlas: Atlas) -> str:
         mobility = str(near.mobility)
         rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
     length = f"length ({unit.name})"
-    heads = (subject_at(atlas).heading, "mobility", "closed", length, "misclosure")
+    heads = (
+        subject_at(atlas).heading(atlas),
+        "mobility",
+        "closed",
+        length,
+        "misclosure",
+    )
     return _beginning("Near motions (the loop nearly closes)", heads, rows)
 
 

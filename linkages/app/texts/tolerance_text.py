@@ -10,7 +10,6 @@ from bifurc.atlas import Atlas
 from bifurc.curves.valley import Unfolding, ValleyEnd
 from bifurc.text_tables import count_of, section
 from linkages.app.answer.configurations import unit_of_arclengths
-from linkages.app.answer.subject import subject_at
 from linkages.app.reports.tolerance import (
     Ladder,
     Tolerance,
@@ -18,6 +17,7 @@ from linkages.app.reports.tolerance import (
     is_whole,
     slope,
 )
+from linkages.app.subject import subject_at
 
 
 def describe_tolerance(

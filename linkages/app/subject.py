@@ -1,7 +1,7 @@
-"""What an atlas is of, and what that says of its configurations: a loop given as a table,
-or a mechanism.
+"""What moves, and what it says of its configurations: a loop given as a table, a
+mechanism, or a network of Bennett loops.
 
-Whoever shows an atlas asks its subject, and does not ask which of the two it is.
+Whoever shows an atlas asks its subject, and does not ask which of them it is.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache, partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,14 +19,17 @@ from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 from bifurc.isometry import Isometry
 from bifurc.problem import Problem
+from linkages.app.exit_codes import CommandError
 from linkages.app.texts.numbers import in_degrees, link_name
-from linkages.labels import loop_of
+from linkages.labels import FormLabels, loop_of
+from linkages.linkage import Linkage
 from linkages.loop import Loop
 
 if TYPE_CHECKING:
     from bifurc.files.variable import Variable
     from linkages.app.reports.beyond_limits import LimitedRange
     from linkages.links.clearance import Approach
+    from linkages.mechanisms.mechanism import Mechanism
     from linkages.networks.mechanism import NetworkMechanism
 
 FREEDOMS = 6  # of a body in space
@@ -43,14 +46,16 @@ class Values(NamedTuple):
 
 
 class Subject(ABC):
-    """What the unknowns of an ``atlas`` are the joints of.
+    """What the unknowns of an atlas are the joints of.
 
+    ``unknowns`` are their names in datasets and ``labels`` those on the screen.
     ``table`` is the Denavit-Hartenberg table, where it is a single loop of revolute
     joints, and ``to_angles`` leads from the unknowns to its joint angles; to the
     unknowns as they are, where there is none. ``size`` is the characteristic length.
     """
 
-    atlas: Atlas
+    unknowns: list[str]
+    labels: list[str]
     table: Loop | None
     to_angles: Isometry
     size: float
@@ -68,12 +73,21 @@ class Subject(ABC):
 
     @property
     @abstractmethod
-    def labels(self) -> list[str]:
-        """What the unknowns are called on the screen."""
+    def geometry(self) -> Loop | Mechanism:
+        """What is made: the table, where there is one."""
 
-    @property
     @abstractmethod
-    def heading(self) -> str:
+    def as_loop(self) -> Loop:
+        """The loop that it is without limits, and with one link for every joint that is
+        locked; raises `GeometryError` where it is none, `CommandError` for a network."""
+
+    @abstractmethod
+    def still_joints(self, atlas: Atlas, form: int) -> Sequence[str | int]:
+        """The joints that stand still along a form: numbers from 1 in a table, names
+        elsewhere."""
+
+    @abstractmethod
+    def heading(self, atlas: Atlas) -> str:
         """What stands above configurations."""
 
     @property
@@ -86,8 +100,8 @@ class Subject(ABC):
         """The closure equations of the atlas."""
 
     @abstractmethod
-    def in_loop_angles(self) -> Atlas:
-        """The atlas in the joint angles of the table; as it is, where there is none."""
+    def in_loop_angles(self, atlas: Atlas) -> Atlas:
+        """An atlas in the joint angles of the table; as it is, where there is none."""
 
     @abstractmethod
     def place(self, point: np.ndarray) -> dict[str, Any]:
@@ -103,11 +117,11 @@ class Subject(ABC):
         where it stands is said of a table."""
 
     @abstractmethod
-    def motion(self, form: int) -> dict[str, Any]:
+    def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
         """What it says of what joints and bodies do along a form, by index."""
 
     @abstractmethod
-    def document(self) -> dict[str, Any]:
+    def document(self, atlas: Atlas) -> dict[str, Any]:
         """What it says of the subject besides its table."""
 
     @property
@@ -137,7 +151,7 @@ class Subject(ABC):
         """The values of all joint variables at configurations (k, n)."""
 
     @abstractmethod
-    def dataset_variables(self) -> dict[str, Variable]:
+    def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
         """What a dataset holds besides the atlas, by name."""
 
     @abstractmethod
@@ -151,32 +165,40 @@ class LoopSubject(Subject):
     parts = "links"
     places = ""
 
-    def __init__(self, atlas: Atlas):
-        self.atlas = atlas
-        self.table: Loop = loop_of(atlas)
-        self.to_angles = Isometry.identity(len(atlas.names))
-        self.size = self.table.characteristic_length
-        self.name = self.table.name
+    def __init__(self, loop: Loop):
+        self.table: Loop = loop
+        self.labels = [str(number + 1) for number in range(loop.n)]
+        self.unknowns = [f"theta{number}" for number in self.labels]
+        self.to_angles = Isometry.identity(loop.n)
+        self.size = loop.characteristic_length
+        self.name = loop.name
 
     @property
     def factors(self) -> np.ndarray:
         """1: all unknowns are angles."""
-        return np.ones(len(self.atlas.names))
+        return np.ones(self.table.n)
 
     @property
-    def labels(self) -> list[str]:
+    def geometry(self) -> Loop:
+        """The table."""
+        return self.table
+
+    def as_loop(self) -> Loop:
+        """The table."""
+        return self.table
+
+    def still_joints(self, atlas: Atlas, form: int) -> Sequence[int]:
         """The numbers of the joints."""
-        return [str(number + 1) for number in range(len(self.atlas.names))]
+        return FormLabels.of(atlas.forms[form]).inactive_joints
 
-    @property
-    def heading(self) -> str:
+    def heading(self, atlas: Atlas) -> str:
         """What stands above configurations."""
         return "joint angles (deg)"
 
     @property
     def gruebler(self) -> int:
         """The number of joints less six."""
-        return len(self.atlas.names) - FREEDOMS
+        return self.table.n - FREEDOMS
 
     def equations(self) -> Problem:
         """The closure of the loop."""
@@ -184,9 +206,9 @@ class LoopSubject(Subject):
 
         return LoopClosure(self.table)
 
-    def in_loop_angles(self) -> Atlas:
+    def in_loop_angles(self, atlas: Atlas) -> Atlas:
         """The atlas as it is."""
-        return self.atlas
+        return atlas
 
     def place(self, point: np.ndarray) -> dict[str, Any]:
         """Nothing: the numbers are the joint angles."""
@@ -209,19 +231,19 @@ class LoopSubject(Subject):
         """The number of the joint, and its angle."""
         return f"{index + 1} at {in_degrees(value)}"
 
-    def motion(self, form: int) -> dict[str, Any]:
+    def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
         """Nothing besides the table."""
         return {}
 
-    def document(self) -> dict[str, Any]:
+    def document(self, atlas: Atlas) -> dict[str, Any]:
         """Nothing besides the table."""
         return {}
 
     def joint_values(self, points: np.ndarray) -> Values:
         """The joint angles."""
-        return Values(self.atlas.names, points)
+        return Values(self.unknowns, points)
 
-    def dataset_variables(self) -> dict[str, Variable]:
+    def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
         """Nothing: the unknowns are the joint angles."""
         return {}
 
@@ -231,35 +253,23 @@ class LoopSubject(Subject):
 
 
 class MechanismSubject(Subject):
-    """A mechanism of any joints, read by its ``readout``; a ``network`` of Bennett loops
-    has locks of its own."""
+    """A mechanism of any joints, read by its ``readout``."""
 
     places = " of joints on bodies"
 
-    def __init__(self, atlas: Atlas):
-        from linkages.mechanisms.subject import mechanism_of
+    def __init__(self, mechanism: Mechanism):
         from linkages.readout.loop_atlas import to_loop_angles
         from linkages.readout.readout import Readout
 
-        mechanism = mechanism_of(atlas)
-        assert mechanism is not None
-        self.atlas = atlas
         self.readout = Readout(mechanism)
         single = self.readout.single_loop
         self.table = None if single is None else single.loop
         self.parts = "bodies" if single is None else "links"
         self.to_angles = to_loop_angles(self.readout)
+        self.labels = [one.label for one in self.readout.structure.unknowns]
+        self.unknowns = self.labels
         self.size = self.readout.structure.unit
         self.name = mechanism.name
-
-    @cached_property
-    def network(self) -> NetworkMechanism | None:
-        """The network that the mechanism is; None for any other."""
-        if "network" not in self.atlas.subject:
-            return None
-        from linkages.networks.mechanism import network_of
-
-        return network_of(self.atlas)
 
     @property
     def factors(self) -> np.ndarray:
@@ -267,15 +277,25 @@ class MechanismSubject(Subject):
         return self.readout.structure.scales
 
     @property
-    def labels(self) -> list[str]:
-        """The joint variables by name."""
-        unknowns = range(len(self.atlas.names))
-        return [self.readout.label_of_unknown(index) for index in unknowns]
+    def geometry(self) -> Loop | Mechanism:
+        """The table of a single loop, else the mechanism."""
+        return self.readout.mechanism if self.table is None else self.table
 
-    @property
-    def heading(self) -> str:
+    def as_loop(self) -> Loop:
+        """The loop through the axes of the joints."""
+        from linkages.structure.loop_geometry import loop_geometry
+
+        return loop_geometry(self.readout.mechanism)
+
+    def still_joints(self, atlas: Atlas, form: int) -> Sequence[str]:
+        """The names of the joints."""
+        from linkages.readout.facts import form_facts
+
+        return tuple(form_facts(atlas, form, self.readout).still)
+
+    def heading(self, atlas: Atlas) -> str:
         """What stands above configurations."""
-        units = [words for unit, words in UNITS.items() if unit in self.atlas.units]
+        units = [words for unit, words in UNITS.items() if unit in atlas.units]
         return f"{', '.join(self.labels)} ({', '.join(units)})"
 
     @property
@@ -289,20 +309,15 @@ class MechanismSubject(Subject):
 
         return MechanismClosure(self.readout.mechanism)
 
-    def in_loop_angles(self) -> Atlas:
-        """The atlas in the joint angles of a single loop."""
+    def in_loop_angles(self, atlas: Atlas) -> Atlas:
+        """An atlas in the joint angles of a single loop."""
         from linkages.readout.loop_atlas import in_loop_angles
 
-        return in_loop_angles(self.atlas, self.readout)
+        return in_loop_angles(atlas, self.readout)
 
     def place(self, point: np.ndarray) -> dict[str, Any]:
-        """The variables by joint, and of a network the angles of its outer joints."""
-        place: dict[str, Any] = {"variables": self.readout.variables(point)}
-        if self.network is not None:
-            values = self.readout.values(point[None])[0].tolist()
-            by_label = dict(zip(self.readout.labels(), values, strict=True))
-            place["ring_angles"] = self.network.placed.ring_values(by_label)
-        return place
+        """The variables by joint."""
+        return {"variables": self.readout.variables(point)}
 
     def variable(self, index: int) -> dict[str, str]:
         """The label of the unknown."""
@@ -333,27 +348,17 @@ class MechanismSubject(Subject):
         """The name of the variable."""
         return self.labels[index]
 
-    def motion(self, form: int) -> dict[str, Any]:
+    def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
         """Ranges of variables, joints that stand still, bodies that move as one."""
         from linkages.app.answer.mechanism_document import describe_motion
 
-        return dict(describe_motion(self.atlas, form, self.readout))
+        return dict(describe_motion(atlas, form, self.readout))
 
-    def document(self) -> dict[str, Any]:
-        """The mechanism, and the network that it is."""
+    def document(self, atlas: Atlas) -> dict[str, Any]:
+        """The mechanism."""
         from linkages.app.answer.mechanism_document import describe_mechanism
 
-        document: dict[str, Any] = {
-            "mechanism": describe_mechanism(self.atlas, self.readout)
-        }
-        if self.network is not None:
-            network = self.network.placed.network
-            document["network"] = {
-                "name": network.name,
-                "parameters": dict(network.parameters),
-                "kinks": self.network.kinks,
-            }
-        return document
+        return {"mechanism": describe_mechanism(atlas, self.readout)}
 
     def joint_values(self, points: np.ndarray) -> Values:
         """All variables, and the unit quaternions of spherical joints."""
@@ -366,11 +371,11 @@ class MechanismSubject(Subject):
             names += [f"{label}.q{part}" for part in "xyzw"]
         return Values(names, np.hstack(columns))
 
-    def dataset_variables(self) -> dict[str, Variable]:
+    def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
         """All joint variables, those that are locked as well, and rotations."""
         from linkages.readout.dataset_variables import dataset_variables
 
-        return dataset_variables(self.atlas, self.readout)
+        return dataset_variables(atlas, self.readout)
 
     def files(self) -> dict[str, Callable[[Path], object]]:
         """The graph of bodies and joints."""
@@ -380,13 +385,67 @@ class MechanismSubject(Subject):
         return {"mechanism.graphml": write}
 
 
+class NetworkSubject(MechanismSubject):
+    """A ``network`` of Bennett loops, whose outer joints have names and locks of its
+    own."""
+
+    def __init__(self, network: NetworkMechanism):
+        super().__init__(network)
+        self.network = network
+
+    def as_loop(self) -> Loop:
+        """None: a network has several loops."""
+        raise CommandError(
+            f"{self.name}: it is a network, with several loops; --without-centre "
+            "takes the single loop that its outer bars leave under --lock"
+        )
+
+    def place(self, point: np.ndarray) -> dict[str, Any]:
+        """The variables by joint, and the angles of the outer joints."""
+        values = self.readout.values(point[None])[0].tolist()
+        by_label = dict(zip(self.readout.labels(), values, strict=True))
+        ring_angles = self.network.placed.ring_values(by_label)
+        return {**super().place(point), "ring_angles": ring_angles}
+
+    def document(self, atlas: Atlas) -> dict[str, Any]:
+        """The mechanism, and the network that it is."""
+        network = self.network.placed.network
+        values = {
+            "name": network.name,
+            "parameters": dict(network.parameters),
+            "kinks": self.network.kinks,
+        }
+        return {**super().document(atlas), "network": values}
+
+
 def names_of_links(loop: Loop) -> tuple[str, ...]:
     """What the links of a loop are called."""
     return tuple(link_name(link, loop.n) for link in range(loop.n))
 
 
+def as_subject(linkage: Linkage | Mechanism) -> Subject:
+    """What `linkages.load` returns, as a subject."""
+    if isinstance(linkage, Linkage):
+        return LoopSubject(linkage.loop)
+    from linkages.networks.mechanism import NetworkMechanism
+
+    if isinstance(linkage, NetworkMechanism):
+        return NetworkSubject(linkage)
+    return MechanismSubject(linkage)
+
+
 @lru_cache(maxsize=2)
 def subject_at(atlas: Atlas) -> Subject:
     """What an atlas is of; raises `NoLinkageError` where that is no linkage."""
-    kind = MechanismSubject if "mechanism" in atlas.subject else LoopSubject
-    return kind(atlas)
+    return as_subject(_linkage_of(atlas))
+
+
+def _linkage_of(atlas: Atlas) -> Linkage | Mechanism:
+    if "mechanism" not in atlas.subject:
+        return Linkage(loop_of(atlas))
+    from linkages.mechanisms.subject import mechanism_of
+    from linkages.networks.mechanism import network_of
+
+    mechanism = network_of(atlas) or mechanism_of(atlas)
+    assert mechanism is not None
+    return mechanism
