@@ -16,7 +16,6 @@ from bifurc.completeness import CompletenessDocument, completeness_document
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
 from linkages.app.answer.configurations import numbers_at
-from linkages.app.answer.mobility import mobility_of
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.subject import subject_at
 from linkages.labels import FormLabels
@@ -184,7 +183,7 @@ def make_document(atlas: Atlas) -> MapDocument:
     surfaces = [_surface(atlas, k) for k in range(len(atlas.surfaces))]
     document: MapDocument = {
         "linkage": _linkage(atlas),
-        "mobility": mobility_of(atlas),
+        "mobility": atlas.mobility,
         "gruebler": subject_at(atlas).gruebler,
         "forms": forms + surfaces,
         "bifurcations": [_bifurcation(atlas, point) for point in atlas.bifurcations],

@@ -17,7 +17,6 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.settings import SearchSettings
-from linkages.app.answer.mobility import mobility_of
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.subject import subject_at
 from linkages.app.sweep.subjects import JointName, Member, Subject
@@ -152,7 +151,7 @@ def summarise(atlas: Atlas) -> Record:
     residuals = [FormLabels.of(form).max_residual for form in atlas.forms]
     routes = _route_lengths(atlas)
     record: Record = {
-        "mobility": mobility_of(atlas),
+        "mobility": atlas.mobility,
         "forms": len(atlas.forms),
         "closed_forms": sum(form.branch.closed for form in atlas.forms),
         "bifurcations": len(atlas.bifurcations),

@@ -15,7 +15,6 @@ from linkages.app.answer.mechanism_document import (
     LooseChainDocument,
     describe_mechanism,
 )
-from linkages.app.answer.mobility import mobility_of
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint
@@ -140,7 +139,9 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
             )
         )
     heads = ("joints", "constraints", "redundant", "motion that others can make")
-    count = f"Mobility {mobility_of(atlas)}; Grübler's count is {readout.mechanism.gruebler}"
+    count = (
+        f"Mobility {atlas.mobility}; Grübler's count is {readout.mechanism.gruebler}"
+    )
     count += f"{_special_count(readout.mechanism)}."
     for chain in document["loose_chains"]:
         count += f"\n{_of_loose_chain(chain)}"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linkages.app.reports.scene_figure import draw_configuration
+from docs.generator.scene_figure import draw_configuration
 from linkages.catalogue import entry
 
 
