@@ -24,7 +24,7 @@ from linkages.labels import loop_of
 from linkages.loop import Loop
 
 if TYPE_CHECKING:
-    from bifurc.files.variable import Variable
+    from bifurc.files.table import Variable
     from linkages.app.reports.beyond_limits import LimitedRange
     from linkages.links.clearance import Approach
     from linkages.networks.mechanism import NetworkMechanism
