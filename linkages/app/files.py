@@ -17,7 +17,7 @@ from linkages.app.figure_axes import FigureAxes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bifurc.files.variable import Variable
+    from bifurc.files.table import Variable
 
 
 def prepare_folder(folder: Path) -> list[Path]:

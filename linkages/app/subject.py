@@ -26,7 +26,7 @@ from linkages.linkage import Linkage
 from linkages.loop import Loop
 
 if TYPE_CHECKING:
-    from bifurc.files.variable import Variable
+    from bifurc.files.table import Variable
     from linkages.app.reports.beyond_limits import LimitedRange
     from linkages.links.clearance import Approach
     from linkages.mechanisms.mechanism import Mechanism

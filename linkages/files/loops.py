@@ -15,7 +15,7 @@ import numpy as np
 from bifurc.decisions import is_start_solved
 from linkages.closure.loop_closure import LoopClosure
 from linkages.decisions import is_parallel_axis, meets_in_one_point
-from linkages.files.joined_names import check_joined_names, joined_name
+from linkages.files.figures import check_joined_names, joined_name
 from linkages.files.misfits import check_moved
 from linkages.loop import Loop
 from linkages.mechanisms.displacements import transforms
