@@ -305,9 +305,7 @@ class MechanismSubject(Subject):
 
     def equations(self) -> Problem:
         """The closure of the mechanism."""
-        from linkages.closure.mechanism_closure import MechanismClosure
-
-        return MechanismClosure(self.readout.mechanism)
+        return self.readout.closure
 
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
         """An atlas in the joint angles of a single loop."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -227,6 +227,18 @@ class Mechanism:
             if joint.point is not None and joint.kind not in WITHOUT_PLACE
         ]
         return np.array(points or [(0.0, 0.0, 0.0)])
+
+    # --- what a class of mechanisms knows ---------------------------------------------
+
+    def assemblies(self) -> np.ndarray:
+        """Closed configurations (k, v) that are known without a search, in all
+        variables; none, unless a class has a closed form."""
+        return np.empty((0, len(self.variables)))
+
+    def subject_values(self) -> dict[str, Any]:
+        """What the ``subject`` of an atlas says of it besides its joints, in values that
+        JSON holds; nothing, unless a class is made of more."""
+        return {}
 
     # --- other mechanisms -------------------------------------------------------------
 

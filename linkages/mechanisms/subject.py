@@ -28,7 +28,11 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
             {"body": panel.body, "corners": [list(corner) for corner in panel.corners]}
             for panel in mechanism.panels
         ]
-    return {"name": mechanism.name, "mechanism": values}
+    return {
+        "name": mechanism.name,
+        "mechanism": values,
+        **mechanism.subject_values(),
+    }
 
 
 def mechanism_of(atlas: Atlas) -> Mechanism | None:
