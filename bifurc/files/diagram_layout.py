@@ -5,14 +5,13 @@ from __future__ import annotations
 from bifurc.atlas import Atlas
 from bifurc.diagrams.diagram import (
     Branching,
-    BranchingKind,
     Diagram,
     DiagramPoint,
-    PointKind,
     Stability,
     Stretch,
 )
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
+from bifurc.singular.point import Kind
 
 NOTHING = Diagram("", (), (), ())
 
@@ -131,7 +130,7 @@ def read_diagram_point(row: Row) -> DiagramPoint:
     """The point of a row of `DIAGRAM_POINTS`."""
     return DiagramPoint(
         name=str(row["diagram_point"]),
-        kind=PointKind[str(row["diagram_point_kind"])],
+        kind=Kind[str(row["diagram_point_kind"])],
         form=int(row["diagram_point_form"]),
         s=float(row["diagram_point_arclength"]),
         u=row["diagram_point_configuration"],
@@ -161,5 +160,5 @@ def read_branching(row: Row) -> Branching:
     """The branching of a row of `BRANCHINGS`."""
     return Branching(
         point=int(row["branching_point"]),
-        kind=BranchingKind[str(row["branching_kind"])],
+        kind=Kind[str(row["branching_kind"])],
     )

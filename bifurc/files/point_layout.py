@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from bifurc.atlas import Event, MeetingPoint
 from bifurc.files.table import JOINT, UNIT, Column, Row, Table
-from bifurc.singular.invariants import Invariants
-from bifurc.singular.point import Kind, SingularPoint
+from bifurc.singular.point import Invariants, Kind, SingularPoint
 
 POINTS: Table[MeetingPoint] = Table(
     "point",
