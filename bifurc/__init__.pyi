@@ -15,10 +15,8 @@ from .curves.certificate import Certificate as Certificate
 from .curves.continuation import trace_branch as trace_branch
 from .curves.monitor import Profile as Profile
 from .diagrams.diagram import Branching as Branching
-from .diagrams.diagram import BranchingKind as BranchingKind
 from .diagrams.diagram import Diagram as Diagram
 from .diagrams.diagram import DiagramPoint as DiagramPoint
-from .diagrams.diagram import PointKind as PointKind
 from .diagrams.diagram import Stability as Stability
 from .diagrams.diagram import Stretch as Stretch
 from .diagrams.make_diagram import diagram_of as diagram_of
@@ -38,7 +36,6 @@ from .function_problem import NumericalProblem as NumericalProblem
 from .graphs import arc_graph as arc_graph
 from .graphs import transition_graph as transition_graph
 from .large.large_branch import LargeBranch as LargeBranch
-from .large.large_point import LargeKind as LargeKind
 from .large.large_point import LargePoint as LargePoint
 from .large.large_problem import LargeProblem as LargeProblem
 from .large.trace_large_branch import LargeSettings as LargeSettings

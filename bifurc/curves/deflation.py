@@ -30,7 +30,7 @@ RUN = 4  # pieces made with one choice of a and t, before both are renewed
 SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales
 
 
-class _WithNullVector(NumericalProblem):
+class WithNullVector(NumericalProblem):
     """The deflated system in the unknowns (u, v), for one choice of a and t."""
 
     def __init__(self, problem: Problem, a: np.ndarray, t: np.ndarray):
@@ -97,7 +97,7 @@ class Deflated(NumericalProblem):
         the deflated system."""
         t, a = _tangent_and_normal(self._problem, start, tangent)
         march = march_by_collocation(
-            _WithNullVector(self._problem, a, t),
+            WithNullVector(self._problem, a, t),
             np.concatenate([start, a]),
             np.concatenate([t, np.zeros(self.n)]),
             replace(settings, count=min(settings.count, RUN)),
@@ -139,7 +139,7 @@ def deflated_singular_values(
     points, tangents = branch(s), branch(s, 1)
     for k, (point, tangent) in enumerate(zip(points, tangents, strict=True)):
         t, a = _tangent_and_normal(problem, point, tangent)
-        system = _WithNullVector(problem, a, t)
+        system = WithNullVector(problem, a, t)
         matrix = system.jacobians(np.concatenate([point, a])[None])[0]
         matrix[:, : problem.n] *= problem.scale
         matrix[: len(matrix) // 2 - 1] /= problem.scale  # F' itself

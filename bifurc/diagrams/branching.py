@@ -6,7 +6,7 @@ from collections.abc import Container, Sequence
 from typing import NamedTuple
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.diagrams.diagram import BranchingKind, Stretch
+from bifurc.diagrams.diagram import Stretch
 from bifurc.singular.point import Kind
 
 SAME_CUT = 1e-12  # of a length: a stretch ends at the very arclength of a pass
@@ -28,7 +28,7 @@ def branching_kind(
     turning: Sequence[TurningPass],
     resting: Container[int],
     stretches: Sequence[Stretch],
-) -> BranchingKind | None:
+) -> Kind | None:
     """What a singular point is along the parameter; None where no branches cross.
 
     ``turning`` are those of its passes at which the parameter turns back, ``resting``
@@ -37,10 +37,10 @@ def branching_kind(
     if point.kind is not Kind.BIFURCATION:
         return None
     if len(point.passes) != 2 or len(turning) > 1:
-        return BranchingKind.OTHER
+        return Kind.OTHER
     if not turning:
         stands = any(form in resting for form, _ in point.passes)
-        return BranchingKind.OTHER if stands else BranchingKind.TRANSCRITICAL
+        return Kind.OTHER if stands else Kind.TRANSCRITICAL
     branch = turning[0]
     trunk = next(one for one in point.passes if one != (branch.form, branch.s))
     beside = _unstable_beside(stretches, branch.form, branch.s, 1.0)
@@ -48,10 +48,10 @@ def branching_kind(
     side = 1.0 if rises * branch.side > 0 else -1.0
     on_trunk = _unstable_beside(stretches, *trunk, side)
     if min(beside, on_trunk) < 0 or beside == on_trunk:
-        return BranchingKind.PITCHFORK
+        return Kind.PITCHFORK
     if beside < on_trunk:
-        return BranchingKind.SUPERCRITICAL
-    return BranchingKind.SUBCRITICAL
+        return Kind.SUPERCRITICAL
+    return Kind.SUBCRITICAL
 
 
 def _unstable_beside(

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
-from bifurc.diagrams.diagram import DiagramPoint, PointKind
+from bifurc.diagrams.diagram import DiagramPoint
 from bifurc.diagrams.events import CircleCut, EventFunction, event_zeros, on_circles
 from bifurc.diagrams.turnings import unknown_sizes
 from bifurc.diagrams.zeros import Zero, ZeroKind, Zeros
 from bifurc.problem import Problem
+from bifurc.singular.point import Kind
 from bifurc.torus import wrap, wrapped_periods
 
 SAMPLES = 16  # places on each form at which a function is seen round the circles
@@ -62,7 +63,7 @@ def _event_point(
     u = form.branch(zero.s)
     return DiagramPoint(
         name="",
-        kind=PointKind.TOUCH if is_touch else PointKind.EVENT,
+        kind=Kind.TOUCH if is_touch else Kind.EVENT,
         form=number,
         s=zero.s,
         u=u,

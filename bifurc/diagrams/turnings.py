@@ -12,7 +12,7 @@ from bifurc.branch import Branch, Outcome, Turning
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import is_drawn_to_point, is_fold_of_crossing, stands_still
 from bifurc.diagrams.branching import TurningPass
-from bifurc.diagrams.diagram import DiagramPoint, PointKind
+from bifurc.diagrams.diagram import DiagramPoint
 from bifurc.diagrams.fold import Fold, refined_fold
 from bifurc.problem import Problem
 from bifurc.singular.point import Kind
@@ -152,4 +152,4 @@ def _fold_point(
             s += float(step @ branch(place.s, 1))
             u, bend = fold.u, fold.bend
     s = float(np.clip(s, 0.0, branch.length))
-    return DiagramPoint("", PointKind.FOLD, form, s, u, bend, error=half)
+    return DiagramPoint("", Kind.FOLD, form, s, u, bend, error=half)

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.diagrams.diagram import BranchingKind, PointKind, Stability, Stretch
+from bifurc.diagrams.diagram import Stability, Stretch
 from bifurc.figures.drawing import note_emptiness, widen_flat_axes
 from bifurc.figures.labels import label_spots
 from bifurc.figures.quantities import AxisRequest, Quantity, quantity_of
@@ -30,15 +30,6 @@ DASHES: dict[Stability, Dashes] = {
     Stability.UNKNOWN: "-",
 }
 EVENT_SYMBOLS = ("x", "+", "*", "P", "v", "1")
-
-
-# insides of the marks of crossings
-FILLS = {
-    BranchingKind.SUPERCRITICAL: "white",
-    BranchingKind.SUBCRITICAL: "black",
-    BranchingKind.PITCHFORK: "0.6",
-    BranchingKind.TRANSCRITICAL: "0.85",
-}
 
 
 class _Mark(NamedTuple):
@@ -175,10 +166,8 @@ def _marked(atlas: Atlas) -> list[tuple[str, _Mark, np.ndarray]]:
     marked = []
     for number, meeting in enumerate(atlas.points):
         if meeting.kind is Kind.BIFURCATION:
-            kind = kinds.get(number)
-            label = "bifurcation" if kind is None else kind.value
-            fill = "white" if kind is None else FILLS.get(kind, "white")
-            mark = _Mark(label, "o", fill=fill)
+            kind = kinds.get(number, meeting.kind)
+            mark = _Mark(kind.value, kind.mark.symbol, fill=kind.mark.fill)
             marked.append((meeting.name, mark, meeting.point.u))
         elif meeting.passes:
             mark = _Mark(meeting.kind.value, "D", edge="0.35")
@@ -187,16 +176,13 @@ def _marked(atlas: Atlas) -> list[tuple[str, _Mark, np.ndarray]]:
         return marked
     labels = sorted({event.label for event in diagram.events()})
     for point in diagram.points:
-        if point.kind is PointKind.FOLD:
-            mark = _Mark("fold", "s")
-        elif point.kind is PointKind.HOPF:
-            mark = _Mark("Hopf point", "^")
-        elif point.kind is PointKind.TOUCH:
-            mark = _Mark(f"{point.label} (touch)", "d")
-        else:
+        label, symbol = point.kind.value, point.kind.mark.symbol
+        if point.kind is Kind.EVENT:
             number = labels.index(point.label)
-            symbol = EVENT_SYMBOLS[number % len(EVENT_SYMBOLS)]
-            mark = _Mark(point.label, symbol)
+            label, symbol = point.label, EVENT_SYMBOLS[number % len(EVENT_SYMBOLS)]
+        elif point.label:
+            label = f"{point.label} ({point.kind.value})"
+        mark = _Mark(label, symbol)
         marked.append((point.name, mark, point.u))
     return marked
 

@@ -26,7 +26,8 @@ from bifurc.figures.planes import (
     cut_to_frame,
     place_in_frame,
 )
-from bifurc.figures.style import RC, Mark, Style, form_style, mark_of
+from bifurc.figures.style import RC, Style, form_style
+from bifurc.singular.point import Mark
 
 NAME_WIDTH = 24  # letters of a line of the legend
 LETTER_SIZE = RC["legend.fontsize"]
@@ -137,8 +138,8 @@ def draw_marks(
         _draw_assembly(axes, plane.copies(solution), settings.mark_size or 5.5)
     spots: dict[Mark, list[np.ndarray]] = {}
     for point in atlas.points:
-        symbol, usual_size = mark_of(point.kind)
-        mark = Mark(symbol, settings.mark_size or usual_size)
+        mark = point.kind.mark
+        mark = mark._replace(size=settings.mark_size or mark.size)
         spots.setdefault(mark, []).append(plane.copies(point.point.u))
     for mark, places in spots.items():
         _draw_singular_points(axes, np.concatenate(places), mark)
@@ -233,7 +234,7 @@ def _mark_entries(atlas: Atlas) -> list[Line2D]:
     surfaces, as far as there are any."""
     entries = []
     for kind in dict.fromkeys(point.kind for point in atlas.points):
-        mark = mark_of(kind)
+        mark = kind.mark
         entries.append(
             Line2D(
                 [],

@@ -16,7 +16,7 @@ from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
 from bifurc.figures.drawing import draw_legend_outside, legend_size
 from bifurc.figures.planes import Scale, curve_points, scale_of
-from bifurc.figures.style import RC, form_style, mark_of
+from bifurc.figures.style import RC, form_style
 
 
 def plot_map_in_space(
@@ -76,7 +76,7 @@ def _draw_points(
     """Singular points with their names, and isolated solutions."""
     for point in atlas.points:
         spot = _shown(point.point.u[None, list(indices)], scales)[0]
-        mark = mark_of(point.kind)
+        mark = point.kind.mark
         axes.plot(
             *spot[:, None],
             marker=mark.symbol,

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple, TypeAlias
 
-from bifurc.singular.point import Kind
-
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
 # Settings of matplotlib for all figures, which the user's own must not disturb. Their
@@ -67,17 +65,6 @@ class Style(NamedTuple):
     dashes: Dashes
 
 
-class Mark(NamedTuple):
-    """Symbol of a singular point, as matplotlib calls it, and its size in points."""
-
-    symbol: str
-    size: float
-
-
-MARKS = {Kind.BIFURCATION: Mark("o", 6.5), Kind.RANK_DROP: Mark("D", 5.0)}
-OTHER_MARK = Mark("s", 5.0)
-
-
 def form_style(index: int) -> Style:
     """Style of form number ``index``: colours and dashes repeat, but not together
     before 24 forms."""
@@ -88,8 +75,3 @@ def color_on_dark(color: str) -> str:
     """The colour that stands for ``color`` on a dark page: the same where it can be
     seen there."""
     return ON_DARK.get(color, color)
-
-
-def mark_of(kind: Kind) -> Mark:
-    """Mark of the singular points of a kind."""
-    return MARKS.get(kind, OTHER_MARK)

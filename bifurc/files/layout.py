@@ -16,17 +16,14 @@ from bifurc.curves.certificate import Certificate, CertificateValues
 from bifurc.curves.monitor import Profile
 from bifurc.diagrams.diagram import (
     Branching,
-    BranchingKind,
     Diagram,
     DiagramPoint,
-    PointKind,
     Stability,
     Stretch,
 )
 from bifurc.files.json_values import mapping_from_text, to_text
 from bifurc.files.table import JOINT, Column, Frame, Row, Table
-from bifurc.singular.invariants import Invariants
-from bifurc.singular.point import Kind, SingularPoint
+from bifurc.singular.point import Invariants, Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 
 if TYPE_CHECKING:
@@ -35,7 +32,7 @@ if TYPE_CHECKING:
 NOTHING = Diagram("", (), (), ())
 
 TYPES: dict[str, type] = {"float": float, "int": int, "bool": bool, "str": str}
-for _enum in (Outcome, Kind, PointKind, BranchingKind, Stability):
+for _enum in (Outcome, Kind, Stability):
     TYPES[_enum.__name__] = _enum
 
 

@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.large.large_point import LargeKind, LargePoint
+from bifurc.large.large_point import LargePoint
+from bifurc.singular.point import Kind
 from bifurc.units import Units
+
+KINDS = (Kind.FOLD, Kind.CROSSING, Kind.RANK_DROP, Kind.MULTIPLE, Kind.NEAR_MISS)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,25 +64,25 @@ class LargeBranch:
     @property
     def folds(self) -> tuple[LargePoint, ...]:
         """The points where the parameter turns back."""
-        return self.points_of(LargeKind.FOLD)
+        return self.points_of(Kind.FOLD)
 
     @property
     def crossings(self) -> tuple[LargePoint, ...]:
         """The points where another curve passes."""
-        return self.points_of(LargeKind.CROSSING)
+        return self.points_of(Kind.CROSSING)
 
     @property
     def near_misses(self) -> tuple[LargePoint, ...]:
         """The minima of the smallest singular value above zero."""
-        return self.points_of(LargeKind.NEAR_MISS)
+        return self.points_of(Kind.NEAR_MISS)
 
-    def points_of(self, kind: LargeKind) -> tuple[LargePoint, ...]:
+    def points_of(self, kind: Kind) -> tuple[LargePoint, ...]:
         """The special points of one kind."""
         return tuple(point for point in self.points if point.kind is kind)
 
     def __repr__(self) -> str:
         kinds = [point.kind.value for point in self.points]
-        counts = [f"{kind.value}: {kinds.count(kind.value)}" for kind in LargeKind]
+        counts = [f"{kind.value}: {kinds.count(kind.value)}" for kind in KINDS]
         return (
             f"<LargeBranch in {self.branch.n} unknowns, {self.outcome.value}\n"
             f" length {self.length:.6g}, {len(self.branch.pieces)} pieces; "

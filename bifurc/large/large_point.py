@@ -4,25 +4,10 @@ and where they nearly do."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import Enum
 
 import numpy as np
 
-
-class LargeKind(Enum):
-    """What a special point is."""
-
-    # The parameter turns back: a limit point.
-    FOLD = "fold"
-    # The rank of F' drops, and other curves pass in directions of their own.
-    CROSSING = "crossing"
-    # The rank of F' drops by one, and second order shows no other curve.
-    RANK_DROP = "rank drop"
-    # The rank of F' drops by two or more, and the directions of other curves are not
-    # computed.
-    MULTIPLE = "multiple singular point, directions not computed"
-    # The smallest singular value has a minimum above zero.
-    NEAR_MISS = "near miss"
+from bifurc.singular.point import Kind
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +23,7 @@ class LargePoint:
     the derivatives of F that give them, 0 where they give none besides the first.
     """
 
-    kind: LargeKind
+    kind: Kind
     s: float
     u: np.ndarray
     gap: float

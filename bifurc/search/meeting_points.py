@@ -17,8 +17,6 @@ from bifurc.search.canonical_order import order_points
 from bifurc.search.components import surfaces_through
 from bifurc.singular.point import Kind, SingularPoint
 
-INITIALS = {Kind.BIFURCATION: "B", Kind.RANK_DROP: "R", Kind.DIMENSION_CHANGE: "D"}
-OTHER_INITIAL = "S"
 ALONG = 0.95  # smallest cosine between a branch and the half-branch along which it runs
 NEAR_END = 0.05  # length, over the scale, of a stalled end: it counts, not a pass there
 # A stalled end is looked for up to a few radii of the section, or errors, from a cusp,
@@ -51,8 +49,7 @@ def meeting_points(
         ordered += [of_kind[k] for k in order]
     named = []
     for number, point in enumerate(ordered, start=1):
-        initial = INITIALS.get(point.kind, OTHER_INITIAL)
-        named.append(replace(point, name=f"{initial}{number}"))
+        named.append(replace(point, name=f"{point.kind.initial}{number}"))
     return tuple(named)
 
 

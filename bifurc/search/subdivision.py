@@ -20,8 +20,7 @@ from bifurc.branch import Branch
 from bifurc.decisions import closes_to_rounding, is_same_point
 from bifurc.problem import Problem
 from bifurc.search.stretches import verify_branch
-from bifurc.singular.invariants import CROSSING, LONE_POINT
-from bifurc.singular.point import SingularPoint
+from bifurc.singular.point import CROSSING, LONE_POINT, SingularPoint
 
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 64

@@ -15,7 +15,7 @@ from typing import TypeAlias
 import mpmath
 
 from bifurc.decisions import is_same_coefficient
-from bifurc.singular.invariants import Invariants
+from bifurc.singular.point import Invariants
 from bifurc.singular.puiseux import Series, Terms, branches, order_of
 
 _Root: TypeAlias = dict[Fraction, mpmath.mpc]

@@ -20,13 +20,13 @@ import numpy as np
 from bifurc.problem import PreciseResidual, Problem
 from bifurc.singular.confirm import Differences
 from bifurc.singular.discriminant import invariants_of
-from bifurc.singular.invariants import Invariants
 from bifurc.singular.local_branches import (
     LiftedEquation,
     Neighbourhood,
     neighbourhood_of,
 )
 from bifurc.singular.locate import MOST_FOR_GERM, LocatedPoint
+from bifurc.singular.point import Invariants
 from bifurc.singular.puiseux import (
     HalfBranch,
     Terms,

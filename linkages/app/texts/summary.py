@@ -24,16 +24,6 @@ from linkages.app.texts.form_names import listed_forms
 from linkages.labels import FormLabels, loop_of
 
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
-# titles of the tables of singular points, and the kinds that stand in each
-POINT_TABLES = (
-    ("Bifurcations", (Kind.BIFURCATION,)),
-    ("Rank drops (a single branch passes)", (Kind.RANK_DROP,)),
-    ("Changes of dimension (a surface is met)", (Kind.DIMENSION_CHANGE,)),
-    (
-        "Other singular points",
-        (Kind.CUSP, Kind.ISOLATED, Kind.SURFACE, Kind.UNDECIDED),
-    ),
-)
 
 
 def make_summary(atlas: Atlas) -> str:
@@ -47,7 +37,7 @@ def make_summary(atlas: Atlas) -> str:
         *tables.geometry,
         _forms(atlas),
         _surfaces(atlas),
-        *(_points(atlas, title, kinds) for title, kinds in POINT_TABLES),
+        *(_points(atlas, title) for title in dict.fromkeys(one.title for one in Kind)),
         _near_misses(atlas),
         _rigid_assemblies(atlas),
         _near_motions(atlas),
@@ -164,10 +154,11 @@ def _surface_row(surface: Surface) -> tuple[str, ...]:
     return (name, dimension, count, area, charts.outcome.value, surface.note)
 
 
-def _points(atlas: Atlas, title: str, kinds: Sequence[Kind]) -> str:
+def _points(atlas: Atlas, title: str) -> str:
+    """The singular points of the kinds whose table has a ``title``."""
     rows = []
     for point in atlas.points:
-        if point.kind not in kinds:
+        if point.kind.title != title:
             continue
         remark = f": {point.note}" if point.note else ""
         rows.append(
