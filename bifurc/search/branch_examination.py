@@ -22,10 +22,9 @@ from bifurc.numerics.blur import blur_along
 from bifurc.numerics.singular_values import singular_values
 from bifurc.search.canonical_course import canonical_course
 from bifurc.search.certification import certificate_of
-from bifurc.search.findings import PointSighting, TracedBranch
+from bifurc.search.findings import PointSighting, Run, TracedBranch
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
-from bifurc.search.run import Run
-from bifurc.search.start import Start, half_branch_starts
+from bifurc.search.starts import Start, half_branch_starts
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import SingularPoint
 

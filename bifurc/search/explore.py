@@ -17,10 +17,10 @@ from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.threads import one_thread
 from bifurc.problem import Problem
-from bifurc.search.assemble import assemble_atlas
-from bifurc.search.restated import restated
+from bifurc.search.answer.assemble import assemble_atlas
+from bifurc.search.own_units.restated import restated
+from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.search.search import Search
-from bifurc.search.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 

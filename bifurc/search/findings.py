@@ -1,9 +1,10 @@
-"""What a search knows so far."""
+"""What a search knows so far, and what its parts share."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from itertools import compress
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -22,16 +23,47 @@ from bifurc.decisions import (
     may_be_known,
     may_be_weak,
 )
+from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.blur import same_reach
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.components import Components
-from bifurc.search.seed_fates import Fate, SeedFate
 from bifurc.seeds import Audit, Seeds
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import SingularPoint
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
+
+
+class Fate(Enum):
+    """Where a seed lies."""
+
+    # It lies on a traced branch.
+    ON_FORM = "on a form"
+    # It is a singular point, or as near to one as its digits tell.
+    AT_SINGULAR_POINT = "at a singular point"
+    # It is a solution without motion.
+    RIGID = "rigid assembly"
+    # It lies on a curve along which the system is nearly solved.
+    ON_NEAR_MOTION = "on a near motion"
+    # The solutions about it are of dimension 2 or more.
+    ON_COMPONENT = "on a component of higher dimension"
+    # It only nearly solves the equations.
+    NO_SOLUTION = "no solution"
+
+
+@dataclass(frozen=True)
+class SeedFate:
+    """What one seed lies on, and which one of these.
+
+    ``number`` counts the branches, the near motions, the singular points or the rigid
+    assemblies in the order in which they were found. Of a component it is the dimension.
+    """
+
+    fate: Fate
+    number: int = 0
+
 
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
@@ -517,3 +549,29 @@ class Findings:
 
     def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
         return float(np.linalg.norm(self.problem.difference(one, other)))
+
+
+@dataclass(frozen=True)
+class Run:
+    """A search under way: what is searched, how, until when, and what is known so far.
+
+    It stops at the ``deadline``. A Ctrl-C that ``interrupt`` holds makes the deadline
+    pass, so that every step soon ends, and is raised between two of them.
+    """
+
+    problem: Problem
+    settings: SearchSettings
+    deadline: Deadline
+    interrupt: HeldInterrupt
+    findings: Findings
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the budget is used up."""
+        return self.deadline.passed
+
+    def is_over_now(self) -> bool:
+        """The same, asked between two steps of something long: a Ctrl-C that was held
+        is raised."""
+        self.interrupt.check()
+        return self.is_over

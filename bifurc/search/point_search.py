@@ -13,8 +13,7 @@ from bifurc.decisions import (
     is_precise_enough,
 )
 from bifurc.numerics.singular_values import singular_values
-from bifurc.search.findings import PointSighting
-from bifurc.search.run import Run
+from bifurc.search.findings import PointSighting, Run
 from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import (
     MOST_FOR_GERM,

@@ -36,23 +36,27 @@ from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.blur import blur_along, distance_to_singular
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
-from bifurc.search.assembly import polished
+from bifurc.search.answer.meeting_points import ends_at
 from bifurc.search.branch_examination import BranchExaminer, ExaminedBranch
+from bifurc.search.branch_parts import joined_through
 from bifurc.search.certification import finer_settings, may_be_mended
-from bifurc.search.components import components_of_seeds, singular_points_of
-from bifurc.search.findings import NO_DOUBT, Findings
-from bifurc.search.joining import joined_through
-from bifurc.search.meeting_points import ends_at
-from bifurc.search.more_starts import asks_for_more_starts
+from bifurc.search.components import (
+    components_of_seeds,
+    singular_curve_through,
+    singular_points_of,
+)
+from bifurc.search.findings import NO_DOUBT, Fate, Findings, Run, SeedFate
 from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
-from bifurc.search.run import Run
-from bifurc.search.seed_fates import Fate, SeedFate
-from bifurc.search.singular_curves import singular_curve_through
-from bifurc.search.start import Start, half_branch_starts
-from bifurc.search.subdivision import Subdivision, can_be_subdivided, subdivide
-from bifurc.search.subdivision_audit import audit_of, refuted_at
-from bifurc.search.weak_seeds import sharpened, with_weak_solutions
+from bifurc.search.solutions import polished, sharpened, with_weak_solutions
+from bifurc.search.starts import Start, asks_for_more_starts, half_branch_starts
+from bifurc.search.subdivision import (
+    Subdivision,
+    audit_of,
+    can_be_subdivided,
+    refuted_at,
+    subdivide,
+)
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_from_nearby

@@ -6,9 +6,8 @@ import pytest
 from bifurc.atlas import Provenance
 from bifurc.completeness import Claim, Level
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.completeness import judge_completeness
-from bifurc.search.findings import Findings
-from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.search.answer.completeness import judge_completeness
+from bifurc.search.findings import Fate, Findings, SeedFate
 from bifurc.seeding import missed_probability
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings

@@ -12,8 +12,7 @@ from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
 from bifurc.decisions import is_same_point
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.search.findings import Fate, Findings, SeedFate, TracedBranch
 from bifurc.seeds import Audit, Seeds
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import Neighbourhood

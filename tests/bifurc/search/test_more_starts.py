@@ -8,9 +8,8 @@ from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.components import Components
-from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.more_starts import FEWEST, asks_for_more_starts
-from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.search.findings import Fate, Findings, SeedFate, TracedBranch
+from bifurc.search.starts import FEWEST, asks_for_more_starts
 from bifurc.seeds import Seeds
 from bifurc.singular.point import SingularPoint
 

@@ -26,6 +26,13 @@ from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.search.answer.completeness import SearchDoubt, judge_completeness
+from bifurc.search.answer.doubts import (
+    doubts_of,
+    doubts_of_near_misses,
+    doubts_of_others,
+)
+from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.canonical_order import (
     order_branches,
     order_points,
@@ -33,12 +40,8 @@ from bifurc.search.canonical_order import (
     order_values,
 )
 from bifurc.search.certification import certificate_of
-from bifurc.search.closure_gap import closure_gap
-from bifurc.search.completeness import judge_completeness
-from bifurc.search.doubts import doubts_of, doubts_of_near_misses, doubts_of_others
 from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.meeting_points import meeting_points
-from bifurc.search.statements import SearchDoubt
+from bifurc.search.near_motion_search import closure_gap
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap, wrapped_periods
 
