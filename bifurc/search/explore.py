@@ -130,23 +130,11 @@ def _explored(
     began: float,
 ) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
-    search = Search(problem, settings, progress, Deadline(settings.budget, began))
+    deadline = Deadline(settings.budget, began)
+    search = Search(problem, settings, seeds, int(seed), progress, deadline)
     interrupted = False
     try:
-        with search.run.interrupt:
-            search.gather_seeds(seeds, seed)
-            search.sort_seeds()
-            search.trace_seeds()
-            search.draw_more_starts(int(seed))
-            search.look_where_starts_stop()
-            search.cover_surfaces()
-            search.trace_singular_curves()
-            search.separate_points()
-            search.join_branches()
-            search.mend_at_germs()
-            search.audit_branches()
-            search.audit_in_boxes()
-            search.near_motions.look()
+        search.take_steps()
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")

@@ -19,7 +19,6 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import follow_curve
-from bifurc.curves.misclosure import largest_misclosure
 from bifurc.curves.track import Place
 from bifurc.decisions import (
     is_lost_in_rounding,
@@ -315,11 +314,13 @@ class GermMender:
         starts: list[Start] = []
         traced: list[TracedBranch] = []
         for branch in branches:
-            misclosure = largest_misclosure(self.problem, branch)
-            examined = self.examiner.examine(branch, misclosure)
+            examined = self.examiner.examine(branch)
             traced.append(examined.traced)
             starts += examined.starts
-        self.findings.supersede_branches(superseded, traced)
+        for number in superseded:
+            self.findings.forget_branch(number)
+        for one in traced:
+            self.findings.add_branch(one)
         return starts
 
     # --- what follows a germ ----------------------------------------------------------
@@ -346,8 +347,8 @@ class GermMender:
         within = is_same_point.threshold * self.problem.scale
         return [
             _Pass(number, float(s))
-            for number, branch in enumerate(self.findings.branches)
-            for s in branch.passes(place, within)
+            for number, traced in self.findings.traced.items()
+            for s in traced.branch.passes(place, within)
         ]
 
     def _follows(
@@ -365,7 +366,7 @@ class GermMender:
             return all(self._ends_after(each, length) for each, length in passes)
         if one.branch != other.branch:
             return False
-        branch = self.findings.branches[one.branch]
+        branch = self.findings.traced[one.branch].branch
         way = abs(one.s - other.s)
         if branch.closed:
             way = min(way, branch.length - way)
@@ -381,12 +382,13 @@ class GermMender:
         """
         shares = SHARES[SHARES > BEFORE_CUSP] if local.returns else SHARES
         places = germ.u + local(side * shares)
-        distances, _ = self.findings.branches[at.branch].nearest(places)
+        branch = self.findings.traced[at.branch].branch
+        distances, _ = branch.nearest(places)
         return bool(np.all(is_precise_enough(distances, self.problem.scale)))
 
     def _ends_after(self, at: _Pass, length: float) -> bool:
         """Whether a branch ends after a pass and about so long a way."""
-        branch = self.findings.branches[at.branch]
+        branch = self.findings.traced[at.branch].branch
         if branch.outcome is not Outcome.STALLED:
             return False
         way = min(at.s, branch.length - at.s)
@@ -400,10 +402,10 @@ class GermMender:
         """The numbers of the known branches that are, where doubles tell, parts of the
         new ``branches``; None where one of them is in part only."""
         superseded = []
-        for number, known in enumerate(self.findings.branches):
-            if not any(len(passes_inside(known, germ)) for germ in germs):
+        for number, traced in self.findings.traced.items():
+            if not any(len(passes_inside(traced.branch, germ)) for germ in germs):
                 continue
-            shares = self._shares_on(known, branches)
+            shares = self._shares_on(traced.branch, branches)
             if np.all(shares):
                 superseded.append(number)
             elif np.any(shares):

@@ -16,6 +16,7 @@ from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.search.canonical_course import canonical_course
 from bifurc.search.findings import Run
+from bifurc.search.seed_book import SeedFate
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 
@@ -104,14 +105,12 @@ class NearMotionSearch:
         self.problem = run.problem
         self.findings = run.findings
 
-    def through(self, point: np.ndarray) -> int | None:
-        """The number of the near motion through a point (n,), which is traced if it is
+    def through(self, point: np.ndarray) -> SeedFate | None:
+        """That of a seed on the near motion through a point (n,), which is traced if it is
         new; None where there is none."""
-        number = self.findings.near_motion_through(point)
-        if number is not None:
-            return number
-        if self.findings.is_on_short_stretch(point):
-            return None
+        fate = self.findings.near_motion_through(point)
+        if fate is not None or not len(self._not_on_known(point[None])):
+            return fate
         tracing, deadline = self.run.settings.tracing, self.run.deadline
         near = trace_near_motion(self.problem, point, tracing, deadline)
         if near is None or closes_to_rounding(near.misclosure):
@@ -131,11 +130,11 @@ class NearMotionSearch:
         is_on_component = bool(components.seeds or components.on_shaky)
         is_mobile = bool(findings.traced) or is_on_component
         is_asked = self.run.settings.near_motions
-        if is_mobile or not is_asked or not len(findings.seeds.missed):
+        if is_mobile or not is_asked or not len(findings.book.seeds.missed):
             return
         if self.run.is_over:
             return
-        points = self._nearly_closed(findings.seeds.missed)
+        points = self._nearly_closed(findings.book.seeds.missed)
         if not len(points) or self.run.is_over:
             return
         rng, deadline = np.random.default_rng(0), self.run.deadline
@@ -175,7 +174,7 @@ class NearMotionSearch:
         """Those of the points (k, n) that lie on no known near motion or short
         stretch."""
         findings = self.findings
-        for near in findings.near_motions + findings.short_stretches:
+        for near in (*findings.near_motions.values(), *findings.short_stretches):
             if len(points):
                 points = points[~near.runs_through(self.problem, points)]
         return points

@@ -8,12 +8,12 @@ there is no end in sight, and no more are drawn.
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.search.findings import Fate, Findings
+from bifurc.search.findings import Findings
+from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.singular.point import SingularPoint
 
 
@@ -51,34 +51,34 @@ def asks_for_more_starts(findings: Findings) -> bool:
 
 def _hits_of_islands(findings: Findings) -> np.ndarray:
     """How many random starts (i,) met each island."""
-    is_random = findings.seeds.random
-    hits = Counter(fate for number, fate in findings.fates.items() if is_random[number])
     islands = _islands_of_forms(findings)
-    of_forms = np.zeros(islands.max(initial=-1) + 1, dtype=int)
-    of_others = {Fate.RIGID: [0] * len(findings.rigid)}
-    of_others[Fate.ON_NEAR_MOTION] = [0] * len(findings.near_motions)
-    for fate, count in hits.items():
-        if fate.fate is Fate.ON_FORM:
-            of_forms[islands[fate.number]] += count
-        elif fate.fate in of_others:
-            of_others[fate.fate][fate.number] += count
-    return np.concatenate([of_forms, *of_others.values()]).astype(int)
+    rigid = [SeedFate(Fate.RIGID, k) for k in findings.rigid]
+    near = [SeedFate(Fate.ON_NEAR_MOTION, k) for k in findings.near_motions]
+    places: list[SeedFate | int] = [*islands.values(), *rigid, *near]
+    hits = dict.fromkeys(places, 0)
+    for fate, count in findings.book.random_hits().items():
+        island: SeedFate | int = islands.get(fate, fate)
+        if island in hits:
+            hits[island] += count
+    return np.array(list(hits.values()), dtype=int)
 
 
-def _islands_of_forms(findings: Findings) -> np.ndarray:
-    """The number (k,) of the island that each of the traced branches lies on."""
+def _islands_of_forms(findings: Findings) -> dict[SeedFate, int]:
+    """The number of the island that each traced branch lies on, by the fate of seeds on
+    the branch."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    count = len(findings.traced)
-    meet = np.zeros((len(findings.points), count), dtype=bool)
-    for row, point in enumerate(findings.points):
-        for column, branch in enumerate(findings.branches):
+    points, branches = findings.points.values(), findings.branches
+    meet = np.zeros((len(points), len(branches)), dtype=bool)
+    for row, point in enumerate(points):
+        for column, branch in enumerate(branches):
             distance, _ = branch.nearest(point.u, within=point.radius)
             meet[row, column] = distance[0] <= point.radius
     rows, columns = np.nonzero(meet)
-    size = len(findings.points) + count
-    links = coo_array((np.ones(len(rows)), (rows + count, columns)), shape=(size, size))
-    islands = connected_components(links, directed=False)[1][:count]
-    _, numbers = np.unique(islands, return_inverse=True)
-    return np.asarray(numbers)
+    size = len(points) + len(branches)
+    places = (rows + len(branches), columns)
+    links = coo_array((np.ones(len(rows)), places), shape=(size, size))
+    _, islands = connected_components(links, directed=False)
+    fates = [SeedFate(Fate.ON_FORM, number) for number in findings.traced]
+    return dict(zip(fates, islands.tolist(), strict=False))

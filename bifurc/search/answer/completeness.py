@@ -17,7 +17,8 @@ from bifurc.completeness import (
     Scope,
 )
 from bifurc.decisions import closes_to_rounding
-from bifurc.search.findings import Fate, Findings, SeedFate
+from bifurc.search.findings import Findings
+from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.seeding import missed_probability
 
 
@@ -149,7 +150,7 @@ def judge_completeness(
     """What the audit proves, the estimate for the rest, and what is in doubt."""
     hits = _count_hits(findings)
     missed = missed_probability(list(hits.values()))
-    left = len(findings.open_seeds)
+    left = len(findings.book.open_seeds)
     missed_at_most = 1.0 if provenance.out_of_time and left else missed
     claims = (*_claims(findings, provenance, left), _estimate(hits, missed))
     return Completeness(claims, tuple(doubts), missed_at_most)
@@ -167,7 +168,7 @@ def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Clai
         return (SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED),)
     if findings.audit is None:
         return ()
-    loose = sum(not closes_to_rounding(t.misclosure) for t in findings.traced)
+    loose = sum(not closes_to_rounding(t.misclosure) for t in findings.traced.values())
     if loose:
         kind = SearchClaim.CLOSING_TOLERANCE
         return (kind.claim(Scope.MOTIONS, Level.ESTIMATED, forms=loose),)
@@ -176,11 +177,8 @@ def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Clai
 
 def _count_hits(findings: Findings) -> Counter[SeedFate]:
     """How many random starts came to each fate."""
-    seeds = findings.seeds
-    hits = Counter(
-        fate for number, fate in findings.fates.items() if seeds.random[number]
-    )
-    hits[NO_SOLUTION] += len(seeds.gaps)
+    hits = findings.book.random_hits()
+    hits[NO_SOLUTION] += len(findings.book.seeds.gaps)
     return hits
 
 
