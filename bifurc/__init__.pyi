@@ -30,7 +30,7 @@ from .files.dataset import from_dataset as from_dataset
 from .files.dataset import load_atlas as load_atlas
 from .files.dataset import save_atlas as save_atlas
 from .files.dataset import to_dataset as to_dataset
-from .files.errors import AtlasFileError as AtlasFileError
+from .files.dataset import AtlasFileError as AtlasFileError
 from .function_problem import FunctionProblem as FunctionProblem
 from .function_problem import NumericalProblem as NumericalProblem
 from .graphs import arc_graph as arc_graph
@@ -48,7 +48,7 @@ from .problem import SphereProjection as SphereProjection
 from .routes.route import Leg as Leg
 from .routes.route import Route as Route
 from .routes.route import find_route as find_route
-from .search.certify_atlas import certify_atlas as certify_atlas
+from .search.certification import certify_atlas as certify_atlas
 from .search.explore import explore as explore
 from .seeds import Audit as Audit
 from .seeds import Seeds as Seeds

@@ -17,10 +17,10 @@ from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.threads import one_thread
 from bifurc.problem import Problem
-from bifurc.search.assemble import assemble_atlas
-from bifurc.search.restated import restated
+from bifurc.search.answer.assemble import assemble_atlas
+from bifurc.search.own_units.restated import restated
+from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.search.search import Search
-from bifurc.search.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 
@@ -130,23 +130,11 @@ def _explored(
     began: float,
 ) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
-    search = Search(problem, settings, progress, Deadline(settings.budget, began))
+    deadline = Deadline(settings.budget, began)
+    search = Search(problem, settings, seeds, int(seed), progress, deadline)
     interrupted = False
     try:
-        with search.run.interrupt:
-            search.gather_seeds(seeds, seed)
-            search.sort_seeds()
-            search.trace_seeds()
-            search.draw_more_starts(int(seed))
-            search.look_where_starts_stop()
-            search.cover_surfaces()
-            search.trace_singular_curves()
-            search.separate_points()
-            search.join_branches()
-            search.mend_at_germs()
-            search.audit_branches()
-            search.audit_in_boxes()
-            search.near_motions.look()
+        search.take_steps()
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")

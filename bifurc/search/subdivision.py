@@ -4,23 +4,109 @@ The bounds are divided until every box is settled. A box is empty where bounds o
 on F in the middle and on F' in the box, leave out zero. It holds a single arc where
 Krawczyk's test (1969), with one unknown as the parameter, finds one solution of the
 others for each of its values: a branch through one of these solutions is that arc. The
-branches are held against the same bounds all along. What remains lies about singular
-points. All these bounds are intervals rounded outwards (`bifurc/core/boxes.hpp`).
+branches are held against the same bounds all along, also between the nodes of their
+pieces. What remains lies about singular points. All these bounds are intervals rounded
+outwards (`bifurc/core/boxes.hpp`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.completeness import Level, Scope
+from bifurc.curves.certificate import Certificate, CertificateStatus
+from bifurc.curves.monitor import dead_points
 from bifurc.decisions import closes_to_rounding, is_same_point
 from bifurc.problem import Problem
-from bifurc.search.stretches import verify_branch
+from bifurc.search.answer.completeness import SearchClaim
+from bifurc.search.findings import TracedBranch
+from bifurc.seeds import Audit
 from bifurc.singular.point import CROSSING, LONE_POINT, SingularPoint
+
+MOST = 4000  # stretches of a branch that are divided
+SHORTEST = 1e-7  # half a stretch, over the scale, that is not divided any more
+
+
+class Course(Enum):
+    """What is known of a branch, as `_core.Tape.course` numbers it."""
+
+    SOLVED = 0
+    MISSED = 1
+    OPEN = 2
+
+
+class Verification(NamedTuple):
+    """What is known of a branch: an arclength at which it ``misses`` the solutions,
+    None where there is none, and a place (n,) that is ``open``, None where it solves
+    the equations all along within the bounds."""
+
+    misses: float | None
+    open: np.ndarray | None
+
+
+def verify_branch(
+    problem: Problem, branch: Branch, centers: np.ndarray, reaches: np.ndarray
+) -> Verification:
+    """Whether a branch solves the equations all along, by bounds on F and F' about
+    stretches of it, but in balls about singular points, ``centers`` (k, n), of radii
+    ``reaches`` (k,)."""
+    torn = _torn_at(problem, branch, centers, reaches)
+    if torn is not None:
+        return Verification(torn, None)
+    tape = problem.continuous_tape()
+    assert tape is not None
+    number, s = tape.course(
+        branch.compiled,
+        centers,
+        reaches,
+        problem.periods,
+        residual=is_same_point.threshold * problem.scale * problem.magnitude,
+        shortest=SHORTEST * problem.scale,
+        most=MOST,
+    )
+    match Course(number):
+        case Course.MISSED:
+            return Verification(s, None)
+        case Course.OPEN:
+            return Verification(None, branch(s))
+        case Course.SOLVED:
+            return Verification(None, _beyond_bounds(problem, branch))
+
+
+def _torn_at(
+    problem: Problem, branch: Branch, centers: np.ndarray, reaches: np.ndarray
+) -> float | None:
+    """The arclength at which a branch does not hand over from one piece to the next, or
+    from the last one of a closed curve to the first; None where it does, but in the
+    balls about singular points."""
+    begins, ends = branch.ends_of_pieces()
+    following = np.roll(begins, -1, axis=0)
+    gaps = np.linalg.norm(problem.difference(following, ends), axis=1)
+    if not branch.closed:
+        gaps[-1] = 0.0
+    torn = np.flatnonzero(~is_same_point(gaps, problem.scale))
+    offsets = problem.difference(ends[torn, None], centers)  # (j, k, n)
+    is_beside = np.linalg.norm(offsets, axis=2) + gaps[torn, None] < reaches
+    torn = torn[~np.any(is_beside, axis=1)]
+    return float(branch.breaks[torn[0] + 1]) if len(torn) else None
+
+
+def _beyond_bounds(problem: Problem, branch: Branch) -> np.ndarray | None:
+    """A place (n,) of a branch beyond the bounds, None where it has none."""
+    for places in dead_points(branch):
+        points = branch(places)
+        is_beyond = ~problem.are_inside(points)
+        if np.any(is_beyond):
+            beyond: np.ndarray = points[is_beyond][0]
+            return beyond
+    return None
+
 
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 64
@@ -333,3 +419,30 @@ def _grid(box: np.ndarray) -> _Boxes:
     numbers = np.indices((count,) * n).reshape(n, -1).T
     columns = np.arange(n)
     return _Boxes(marks[numbers, columns], marks[numbers + 1, columns])
+
+
+WIDTH = 1e-6  # of the length: of the gap in a certificate where a branch is refuted
+
+
+def audit_of(division: Subdivision) -> Audit:
+    """What a complete subdivision says: nothing is missing; next to singular points
+    that is not claimed."""
+    nowhere = np.empty((0, division.left.shape[1]))
+    kind, level = SearchClaim.BOXES, Level.PROVED
+    if division.beside:
+        kind, level = SearchClaim.BOXES_BESIDE_POINTS, Level.CERTIFIED
+    data = {"boxes": int(division.count), "beside": float(division.beside)}
+    return Audit((kind.claim(Scope.MOTIONS, level, **data),), nowhere)
+
+
+def refuted_at(traced: TracedBranch, s: float) -> TracedBranch:
+    """The branch with a gap in its certificate about arclength ``s``, where it
+    solves nothing."""
+    certificate = traced.certificate
+    if certificate is None:
+        nothing = np.empty((0, 2))
+        status = CertificateStatus.NOT_CERTIFIED
+        certificate = Certificate(status, nothing, nothing, points=0, bound=np.inf)
+    half = WIDTH * traced.branch.length
+    gap = np.clip([[s - half, s + half]], 0.0, traced.branch.length)
+    return replace(traced, certificate=certificate.with_gaps(gap))

@@ -7,7 +7,7 @@ import pytest
 from bifurc.completeness import Claim, Level
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.function_problem import FunctionProblem
-from bifurc.search import search as search_module
+from bifurc.search import branch_examination, tracing
 from bifurc.search.explore import explore
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
@@ -18,7 +18,7 @@ from tests.bifurc.curves.test_jumps import polyline
 
 ERRORS = [1e-2, 1e-3, 1e-4]
 SETTINGS = SearchSettings(starts=40)
-trace_branch = search_module.trace_branch
+trace_branch = tracing.trace_branch
 
 
 class Hyperbola(FunctionProblem):
@@ -77,11 +77,12 @@ def jumping_branch(problem, start, direction, settings, closing, *_):
 
 def hide_misclosure(monkeypatch):
     """Let a jump leave no residual, as next to a surface."""
-    monkeypatch.setattr(search_module, "largest_misclosure", lambda *_: 0.0)
+    for module in (tracing, branch_examination):
+        monkeypatch.setattr(module, "largest_misclosure", lambda *_: 0.0)
 
 
 def test_a_branch_that_is_refused_is_traced_again(monkeypatch):
-    monkeypatch.setattr(search_module, "trace_branch", jumping_branch)
+    monkeypatch.setattr(tracing, "trace_branch", jumping_branch)
     hide_misclosure(monkeypatch)
     atlas = explore(Hyperbola(1e-8), settings=SETTINGS)
     assert counts(atlas) == (2, 0)
@@ -93,7 +94,7 @@ def test_a_branch_that_is_refused_is_traced_again(monkeypatch):
 
 def test_where_a_branch_stays_refused_nothing_is_proved(monkeypatch):
     straight = polyline([(1.0, 0.0), (-1.0, 0.0)])
-    monkeypatch.setattr(search_module, "trace_branch", lambda *_: straight)
+    monkeypatch.setattr(tracing, "trace_branch", lambda *_: straight)
     hide_misclosure(monkeypatch)
     atlas = explore(Hyperbola(1e-8), settings=SETTINGS)
     form = atlas.forms[0]
@@ -108,7 +109,7 @@ def test_where_a_branch_stays_refused_nothing_is_proved(monkeypatch):
 
 def test_without_certificates_the_audit_alone_decides(monkeypatch):
     straight = polyline([(1.0, 0.0), (-1.0, 0.0)])
-    monkeypatch.setattr(search_module, "trace_branch", lambda *_: straight)
+    monkeypatch.setattr(tracing, "trace_branch", lambda *_: straight)
     hide_misclosure(monkeypatch)
     settings = SearchSettings(starts=40, certify=False)
     atlas = explore(Hyperbola(1e-8), settings=settings)
@@ -118,7 +119,7 @@ def test_without_certificates_the_audit_alone_decides(monkeypatch):
 
 def test_a_branch_that_turns_off_at_a_crossing_is_refused_there(monkeypatch):
     corner = polyline([(-1.0, 0.0), (0.0, 0.0), (0.0, 1.0)])
-    monkeypatch.setattr(search_module, "trace_branch", lambda *_: corner)
+    monkeypatch.setattr(tracing, "trace_branch", lambda *_: corner)
     cross = FunctionProblem(lambda u: [u[0] * u[1]], [(-2, 2), (-2, 2)])
     atlas = explore(cross, settings=SETTINGS)
     certificate = atlas.forms[0].certificate

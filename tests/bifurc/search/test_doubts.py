@@ -12,12 +12,12 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.blur import blur_along
+from bifurc.search.answer.completeness import judge_completeness
+from bifurc.search.answer.doubts import doubts_of
+from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.branch_parts import part_of
-from bifurc.search.completeness import judge_completeness
-from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.meeting_points import meeting_points
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point

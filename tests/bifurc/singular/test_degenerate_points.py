@@ -8,8 +8,8 @@ from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
+from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.explore import explore
-from bifurc.search.meeting_points import meeting_points
 from bifurc.settings import SearchSettings, TraceSettings
 from bifurc.singular.point import Kind, SingularPoint
 from linkages.catalogue import entry

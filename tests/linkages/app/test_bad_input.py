@@ -562,7 +562,7 @@ def test_ctrl_c_ends_every_command_with_one_line(arguments, folder, monkeypatch)
     "command", [("route", "kite", "a", "b"), ("view", "kite"), ("tolerance", "kite")]
 )
 def test_half_a_map_is_no_map_for_other_commands(command, monkeypatch):
-    monkeypatch.setattr("bifurc.search.search.trace_branch", interrupt)
+    monkeypatch.setattr("bifurc.search.tracing.trace_branch", interrupt)
     result = bifurc(*command)
     assert result.exit_code == ExitCode.INTERRUPTED
     assert "interrupted" in result.stderr.splitlines()[-1]

@@ -3,7 +3,7 @@
 The sizes of the unknowns are those of the region in which solutions are, not those of
 the bounds: a curve far smaller than its bounds is looked for about where it is. The
 equations count by their gradients there. So a search sees the same numbers whatever the
-user's units are; `bifurc.search.restated` takes its answer back into these.
+user's units are; `bifurc.search.own_units.restated` takes its answer back into these.
 
 Large systems, and classes that answer some question in a way of their own, have all
 their unknowns counted in one unit, that of their scale.
@@ -35,7 +35,7 @@ from bifurc.function_problem import EXACT_HESSIAN, PROBES, FunctionProblem
 from bifurc.limits import Deadline
 from bifurc.numerics.singular_values import values_of
 from bifurc.problem import PreciseResidual, Problem
-from bifurc.search.restated import restated_branch
+from bifurc.search.own_units.restated import restated_branch
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import TraceSettings

@@ -31,8 +31,8 @@ from bifurc.numerics.blur import (
 )
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
+from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import TracedBranch
-from bifurc.search.statements import SearchDoubt
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
 

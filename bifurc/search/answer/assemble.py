@@ -26,6 +26,13 @@ from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.search.answer.completeness import SearchDoubt, judge_completeness
+from bifurc.search.answer.doubts import (
+    doubts_of,
+    doubts_of_near_misses,
+    doubts_of_others,
+)
+from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.canonical_order import (
     order_branches,
     order_points,
@@ -33,12 +40,8 @@ from bifurc.search.canonical_order import (
     order_values,
 )
 from bifurc.search.certification import certificate_of
-from bifurc.search.closure_gap import closure_gap
-from bifurc.search.completeness import judge_completeness
-from bifurc.search.doubts import doubts_of, doubts_of_near_misses, doubts_of_others
 from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.meeting_points import meeting_points
-from bifurc.search.statements import SearchDoubt
+from bifurc.search.near_motion_search import closure_gap
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap, wrapped_periods
 
@@ -59,20 +62,23 @@ def assemble_atlas(
     """
     periods = wrapped_periods(problem.periods, problem.bounds)
     order = order_branches(problem, findings.branches)
-    traced = [findings.traced[k] for k in order]
+    in_search = list(findings.traced.values())
+    traced = [in_search[k] for k in order]
     branches = [branch.branch for branch in traced]
     surfaces = _surfaces(problem, findings, periods)
     located = [
         replace(point, u=wrap(point.u, periods))
-        for point in findings.points
+        for point in findings.points.values()
         if not _is_on_near_motion(findings, point)
     ]
     met = meeting_points(problem, located, branches, surfaces, periods)
     points = tuple(_with_misclosure(point, traced) for point in met)
-    rigid = wrap(np.array(findings.rigid).reshape(-1, problem.n), periods)
+    places = [assembly.place for assembly in findings.rigid.values()]
+    rigid = wrap(np.array(places).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)
-    near_misses = near_misses_of(problem, traced, findings.points, points, periods)
+    singular = list(findings.points.values())
+    near_misses = near_misses_of(problem, traced, singular, points, periods)
     deflated = findings.components.deflated
     doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
     doubts += doubts_of_near_misses(problem, near_misses)
@@ -92,7 +98,7 @@ def assemble_atlas(
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
     elif not is_mobile:
-        gap = closure_gap(problem, findings.seeds, findings.gaps, deadline)
+        gap = closure_gap(problem, findings.book.seeds, findings.gaps, deadline)
     return Atlas(
         names=problem.names,
         units=problem.units,
@@ -190,7 +196,7 @@ def _surfaces(
     problem: Problem, findings: Findings, periods: np.ndarray
 ) -> tuple[Surface, ...]:
     """The surfaces, numbered from 1."""
-    surfaces = findings.components.surfaces(findings.seeds.points)
+    surfaces = findings.components.surfaces(findings.book.seeds.points)
     in_order = [surfaces[k] for k in order_surfaces(problem, surfaces)]
     named = []
     for number, surface in enumerate(in_order, start=1):
@@ -204,7 +210,7 @@ def _near_motions(
 ) -> tuple[NearMotion, ...]:
     """The near motions: surfaces, the largest mobility first, and then curves, the one
     that misses least first; those that miss as much in the order of branches."""
-    traces = findings.near_motions
+    traces = list(findings.near_motions.values())
     order = order_branches(problem, [trace.branch for trace in traces])
     decades = np.array([np.log10(traces[k].misclosure) for k in order])
     surfaces = sorted(findings.near_surfaces, key=lambda one: -one.dimension)
@@ -229,7 +235,7 @@ def _near_motions(
 
 def _doubts_of_near_motions(findings: Findings) -> list[Doubt]:
     """What is open about near motions."""
-    traces = findings.near_motions
+    traces = list(findings.near_motions.values())
     counts = {
         SearchDoubt.FAINT_NEAR_MOTIONS: sum(is_faint(t.misclosure) for t in traces),
         SearchDoubt.LOOSE_NEAR_MOTIONS: sum(t.has_loose_end for t in traces),
@@ -247,7 +253,7 @@ def _doubts_of_near_motions(findings: Findings) -> list[Doubt]:
 
 def _doubts_of_assemblies(problem: Problem, findings: Findings) -> list[Doubt]:
     """How many isolated solutions there are where rounding hides it."""
-    hidden = np.array(findings.hidden)
+    hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
     hidden = hidden[~is_known_assembly(hidden, problem.scale)]
     if not len(hidden):
         return []
