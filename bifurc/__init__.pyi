@@ -26,11 +26,11 @@ from .errors import ProblemError as ProblemError
 from .errors import RouteError as RouteError
 from .figures.diagram_plot import plot_diagram as plot_diagram
 from .figures.plotting import plot_transition_map as plot_transition_map
+from .files.dataset import AtlasFileError as AtlasFileError
 from .files.dataset import from_dataset as from_dataset
 from .files.dataset import load_atlas as load_atlas
 from .files.dataset import save_atlas as save_atlas
 from .files.dataset import to_dataset as to_dataset
-from .files.dataset import AtlasFileError as AtlasFileError
 from .function_problem import FunctionProblem as FunctionProblem
 from .function_problem import NumericalProblem as NumericalProblem
 from .graphs import arc_graph as arc_graph
