@@ -189,7 +189,8 @@ class Problem(ABC):
     and why not. ``is_exact``: its equations are what is meant, and not made of numbers that
     are rounded. ``data_rounding``: how far off F may be, over the magnitude and the
     scale, as those numbers are rounded; 0 where that is not known. ``hessian_error`` is
-    how far off `hessian` may be, over a bound on F''.
+    how far off `hessian` may be, over a bound on F''. ``has_assumed_bounds`` (n, 2): which
+    ends of the bounds were chosen, as none were given; a single False for none of them.
     """
 
     names: tuple[str, ...]
@@ -204,11 +205,7 @@ class Problem(ABC):
     equations: str = ""
     is_exact: bool = False
     data_rounding: float = 0.0
-
-    @property
-    def has_assumed_bounds(self) -> np.ndarray:
-        """Which ends of the bounds (n, 2) were chosen, as none were given."""
-        return np.zeros((self.n, 2), dtype=bool)
+    has_assumed_bounds: np.ndarray = np.array(False)
 
     @property
     def n(self) -> int:

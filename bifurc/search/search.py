@@ -74,8 +74,8 @@ class Search:
         self,
         problem: Problem,
         settings: SearchSettings,
-        seeds: Seeds | None,
         random_seed: int,
+        seeds: Seeds | None,
         progress: Callable[[str, int], None] | None,
         deadline: Deadline,
     ):

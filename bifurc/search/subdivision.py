@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -29,92 +29,15 @@ from bifurc.search.findings import TracedBranch
 from bifurc.seeds import Audit
 from bifurc.singular.point import CROSSING, LONE_POINT, SingularPoint
 
-MOST = 4000  # stretches of a branch that are divided
-SHORTEST = 1e-7  # half a stretch, over the scale, that is not divided any more
-
-
-class Course(Enum):
-    """What is known of a branch, as `_core.Tape.course` numbers it."""
-
-    SOLVED = 0
-    MISSED = 1
-    OPEN = 2
-
-
-class Verification(NamedTuple):
-    """What is known of a branch: an arclength at which it ``misses`` the solutions,
-    None where there is none, and a place (n,) that is ``open``, None where it solves
-    the equations all along within the bounds."""
-
-    misses: float | None
-    open: np.ndarray | None
-
-
-def verify_branch(
-    problem: Problem, branch: Branch, centers: np.ndarray, reaches: np.ndarray
-) -> Verification:
-    """Whether a branch solves the equations all along, by bounds on F and F' about
-    stretches of it, but in balls about singular points, ``centers`` (k, n), of radii
-    ``reaches`` (k,)."""
-    torn = _torn_at(problem, branch, centers, reaches)
-    if torn is not None:
-        return Verification(torn, None)
-    tape = problem.continuous_tape()
-    assert tape is not None
-    number, s = tape.course(
-        branch.compiled,
-        centers,
-        reaches,
-        problem.periods,
-        residual=is_same_point.threshold * problem.scale * problem.magnitude,
-        shortest=SHORTEST * problem.scale,
-        most=MOST,
-    )
-    match Course(number):
-        case Course.MISSED:
-            return Verification(s, None)
-        case Course.OPEN:
-            return Verification(None, branch(s))
-        case Course.SOLVED:
-            return Verification(None, _beyond_bounds(problem, branch))
-
-
-def _torn_at(
-    problem: Problem, branch: Branch, centers: np.ndarray, reaches: np.ndarray
-) -> float | None:
-    """The arclength at which a branch does not hand over from one piece to the next, or
-    from the last one of a closed curve to the first; None where it does, but in the
-    balls about singular points."""
-    begins, ends = branch.ends_of_pieces()
-    following = np.roll(begins, -1, axis=0)
-    gaps = np.linalg.norm(problem.difference(following, ends), axis=1)
-    if not branch.closed:
-        gaps[-1] = 0.0
-    torn = np.flatnonzero(~is_same_point(gaps, problem.scale))
-    offsets = problem.difference(ends[torn, None], centers)  # (j, k, n)
-    is_beside = np.linalg.norm(offsets, axis=2) + gaps[torn, None] < reaches
-    torn = torn[~np.any(is_beside, axis=1)]
-    return float(branch.breaks[torn[0] + 1]) if len(torn) else None
-
-
-def _beyond_bounds(problem: Problem, branch: Branch) -> np.ndarray | None:
-    """A place (n,) of a branch beyond the bounds, None where it has none."""
-    for places in dead_points(branch):
-        points = branch(places)
-        is_beyond = ~problem.are_inside(points)
-        if np.any(is_beyond):
-            beyond: np.ndarray = points[is_beyond][0]
-            return beyond
-    return None
-
-
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 64
 # Boxes that are looked at before their arcs are held against the branches.
 AT_ONCE = 1024
 ENOUGH = 30  # solutions on unknown arcs, to trace before boxes are divided further
 MOST_LEFT = 24  # places that are listed of what is not settled
-SMALLEST = 1e-7  # radius of a box, over the scale, that is not divided any more
+MOST_STRETCHES = 4000  # of a branch that are divided
+# Radius of a box, or half a stretch, over the scale, that is not divided any more.
+SMALLEST = 1e-7
 SOLVED = 1e-9  # over the scale: |F| where Newton's method has settled
 DETOUR = 2.0  # times as long as its chord a branch may be from one place to the next
 # Radii, over the scale, about singular points in which nothing is claimed: of ordinary
@@ -122,6 +45,14 @@ DETOUR = 2.0  # times as long as its chord a branch may be from one place to the
 BESIDE_CROSSING = 1e-5
 BESIDE_OTHER = 0.03
 WIDER = 1e-15  # of a period: the box of a circle is so much wider than one
+
+
+class _Verdict(IntEnum):
+    """What is known of a branch, as `_core.Tape.course` numbers it."""
+
+    SOLVED = 0
+    MISSED = 1
+    OPEN = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,6 +191,7 @@ class _Division:
             for p in points
         ]
         self.reaches = problem.scale * np.array(reaches)
+        self.within = is_same_point.threshold * problem.scale
         self.count = 0
         self.found: list[np.ndarray] = []
         self.seeds = np.empty((0, problem.n))
@@ -273,13 +205,52 @@ class _Division:
         return sum(len(points) for points in self.found) < ENOUGH
 
     def verify_branches(self) -> None:
-        """Note which branches are none, and where one is not known to be one."""
+        """Note which branches are none, and where one is not known to be one: by bounds
+        on F and F' about stretches of it, but beside singular points."""
         for number, branch in enumerate(self.branches):
-            known = verify_branch(self.problem, branch, self.centers, self.reaches)
-            if known.misses is not None:
-                self.refuted[number] = known.misses
-            if known.open is not None:
-                self.left.append(known.open[None])
+            torn = self._torn_at(branch)
+            if torn is not None:
+                self.refuted[number] = torn
+                continue
+            verdict, s = self.tape.course(
+                branch.compiled,
+                self.centers,
+                self.reaches,
+                self.problem.periods,
+                residual=self.within * self.problem.magnitude,
+                shortest=SMALLEST * self.problem.scale,
+                most=MOST_STRETCHES,
+            )
+            if verdict == _Verdict.MISSED:
+                self.refuted[number] = s
+            elif verdict == _Verdict.OPEN:
+                self.left.append(branch(s)[None])
+            else:
+                points = branch(np.concatenate(dead_points(branch)))
+                self.left.append(points[~self.problem.are_inside(points)][:1])
+
+    def _torn_at(self, branch: Branch) -> float | None:
+        """The arclength at which a branch does not hand over from one piece to the next,
+        or from the last one of a closed curve to the first; None where it does, but
+        beside singular points."""
+        begins, ends = branch.ends_of_pieces()
+        following = np.roll(begins, -1, axis=0)
+        gaps = np.linalg.norm(self.problem.difference(following, ends), axis=1)
+        if not branch.closed:
+            gaps[-1] = 0.0
+        torn = np.flatnonzero(~is_same_point(gaps, self.problem.scale))
+        torn = torn[~self._are_beside_points(ends[torn], gaps[torn])]
+        return float(branch.breaks[torn[0] + 1]) if len(torn) else None
+
+    def _are_beside_points(
+        self, places: np.ndarray, gaps: np.ndarray | float = 0.0
+    ) -> np.ndarray:
+        """Which places (k, n), with ``gaps`` (k,) from there on, lie next to a singular
+        point, where nothing is claimed."""
+        offsets = self.problem.difference(places[:, None], self.centers)
+        farthest = np.linalg.norm(offsets, axis=2) + np.reshape(gaps, (-1, 1))
+        are_beside: np.ndarray = np.any(farthest < self.reaches, axis=1)
+        return are_beside
 
     def result(self) -> Subdivision:
         nowhere = np.empty((0, self.problem.n))
@@ -334,9 +305,7 @@ class _Division:
         points, gaps = self.problem.project(places)
         points = points[closes_to_rounding(gaps)]
         points = points[self.problem.are_inside(points)]
-        offsets = self.problem.difference(points[:, None], self.centers)
-        is_beside = np.linalg.norm(offsets, axis=2) < self.reaches
-        points = points[~np.any(is_beside, axis=1)]
+        points = points[~self._are_beside_points(points)]
         is_new = self._feet(points).branch < 0
         self.seeds = points[is_new][:ENOUGH]
 
@@ -401,10 +370,9 @@ class _Division:
     def _feet(self, points: np.ndarray) -> _Feet:
         """The branches on which points (k, n) lie."""
         feet = _Feet(np.full(len(points), -1), np.zeros(len(points)))
-        within = is_same_point.threshold * self.problem.scale
         for number, branch in enumerate(self.branches):
             rest = np.flatnonzero(feet.branch < 0)
-            distances, arclengths = branch.nearest(points[rest], within=within)
+            distances, arclengths = branch.nearest(points[rest], within=self.within)
             is_on = is_same_point(distances, self.problem.scale)
             feet.branch[rest[is_on]] = number
             feet.s[rest[is_on]] = arclengths[is_on]

@@ -16,21 +16,20 @@ from bifurc.atlas import (
     Provenance,
     Surface,
 )
-from bifurc.completeness import Doubt
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
 from bifurc.curves.near_miss import near_miss_value
-from bifurc.decisions import closes_to_rounding, is_faint, is_known_assembly
+from bifurc.decisions import closes_to_rounding
 from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
-from bifurc.search.answer.completeness import SearchDoubt, judge_completeness
+from bifurc.search.answer.completeness import judge_completeness
 from bifurc.search.answer.doubts import (
     doubts_of,
+    doubts_of_findings,
     doubts_of_near_misses,
-    doubts_of_others,
 )
 from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.canonical_order import (
@@ -79,21 +78,13 @@ def assemble_atlas(
     forms = _forms(problem, traced, points)
     singular = list(findings.points.values())
     near_misses = near_misses_of(problem, traced, singular, points, periods)
-    deflated = findings.components.deflated
-    doubts = doubts_of(problem, traced, forms, points, surfaces, deflated)
-    doubts += doubts_of_near_misses(problem, near_misses)
-    others = [other for germ in findings.germs for other in germ.others]
-    doubts += doubts_of_others(problem, others, located)
     near_motions = _near_motions(problem, findings, periods)
-    if near_motions:
-        doubts += _doubts_of_near_motions(findings)
-    doubts += _doubts_of_assemblies(problem, findings)
-    if findings.components.off_charts:
-        starts = findings.components.off_charts
-        doubts.append(SearchDoubt.UNCHARTED.doubt(starts=starts))
-    if findings.gaps_of_stops:
-        gap = min(findings.gaps_of_stops)
-        doubts.append(SearchDoubt.SHORT_STOPS.doubt(amount=gap))
+    deflated = findings.components.deflated
+    doubts = [
+        *doubts_of(problem, traced, forms, points, surfaces, deflated),
+        *doubts_of_near_misses(problem, near_misses),
+        *doubts_of_findings(problem, findings, located),
+    ]
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
@@ -231,34 +222,6 @@ def _near_motions(
             NearMotion(trace.misclosure, trace.length, trace.is_closed, sample)
         )
     return tuple(near_motions)
-
-
-def _doubts_of_near_motions(findings: Findings) -> list[Doubt]:
-    """What is open about near motions."""
-    traces = list(findings.near_motions.values())
-    counts = {
-        SearchDoubt.FAINT_NEAR_MOTIONS: sum(is_faint(t.misclosure) for t in traces),
-        SearchDoubt.LOOSE_NEAR_MOTIONS: sum(t.has_loose_end for t in traces),
-        SearchDoubt.REPEATED_NEAR_MOTIONS: sum(t.is_repeated for t in traces),
-        SearchDoubt.BLURRED_NEAR_MOTIONS: sum(t.is_blurred for t in traces),
-    }
-    faintest = is_faint.threshold
-    doubts = [
-        kind.doubt(amount=faintest, count=int(count))
-        for kind, count in counts.items()
-        if count
-    ]
-    return [*doubts, SearchDoubt.NEAR_ASSEMBLIES.doubt()]
-
-
-def _doubts_of_assemblies(problem: Problem, findings: Findings) -> list[Doubt]:
-    """How many isolated solutions there are where rounding hides it."""
-    hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
-    hidden = hidden[~is_known_assembly(hidden, problem.scale)]
-    if not len(hidden):
-        return []
-    reach = hidden.max() / problem.scale
-    return [SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))]
 
 
 def _with_misclosure(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from bifurc.curves.misclosure import misclosure_at
 from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
     hangs_on_data,
+    is_faint,
+    is_known_assembly,
     is_known_curve,
     is_same_line,
     is_same_point,
@@ -32,7 +34,7 @@ from bifurc.numerics.blur import (
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
-from bifurc.search.findings import TracedBranch
+from bifurc.search.findings import Findings, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
 
@@ -46,7 +48,7 @@ def doubts_of(
     points: Sequence[MeetingPoint],
     surfaces: Sequence[Surface],
     of_surfaces: Problem | None = None,
-) -> list[Doubt]:
+) -> Iterator[Doubt]:
     """One doubt for each thing that doubles do not decide: surfaces that may be
     curves, curves that may be surfaces, stretches of forms that are not certified, ends
     of forms at nothing known, singular points of no certain kind.
@@ -54,66 +56,98 @@ def doubts_of(
     The ``forms`` are those of the branches ``traced``. Solutions on the ``surfaces``
     are regular ones of the problem ``of_surfaces``, where it is another one.
     """
-    doubts: list[Doubt] = []
     for surface in surfaces:
-        doubts += _doubts_of_surface(of_surfaces or problem, surface)
+        yield from _doubts_of_surface(of_surfaces or problem, surface)
     for index, branch in enumerate(traced):
-        doubts += _doubts_of_form(problem, index, branch, points)
+        yield from _doubts_of_form(problem, index, branch, points)
     for index, form in enumerate(forms):
         if form.certificate is not None and form.certificate.leaves_doubt:
-            doubts.append(_doubt_of_certificate(_name(index), form.certificate))
+            yield _doubt_of_certificate(_name(index), form.certificate)
     for point in points:
-        doubts += _doubts_of_point(problem, point)
-        doubts += _doubts_of_halves(traced, point)
-    doubts += _doubts_of_double_solutions(problem, points)
-    return doubts
+        yield from _doubts_of_point(problem, point)
+        yield from _doubts_of_halves(traced, point)
+    double = [
+        point.name
+        for point in points
+        if point.kind is Kind.ISOLATED and point.point.rank == problem.n - 1
+    ]
+    if double:
+        yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
 
 
-def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> list[Doubt]:
+def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> Iterator[Doubt]:
     """Whether the numbers that the equations are made of tell near misses from
     bifurcations.
 
     At the distance of a singular point the singular value vanishes; F changes on the
     way by half of their product.
     """
-    if problem.data_rounding == 0.0:
-        return []
+    rounding = float(problem.data_rounding)
+    if rounding == 0.0:
+        return
     hanging = []
     for miss in misses:
         change = miss.value * distance_to_singular(problem, miss.u) / 2
-        if hangs_on_data(change, problem.data_rounding):
-            hanging.append(miss)
-    if not hanging:
-        return []
-    smallest = min(miss.value for miss in hanging)
-    count, rounding = len(hanging), float(problem.data_rounding)
-    kind = SearchDoubt.NEAR_MISSES
-    return [kind.doubt(amount=smallest, count=count, rounding=rounding)]
+        if hangs_on_data(change, rounding):
+            hanging.append(miss.value)
+    if hanging:
+        smallest, count = min(hanging), len(hanging)
+        kind = SearchDoubt.NEAR_MISSES
+        yield kind.doubt(amount=smallest, count=count, rounding=rounding)
 
 
-def doubts_of_others(
-    problem: Problem, others: Sequence[np.ndarray], points: Sequence[SingularPoint]
-) -> list[Doubt]:
-    """Whether the ``others``, singular points (n,) that the exact equations have beside
-    ``points``, are not among these: doubles do not tell them apart."""
-    places = np.array([point.u for point in points]).reshape(-1, problem.n)
-    hidden: list[np.ndarray] = []
-    for other in others:
-        known = np.concatenate([places, np.array(hidden).reshape(-1, problem.n)])
-        distances = np.linalg.norm(problem.difference(known, other), axis=1)
-        if not np.any(is_same_point(distances, problem.scale)):
-            hidden.append(other)
-    if not hidden:
-        return []
-    return [SearchDoubt.HIDDEN_POINTS.doubt(count=len(hidden))]
+def doubts_of_findings(
+    problem: Problem, findings: Findings, points: Sequence[SingularPoint]
+) -> Iterator[Doubt]:
+    """What is open about the ``findings`` of a search besides forms, surfaces and the
+    singular ``points`` listed."""
+    others = _others(problem, findings, points)
+    if others:
+        yield SearchDoubt.HIDDEN_POINTS.doubt(count=others)
+    traces = list(findings.near_motions.values())
+    counts = {
+        SearchDoubt.FAINT_NEAR_MOTIONS: sum(is_faint(t.misclosure) for t in traces),
+        SearchDoubt.LOOSE_NEAR_MOTIONS: sum(t.has_loose_end for t in traces),
+        SearchDoubt.REPEATED_NEAR_MOTIONS: sum(t.is_repeated for t in traces),
+        SearchDoubt.BLURRED_NEAR_MOTIONS: sum(t.is_blurred for t in traces),
+    }
+    for kind, count in counts.items():
+        if count:
+            yield kind.doubt(amount=is_faint.threshold, count=int(count))
+    if traces or findings.near_surfaces:
+        yield SearchDoubt.NEAR_ASSEMBLIES.doubt()
+    hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
+    hidden = hidden[~is_known_assembly(hidden, problem.scale)]
+    if len(hidden):
+        reach = hidden.max() / problem.scale
+        yield SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))
+    off_charts = findings.components.off_charts
+    if off_charts:
+        yield SearchDoubt.UNCHARTED.doubt(starts=off_charts)
+    if findings.gaps_of_stops:
+        yield SearchDoubt.SHORT_STOPS.doubt(amount=min(findings.gaps_of_stops))
 
 
-def _doubts_of_surface(problem: Problem, surface: Surface) -> list[Doubt]:
+def _others(
+    problem: Problem, findings: Findings, points: Sequence[SingularPoint]
+) -> int:
+    """How many singular points the exact equations have beside ``points``: doubles do
+    not tell them apart."""
+    known = [point.u for point in points]
+    for germ in findings.germs:
+        for other in germ.others:
+            places = np.array(known).reshape(-1, problem.n)
+            distances = np.linalg.norm(problem.difference(places, other), axis=1)
+            if not np.any(is_same_point(distances, problem.scale)):
+                known.append(other)
+    return len(known) - len(points)
+
+
+def _doubts_of_surface(problem: Problem, surface: Surface) -> Iterator[Doubt]:
     """Whether what a surface misses is more than rounding."""
     missed = _misclosure(problem, surface)
-    if _is_rounding(problem, missed, surface.samples[:MOST_SAMPLES]):
-        return []
-    return [SearchDoubt.SURFACE_OR_CURVES.doubt(surface.name, missed)]
+    if not _is_rounding(problem, missed, surface.samples[:MOST_SAMPLES]):
+        yield SearchDoubt.SURFACE_OR_CURVES.doubt(surface.name, missed)
 
 
 def _is_rounding(problem: Problem, missed: float, points: np.ndarray) -> bool:
@@ -151,28 +185,27 @@ def _misclosure(problem: Problem, surface: Surface) -> float:
 
 def _doubts_of_form(
     problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
-) -> list[Doubt]:
+) -> Iterator[Doubt]:
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
     branch, profile = traced.branch, traced.profile
     name = _name(index)
-    doubts = []
     is_regular = profile.rank == branch.n - 1
     if is_regular and not is_known_curve(traced.blur):
-        doubts.append(SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur))
+        yield SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur)
     if not traced.multiplicity:
-        doubts.append(SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank))
+        yield SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank)
     hidden = _hidden_by_rounding(traced)
     if len(hidden):
         numbers = [int(k) + 1 for k in hidden]
-        doubts.append(SearchDoubt.STILL_UNKNOWNS.doubt(name, unknowns=numbers))
+        yield SearchDoubt.STILL_UNKNOWNS.doubt(name, unknowns=numbers)
     if traced.missing and traced.certificate is None:
         place = traced.missing[0]
-        doubts.append(SearchDoubt.UNLOCATED_POINT.doubt(name, place))
+        yield SearchDoubt.UNLOCATED_POINT.doubt(name, place)
     names = _ended_at_assumed_bounds(problem, branch)
     if names:
-        doubts.append(SearchDoubt.NO_BOUNDS.doubt(name, unknowns=names))
+        yield SearchDoubt.NO_BOUNDS.doubt(name, unknowns=names)
     if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
-        doubts.append(SearchDoubt.TOO_LONG.doubt(name))
+        yield SearchDoubt.TOO_LONG.doubt(name)
     if branch.outcome is Outcome.STALLED:
         ends = {s for point in points for form, s in point.passes if form == index}
         loose = [
@@ -181,8 +214,7 @@ def _doubts_of_form(
             if s not in ends and not _is_at_bounds(problem, branch(s))
         ]
         if loose:
-            doubts.append(_doubt_of_loose_ends(problem, name, loose))
-    return doubts
+            yield _doubt_of_loose_ends(problem, name, loose)
 
 
 def _name(index: int) -> str:
@@ -238,23 +270,9 @@ def _doubt_of_certificate(name: str, certificate: Certificate) -> Doubt:
     return SearchDoubt.BLURRED.doubt(name, places=certificate.blurred.tolist())
 
 
-def _doubts_of_double_solutions(
-    problem: Problem, points: Sequence[MeetingPoint]
-) -> list[Doubt]:
-    """How many solutions there are where two come together."""
-    double = [
-        point.name
-        for point in points
-        if point.kind is Kind.ISOLATED and point.point.rank == problem.n - 1
-    ]
-    if not double:
-        return []
-    return [SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)]
-
-
 def _doubts_of_halves(
     traced: Sequence[TracedBranch], point: MeetingPoint
-) -> list[Doubt]:
+) -> Iterator[Doubt]:
     """Whether forms that stall at a point in opposite directions are one, which goes on
     through it."""
     ends: list[tuple[int, np.ndarray]] = []
@@ -263,36 +281,33 @@ def _doubts_of_halves(
         if branch.outcome is Outcome.STALLED and s in (0.0, branch.length):
             inward = tangent if s == 0.0 else -tangent
             ends.append((index, inward / np.linalg.norm(inward)))
-    doubts = []
     for (one, along), (other, back) in itertools.combinations(ends, 2):
         if not is_same_line(1.0 + float(along @ back)):
             continue
         names = f"the ends of {_name(one)}"
         if one != other:
             names = f"forms {one + 1} and {other + 1}"
-        doubts.append(SearchDoubt.ONE_CURVE.doubt(names, point=point.name))
-    return doubts
+        yield SearchDoubt.ONE_CURVE.doubt(names, point=point.name)
 
 
-def _doubts_of_point(problem: Problem, point: MeetingPoint) -> list[Doubt]:
+def _doubts_of_point(problem: Problem, point: MeetingPoint) -> Iterator[Doubt]:
     """Whether a singular point is one, and of which kind."""
     place = point.point.u[None]
     gap = float(problem.gaps(place)[0])
     # beside the exact point F grows with the square of the distance
     explained = (point.point.error / problem.scale) ** 2
+    kind = point.kind.value
+    missed = 0.0
     if not _is_rounding(problem, gap - explained, place):
         rank = problem.n - point.point.null_space.shape[1]
         missed = misclosure_at(problem, point.point.u, rank)
-        if not misses_by_rounding(missed - explained):
-            doubt = SearchDoubt.POINT_OR_NEAR_MISS
-            return [doubt.doubt(point.name, missed, point_kind=point.kind.value)]
-    if point.kind is Kind.UNDECIDED:
+    if not misses_by_rounding(missed - explained):
+        yield SearchDoubt.POINT_OR_NEAR_MISS.doubt(point.name, missed, point_kind=kind)
+    elif point.kind is Kind.UNDECIDED:
         reason = point.note or "sections of two radii disagree"
-        return [SearchDoubt.UNDECIDED.doubt(point.name, reason=reason)]
-    if point.note:
-        kind, reason = point.kind.value, point.note
+        yield SearchDoubt.UNDECIDED.doubt(point.name, reason=reason)
+    elif point.note:
         doubt = SearchDoubt.NOT_WHOLE
-        return [doubt.doubt(point.name, point_kind=kind, reason=reason)]
-    if not point.point.is_confirmed:
-        return [SearchDoubt.UNCONFIRMED.doubt(point.name)]
-    return []
+        yield doubt.doubt(point.name, point_kind=kind, reason=point.note)
+    elif not point.point.is_confirmed:
+        yield SearchDoubt.UNCONFIRMED.doubt(point.name)

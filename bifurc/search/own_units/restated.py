@@ -8,18 +8,16 @@ again, short enough for the new arclength.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion, Surface
+from bifurc.atlas import Atlas
 from bifurc.branch import Branch
-from bifurc.curves.certificate import Certificate
+from bifurc.isometry import Course, Unknowns, atlas_in
 from bifurc.problem import Problem
-from bifurc.singular.point import SingularPoint
-from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.units import Units
 
 ORDER, FINE = 16, 48  # of a piece, and of its speed
@@ -45,52 +43,33 @@ def restated(
 ) -> Atlas:
     """An atlas in ``units`` as one of the ``problem``, which is the user's, with the
     forms of these ``multiplicities``."""
-    courses = [restated_branch(f.branch, units, problem.periods) for f in atlas.forms]
-    forms = [
-        _form(form, course, units, multiplicity)
-        for form, course, multiplicity in zip(
-            atlas.forms, courses, multiplicities, strict=True
-        )
-    ]
-    return replace(
-        atlas,
+    unknowns = Unknowns(
         names=problem.names,
         units=problem.units,
         periods=problem.periods,
-        forms=tuple(forms),
-        points=tuple(_meeting_point(p, courses, units) for p in atlas.points),
-        near_misses=tuple(_event(e, courses, units) for e in atlas.near_misses),
-        dead_points=tuple(_event(e, courses, units) for e in atlas.dead_points),
-        rigid=units.outwards(atlas.rigid),
-        surfaces=tuple(_surface(s, units, problem.periods) for s in atlas.surfaces),
-        near_motions=tuple(_near_motion(near, units) for near in atlas.near_motions),
+        points=units.outwards,
+        directions=units.directions,
+        bases=lambda bases: _restated_bases(bases, units),
+        course=lambda branch: restated_branch(branch, units, problem.periods),
+        index=lambda index: index,
+        size=float(units.sizes.max()),
     )
+    own = atlas_in(atlas, unknowns)
+    forms = [
+        replace(form, multiplicity=multiplicity)
+        for form, multiplicity in zip(own.forms, multiplicities, strict=True)
+    ]
+    return replace(own, forms=tuple(forms))
+
+
+def _restated_bases(bases: np.ndarray, units: Units) -> np.ndarray:
+    """Orthonormal bases (..., n, k) in ``units`` as those of the user's unknowns."""
+    if units.is_uniform:
+        return bases
+    return np.linalg.qr(units.sizes[:, None] * bases)[0]
 
 
 # --- curves ---------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class Course:
-    """A branch restated, and what its arclengths were: from ``breaks`` (p + 1,) of the
-    former arclength on, the new one is ``starts`` (p,) and what the Chebyshev series
-    ``gains`` (p, k) add."""
-
-    branch: Branch
-    breaks: np.ndarray
-    starts: np.ndarray
-    gains: np.ndarray
-
-    def arclengths(self, s: np.ndarray) -> np.ndarray:
-        """The new arclengths (...) of the former ones (...)."""
-        flat = np.ravel(s)
-        numbers = np.searchsorted(self.breaks, flat, side="right") - 1
-        numbers = np.clip(numbers, 0, len(self.starts) - 1)
-        low, high = self.breaks[numbers], self.breaks[numbers + 1]
-        x = (2 * flat - low - high) / (high - low)
-        terms = chebyshev.chebvander(x, self.gains.shape[1] - 1)
-        gains = np.einsum("ik,ik->i", terms, self.gains[numbers])
-        return np.asarray(self.starts[numbers] + gains).reshape(np.shape(s))
 
 
 def restated_branch(branch: Branch, units: Units, periods: np.ndarray) -> Course:
@@ -116,7 +95,18 @@ def restated_branch(branch: Branch, units: Units, periods: np.ndarray) -> Course
     )
     former = np.array([piece.low for piece in pieces] + [branch.length])
     gains = np.array([piece.gains for piece in pieces])
-    return Course(restated_pieces, former, starts, gains)
+
+    def arclengths(s: np.ndarray) -> np.ndarray:
+        flat = np.ravel(s)
+        of_piece = np.searchsorted(former, flat, side="right") - 1
+        of_piece = np.clip(of_piece, 0, len(starts) - 1)
+        low, high = former[of_piece], former[of_piece + 1]
+        x = (2 * flat - low - high) / (high - low)
+        terms = chebyshev.chebvander(x, gains.shape[1] - 1)
+        gained = np.einsum("ik,ik->i", terms, gains[of_piece])
+        return np.asarray(starts[of_piece] + gained).reshape(np.shape(s))
+
+    return Course(restated_pieces, arclengths)
 
 
 def _scaled_course(branch: Branch, units: Units, periods: np.ndarray) -> Course:
@@ -133,9 +123,7 @@ def _scaled_course(branch: Branch, units: Units, periods: np.ndarray) -> Course:
         breaks=size * branch.breaks,
         periods=periods,
     )
-    half = 0.5 * size * branch.length
-    breaks = np.array([0.0, branch.length])
-    return Course(scaled, breaks, np.zeros(1), np.array([[half, half]]))
+    return Course(scaled, lambda s: size * s)
 
 
 class _Piece(NamedTuple):
@@ -219,92 +207,3 @@ def _places(speed: np.ndarray, gains: np.ndarray, targets: np.ndarray) -> np.nda
             break
         x = following
     return x
-
-
-# --- forms and points -----------------------------------------------------------------
-
-
-def _form(form: Form, course: Course, units: Units, multiplicity: int) -> Form:
-    arclength = course.arclengths(form.profile.arclength)
-    certificate = form.certificate
-    if certificate is not None:
-        certificate = _certificate(certificate, course, units)
-    return replace(
-        form,
-        branch=course.branch,
-        profile=replace(form.profile, arclength=arclength),
-        certificate=certificate,
-        multiplicity=multiplicity,
-    )
-
-
-def _certificate(certificate: Certificate, course: Course, units: Units) -> Certificate:
-    """A certificate; a bound is known in units of one size only."""
-    return replace(
-        certificate,
-        gaps=course.arclengths(certificate.gaps),
-        blurred=course.arclengths(certificate.blurred),
-        bound=certificate.bound / float(units.sizes[0]),
-    )
-
-
-def _event(event: Event, courses: list[Course], units: Units) -> Event:
-    s = float(courses[event.form].arclengths(np.array(event.s)))
-    return replace(event, s=s, u=units.outwards(event.u))
-
-
-def _meeting_point(
-    point: MeetingPoint, courses: list[Course], units: Units
-) -> MeetingPoint:
-    passes = [
-        (form, float(courses[form].arclengths(np.array(s)))) for form, s in point.passes
-    ]
-    return replace(
-        point,
-        point=_singular_point(point.point, units),
-        passes=tuple(passes),
-        tangents=units.directions(point.tangents),
-    )
-
-
-def _singular_point(point: SingularPoint, units: Units) -> SingularPoint:
-    largest = float(units.sizes.max())
-    null_space = point.null_space
-    if not units.is_uniform:
-        null_space = np.linalg.qr(units.sizes[:, None] * null_space)[0]
-    return replace(
-        point,
-        u=units.outwards(point.u),
-        null_space=null_space,
-        error=largest * point.error,
-        half_branches=units.directions(point.half_branches),
-        tangents=units.directions(point.tangents),
-        radius=largest * point.radius,
-    )
-
-
-# --- surfaces and near motions --------------------------------------------------------
-
-
-def _surface(surface: Surface, units: Units, periods: np.ndarray) -> Surface:
-    """A surface in units of one size."""
-    charts = surface.charts
-    if charts is not None:
-        charts = _charts(charts, units, periods)
-    return replace(surface, samples=units.outwards(surface.samples), charts=charts)
-
-
-def _charts(charts: ChartAtlas, units: Units, periods: np.ndarray) -> ChartAtlas:
-    return replace(
-        charts,
-        centers=units.outwards(charts.centers),
-        radii=float(units.sizes[0]) * charts.radii,
-        vertices=units.outwards(charts.vertices),
-        periods=periods,
-    )
-
-
-def _near_motion(near: NearMotion, units: Units) -> NearMotion:
-    """A near motion in units of one size."""
-    length = float(units.sizes[0]) * near.length
-    return replace(near, length=length, sample=units.outwards(near.sample))

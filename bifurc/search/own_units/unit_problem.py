@@ -29,9 +29,9 @@ from bifurc.decisions import (
 from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.factors import Factors, polynomial_factors, written_factors
 from bifurc.equations.recording import Recording
-from bifurc.equations.system import LARGEST_DENSE, ScaledTape
+from bifurc.equations.system import LARGEST_DENSE
 from bifurc.equations.tape import Tape
-from bifurc.function_problem import EXACT_HESSIAN, PROBES, FunctionProblem
+from bifurc.function_problem import PROBES, EquationProblem, FunctionProblem
 from bifurc.limits import Deadline
 from bifurc.numerics.singular_values import values_of
 from bifurc.problem import PreciseResidual, Problem
@@ -95,7 +95,7 @@ class Simplified(NamedTuple):
     order: int = 1
 
 
-class UnitProblem(FunctionProblem):
+class UnitProblem(EquationProblem):
     """The equations of a function in ``units``, with solutions looked for in the
     ``region`` (n, 2) besides the bounds of the ``problem``; both in the user's units.
     Without a region the scale and the magnitude are those of the problem, whose units
@@ -111,49 +111,38 @@ class UnitProblem(FunctionProblem):
         region: np.ndarray | None = None,
         simplified: Simplified | None = None,
     ):
+        jacobian = None if problem._jacobian is None else self._restated_jacobian
+        recording = problem.recording
+        tape = recording.tape if simplified is None else simplified.tape
+        if tape is not None:
+            own = tape.in_units(units.origin, units.sizes, units.weights)
+            recording = Recording(own)
+        rows = len(units.weights)
+        super().__init__(self._restated_function, jacobian, recording, rows)
         self.problem = problem
         self.simplified = simplified
+        self.tape = tape
         self.own_units = units
         self.names, self.units = problem.names, problem.units
         self.derivatives, self.equations = problem.derivatives, problem.equations
+        self.has_assumed_bounds = problem.has_assumed_bounds
         self.periods = problem.periods / units.sizes
         self.bounds = units.inwards(problem.bounds.T).T
         own_region = _first_region(problem) if region is None else region
         self.region = units.inwards(own_region.T).T
-        self._function = self._restated_function
-        self._jacobian = None if problem._jacobian is None else self._restated_jacobian
-        self._rows = len(units.weights)
-        self.tape = problem.recording.tape if simplified is None else simplified.tape
         if region is None:
             size = float(units.sizes[0])
             self.scale = problem.scale / size
             self.curvature_residual = problem.curvature_residual / size
-            self._take_equations(size * problem.magnitude)
+            self._take_magnitude(size * problem.magnitude, self.region)
         else:
             self.scale = float(np.median(np.diff(self.region, axis=1))) / 4.0
-            self._take_equations(1.0)
-            self._take_equations(self._typical_magnitude())
+            self._take_magnitude(1.0, self.region)
+            sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
+            magnitude = float(np.median(sizes)) if sizes else 1.0
+            self._take_magnitude(magnitude or 1.0, self.region)
         if _has_own(problem, "hessian"):
             self.hessian_error = problem.hessian_error
-
-    def _take_equations(self, magnitude: float) -> None:
-        """Compile the tape, where there is one, for F' of this ``magnitude``."""
-        self.magnitude = magnitude
-        self._scaled = None
-        self.recording = Recording(None, self.problem.recording.reason)
-        if self.tape is None:
-            return
-        units = self.own_units
-        tape = self.tape.in_units(units.origin, units.sizes, units.weights)
-        self.recording = Recording(tape)
-        self._scaled = self._scaled_tape(tape, magnitude)
-        self.hessian_error = EXACT_HESSIAN
-        self.is_exact = True
-
-    @property
-    def has_assumed_bounds(self) -> np.ndarray:
-        """Which ends of the bounds (n, 2) were chosen, as none were given."""
-        return self.problem.has_assumed_bounds
 
     def multiplicity_along(self, branch: Branch) -> int:
         """How often the user's equations are solved all along a ``branch`` in these
@@ -180,21 +169,6 @@ class UnitProblem(FunctionProblem):
         widths = np.diff(self.bounds, axis=1)[:, 0]
         finite = widths[np.isfinite(widths)]
         return max(self.scale, float(finite.max(initial=0.0)) / 4.0)
-
-    def _typical_magnitude(self) -> float:
-        """The size of F' in the region."""
-        sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
-        return float(np.median(sizes)) or 1.0 if sizes else 1.0
-
-    def _scaled_tape(self, tape: Tape, magnitude: float) -> ScaledTape:
-        return ScaledTape(
-            tape,
-            magnitude,
-            self.scale,
-            self.bounds,
-            self.periods,
-            self.region,
-        )
 
     def _restated_function(self, point: np.ndarray) -> np.ndarray:
         """F (m,) of the user at a point (n,) in these units, weighted."""
