@@ -26,8 +26,7 @@ CLEAR_OF_CUTS = 1e-4  # of a stretch: nearer to its ends an eigenvalue may be ab
 INNER = np.linspace(0.1, 0.9, 9)  # places at which a short stretch is looked at as well
 HALVINGS = 70  # of a bracket, down to rounding
 ONE_CROSSING = 1e-6  # of a bracket: pairs that cross at less distance cross at once
-MANY_UNKNOWNS = 60  # from here on eigenvalues are computed at fewer places
-STRIDE = 5  # of the nodes of a piece, for many unknowns
+STRIDE = 5  # of the nodes of a piece at which those of a large problem are computed
 
 
 class HopfPlace(NamedTuple):
@@ -85,7 +84,7 @@ def _imaginary_places(spectrum: Spectrum) -> np.ndarray:
     """Arclengths (k,), in order, at which a pair of eigenvalues may be imaginary, of one
     turn and, of a closed form, of the next."""
     branch = spectrum.branch
-    if not 2 < spectrum.problem.n <= MANY_UNKNOWNS:
+    if spectrum.problem.n <= 2 or spectrum.problem.is_large:
         return np.empty(0)
     zeros = zeros_along(branch, spectrum.pair_product, is_measured=False)
     places = np.array([s for zero in zeros.zeros for s in (zero.low, zero.high)])
@@ -117,7 +116,7 @@ def _ends(branch: Branch, cuts: Sequence[float]) -> list[float]:
 
 def _nodes(problem: Problem, branch: Branch) -> np.ndarray:
     """Arclengths (k,), in order, of one turn and, of a closed form, of the next."""
-    fractions = NODES if problem.n <= MANY_UNKNOWNS else NODES[::STRIDE]
+    fractions = NODES[::STRIDE] if problem.is_large else NODES
     nodes = branch.places(fractions).ravel()
     return np.concatenate([nodes, nodes + branch.length]) if branch.closed else nodes
 

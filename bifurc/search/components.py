@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bifurc.atlas import Surface
-from bifurc.curves.rank_deflation import LARGEST, RankDeflated
+from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.decisions import (
     closes_to_rounding,
     is_same_point,
@@ -227,7 +227,7 @@ def components_of_seeds(
         numbers = doubtful[(local.dimension == dimension) & is_regular]
         if len(numbers):
             components.seeds[int(dimension)] = numbers.tolist()
-    if 2 not in components.seeds and problem.n <= LARGEST:
+    if 2 not in components.seeds and not problem.is_large:
         deflated = RankDeflated(problem, problem.n - NULLITY)
         # about these fewer solutions may lie than fill the null space
         is_open = (local.nullity == NULLITY) & (local.dimension < NULLITY)

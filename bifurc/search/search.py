@@ -13,7 +13,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.deflation import Deflated, lower_rank_direction
 from bifurc.curves.misclosure import largest_misclosure
-from bifurc.curves.rank_deflation import LARGEST, RankDeflated
+from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.decisions import (
     closes_to_rounding,
     is_at_rest,
@@ -317,7 +317,7 @@ class Search:
         where it has not."""
         n = self.problem.n
         nullity = int(np.count_nonzero(may_be_singular(values)))
-        if nullity != NULLITY_OF_SHAKY or n > LARGEST:
+        if nullity != NULLITY_OF_SHAKY or self.problem.is_large:
             return None
         number = self.findings.branch_through(point, self._blur_of_seed(values))
         if number is not None:

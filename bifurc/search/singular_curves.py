@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.rank_deflation import LARGEST, RankDeflated
+from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.decisions import is_same_point
 from bifurc.limits import Deadline
 from bifurc.problem import Problem
@@ -45,7 +45,7 @@ def singular_curve_through(
 ) -> SingularCurve | None:
     """The curve of singular points of one rank on which a singular point lies; None
     where it lies on none that is regular and can be followed to its end."""
-    if problem.n > LARGEST or deadline.passed:
+    if problem.is_large or deadline.passed:
         return None
     deflated = RankDeflated(problem, point.rank)
     places, are_solved = deflated.next_to(point.u[None])
