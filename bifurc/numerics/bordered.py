@@ -191,8 +191,10 @@ class SparseBordered:
         nothing = csr_array((len(rows), columns.shape[1]))
         below = hstack([csr_array(self._below[:, None] * rows), nothing])
         matrix = vstack([above, below]).tocsc()
-        factors_of = _factors_by_rounding if may_be_singular else sparse_factors
-        self._factors = factors_of(matrix)
+        if may_be_singular:
+            self._factors = _factors_by_rounding(matrix, typical)
+        else:
+            self._factors = sparse_factors(matrix)
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """x, (n + k,) or (n + k, j), with M x = ``right``."""
@@ -213,13 +215,13 @@ def _weighted(vectors: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return weighted
 
 
-def _factors_by_rounding(matrix: csc_array) -> SuperLU:
-    """The factors of a matrix; of one that is exactly singular, or so nearly that
-    solutions overflow, those of what rounding may have made of it."""
+def _factors_by_rounding(matrix: csc_array, typical: float) -> SuperLU:
+    """The factors of a matrix with entries of a ``typical`` size; of one that is exactly
+    singular, or so nearly that solutions overflow, those of what rounding may have made
+    of it."""
     from scipy.sparse import eye_array
 
     count = matrix.shape[0]
-    typical = float(np.median(abs(matrix).max(axis=1).toarray()))
     with suppress(RuntimeError):
         factors = sparse_factors(matrix)
         solution = typical * factors.solve(np.ones(count))
