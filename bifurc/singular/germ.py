@@ -19,7 +19,6 @@ import numpy as np
 
 from bifurc.problem import PreciseResidual, Problem
 from bifurc.singular.confirm import Differences
-from bifurc.singular.discriminant import invariants_of
 from bifurc.singular.local_branches import (
     LiftedEquation,
     Neighbourhood,
@@ -31,6 +30,7 @@ from bifurc.singular.puiseux import (
     HalfBranch,
     Terms,
     half_branches,
+    invariants_of,
     pairs_of,
     without_zeros,
 )
