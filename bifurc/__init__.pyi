@@ -36,7 +36,7 @@ from .function_problem import NumericalProblem as NumericalProblem
 from .graphs import arc_graph as arc_graph
 from .graphs import transition_graph as transition_graph
 from .large.large_branch import LargeBranch as LargeBranch
-from .large.large_point import LargePoint as LargePoint
+from .large.large_branch import LargePoint as LargePoint
 from .large.large_problem import LargeProblem as LargeProblem
 from .large.trace_large_branch import LargeSettings as LargeSettings
 from .large.trace_large_branch import trace_large_branch as trace_large_branch

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from scipy.sparse import sparray
 
 
+LARGE = 64  # unknowns of a problem beyond which it is large
+
 # Maps a right-hand side to the solution (n,) of one linear system.
 Solver: TypeAlias = Callable[[np.ndarray], np.ndarray]
 
@@ -211,6 +213,12 @@ class Problem(ABC):
     def n(self) -> int:
         """Number of unknowns."""
         return len(self.names)
+
+    @property
+    def is_large(self) -> bool:
+        """Whether it has so many unknowns that F' is bordered instead of decomposed, and
+        F'' is not formed."""
+        return self.n > LARGE
 
     @property
     def stride(self) -> float:

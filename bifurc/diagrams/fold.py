@@ -42,7 +42,7 @@ def refined_fold(
     ``parameter`` is the index of the unknown that turns back, ``sizes`` (n,) are those
     of the unknowns.
     """
-    if problem.n > 60:
+    if problem.is_large:
         return None
     n = problem.n
     across = tangent / sizes

@@ -8,24 +8,27 @@ from dataclasses import replace
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.diagrams.branching import branching_kind
 from bifurc.diagrams.diagram import (
     Branching,
     Diagram,
     DiagramPoint,
     Stretch,
 )
-from bifurc.diagrams.event_points import events_along
-from bifurc.diagrams.events import EventRequests, events_of
-from bifurc.diagrams.spectrum import Spectrum
+from bifurc.diagrams.events import EventRequests, events_along, events_of
 from bifurc.diagrams.stability import (
     FormStability,
     HopfPlace,
+    Spectrum,
     has_square_rest,
     stability_along,
     unknown_stability,
 )
-from bifurc.diagrams.turnings import Turnings, turnings_of, unknown_sizes
+from bifurc.diagrams.turnings import (
+    Turnings,
+    branching_kind,
+    turnings_of,
+    unknown_sizes,
+)
 from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 from bifurc.singular.point import Kind

@@ -12,14 +12,17 @@ from bifurc.decisions import (
     stands_out,
 )
 from bifurc.large.crossing_tangents import null_vectors_across, tangents_at
-from bifurc.large.crossings import LocatedCrossing, locate_crossing
-from bifurc.large.folds import locate_fold
-from bifurc.large.large_branch import last_unknown
-from bifurc.large.large_point import LargePoint
+from bifurc.large.large_branch import LargePoint, last_unknown
+from bifurc.large.locators import LocatedCrossing, locate_crossing, locate_fold
 from bifurc.large.scaled_problem import ScaledProblem
-from bifurc.large.singular_profile import SingularProfile, triples_at, unit_tangent
-from bifurc.large.smallest_singular_values import SingularTriple
-from bifurc.large.vanishing_group import vanishing_group, zero_ahead
+from bifurc.large.singular_triples import (
+    SingularProfile,
+    SingularTriple,
+    triples_at,
+    unit_tangent,
+    vanishing_group,
+    zero_ahead,
+)
 from bifurc.singular.point import Kind
 
 BEYOND = 1.5  # distances to the next place within which a zero is looked for

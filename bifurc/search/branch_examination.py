@@ -9,7 +9,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
-from bifurc.curves.lower_rank import ORDINARY, LowerRank, lower_rank_along
+from bifurc.curves.deflation import ORDINARY, LowerRank, lower_rank_along
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.misclosure import largest_misclosure
 from bifurc.curves.monitor import Profile, profile_branch

@@ -18,7 +18,7 @@ import numpy as np
 from bifurc.atlas import Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.rank_deflation import LARGEST, RankDeflated
+from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.decisions import (
     closes_to_rounding,
     is_same_point,
@@ -62,7 +62,7 @@ def singular_curve_through(
 ) -> SingularCurve | None:
     """The curve of singular points of one rank on which a singular point lies; None
     where it lies on none that is regular and can be followed to its end."""
-    if problem.n > LARGEST or deadline.passed:
+    if problem.is_large or deadline.passed:
         return None
     deflated = RankDeflated(problem, point.rank)
     places, are_solved = deflated.next_to(point.u[None])
@@ -287,7 +287,7 @@ def components_of_seeds(
         numbers = doubtful[(local.dimension == dimension) & is_regular]
         if len(numbers):
             components.seeds[int(dimension)] = numbers.tolist()
-    if 2 not in components.seeds and problem.n <= LARGEST:
+    if 2 not in components.seeds and not problem.is_large:
         deflated = RankDeflated(problem, problem.n - NULLITY)
         # about these fewer solutions may lie than fill the null space
         is_open = (local.nullity == NULLITY) & (local.dimension < NULLITY)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.curves.rank_deflation import LARGEST, RankDeflated
+from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.decisions import (
     is_beside_singular,
     is_start_solved,
@@ -55,7 +55,7 @@ class Seed:
 
     def may_be_shaky(self) -> bool:
         """Whether F' may have rank n - 3 all along a curve."""
-        return self.nullity == NULLITY_OF_SHAKY and self.problem.n <= LARGEST
+        return self.nullity == NULLITY_OF_SHAKY and not self.problem.is_large
 
     def may_be_singular(self) -> bool:
         """Whether it may be a singular point: a singular value is small there, and not
