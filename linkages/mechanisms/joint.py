@@ -8,9 +8,9 @@ in radians.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import Enum, StrEnum
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -42,27 +42,32 @@ class JointKind(StrEnum):
     PLANAR = "planar"
     RIGID = "rigid"
 
-
-class _Needs(NamedTuple):
-    """Which keys a kind of joint needs, and those that it may have besides."""
-
-    required: tuple[str, ...]
-    optional: tuple[str, ...] = ()
+    @property
+    def facets(self) -> KindFacets:
+        """All that the kind is."""
+        return _FACETS[self]
 
 
-# `point` may stand anywhere: it says where to draw a joint that needs none.
-NEEDS = {
-    JointKind.REVOLUTE: _Needs(("point", "direction")),
-    JointKind.PRISMATIC: _Needs(("direction",), ("point",)),
-    JointKind.CYLINDRICAL: _Needs(("point", "direction")),
-    JointKind.HELICAL: _Needs(("point", "direction", "pitch")),
-    JointKind.UNIVERSAL: _Needs(("point", "direction", "second_direction")),
-    JointKind.SPHERICAL: _Needs(("point",)),
-    JointKind.PLANAR: _Needs(("direction",), ("point", "second_direction")),
-    JointKind.RIGID: _Needs((), ("point",)),
-}
-# the point of such a joint is for drawing alone
-WITHOUT_PLACE = (JointKind.PRISMATIC, JointKind.RIGID)
+class Place(Enum):
+    """Where the point of a joint may be chosen, without another joint coming of it."""
+
+    # Nowhere else.
+    FIXED = "fixed"
+    # Along the axis of the joint.
+    ALONG = "along"
+    # Anywhere.
+    ANYWHERE = "anywhere"
+
+
+class Shape(Enum):
+    """What stands for a joint in models."""
+
+    CYLINDER = "cylinder"
+    BOX = "box"
+    PLATE = "plate"
+    BALL = "ball"
+
+
 LARGEST = 1e100  # coordinate
 GEOMETRY = ("point", "direction", "second_direction", "pitch")
 
@@ -70,9 +75,8 @@ GEOMETRY = ("point", "direction", "second_direction", "pitch")
 class Motion(NamedTuple):
     """An elementary motion: a turn about an axis through ``point`` (3,) along the unit
     vector ``direction`` (3,) that advances by so much a radian, or, without a turn, a
-    slide along it. ``part`` is what the variable is called in a joint of several."""
+    slide along it."""
 
-    part: str
     is_turn: bool
     direction: np.ndarray
     point: np.ndarray
@@ -133,21 +137,20 @@ class Joint:
     def motions(self) -> tuple[Motion, ...]:
         """The elementary motions of one body with respect to the first one, in their
         order; those of a spherical joint are its own, and none stand here."""
-        return _MOTIONS[self.kind](self)
+        return self.kind.facets.motions(self)
 
     @property
     def parts(self) -> tuple[str, ...]:
         """What every variable is called within the joint, empty where it is the only
         one."""
-        motions = self.motions
-        parts = []
-        for body in self.bodies[1:]:
-            for motion in motions:
-                words = [body] if len(self.bodies) > 2 else []
-                if len(motions) > 1:
-                    words.append(motion.part)
-                parts.append(".".join(words))
-        return tuple(parts)
+        parts = self.kind.facets.parts
+        if len(self.bodies) == 2:
+            return parts
+        return tuple(
+            f"{body}.{part}" if part else body
+            for body in self.bodies[1:]
+            for part in parts
+        )
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -185,11 +188,11 @@ def _unit(vector: Sequence[float] | None) -> np.ndarray:
 
 
 def _turn(joint: Joint) -> tuple[Motion, ...]:
-    return (Motion("turn", True, _unit(joint.direction), joint.place),)
+    return (Motion(True, _unit(joint.direction), joint.place),)
 
 
 def _slide(joint: Joint) -> tuple[Motion, ...]:
-    return (Motion("slide", False, _unit(joint.direction), joint.place, 1.0),)
+    return (Motion(False, _unit(joint.direction), joint.place, 1.0),)
 
 
 def _turn_and_slide(joint: Joint) -> tuple[Motion, ...]:
@@ -199,14 +202,14 @@ def _turn_and_slide(joint: Joint) -> tuple[Motion, ...]:
 def _screw(joint: Joint) -> tuple[Motion, ...]:
     assert joint.pitch is not None
     advance = joint.pitch / (2 * math.pi)
-    return (Motion("turn", True, _unit(joint.direction), joint.place, advance),)
+    return (Motion(True, _unit(joint.direction), joint.place, advance),)
 
 
 def _two_turns(joint: Joint) -> tuple[Motion, ...]:
     second = _unit(joint.second_direction)
     return (
-        Motion("first", True, _unit(joint.direction), joint.place),
-        Motion("second", True, second, joint.place),
+        Motion(True, _unit(joint.direction), joint.place),
+        Motion(True, second, joint.place),
     )
 
 
@@ -220,9 +223,9 @@ def _plane(joint: Joint) -> tuple[Motion, ...]:
     first = _unit(inside.tolist())
     second = np.cross(normal, first)
     return (
-        Motion("x", False, first, joint.place, 1.0),
-        Motion("y", False, second, joint.place, 1.0),
-        Motion("turn", True, normal, joint.place),
+        Motion(False, first, joint.place, 1.0),
+        Motion(False, second, joint.place, 1.0),
+        Motion(True, normal, joint.place),
     )
 
 
@@ -230,16 +233,85 @@ def _nothing(joint: Joint) -> tuple[Motion, ...]:
     return ()
 
 
-_MOTIONS = {
-    JointKind.REVOLUTE: _turn,
-    JointKind.PRISMATIC: _slide,
-    JointKind.CYLINDRICAL: _turn_and_slide,
-    JointKind.HELICAL: _screw,
-    JointKind.UNIVERSAL: _two_turns,
-    JointKind.SPHERICAL: _nothing,
-    JointKind.PLANAR: _plane,
-    JointKind.RIGID: _nothing,
+class KindFacets(NamedTuple):
+    """All that a kind of joint is: the ``motions`` of one body with respect to another,
+    and the ``parts`` that variables are called after; which keys it needs, and may
+    have besides (``optional``); where its ``place`` may be, and whether its point is
+    for drawing alone. It is drawn as a ``shape``, on a rail where it slides along its
+    axis, one for all its bodies where they share it."""
+
+    motions: Callable[[Joint], tuple[Motion, ...]]
+    parts: tuple[str, ...]
+    required: tuple[str, ...]
+    optional: tuple[str, ...] = ()
+    place: Place = Place.FIXED
+    is_point_drawn_only: bool = False
+    shape: Shape = Shape.CYLINDER
+    has_rail: bool = False
+    is_shared: bool = False
+
+
+_FACETS = {
+    JointKind.REVOLUTE: KindFacets(
+        _turn,
+        ("",),
+        required=("point", "direction"),
+        place=Place.ALONG,
+        is_shared=True,
+    ),
+    JointKind.PRISMATIC: KindFacets(
+        _slide,
+        ("",),
+        required=("direction",),
+        optional=("point",),
+        place=Place.ANYWHERE,
+        is_point_drawn_only=True,
+        shape=Shape.BOX,
+        has_rail=True,
+    ),
+    JointKind.CYLINDRICAL: KindFacets(
+        _turn_and_slide,
+        ("turn", "slide"),
+        required=("point", "direction"),
+        place=Place.ALONG,
+        has_rail=True,
+    ),
+    JointKind.HELICAL: KindFacets(
+        _screw,
+        ("",),
+        required=("point", "direction", "pitch"),
+        place=Place.ALONG,
+        has_rail=True,
+    ),
+    JointKind.UNIVERSAL: KindFacets(
+        _two_turns,
+        ("first", "second"),
+        required=("point", "direction", "second_direction"),
+    ),
+    JointKind.SPHERICAL: KindFacets(
+        _nothing, (), required=("point",), shape=Shape.BALL, is_shared=True
+    ),
+    JointKind.PLANAR: KindFacets(
+        _plane,
+        ("x", "y", "turn"),
+        required=("direction",),
+        optional=("point", "second_direction"),
+        place=Place.ANYWHERE,
+        shape=Shape.PLATE,
+    ),
+    JointKind.RIGID: KindFacets(
+        _nothing,
+        (),
+        required=(),
+        optional=("point",),
+        place=Place.ANYWHERE,
+        is_point_drawn_only=True,
+    ),
 }
+
+
+# kinds whose point is for drawing alone
+DRAWN_ONLY = [kind for kind, facets in _FACETS.items() if facets.is_point_drawn_only]
 
 
 # --- checks ---------------------------------------------------------------------------
@@ -297,7 +369,8 @@ def _check_size(joint: Joint) -> None:
 
 
 def _check_needs(joint: Joint) -> None:
-    required, optional = NEEDS[joint.kind]
+    facets = joint.kind.facets
+    required, optional = facets.required, facets.optional
     for key in required:
         if getattr(joint, key) is None:
             allowed = f"given, as joint {joint.name} is {joint.kind}"
