@@ -108,7 +108,7 @@ class Builder:
         return self.plan.part[self.numbers[pair.base]]
 
     def _pair_motion(self, pair: Pair, values: Sequence[float]) -> Any:
-        pose = self.geometry.rest
+        pose: Any = self.geometry.rest
         for number in pair.variables:
             motion = self.mechanism.variables[number].motion
             pose = pose.after(self.geometry.motion(motion, values[number]))
