@@ -401,14 +401,11 @@ def _check_second_direction(joint: Joint) -> None:
 
 
 def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
-    count = len(joint.parts)
     what = f"limits of joint {joint.name}"
     allowed = "a list with [low, high] or None for each variable"
-    given = _listed(what, joint.limits, allowed) or (None,) * count
-    if len(given) != count:
-        raise GeometryError(f"number of {what}", len(given), f"{count}")
+    _listed(what, joint.limits, allowed)
     limits: list[Limits | None] = []
-    for pair, motion in zip(given, _motions_of_parts(joint), strict=True):
+    for pair, motion in _by_variable(joint, "limits", f"number of {what}", ""):
         if pair is None:
             limits.append(None)
             continue
@@ -427,6 +424,18 @@ def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
     return tuple(limits)
 
 
+def _by_variable(
+    joint: Joint, key: str, number: str, what_for: str = ", one for each variable"
+) -> list[tuple[Any, Motion]]:
+    """What a joint has under a ``key`` for each of its variables, None where nothing is
+    given, and what the variable does; raises `GeometryError` for another ``number``."""
+    motions = joint.motions * (len(joint.bodies) - 1)
+    given = tuple(getattr(joint, key)) or (None,) * len(motions)
+    if len(given) != len(motions):
+        raise GeometryError(number, len(given), f"{len(motions)}{what_for}")
+    return list(zip(given, motions, strict=True))
+
+
 def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
     """What is given as a tuple; raises `GeometryError` where it is no list."""
     if isinstance(given, str) or not isinstance(given, Iterable):
@@ -437,25 +446,15 @@ def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
 def _checked_locks(
     joint: Joint, limits: tuple[Limits | None, ...]
 ) -> tuple[float | None, ...]:
-    count = len(joint.parts)
-    locked = tuple(joint.locked) or (None,) * count
     what = f"locked of joint {joint.name}"
-    if len(locked) != count:
-        allowed = f"{count}, one for each variable"
-        raise GeometryError(f"number of values of {what}", len(locked), allowed)
-    rows = zip(locked, limits, _motions_of_parts(joint), strict=True)
-    for value, pair, motion in rows:
+    rows = _by_variable(joint, "locked", f"number of values of {what}")
+    for (value, motion), pair in zip(rows, limits, strict=True):
         if value is None:
             continue
         _check_value(what, value, motion)
         if pair is not None and not pair[0] <= value <= pair[1]:
             raise GeometryError(what, value, f"within the limits {list(pair)}")
-    return locked
-
-
-def _motions_of_parts(joint: Joint) -> tuple[Motion, ...]:
-    """What each variable does."""
-    return joint.motions * (len(joint.bodies) - 1)
+    return tuple(value for value, _ in rows)
 
 
 def _check_value(what: str, value: object, motion: Motion) -> None:
@@ -464,13 +463,9 @@ def _check_value(what: str, value: object, motion: Motion) -> None:
 
 
 def _checked_couplings(joint: Joint) -> tuple[Coupling | None, ...]:
-    count = len(joint.parts)
-    coupled = tuple(joint.coupled) or (None,) * count
     what = f"coupled of joint {joint.name}"
-    if len(coupled) != count:
-        allowed = f"{count}, one for each variable"
-        raise GeometryError(f"number of values of {what}", len(coupled), allowed)
-    for coupling, value in zip(coupled, joint.locked, strict=True):
+    rows = _by_variable(joint, "coupled", f"number of values of {what}")
+    for (coupling, _), value in zip(rows, joint.locked, strict=True):
         if coupling is None:
             continue
         if not isinstance(coupling, Coupling):
@@ -478,4 +473,4 @@ def _checked_couplings(joint: Joint) -> tuple[Coupling | None, ...]:
         if value is not None:
             allowed = f"left out, as the variable is coupled to {coupling.to}"
             raise GeometryError(f"locked of joint {joint.name}", value, allowed)
-    return coupled
+    return tuple(coupling for coupling, _ in rows)
