@@ -10,8 +10,9 @@ import numpy as np
 from bifurc.figures.style import COLORS
 from linkages.export.gltf import BinaryGltf, Track
 from linkages.export.meshes import Mesh, ball, box, cylinder
-from linkages.export.model import Body, LinkageModel, Shape, Symbol
+from linkages.export.model import Body, LinkageModel, Symbol
 from linkages.export.motion import Motion, Poses
+from linkages.mechanisms.joint import Shape
 from linkages.values import GeometryError
 
 ROD_RADIUS = 0.03  # in characteristic lengths, as all below

@@ -168,7 +168,7 @@ def _check_placed(ring: _Ring, reason: str) -> None:
 def _turned(frame: np.ndarray, axis: Axis, ring: _Ring) -> np.ndarray:
     """A frame turned about an axis and shifted along it, as the table of a loop
     says."""
-    screw = Motion("", True, axis.direction, axis.point)
+    screw = Motion(True, axis.direction, axis.point)
     turned: np.ndarray = transforms(screw, np.array([ring.turn]))[0] @ frame
     turned[:3, 3] += ring.shift * axis.direction
     return turned

@@ -12,13 +12,6 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import LARGEST, JointKind, Limits, Vector
 from linkages.values import GeometryError, quoted
 
-# what the variables of a joint of several are called
-PARTS = {
-    JointKind.CYLINDRICAL: ("turn", "slide"),
-    JointKind.UNIVERSAL: ("first", "second"),
-    JointKind.PLANAR: ("x", "y", "turn"),
-}
-
 
 @dataclass(frozen=True, eq=False)
 class BodyJoint:
@@ -46,11 +39,8 @@ class BodyJoint:
     @property
     def labels(self) -> tuple[str, ...]:
         """What every variable is called in the mechanism."""
-        parts = PARTS.get(self.kind)
-        if parts is not None:
-            return tuple(f"{self.name}.{part}" for part in parts)
-        is_single = self.kind not in (JointKind.SPHERICAL, JointKind.RIGID)
-        return (self.name,) if is_single else ()
+        parts = self.kind.facets.parts
+        return tuple(f"{self.name}.{part}" if part else self.name for part in parts)
 
     @property
     def points(self) -> tuple[np.ndarray, np.ndarray]:

@@ -31,16 +31,6 @@ MOST_STARTS = 50  # random starts until one closes within the limits
 SEED = 0
 FULL_TURN = 2 * math.pi
 ROUNDING = 1e-9  # rad, of an angle at the end of its limits
-WITH_POINT = (
-    JointKind.REVOLUTE,
-    JointKind.PRISMATIC,
-    JointKind.CYLINDRICAL,
-    JointKind.HELICAL,
-    JointKind.UNIVERSAL,
-    JointKind.SPHERICAL,
-    JointKind.PLANAR,
-)
-WITHOUT_DIRECTION = (JointKind.SPHERICAL, JointKind.RIGID)
 
 
 def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
@@ -319,8 +309,8 @@ def _placed(
         joint.name,
         joint.kind,
         bodies,
-        point=_vector(middle[:, 3]) if joint.kind in WITH_POINT else None,
-        direction=None if joint.kind in WITHOUT_DIRECTION else direction,
+        point=_vector(middle[:, 3]) if joint.kind is not JointKind.RIGID else None,
+        direction=direction if "direction" in joint.kind.facets.required else None,
         second_direction=second_direction,
         pitch=joint.pitch,
         limits=tuple(limits),

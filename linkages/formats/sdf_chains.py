@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from linkages.formats.assembly import PARTS, BodyJoint
+from linkages.formats.assembly import BodyJoint
 from linkages.formats.composites import Axis, joints_of_axes
 from linkages.mechanisms.joint import JointKind
 
@@ -36,10 +36,10 @@ def with_joints_of_chains(
     uses = Counter(body for joint in joints for body in joint.bodies)
     result: dict[str, BodyJoint | None] = dict(by_name)
     for kind in WHOLE:
-        first, *_ = PARTS[kind]
+        first, *_ = kind.facets.parts
         for start in joints:
             stem = start.name.removesuffix(f".{first}")
-            names = [f"{stem}.{part}" for part in PARTS[kind]]
+            names = [f"{stem}.{part}" for part in kind.facets.parts]
             links = [link_behind(name) for name in names[:-1]]
             is_chain = stem not in by_name and all(name in by_name for name in names)
             if not is_chain or any(uses[link] != 2 for link in links):

@@ -29,7 +29,7 @@ from linkages.formats.sdf_couplings import (
     with_mimics,
 )
 from linkages.formats.xml_tree import Element
-from linkages.mechanisms.joint import WITHOUT_PLACE, JointKind, Limits
+from linkages.mechanisms.joint import JointKind, Limits
 from linkages.values import quoted
 
 OLDEST, NEWEST = (1, 5), (1, 11)
@@ -126,7 +126,9 @@ def read_sdf(root: Element, name: str) -> Assembly:
 
 def _joints_with_places(element: Element) -> list[str]:
     """The names of the joints of a model that are at a place."""
-    elsewhere = [word for word, kind in KINDS.items() if kind in WITHOUT_PLACE]
+    elsewhere = [
+        word for word, kind in KINDS.items() if kind.facets.is_point_drawn_only
+    ]
     return [
         joint.attributes["name"]
         for joint in element.all("joint")
