@@ -216,8 +216,8 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     """Write the linkage where the first of the forms begins."""
     from bifurc.files.atomic import replace_file
     from linkages.app.output import writing_to
-    from linkages.app.reports.mechanism_file import mechanism_text
     from linkages.app.texts.form_names import choose_forms
+    from linkages.formats.table import mechanism_text
     from linkages.labels import loop_of
     from linkages.mechanisms.of_loop import mechanism_of_loop
 
