@@ -320,7 +320,7 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
     from linkages.app.answer.subject import subject_at
-    from linkages.export.angle_table import make_angle_table
+    from linkages.export.motion import make_angle_table
 
     joints = subject_at(atlas).joint_values(motion.configurations)
     return make_angle_table(motion.arclength, joints.values, joints.names)
