@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import FormPattern
-from linkages.file import FOLD, FOREIGN_ENDINGS, LinkageFileError, read_file
+from linkages.file import LinkageFileError, read_file
+from linkages.formats.table import ENDINGS
 from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
@@ -97,8 +98,7 @@ def is_linkage_file(source: str | Path) -> bool:
     if isinstance(source, Path):
         return True
     try:
-        has_ending = source.lower().endswith((".toml", FOLD, *FOREIGN_ENDINGS))
-        return has_ending or Path(source).is_file()
+        return source.lower().endswith(ENDINGS) or Path(source).is_file()
     except OSError:  # a text that no file can be called, such as one far too long
         return False
 

@@ -17,10 +17,11 @@ from linkages.formats.assembly import (
     Assembly,
     BodyJoint,
     frame_along,
+    in_bodies,
     without_joints,
 )
+from linkages.formats.composites import with_joints_of_chains
 from linkages.formats.exact_poses import ExactPose, Origin
-from linkages.formats.sdf_chains import with_joints_of_chains
 from linkages.formats.sdf_couplings import (
     AXES,
     GEARBOX,
@@ -169,8 +170,7 @@ def _collect(model: _Model) -> None:
         name = element.attributes.get("name")
         if not name:
             element.refuse("name", "missing", "a name")
-        if name in model.posed or name in (WORLD, MODEL):
-            element.refuse("name", quoted(name), "given once")
+        element.check_new(name, (*model.posed, WORLD, MODEL))
         relative_to = MODEL
         if element.tag == "joint":
             relative_to = _link_name(element, "child")
@@ -283,13 +283,9 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
         other = frame_along(place[:3, 3], second_axis)
         cosine = float(one[:3, 2] @ other[:3, 2])
         limits = (*limits, _limits(element, "axis2", word, model))
-    frames = (
-        np.linalg.inv(model.frame(first)) @ one,
-        np.linalg.inv(model.frame(second)) @ other,
-    )
+    frames = in_bodies((model.frame(first), model.frame(second)), (one, other))
     pitch = _pitch(element, model) if kind is JointKind.HELICAL else None
-    bodies = first, second
-    return BodyJoint(name, kind, bodies, frames, cosine, pitch, limits)
+    return BodyJoint(name, kind, (first, second), frames, cosine, pitch, limits)
 
 
 def _read_gearbox(element: Element, model: _Model) -> Gearbox:

@@ -216,8 +216,8 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     """Write the linkage where the first of the forms begins."""
     from bifurc.files.atomic import replace_file
     from linkages.app.output import writing_to
-    from linkages.app.reports.mechanism_file import mechanism_text
     from linkages.app.texts.form_names import choose_forms
+    from linkages.formats.table import mechanism_text
     from linkages.labels import loop_of
     from linkages.mechanisms.of_loop import mechanism_of_loop
 
@@ -320,7 +320,7 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
     from linkages.app.subject import subject_at
-    from linkages.export.angle_table import make_angle_table
+    from linkages.export.motion import make_angle_table
 
     joints = subject_at(atlas).joint_values(motion.configurations)
     return make_angle_table(motion.arclength, joints.values, joints.names)
