@@ -62,6 +62,11 @@ def negative(x: Pair) -> Pair:
     return -x[0], x[1]
 
 
+def signed(sign: int, x: Pair) -> Pair:
+    """The pair of the angle for ``sign`` +1, of the opposite angle for -1."""
+    return x if sign > 0 else negative(x)
+
+
 def minus(x: Pair, y: Pair) -> Pair:
     """The pair of the difference of two angles."""
     return plus(x, negative(y))

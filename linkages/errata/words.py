@@ -99,7 +99,7 @@ def _bakers_variants() -> str:
     texts = []
     for order in (Order.II, Order.IV):
         loop = double_goldberg_type(
-            1.0, alpha, beta, gamma, delta, order, Kind.GOLDBERG
+            1.0, alpha, beta, gamma, delta, order=order, kind=Kind.GOLDBERG
         )
         texts.append(f"Type {order.name}: {_identified(loop, variants)}")
     return "; ".join(texts)

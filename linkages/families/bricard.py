@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -28,39 +27,19 @@ from linkages.closed_forms.closed_form import (
     constant,
     cosine_of,
     joint,
-    negative,
+    signed,
     sine_of,
     tangent,
 )
 from linkages.construction.conditions import decided
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number
-from linkages.construction.table_equations import (
-    equal_links,
-    equal_offsets,
-    equal_twists,
-    opposite_offsets,
-    zero_lengths,
-    zero_offsets,
-)
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    FormPattern,
-    Parameter,
-    ParameterKind,
-    Relation,
-    RelationKind,
-)
+from linkages.entry import FormPattern
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
 POSITION = 160
-SOURCE = (
-    "Bricard 1927, Lecons de cinematique; Baker 1980, Mech. Mach. Theory 15, 267-286; "
-    "Song 2013, "
-)
 
 
 def bricard_line_symmetric(
@@ -338,12 +317,6 @@ def revised_patterns(
     return tuple(_three_patterns("revised", "'", -1, equations))
 
 
-def _octahedral_patterns(
-    alpha12: float, alpha23: float, alpha34: float, R1: float, R2: float, R3: float
-) -> tuple[FormPattern, ...]:
-    return patterns(0.0, 0.0, 0.0, alpha12, alpha23, alpha34, R1, R2, R3)
-
-
 # --- closed forms
 
 LENGTH_NAMES = ("a12", "a23", "a34")
@@ -399,8 +372,8 @@ def _symbols(names: tuple[str, ...], parameters: tuple[str, ...]) -> Three:
 def _closed_form(
     linkage: str,
     sign: int,
-    lengths: tuple[str, ...] = LENGTH_NAMES,
-    offsets: tuple[str, ...] = OFFSET_NAMES,
+    lengths: tuple[str, ...],
+    offsets: tuple[str, ...],
 ) -> ClosedForm:
     """``sign`` +1 where opposite joints turn alike, -1 where oppositely."""
     equations = original_equations if sign > 0 else revised_equations
@@ -418,9 +391,7 @@ def _closed_form(
     s, c = joint(2)
     quadratic = _quadratic(2)
     half: tuple[tuple[Pair, ...], ...] = ((joint(1),), (joint(2),), _third_pairs())
-    other = half
-    if sign < 0:
-        other = tuple(tuple(negative(pair) for pair in pairs) for pairs in half)
+    other = tuple(tuple(signed(sign, pair) for pair in pairs) for pairs in half)
     return ClosedForm(
         linkage,
         "Forms I and II" if sign > 0 else "Forms I' and II'",
@@ -438,199 +409,33 @@ ORIGINAL = "Song 2013, eqs (4.2.14)-(4.2.24), H2 and L2 of (4.2.15) completed"
 REVISED = "Song 2013, eqs (4.3.3)-(4.3.8), (4.3.8) being missing in the text"
 
 
-def _general_formulas(linkage: str, sign: int) -> tuple[ClosedForm, ...]:
-    return (_closed_form(linkage, sign),)
+def _formulas(
+    signs: tuple[int, ...],
+    linkage: str,
+    lengths: tuple[str, ...] = LENGTH_NAMES,
+    offsets: tuple[str, ...] = OFFSET_NAMES,
+) -> tuple[ClosedForm, ...]:
+    return tuple(_closed_form(linkage, sign, lengths, offsets) for sign in signs)
 
 
-def _zero_offset_formulas() -> tuple[ClosedForm, ...]:
-    linkage = "bricard-line-symmetric-zero-offset"
-    return (
-        _closed_form(linkage, +1, offsets=()),
-        _closed_form(linkage, -1, offsets=()),
-    )
-
-
-def _octahedral_formulas() -> tuple[ClosedForm, ...]:
-    return (_closed_form("bricard-octahedral-line-symmetric", +1, lengths=()),)
-
-
-# --- entries
-
-
-def _length(link: str, opposite: str, default: float) -> Parameter:
-    meaning = f"length of link {link} and {opposite}"
-    return Parameter.length(f"a{link}", default, meaning, 0.3, 3.0)
-
-
-def _twist(link: str, opposite: str, degrees: float) -> Parameter:
-    return Parameter(
-        f"alpha{link}",
-        math.radians(degrees),
-        ParameterKind.ANGLE,
-        f"twist of link {link} and {opposite}",
-        0.2,
-        math.pi - 0.2,
-    )
-
-
-def _offset(number: int, default: float) -> Parameter:
-    meaning = f"offset of joint {number} and {number + 3}"
-    return Parameter.length(f"R{number}", default, meaning, -1.0, 1.0)
-
-
-LENGTHS = (
-    _length("12", "45", 2.4),
-    _length("23", "56", 2.9),
-    _length("34", "61", 1.5),
-)
-TWISTS = (_twist("12", "45", 40), _twist("23", "56", 80), _twist("34", "61", 130))
-OFFSETS = (_offset(1, 0.5), _offset(2, 0.55), _offset(3, 0.42))
-# Song (2013), eq. (4.3.9): the linkage of (4.2.25) with other directions of the axes
-REVISED_TWISTS = (
-    *TWISTS[:2],
-    Parameter(
-        "alpha34",
-        math.radians(-50),
-        ParameterKind.ANGLE,
-        "twist of link 34 and 61",
-        -math.pi + 0.2,
-        -0.2,
-    ),
-)
-REVISED_OFFSETS = tuple(
-    replace(
-        offset, meaning=f"offset of joint {k}, that of joint {k + 3} with the sign -"
-    )
-    for k, offset in enumerate(OFFSETS, start=1)
-)
-OPPOSITE_LINKS: tuple[tuple[int, int], ...] = ((12, 45), (23, 56), (34, 61))
-OPPOSITE_JOINTS: tuple[tuple[int, int], ...] = ((1, 4), (2, 5), (3, 6))
-LINKS = Condition(
-    "a12 = a45, a23 = a56, a34 = a61, "
-    "alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61",
-    (equal_links(*OPPOSITE_LINKS),),
-)
-ERRATA = (
-    "Song 2013, text of (4.2.1): theta3 = theta1, theta4 = theta2 must be "
-    "theta4 = theta1, theta5 = theta2",
-    "Song 2013, eq. (4.2.15): H2 and L2 are incomplete, see the constructor",
-)
-
-
-def _case_of(other: str, source: str) -> Relation:
-    return Relation(RelationKind.SPECIAL_CASE, other, source)
-
-
-def _isomer_of(other: str) -> Relation:
-    return Relation(
-        RelationKind.ISOMER,
-        other,
-        BY_IDENTIFICATION,
-        "links at joint 3 exchanged",
-        joint=3,
-    )
-
-
-GENERAL_CASE = _case_of("bricard-line-symmetric", "Song (2013), section 4.4")
-
-ENTRIES: tuple[Entry, ...] = (
-    Entry(
-        "bricard-line-symmetric",
-        "General line-symmetric Bricard 6R linkage",
-        SOURCE + "eqs (4.2.1)-(4.2.25)",
-        bricard_line_symmetric,
-        (*LENGTHS, *TWISTS, *OFFSETS),
-        conditions=(
-            LINKS,
-            Condition("R1 = R4, R2 = R5, R3 = R6", (equal_offsets(*OPPOSITE_JOINTS),)),
+ENTRIES = read_entries(
+    "bricard",
+    {
+        "bricard-line-symmetric": Model(
+            bricard_line_symmetric, patterns, partial(_formulas, (+1,))
         ),
-        patterns=patterns,
-        formulas=partial(_general_formulas, "bricard-line-symmetric", +1),
-        errata=ERRATA,
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 2,
-            "bifurcations": 0,
-            "components": 2,
-        },
-    ),
-    Entry(
-        "bricard-line-symmetric-zero-offset",
-        "Line-symmetric Bricard 6R linkage with zero offsets",
-        SOURCE + "section 4.4.3",
-        bricard_line_symmetric_zero_offset,
-        (*LENGTHS, *TWISTS),
-        conditions=(LINKS, Condition("all offsets 0", (zero_offsets(),))),
-        patterns=patterns,
-        formulas=_zero_offset_formulas,
-        relations=(
-            GENERAL_CASE,
-            _isomer_of("wohlhart-double-goldberg"),
-            _isomer_of("double-subtractive-goldberg"),
+        "bricard-line-symmetric-zero-offset": Model(
+            bricard_line_symmetric_zero_offset,
+            patterns,
+            partial(_formulas, (+1, -1), offsets=()),
         ),
-        errata=(*ERRATA, "Song 2013, eq. (4.3.8) is missing from the text"),
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 4,
-            "bifurcations": 4,
-            "components": 1,
-        },
-    ),
-    Entry(
-        "bricard-octahedral-line-symmetric",
-        "Line-symmetric octahedral Bricard 6R linkage",
-        "Bricard 1897, J. Pure Appl. Math. 3, 113-150; "
-        "Song 2013, eq. (2.4.16) and section 4.4.2",
-        bricard_octahedral_line_symmetric,
-        (*TWISTS, *OFFSETS),
-        conditions=(
-            Condition("all lengths 0", (zero_lengths(),)),
-            Condition(
-                "alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61",
-                (equal_twists(*OPPOSITE_LINKS),),
-            ),
-            Condition("R_i = R_{i+3}", (equal_offsets(*OPPOSITE_JOINTS),)),
+        "bricard-octahedral-line-symmetric": Model(
+            bricard_octahedral_line_symmetric,
+            partial(patterns, 0.0, 0.0, 0.0),
+            partial(_formulas, (+1,), lengths=()),
         ),
-        patterns=_octahedral_patterns,
-        formulas=_octahedral_formulas,
-        relations=(GENERAL_CASE,),
-        errata=("Song 2013, eq. (2.4.16): the equalities of the twists are missing",),
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 1,
-            "bifurcations": 0,
-            "components": 1,
-        },
-    ),
-    Entry(
-        "bricard-line-symmetric-revised",
-        "Revised general line-symmetric Bricard 6R",
-        "Mavroidis and Roth (1995); Song (2013), eqs (2.4.19), (4.3.1)-(4.3.9)",
-        revised_line_symmetric,
-        (*LENGTHS, *REVISED_TWISTS, *REVISED_OFFSETS),
-        conditions=(
-            Condition(
-                "a12 = a45, a23 = a56, a34 = a61, twists likewise",
-                (equal_links(*OPPOSITE_LINKS),),
-            ),
-            Condition(
-                "R1 = -R4, R2 = -R5, R3 = -R6", (opposite_offsets(*OPPOSITE_JOINTS),)
-            ),
+        "bricard-line-symmetric-revised": Model(
+            revised_line_symmetric, revised_patterns, partial(_formulas, (-1,))
         ),
-        patterns=revised_patterns,
-        formulas=partial(_general_formulas, "bricard-line-symmetric-revised", -1),
-        relations=(
-            Relation(RelationKind.SAME, "bricard-line-symmetric", BY_IDENTIFICATION),
-        ),
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 2,
-            "bifurcations": 0,
-            "components": 2,
-        },
-    ),
+    },
 )
