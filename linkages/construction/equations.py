@@ -57,15 +57,22 @@ def equation_gaps(equations: str, table: np.ndarray) -> list[float]:
     return gaps
 
 
-def _numbers(table: np.ndarray) -> Iterator[dict[str, float]]:
-    """The numbers of a table by their names, once for each joint and its link."""
+def numbers_of(table: np.ndarray) -> dict[str, float]:
+    """The numbers of a table (3, n) by their names: length, twist and offset of link
+    and joint 1, then those of the others."""
     names: dict[str, float] = {}
-    columns = table.T.tolist()
-    n = len(columns)
-    for i, (length, twist, offset) in enumerate(columns, start=1):
+    n = table.shape[1]
+    for i, (length, twist, offset) in enumerate(table.T.tolist(), start=1):
         link = f"{i}{i % n + 1}"
         names |= {f"a{link}": length, f"alpha{link}": twist, f"R{i}": offset}
-    for length, twist, offset in columns:
+    return names
+
+
+def _numbers(table: np.ndarray) -> Iterator[dict[str, float]]:
+    """The names of all numbers, and those of one joint and its link, for each in
+    turn."""
+    names = numbers_of(table)
+    for length, twist, offset in table.T.tolist():
         yield {**names, "a": length, "alpha": twist, "R": offset}
 
 
