@@ -77,6 +77,12 @@ def catalogue() -> dict[str, Entry]:
     return dict(_entries())
 
 
+@cache
+def distinct_entries() -> tuple[Entry, ...]:
+    """The entries without those that are others in more parameters."""
+    return tuple(entry for entry in _entries().values() if not entry.is_other_view)
+
+
 def entry(name: str) -> Entry:
     """The entry called ``name``; raises `UnknownLinkageError`, which lists the nearest
     names, also of networks."""

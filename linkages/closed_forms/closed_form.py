@@ -181,13 +181,6 @@ class ClosedForm:
         exact."""
         tangents = [numbers.tan(parameters[name] / 2) for name in self.angles]
         lengths = [parameters[name] for name in self.lengths]
-        return self.constants_by_tangents(tangents, lengths)
-
-    def constants_by_tangents(
-        self, tangents: Sequence[Number], lengths: Sequence[Number] = ()
-    ) -> list[Number]:
-        """Values of the constants for the half tangents of ``angles`` and for
-        ``lengths``, in their order."""
         return list(self._constants(*tangents, *lengths))
 
     def evaluate_quadratic(self, first: Pair, constants: list[Number]) -> list[Number]:

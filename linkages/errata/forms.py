@@ -28,7 +28,7 @@ from linkages.closed_forms.closed_form import (
 )
 from linkages.construction.numbers import Number
 from linkages.errata.erratum import Amounts, median_and_largest
-from linkages.families.bricard import LETTERS, Three, original_equations
+from linkages.families.bricard import LETTERS, Three, closure_equations
 
 Change: TypeAlias = Callable[[ClosedForm], ClosedForm]
 INPUTS = 60  # input angles along a form
@@ -234,7 +234,7 @@ def no_such_length(form: ClosedForm) -> ClosedForm:
 
 def unprimed(form: ClosedForm) -> ClosedForm:
     """The coefficients (4.2.22) in the place of the missing (4.3.8)."""
-    third = original_equations(*_symbols()).third
+    third = closure_equations(*_symbols()).third
     constants: dict[str, Number] = {}
     for letter, value in zip(LETTERS, third, strict=True):
         constants[f"{letter}_3"] = value

@@ -17,7 +17,7 @@ from linkages.catalogue import entry
 from linkages.construction.link import Link
 from linkages.construction.spatial_triangle import CompositeLink, composite_link
 from linkages.errata.erratum import Amounts
-from linkages.families.bricard import LETTERS, original_equations
+from linkages.families.bricard import LETTERS, closure_equations
 
 NEAR = 1e-13  # rad, from the input where the root changes
 
@@ -201,7 +201,7 @@ def _coefficients() -> dict[str, float]:
     s12, s23, s34 = np.sin(twists)
     a12, a23, a34 = lengths
     r1, r2, r3 = offsets
-    second = original_equations(
+    second = closure_equations(
         (a12, a23, a34), (c12, c23, c34), (s12, s23, s34), (r1, r2, r3)
     ).second
     out = {}

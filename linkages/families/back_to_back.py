@@ -13,10 +13,11 @@ from functools import partial
 import numpy as np
 
 from linkages.construction.conditions import require_different, require_equal
-from linkages.construction.link import Link, bennett_links, closed_chain
+from linkages.construction.link import basic_links
 from linkages.construction.numbers import Number, atan, tan
 from linkages.construction.possible_angles import twist_pairs
 from linkages.entry_table import Model, read_entries
+from linkages.families.mavroidis_roth import OffsetPattern, mavroidis_roth
 from linkages.loop import Loop
 
 POSITION = 110
@@ -54,23 +55,6 @@ def back_to_back(
     `GeometryError`. Source: Chen and You (2007), Wohlhart (1991b); equation (2.4.9) in
     Song (2013).
     """
-    link_a, pair, link_c = _links(a, alpha, beta, gamma, delta, sign)
-    if isomer:
-        links = (link_a, pair, link_c, link_a, pair, link_c)
-        return closed_chain(*links, offsets=(0, R2, R3, 0, R3, R2))
-    links = (link_a, pair, link_a, link_c, pair, link_c)
-    return closed_chain(*links, offsets=(0, R2, R3, 0, R2, R3))
-
-
-def _links(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number | None,
-    sign: int,
-) -> tuple[Link, Link, Link]:
-    """The links a, b + d or b - d, and c."""
     if delta is None:
         delta = matching_twist(alpha, beta, gamma)
     else:
@@ -80,11 +64,12 @@ def _links(
             tan(alpha / 2) * tan(gamma / 2),
             "tan(alpha/2) tan(gamma/2)",
         )
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, None), c=(gamma, None), d=(delta, None)
+    links = basic_links(a, alpha, beta, gamma, delta)
+    pair = links["b"] + links["d"] if sign > 0 else links["b"] - links["d"]
+    pattern = OffsetPattern.REFLECTED if isomer else OffsetPattern.OPPOSITE
+    return mavroidis_roth(
+        a, alpha, gamma, pair.length, pair.twist, R2, R3, pattern, exchanged=isomer
     )
-    pair = link_b + link_d if sign > 0 else link_b - link_d
-    return link_a, pair, link_c
 
 
 def _guesses(sign: int, form: np.ndarray) -> Iterator[dict[str, float]]:

@@ -49,58 +49,26 @@ def bricard_line_symmetric(
     alpha12: Number,
     alpha23: Number,
     alpha34: Number,
-    R1: Number,
-    R2: Number,
-    R3: Number,
+    R1: Number = 0,
+    R2: Number = 0,
+    R3: Number = 0,
 ) -> Loop:
     """The general line-symmetric Bricard linkage: links 12, 23, 34 and offsets of
     joints 1, 2, 3, twice over.
 
     Lengths not negative, twists in rad, any offsets. Raises `GeometryError` for a
-    negative length. Closed form: Song 2013, eqs (4.2.14)-(4.2.24), where H2 and L2 of
-    (4.2.15) must be -R3 c12 s23 s34 and R1 (c12 c23 + c34) + R2 (c23 + c12 c34) + R3 (1
-    + c12 c23 c34), c and s being cosines and sines of the twists.
+    negative length. Sources: Song 2013, eqs (4.2.14)-(4.2.24), and section 4.4.3 without
+    offsets; without lengths Bricard 1897; Song 2013, eq. (2.4.16), to which the
+    equalities of the twists must be added: without them the loop is rigid.
     """
     for name, length in (("a12", a12), ("a23", a23), ("a34", a34)):
         size = decided(length)
         if size is not None and size < 0:
             raise GeometryError(f"length {name}", f"{size:.6g}", "0 or greater")
-    return Loop(
-        (a12, a23, a34) * 2,
-        (alpha12, alpha23, alpha34) * 2,
-        (R1, R2, R3) * 2,
-        "bricard-line-symmetric",
-    )
+    return Loop((a12, a23, a34) * 2, (alpha12, alpha23, alpha34) * 2, (R1, R2, R3) * 2)
 
 
-def bricard_line_symmetric_zero_offset(
-    a12: Number,
-    a23: Number,
-    a34: Number,
-    alpha12: Number,
-    alpha23: Number,
-    alpha34: Number,
-) -> Loop:
-    """The line-symmetric Bricard linkage whose offsets vanish (Song 2013, section
-    4.4.3); errors as above."""
-    return bricard_line_symmetric(a12, a23, a34, alpha12, alpha23, alpha34, 0, 0, 0)
-
-
-def bricard_octahedral_line_symmetric(
-    alpha12: Number,
-    alpha23: Number,
-    alpha34: Number,
-    R1: Number,
-    R2: Number,
-    R3: Number,
-) -> Loop:
-    """The line-symmetric octahedral Bricard linkage: no lengths, opposite twists and
-    offsets alike.
-
-    Sources: Bricard 1897; Song 2013, eq. (2.4.16), to which alpha12 = alpha45, alpha23
-    = alpha56 and alpha34 = alpha61 must be added: without them the loop is rigid.
-    """
-    return bricard_line_symmetric(0, 0, 0, alpha12, alpha23, alpha34, R1, R2, R3)
+bricard_octahedral_line_symmetric = partial(bricard_line_symmetric, 0, 0, 0)
 
 
 def revised_line_symmetric(
@@ -139,14 +107,19 @@ class Equations(NamedTuple):
     third: Coefficients
 
 
-def original_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
-    """The equations where opposite joints turn alike (eqs 4.2.15, 4.2.22).
+def closure_equations(
+    a: Three, c: Three, s: Three, R: Three, sign: int = 1
+) -> Equations:
+    """The equations where opposite joints turn alike (eqs 4.2.15, 4.2.22), or for
+    ``sign`` -1 oppositely, with opposite offsets (eqs 4.3.6, 4.3.8; the latter is not in
+    the text): those with the twist alpha34 turned round.
 
     ``a``, ``R`` are the three lengths and offsets, ``c``, ``s`` cosines and sines of
     the twists, of any number type.
     """
     (a12, a23, a34), (r1, r2, r3) = a, R
-    (c12, c23, c34), (s12, s23, s34) = c, s
+    c12, c23, c34 = c[0], c[1], sign * c[2]
+    s12, s23, s34 = s[0], s[1], sign * s[2]
     second = (
         a34 * s12 * c23 + a12 * s34,
         -(r3 * s12 * c23 * s34 + r2 * s12 * s34),
@@ -168,36 +141,6 @@ def original_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
         a23 * s12 * c34 + a12 * s23,
         -r2 * s12 * s23 * c34,
         r1 * (c12 + c23 * c34) + r2 * (1 + c12 * c23 * c34) + r3 * (c23 + c12 * c34),
-    )
-    return Equations(second, third)
-
-
-def revised_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
-    """The same for opposite offsets and theta_{i+3} = -theta_i (eqs 4.3.6, 4.3.8; the
-    latter is not in the text)."""
-    (a12, a23, a34), (r1, r2, r3) = a, R
-    (c12, c23, c34), (s12, s23, s34) = c, s
-    second = (
-        a34 * s12 * c23 - a12 * s34,
-        r3 * s12 * c23 * s34 + r2 * s12 * s34,
-        -(a23 * s12 * c34 - a12 * s23),
-        r3 * s12 * s23 * c34 - r1 * s12 * s23,
-        -r3 * s23 * s34,
-        a34 * c12 * s23 - a23 * s34,
-        -(a23 * c12 * s34 - a34 * s23),
-        r3 * c12 * s23 * s34,
-        r1 * (c12 * c23 - c34) + r2 * (c23 - c12 * c34) + r3 * (1 - c12 * c23 * c34),
-    )
-    third = (
-        -(a12 * c23 * s34 - a34 * s12),
-        r2 * s12 * c23 * s34 + r3 * s12 * s34,
-        -(a23 * c12 * s34 - a34 * s23),
-        r2 * c12 * s23 * s34 + r1 * s23 * s34,
-        r2 * s12 * s23,
-        -(a12 * s23 * c34 - a23 * s12),
-        -(a23 * s12 * c34 - a12 * s23),
-        r2 * s12 * s23 * c34,
-        r1 * (c12 - c23 * c34) + r2 * (1 - c12 * c23 * c34) + r3 * (c23 - c12 * c34),
     )
     return Equations(second, third)
 
@@ -255,17 +198,6 @@ def _residual(
     return residual
 
 
-def _three_patterns(
-    suffix: str, mark: str, sign: int, equations: Equations
-) -> list[FormPattern]:
-    both = f"Forms I{mark} and II{mark} ({suffix})"
-    return [
-        FormPattern(f"Form I{mark} ({suffix})", _residual(sign, +1, equations)),
-        FormPattern(f"Form II{mark} ({suffix})", _residual(sign, -1, equations)),
-        FormPattern(both, _residual(sign, 0, equations)),
-    ]
-
-
 def patterns(
     a12: float,
     a23: float,
@@ -276,9 +208,10 @@ def patterns(
     R1: float = 0.0,
     R2: float = 0.0,
     R3: float = 0.0,
+    revised: bool = False,
 ) -> tuple[FormPattern, ...]:
-    """Forms I and II, and, where one closed curve holds both, "Forms I and II"; I' and
-    II' for zero offsets.
+    """Forms I and II, and, where one closed curve holds both, "Forms I and II"; for
+    the ``revised`` linkage I' and II', for zero offsets all of them.
 
     Lengths and offsets in one unit, twists in rad.
     """
@@ -286,35 +219,30 @@ def patterns(
     c = (math.cos(alpha12), math.cos(alpha23), math.cos(alpha34))
     s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
     R = (R1, R2, R3)
-    out = _three_patterns("original", "", +1, original_equations(a, c, s, R))
     has_lengths = max(a) > 0
     has_offsets = max(abs(R1), abs(R2), abs(R3)) > 0
-    if has_lengths and not has_offsets:
-        revised = revised_equations(a, c, s, R)
-        out += _three_patterns("revised", "'", -1, revised)
+    out = []
+    if not revised:
+        equations = closure_equations(a, c, s, R)
+        out += _three_patterns("original", "", +1, equations)
+    if revised or (has_lengths and not has_offsets):
+        equations = closure_equations(a, c, s, R, -1)
+        out += _three_patterns("revised", "'", -1, equations)
     return tuple(out)
 
 
-def revised_patterns(
-    a12: float,
-    a23: float,
-    a34: float,
-    alpha12: float,
-    alpha23: float,
-    alpha34: float,
-    R1: float,
-    R2: float,
-    R3: float,
-) -> tuple[FormPattern, ...]:
-    """Forms I' and II', and, where one closed curve holds both, "Forms I' and II'".
-
-    Lengths and offsets in one unit, twists in rad.
-    """
-    a = (a12, a23, a34)
-    c = (math.cos(alpha12), math.cos(alpha23), math.cos(alpha34))
-    s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
-    equations = revised_equations(a, c, s, (R1, R2, R3))
-    return tuple(_three_patterns("revised", "'", -1, equations))
+def _three_patterns(
+    suffix: str, mark: str, sign: int, equations: Equations
+) -> list[FormPattern]:
+    roots = {
+        f"Form I{mark}": +1,
+        f"Form II{mark}": -1,
+        f"Forms I{mark} and II{mark}": 0,
+    }
+    return [
+        FormPattern(f"{name} ({suffix})", _residual(sign, root, equations))
+        for name, root in roots.items()
+    ]
 
 
 # --- closed forms
@@ -376,13 +304,13 @@ def _closed_form(
     offsets: tuple[str, ...],
 ) -> ClosedForm:
     """``sign`` +1 where opposite joints turn alike, -1 where oppositely."""
-    equations = original_equations if sign > 0 else revised_equations
     u12, u23, u34 = (tangent(name) for name in TWIST_NAMES)
-    rows = equations(
+    rows = closure_equations(
         _symbols(LENGTH_NAMES, lengths),
         (cosine_of(u12), cosine_of(u23), cosine_of(u34)),
         (sine_of(u12), sine_of(u23), sine_of(u34)),
         _symbols(OFFSET_NAMES, offsets),
+        sign,
     )
     constants = {}
     for number, row in ((2, rows.second), (3, rows.third)):
@@ -425,7 +353,7 @@ ENTRIES = read_entries(
             bricard_line_symmetric, patterns, partial(_formulas, (+1,))
         ),
         "bricard-line-symmetric-zero-offset": Model(
-            bricard_line_symmetric_zero_offset,
+            bricard_line_symmetric,
             patterns,
             partial(_formulas, (+1, -1), offsets=()),
         ),
@@ -435,7 +363,9 @@ ENTRIES = read_entries(
             partial(_formulas, (+1,), lengths=()),
         ),
         "bricard-line-symmetric-revised": Model(
-            revised_line_symmetric, revised_patterns, partial(_formulas, (-1,))
+            revised_line_symmetric,
+            partial(patterns, revised=True),
+            partial(_formulas, (-1,)),
         ),
     },
 )

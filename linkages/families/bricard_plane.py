@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -26,50 +27,27 @@ def plane_symmetric(
     alpha34: Number,
     R2: Number,
     R3: Number,
+    revised: bool = False,
 ) -> Loop:
     """General plane-symmetric Bricard 6R; lengths and offsets in one unit, twists in
     rad.
 
     alpha12 + alpha61 = alpha34 + alpha45 = pi, alpha23 + alpha56 = 0, R2 = R6, R3 = R5.
     Source: Bricard (1927); equation (2.4.14) in Song (2013) has alpha23 + alpha56 = pi,
-    which with these offsets is rigid.
+    which with these offsets is rigid. The ``revised`` one of Mavroidis and Roth (1995),
+    equation (2.4.20) in Song (2013), has opposite twists, R2 = -R6, R3 = -R5: the axes 2
+    and 6 are reversed on one side.
     """
     pi = pi_like(alpha12, alpha23, alpha34)
+    sign = -1 if revised else 1
     return closed_chain(
         Link(a12, alpha12),
         Link(a23, alpha23),
         Link(a34, alpha34),
-        Link(a34, pi - alpha34),
+        Link(a34, -alpha34 if revised else pi - alpha34),
         Link(a23, -alpha23),
-        Link(a12, pi - alpha12),
-        offsets=(0, R2, R3, 0, R3, R2),
-    )
-
-
-def revised_plane_symmetric(
-    a12: Number,
-    a23: Number,
-    a34: Number,
-    alpha12: Number,
-    alpha23: Number,
-    alpha34: Number,
-    R2: Number,
-    R3: Number,
-) -> Loop:
-    """Revised general plane-symmetric Bricard 6R: opposite twists, R2 = -R6, R3 = -R5.
-
-    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995);
-    equation (2.4.20) in Song (2013). It is `plane_symmetric` with the axes 2 and 6
-    reversed on one side.
-    """
-    return closed_chain(
-        Link(a12, alpha12),
-        Link(a23, alpha23),
-        Link(a34, alpha34),
-        Link(a34, -alpha34),
-        Link(a23, -alpha23),
-        Link(a12, -alpha12),
-        offsets=(0, R2, R3, 0, -R3, -R2),
+        Link(a12, -alpha12 if revised else pi - alpha12),
+        offsets=(0, R2, R3, 0, sign * R3, sign * R2),
     )
 
 
@@ -135,7 +113,9 @@ ENTRIES = read_entries(
     "bricard_plane",
     {
         "bricard-plane-symmetric": Model(plane_symmetric),
-        "bricard-plane-symmetric-revised": Model(revised_plane_symmetric),
+        "bricard-plane-symmetric-revised": Model(
+            partial(plane_symmetric, revised=True)
+        ),
         "bricard-octahedral-plane-symmetric": Model(
             plane_symmetric_octahedral, guesses=_octahedral_guesses
         ),
