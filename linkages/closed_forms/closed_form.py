@@ -52,6 +52,11 @@ def constant(name: str) -> Number:
     return symbol
 
 
+def symbols(names: str) -> tuple[Number, ...]:
+    """Constants by their names, with spaces between."""
+    return tuple(constant(name) for name in names.split())
+
+
 def plus(x: Pair, y: Pair) -> Pair:
     """The pair of the sum of two angles."""
     return x[0] * y[1] + x[1] * y[0], x[1] * y[1] - x[0] * y[0]

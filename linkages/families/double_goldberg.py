@@ -1,6 +1,6 @@
 """Wohlhart's double-Goldberg 6R (WDG) and the double-subtractive-Goldberg 6R (DSG),
-general and special,
-and the former with kink angles.
+general and special, and
+the former with kink angles.
 
 Links 12 and 45 are a + c / alpha + gamma (WDG) or a - c / alpha - gamma (DSG), links 23
 and 61 are d / delta, links 34 and 56 are b / beta; all four basic links have one
@@ -61,6 +61,7 @@ from linkages.closed_forms.closed_form import (
     only,
     plus,
     reciprocal,
+    symbols,
     tangent,
 )
 from linkages.construction.conditions import (
@@ -73,7 +74,7 @@ from linkages.construction.conditions import (
 from linkages.construction.constructions import superpose
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number, atan, tan
-from linkages.construction.possible_angles import kinks, twist_pairs
+from linkages.construction.possible_angles import kink_pairs, twist_pairs
 from linkages.construction.spatial_triangle import KinkAngle
 from linkages.entry import FormPattern
 from linkages.entry_table import Model, read_entries
@@ -471,14 +472,7 @@ def non_constructive_closed_form(
     third = joint(3)
     s1, c1 = first
     s3, c3 = third
-    b = constant("b")
-    d = constant("d")
-    n_b = constant("N_b")
-    d_b = constant("D_b")
-    n_d = constant("N_d")
-    d_d = constant("D_d")
-    e = constant("E")
-    f = constant("F")
+    b, d, n_b, d_b, n_d, d_d, e, f = symbols("b d N_b D_b N_d D_d E F")
     cross = b * (n_d * c1**2 - d_d * s1**2)
     relation = e * s1 * c1 * s3**2 + cross * s3 * c3 + f * s1 * c1 * c3**2
     fourth = (
@@ -500,11 +494,7 @@ def non_constructive_closed_form(
 
 
 def _non_constructive_constants(tangents: _Tangents) -> dict[str, Number]:
-    g = constant("g")
-    v = constant("v")
-    w = constant("w")
-    b = constant("b")
-    d = constant("d")
+    g, v, w, b, d = symbols("g v w b d")
     constants = {
         "b": tangents.b,
         "d": tangents.d,
@@ -615,17 +605,10 @@ def _generalized_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
         pair = np.arccos([mean + root, mean - root])
         for gamma, alpha in itertools.permutations(pair):
             links = {"a": ratio * np.sin(alpha), "alpha": alpha, "gamma": gamma}
-            yield from _kink_guesses(links, twists)
-
-
-def _kink_guesses(
-    links: dict[str, float], twists: np.ndarray
-) -> Iterator[dict[str, float]]:
-    """The ``links`` a and c with every pair of kinks that the twists leave possible."""
-    first = kinks(links["alpha"], links["gamma"], twists[1])
-    second = kinks(links["alpha"], links["gamma"], twists[4])
-    for kink_1, kink_2 in itertools.product(first, second):
-        yield {**links, "kink_1": kink_1, "kink_2": kink_2}
+            for kink_pair in kink_pairs(
+                (alpha, gamma, twists[1]), (alpha, gamma, twists[4])
+            ):
+                yield {**links, **kink_pair}
 
 
 ENTRIES = read_entries(

@@ -26,6 +26,7 @@ from linkages.closed_forms.closed_form import (
     plus,
     ratio,
     reciprocal,
+    symbols,
     tangent,
 )
 from linkages.construction import numbers
@@ -269,8 +270,7 @@ def _syncopated_formulas(linkage: str) -> tuple[ClosedForm, ...]:
     """The link b of the Goldberg 5R is the difference of d and b, with half tangent
     u_side."""
     alpha, beta, gamma = (tangent(name) for name in TWISTS)
-    p = constant("p")
-    u_delta = constant("u_delta")
+    p, u_delta = symbols("p u_delta")
     constants = {
         "p": ratio("alpha", "beta") * ratio("gamma", "beta"),
         "u_delta": (p + 1) / (p - 1) * (alpha + gamma) / (1 - alpha * gamma),

@@ -51,7 +51,7 @@ from linkages.construction.link import (
     syncopated_link,
 )
 from linkages.construction.numbers import Number
-from linkages.construction.possible_angles import half_tangents, kinks, twists_with
+from linkages.construction.possible_angles import half_tangents, kink_pairs, twists_with
 from linkages.construction.spatial_triangle import KinkAngle
 from linkages.entry_table import Model, read_entries
 from linkages.families.goldberg_5r import syncopation_guesses
@@ -400,19 +400,16 @@ def _hidden_twist_guesses(
     for joined, known in (first, second):
         hidden += _hidden_twists(lengths[joined], twists[joined], ratio, twists[known])
     for twist in hidden:
-        pair = [kinks(twists[known], twist, twists[i]) for i, known in (first, second)]
-        for kink_1, kink_2 in itertools.product(*pair):
-            yield {name: twist, "kink_1": kink_1, "kink_2": kink_2}
+        locked = [(twists[known], twist, twists[i]) for i, known in (first, second)]
+        for pair in kink_pairs(*locked):
+            yield {name: twist, **pair}
 
 
 def _isomer_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
     """The kinks from the twists of the links that are made of two."""
     twists = form[1]
     beta, delta, gamma, alpha = twists[2:]
-    first = kinks(alpha, gamma, twists[1])
-    second = kinks(beta, delta, twists[0])
-    for kink_1, kink_2 in itertools.product(first, second):
-        yield {"kink_1": kink_1, "kink_2": kink_2}
+    yield from kink_pairs((alpha, gamma, twists[1]), (beta, delta, twists[0]))
 
 
 ENTRIES = read_entries(

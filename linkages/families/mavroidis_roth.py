@@ -1,5 +1,5 @@
-"""Mavroidis and Roth's 6R, and Dietmaier's: four links at two joints in Bennett ratios,
-and two equal links that are free."""
+"""The 6R of Mavroidis and Roth and that of Dietmaier: four links at two joints in
+Bennett ratios, and two equal links that are free."""
 
 from __future__ import annotations
 

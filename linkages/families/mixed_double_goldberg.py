@@ -26,7 +26,6 @@ from linkages.closed_forms.closed_form import (
     ZERO,
     ClosedForm,
     Pair,
-    constant,
     joint,
     minus,
     negative,
@@ -34,6 +33,7 @@ from linkages.closed_forms.closed_form import (
     plus,
     ratio,
     reciprocal,
+    symbols,
 )
 from linkages.construction.link import Link, basic_links, joined_chain
 from linkages.construction.numbers import Number
@@ -141,10 +141,7 @@ def _type_one(linkage: str) -> tuple[ClosedForm, ...]:
     fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
-    m1 = constant("m_1")
-    m3 = constant("m_3")
-    m4 = constant("m_4")
-    m6 = constant("m_6")
+    m1, m3, m4, m6 = symbols("m_1 m_3 m_4 m_6")
     q = reciprocal(fourth, -m4)
     outer = plus(q, reciprocal(first, m1))
     # (m1 + m6 x^2) (Q^2 + m4/m3) = (1/m3 - m4) (m1 - m6) x Q, times m3 t4^2 / m4
@@ -171,10 +168,7 @@ def _type_two(linkage: str) -> tuple[ClosedForm, ...]:
     fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
-    m1 = constant("m_1")
-    m2 = constant("m_2")
-    m3 = constant("m_3")
-    m4 = constant("m_4")
+    m1, m2, m3, m4 = symbols("m_1 m_2 m_3 m_4")
     p, r = reciprocal(fourth, -m3)
     # m4 x P^2 - (m3 m4 - 1) P + m3 x = 0, times t4^2 / m3
     relation = m3 * m4 * s1 * c4**2 + (m3 * m4 - 1) * s4 * c4 * c1 + s1 * s4**2
@@ -196,8 +190,7 @@ def _type_two(linkage: str) -> tuple[ClosedForm, ...]:
 def _type_three(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m3 = constant("m_3")
+    m1, m3 = symbols("m_1 m_3")
     angles = (
         first,
         reciprocal(first, m1),
@@ -213,9 +206,7 @@ def _type_three(linkage: str) -> tuple[ClosedForm, ...]:
 def _type_four(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m2 = constant("m_2")
-    m3 = constant("m_3")
+    m1, m2, m3 = symbols("m_1 m_2 m_3")
     angles = (
         first,
         reciprocal(first, m1),
@@ -230,8 +221,7 @@ def _type_four(linkage: str) -> tuple[ClosedForm, ...]:
 def _type_five(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m4 = constant("m_4")
+    m1, m4 = symbols("m_1 m_4")
     third = (c1, m4 * s1)
     angles = (
         first,
@@ -247,9 +237,7 @@ def _type_five(linkage: str) -> tuple[ClosedForm, ...]:
 def _type_six(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m2 = constant("m_2")
-    m4 = constant("m_4")
+    m1, m2, m4 = symbols("m_1 m_2 m_4")
     sixth = (
         (m4 * s1**2 + (m1 * m2 * m4 + m1 - m2) * c1**2) * s1,
         ((m1 * m4 - m2 * m4 - 1) * s1**2 - m1 * m2 * c1**2) * c1,

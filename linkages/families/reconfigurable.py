@@ -26,6 +26,7 @@ from linkages.closed_forms.closed_form import (
     reciprocal,
     signed,
     sine_of,
+    symbols,
     tangent,
 )
 from linkages.construction import numbers
@@ -120,10 +121,7 @@ def _triangle_constants() -> dict[str, Number]:
     c_b = cosine_of(u_b)
     s_k = sine_of(u_k)
     c_k = cosine_of(u_k)
-    x_1 = constant("x_1")
-    y_1 = constant("y_1")
-    sin_d = constant("sin_delta")
-    u_d = constant("u_delta")
+    x_1, y_1, sin_d, u_d = symbols("x_1 y_1 sin_delta u_delta")
     return {
         "k": u_k,
         "x_1": c_k * s_b * c_a + c_b * s_a,

@@ -1,6 +1,6 @@
-"""Waldron's hybrid 6R, and Yu and Baker's syncopated one: two Bennett loops, of any
-ratios, with a joint axis in common, and what is taken from a primary Bennett loop when
-they are collinear."""
+"""The 6R of Waldron and that of Yu and Baker: two Bennett loops, of any ratios, with a
+joint axis in common, and what is taken from a primary Bennett loop when they are
+collinear."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from linkages.construction.link import (
     syncopated_link,
 )
 from linkages.construction.numbers import Number
-from linkages.construction.possible_angles import half_tangents, kinks, twists_with
+from linkages.construction.possible_angles import half_tangents, kink_pairs, twists_with
 from linkages.construction.spatial_triangle import Kink, KinkAngle, composite_link
 from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
@@ -82,16 +82,15 @@ def waldron_collinear(
 def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
     """Kinks from the twists, the shift from a length or an offset, linear in it."""
     lengths, twists, _ = form
-    first = kinks(twists[0], twists[4], twists[2])
-    second = kinks(twists[3], twists[1], twists[5])
     unit = lengths[0]
-    for kink_1, kink_2 in itertools.product(first, second):
+    second_lock = twists[3], twists[1], twists[5]
+    for pair in kink_pairs((twists[0], twists[4], twists[2]), second_lock):
         try:
-            shifts = _shifts(form, kink_1, unit)
+            shifts = _shifts(form, pair["kink_1"], unit)
         except GeometryError:
             continue
         for shift in shifts:
-            yield {"kink_1": kink_1, "kink_2": kink_2, "shift": shift}
+            yield {**pair, "shift": shift}
 
 
 def _shifts(form: np.ndarray, kink: float, unit: float) -> list[float]:

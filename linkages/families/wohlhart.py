@@ -9,10 +9,10 @@ import numpy as np
 
 from linkages.closed_forms.closed_form import (
     ClosedForm,
-    constant,
     cosine_of,
     joint,
     sine_of,
+    symbols,
     tangent,
 )
 from linkages.construction.conditions import require_positive, require_twists
@@ -65,8 +65,7 @@ def _formulas(linkage: str) -> tuple[ClosedForm, ...]:
     """Odd joints at theta, even joints at phi."""
     import sympy as sp
 
-    c = constant("c")
-    s = constant("s")
+    c, s = symbols("c s")
     s1, c1 = joint(1)
     s2, c2 = joint(2)
     sine1 = 2 * s1 * c1
