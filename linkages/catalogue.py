@@ -1,10 +1,10 @@
 """Every named linkage.
 
-A module of `linkages.families` is a family: it lists its linkages in ``ENTRIES``. The
-families are found by looking into that package, so that a new one is a new file and
-nothing else. They come in the order of ``POSITION``, a number that a family may state;
-those that state none come last, by name. Importing the catalogue imports numpy and
-these modules, nothing else.
+A module of `linkages.families` is a family: it lists its linkages in ``ENTRIES``, which
+it reads from the table beside it. The families are found by looking into that package,
+so that a new one is two new files and nothing else. They come in the order of
+``POSITION``, a number that a family may state; those that state none come last, by name.
+Importing the catalogue imports numpy and these modules, nothing else.
 """
 
 from __future__ import annotations
@@ -75,6 +75,12 @@ def _entries() -> dict[str, Entry]:
 def catalogue() -> dict[str, Entry]:
     """Every entry by its name, in the order of the families."""
     return dict(_entries())
+
+
+@cache
+def distinct_entries() -> tuple[Entry, ...]:
+    """The entries without those that are others in more parameters."""
+    return tuple(entry for entry in _entries().values() if not entry.is_other_view)
 
 
 def entry(name: str) -> Entry:

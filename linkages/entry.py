@@ -14,11 +14,11 @@ import numpy as np
 
 from bifurc.errors import BifurcError
 from linkages.closed_forms.closed_form import ClosedForm
+from linkages.construction.equations import equation_gaps
 from linkages.construction.numbers import Number
 from linkages.loop import Loop
 
 Guesses: TypeAlias = Callable[[np.ndarray], Iterable[Mapping[str, float]]]
-Term: TypeAlias = Callable[[np.ndarray], float]
 BY_IDENTIFICATION = "found by identification"  # the source of a relation without one
 
 
@@ -77,28 +77,20 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Condition:
-    """A condition on the geometry: its ``text``, and the equations of it that the
-    numbers of a table decide, one term each.
-
-    A term maps a table (3, n) of lengths, twists (rad) and offsets to the difference of
-    the sides of its equation. A condition in words has no terms.
-    """
+    """A condition on the geometry: its ``text``, and the ``equations`` of it that the
+    numbers of a table decide, see `linkages.construction.equations`; none where it is
+    in words."""
 
     text: str
-    terms: tuple[Term, ...] = ()
+    equations: str = ""
 
     def __str__(self) -> str:
         return self.text
 
     def residual(self, table: np.ndarray) -> float | None:
         """The largest difference that ``table`` (3, n) leaves, in the units of the
-        table; None where no term has a value."""
-        gaps = []
-        for term in self.terms:
-            try:
-                gaps.append(term(table))
-            except ArithmeticError:  # a ratio to a link of no length
-                continue
+        table; None where no equation has a value."""
+        gaps = equation_gaps(self.equations, table) if self.equations else []
         return max(gaps) if gaps else None
 
 
@@ -136,7 +128,7 @@ class Relation:
 
     kind: RelationKind
     other: str
-    source: str
+    source: str = BY_IDENTIFICATION
     detail: str = ""
     joint: int = 0
     vanishing: str = ""
@@ -150,8 +142,8 @@ class Entry:
     `Loop`, or raises `GeometryError` that says by how much a condition is violated.
     ``conditions`` state the geometry; ``facts`` are the published invariants that the
     tests assert, such as ``mobility`` or ``forms``. ``patterns`` takes the same
-    parameters (floats) and returns the named forms. ``formulas`` returns the closed
-    forms, and may import sympy.
+    parameters (floats) and returns the named forms. ``formulas`` takes the name and
+    returns the closed forms, and may import sympy.
 
     Most parameters stand in the table of a member as they are, and recognition reads
     them there. For the others ``guesses`` maps a table (3, n) in normal form (lengths
@@ -168,7 +160,7 @@ class Entry:
     parameters: tuple[Parameter, ...]
     conditions: tuple[Condition, ...] = ()
     patterns: Callable[..., tuple[FormPattern, ...]] | None = None
-    formulas: Callable[[], tuple[ClosedForm, ...]] | None = None
+    formulas: Callable[[str], tuple[ClosedForm, ...]] | None = None
     guesses: Guesses | None = None
     scan: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     relations: tuple[Relation, ...] = ()
@@ -184,7 +176,7 @@ class Entry:
     @cached_property
     def closed_forms(self) -> tuple[ClosedForm, ...]:
         """The closed forms of the motion; none where the sources give none."""
-        return () if self.formulas is None else self.formulas()
+        return () if self.formulas is None else self.formulas(self.name)
 
     def complete(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """``values`` completed by the defaults; raises `UnknownParameterError`."""

@@ -4,8 +4,7 @@ correction and measured amounts.  ``python -m studies.pages errata`` writes it.
 
 from __future__ import annotations
 
-from linkages.errata.misprints import ERRATA
-from linkages.errata.words import WORDS
+from linkages.errata.misprints import misprints, word_errata
 
 HEAD = """# Misprints in the sources
 
@@ -39,7 +38,7 @@ def errata_page() -> str:
 
 def _words() -> str:
     rows = []
-    for erratum in WORDS:
+    for erratum in word_errata():
         texts = (
             erratum.source,
             erratum.place,
@@ -53,7 +52,7 @@ def _words() -> str:
 
 def _misprints() -> str:
     rows = []
-    for erratum in ERRATA:
+    for erratum in misprints():
         printed, corrected = erratum.measure()
         texts = (
             erratum.source,

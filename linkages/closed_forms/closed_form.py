@@ -52,6 +52,11 @@ def constant(name: str) -> Number:
     return symbol
 
 
+def symbols(names: str) -> tuple[Number, ...]:
+    """Constants by their names, with spaces between."""
+    return tuple(constant(name) for name in names.split())
+
+
 def plus(x: Pair, y: Pair) -> Pair:
     """The pair of the sum of two angles."""
     return x[0] * y[1] + x[1] * y[0], x[1] * y[1] - x[0] * y[0]
@@ -60,6 +65,11 @@ def plus(x: Pair, y: Pair) -> Pair:
 def negative(x: Pair) -> Pair:
     """The pair of the opposite angle."""
     return -x[0], x[1]
+
+
+def signed(sign: int, x: Pair) -> Pair:
+    """The pair of the angle for ``sign`` +1, of the opposite angle for -1."""
+    return x if sign > 0 else negative(x)
 
 
 def minus(x: Pair, y: Pair) -> Pair:
@@ -176,13 +186,6 @@ class ClosedForm:
         exact."""
         tangents = [numbers.tan(parameters[name] / 2) for name in self.angles]
         lengths = [parameters[name] for name in self.lengths]
-        return self.constants_by_tangents(tangents, lengths)
-
-    def constants_by_tangents(
-        self, tangents: Sequence[Number], lengths: Sequence[Number] = ()
-    ) -> list[Number]:
-        """Values of the constants for the half tangents of ``angles`` and for
-        ``lengths``, in their order."""
         return list(self._constants(*tangents, *lengths))
 
     def evaluate_quadratic(self, first: Pair, constants: list[Number]) -> list[Number]:

@@ -28,10 +28,7 @@ from linkages.closed_forms.closed_form import (
     ClosedForm,
     Pair,
     constant,
-    cosine_of,
     joint,
-    sine_of,
-    tangent,
 )
 from linkages.construction import exact, numbers
 from linkages.construction.exact import Angle, Exact, Quadratic
@@ -273,102 +270,3 @@ def _degrees(value: sp.Expr, degrees: Mapping[Number, _Degrees]) -> _Degrees:
     if value.is_Mul:
         return _Degrees(sum(part.top for part in parts), bottom)
     return _Degrees(max(p.top + bottom - p.bottom for p in parts), bottom)
-
-
-def prove_symbolically(form: ClosedForm, linkage: Entry) -> bool:
-    """Whether the closure vanishes identically in all symbols; for loops without
-    offsets and rational closed forms.
-
-    The first half of the loop is compared with the inverse of the rest. A second for a
-    4R, half a minute for a 5R.
-    """
-    symbols = {name: sp.Symbol(name, positive=True) for name in linkage.defaults}
-    loop = linkage.build(**symbols)
-    pairs = _symbolic_pairs(form)
-    turns = [_turn(of_joint[0]) for of_joint in pairs]
-    values = _half_angle_values([symbols[name] for name in form.angles], form.angles)
-    links = []
-    for length, twist in zip(loop.lengths, loop.twists, strict=True):
-        links.append(_link(length, twist, values))
-    steps = list(zip(turns, links, strict=True))
-    middle = (loop.n + 1) // 2
-    forth = sp.eye(4)
-    for turn, link in steps[:middle]:
-        forth = forth * turn * link
-        forth = forth.applyfunc(sp.factor)
-    back = sp.eye(4)
-    for turn, link in steps[middle:]:
-        back = _inverse(link) * turn.T * back
-        back = back.applyfunc(sp.factor)
-    gap = forth - back
-    gap = gap.applyfunc(_expanded_numerator)
-    return bool(gap.is_zero_matrix)
-
-
-def _symbolic_pairs(form: ClosedForm) -> list[list[Pair]]:
-    """The pairs of the form at tan(theta1/2) = t_1, in symbols."""
-    constants = form.constants_by_tangents([tangent(name) for name in form.angles])
-    first = (sp.Symbol("t_1", real=True), sp.Integer(1))
-    return form.evaluate_pairs(first, None, constants)
-
-
-def _half_angle_values(
-    twists: Sequence[sp.Symbol], names: Sequence[str]
-) -> dict[sp.Expr, sp.Expr]:
-    """Sines and cosines of the twists by the tangents of their halves."""
-    values = {}
-    for twist, name in zip(twists, names, strict=True):
-        u = tangent(name)
-        values[sp.sin(twist)] = sine_of(u)
-        values[sp.cos(twist)] = cosine_of(u)
-    return values
-
-
-def _turn(pair: Pair) -> sp.Matrix:
-    """The rotation about z by the angle of the pair."""
-    y, x = pair
-    norm = x**2 + y**2
-    c = (x**2 - y**2) / norm
-    s = 2 * x * y / norm
-    return sp.Matrix(
-        [
-            [c, -s, 0, 0],
-            [s, c, 0, 0],
-            [0, 0, 1, 0],
-            [0, 0, 0, 1],
-        ]
-    )
-
-
-def _link(
-    length: Number, twist: Number, values: Mapping[sp.Expr, sp.Expr]
-) -> sp.Matrix:
-    """The transform of a link, sines and cosines written by their ``values``."""
-    a = _in_tangents(length, values)
-    ca = _in_tangents(sp.cos(twist), values)
-    sa = _in_tangents(sp.sin(twist), values)
-    return sp.Matrix(
-        [
-            [1, 0, 0, a],
-            [0, ca, -sa, 0],
-            [0, sa, ca, 0],
-            [0, 0, 0, 1],
-        ]
-    )
-
-
-def _in_tangents(value: object, values: Mapping[sp.Expr, sp.Expr]) -> sp.Expr:
-    expanded = sp.expand_trig(sp.sympify(value))
-    return sp.factor(expanded.subs(values))
-
-
-def _expanded_numerator(value: sp.Expr) -> sp.Expr:
-    return sp.numer(sp.together(value)).expand()
-
-
-def _inverse(transform: sp.Matrix) -> sp.Matrix:
-    """The inverse of a rigid transform."""
-    turn = transform[:3, :3].T
-    shift = -turn * transform[:3, 3]
-    top = sp.Matrix.hstack(turn, shift)
-    return sp.Matrix.vstack(top, sp.Matrix([[0, 0, 0, 1]]))

@@ -44,6 +44,13 @@ def require_within(
     raise GeometryError(name, f"{shown} {unit}", allowed)
 
 
+def require_twists(**twists: Number) -> None:
+    """Raise `GeometryError` unless each of the ``twists`` (rad), by name, is between 0
+    and pi."""
+    for name, twist in twists.items():
+        require_within(f"twist {name}", twist, 0.0, math.pi)
+
+
 def require_equal(name: str, value: Number, expected: Number, meaning: str) -> None:
     """Raise `GeometryError` unless the two agree to a relative 1e-9; ``meaning`` says
     what is expected."""

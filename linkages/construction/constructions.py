@@ -8,7 +8,7 @@ axes (`lock`, by the spatial triangle of `composite_link`).
 
 summation and subtraction: `superpose` along one link, `lock` straight or folded
 common link-pair: `superpose` along two links
-common Bennett-linkage: `superpose_across_bennett`
+common Bennett-linkage: `superpose` with `isomerize`
 kink angle: `lock` at any angle
 isomerization: `isomerize`
 hybrid on a common joint axis: `share_joint`
@@ -116,47 +116,6 @@ def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
     return _loop([*a[:n], *b[:m][::-1]], offsets, first, second)
 
 
-def superpose_across_bennett(first: Loop, second: Loop) -> Loop:
-    """The loop left when the last two links of ``first`` and of ``second`` form a
-    Bennett loop, removed.
-
-    The common Bennett-linkage method. The pairs a/alpha, c/gamma are opposite in the
-    Bennett loop a, c, a, c, so the last link of one loop equals the last but one of the
-    other. Raises `GeometryError` for links that differ, and as `isomerize`. Source:
-    Song and Chen (2011).
-    """
-    return superpose(first, isomerize(second, second.n), shared=2)
-
-
-def superposed_angles(
-    first: np.ndarray, second: np.ndarray, shared: int = 1
-) -> np.ndarray:
-    """Joint angles (..., n + m - 2 shared), rad, of the superposed loop from those of
-    the two loops."""
-    first = np.asarray(first, dtype=float)
-    second = np.asarray(second, dtype=float)
-    last = first.shape[-1] - shared
-    other = second.shape[-1] - shared
-    start = first[..., 0] - second[..., 0] + np.pi
-    end = first[..., last] - second[..., other] + np.pi
-    forth = first[..., 1:last]
-    back = -second[..., other - 1 : 0 : -1]
-    parts = [start[..., None], forth, end[..., None], back]
-    return np.concatenate(parts, axis=-1)
-
-
-def summate(first: Loop, second: Loop) -> Loop:
-    """Two loops on their common last link; the neighbours at joint n of ``first``
-    become one link."""
-    return lock(superpose(first, second), first.n)
-
-
-def subtract(first: Loop, second: Loop) -> Loop:
-    """As `summate`, with the neighbours folded upon each other: the difference of the
-    two links."""
-    return lock(superpose(first, second), first.n, Kink.FOLDED)
-
-
 def isomerize(loop: Loop, joint: int) -> Loop:
     """``loop`` with the two links at ``joint`` exchanged: the opposite pair of their
     Bennett loop.
@@ -169,31 +128,6 @@ def isomerize(loop: Loop, joint: int) -> Loop:
     i = _index(loop, joint)
     links[i - 1], links[i] = links[i], links[i - 1]
     return _loop(links, list(loop.offsets), loop)
-
-
-def isomerized_angles(loop: Loop, joint: int, theta: np.ndarray) -> np.ndarray:
-    """Joint angles (..., n), rad, of ``isomerize(loop, joint)`` for configurations
-    ``theta`` (..., n).
-
-    ``joint`` keeps its angle; its neighbours turn against each other.
-    """
-    links = _links(loop)
-    i = _index(loop, joint)
-    out = np.array(theta, dtype=float)
-    first = float(links[i - 1].twist)
-    second = float(links[i].twist)
-    c1 = np.cos(first)
-    s1 = np.sin(first)
-    c2 = np.cos(second)
-    s2 = np.sin(second)
-    ck = np.cos(out[..., i])
-    sk = np.sin(out[..., i])
-    before = np.arctan2(s2 * sk, ck * s2 * c1 + c2 * s1)
-    after = np.arctan2(s1 * sk, ck * s1 * c2 + c1 * s2)
-    turn = before - after
-    out[..., i - 1] += turn
-    out[..., (i + 1) % loop.n] -= turn
-    return out
 
 
 def share_joint(

@@ -8,8 +8,9 @@ them back on each other, a-c/alpha-gamma. Here ``a + c`` and ``a - c`` mean just
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from linkages.construction.conditions import (
     ROUNDING,
@@ -65,6 +66,47 @@ def closed_chain(*links: Link, offsets: Sequence[Number] | None = None) -> Loop:
     if offsets is None:
         offsets = (0,) * len(links)
     return Loop(lengths, twists, tuple(offsets))
+
+
+def joined_chain(order: str, links: Mapping[str, Link]) -> Loop:
+    """The loop without offsets of ``links`` in this order, such as "b a+c d-b a": joined
+    in line, or laid back on each other."""
+    chain = []
+    for text in order.split():
+        joined = links[text[0]]
+        for sign, name in zip(text[1::2], text[2::2], strict=True):
+            joined = joined + links[name] if sign == "+" else joined - links[name]
+        chain.append(joined)
+    return closed_chain(*chain)
+
+
+def basic_links(
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
+) -> dict[str, Link]:
+    """The links a/alpha, b/beta, c/gamma, d/delta of one Bennett ratio, by their letters.
+
+    Twists in rad; the lengths b, c, d follow, and are checked where they are given.
+    Errors as in `bennett_links`.
+    """
+    links = bennett_links(a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d))
+    return dict(zip("abcd", links, strict=True))
+
+
+def chain_constructor(order: str) -> Callable[..., Loop]:
+    """The constructor of the loop of `basic_links`, whose parameters it has, in this
+    order, see `joined_chain`."""
+
+    def construct(*parameters: Number, **others: Any) -> Loop:
+        return joined_chain(order, basic_links(*parameters, **others))
+
+    return construct
 
 
 def half_angle_ratio(x: Number, y: Number) -> Number:

@@ -9,6 +9,7 @@ known by the tangent of their half).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from fractions import Fraction
 from importlib import import_module
 from types import ModuleType
@@ -55,52 +56,25 @@ def _library(*values: Number) -> ModuleType:
     return math
 
 
-def sin(x: Number) -> Number:
-    """Sine of ``x``, rad."""
-    value: Number = _library(x).sin(x)
-    return value
+def _function(name: str) -> Callable[..., Number]:
+    """The function of this name, of the module that fits its arguments."""
+
+    def function(*values: Number) -> Number:
+        value: Number = getattr(_library(*values), name)(*values)
+        return value
+
+    return function
 
 
-def cos(x: Number) -> Number:
-    """Cosine of ``x``, rad."""
-    value: Number = _library(x).cos(x)
-    return value
-
-
-def tan(x: Number) -> Number:
-    """Tangent of ``x``, rad."""
-    value: Number = _library(x).tan(x)
-    return value
-
-
-def asin(x: Number) -> Number:
-    """Inverse sine, rad."""
-    value: Number = _library(x).asin(x)
-    return value
-
-
-def acos(x: Number) -> Number:
-    """Inverse cosine, rad."""
-    value: Number = _library(x).acos(x)
-    return value
-
-
-def atan(x: Number) -> Number:
-    """Inverse tangent, rad."""
-    value: Number = _library(x).atan(x)
-    return value
-
-
-def atan2(y: Number, x: Number) -> Number:
-    """Angle of the point (x, y), rad."""
-    value: Number = _library(x, y).atan2(y, x)
-    return value
-
-
-def sqrt(x: Number) -> Number:
-    """Square root."""
-    value: Number = _library(x).sqrt(x)
-    return value
+# angles in rad
+sin = _function("sin")
+cos = _function("cos")
+tan = _function("tan")
+asin = _function("asin")
+acos = _function("acos")
+atan = _function("atan")
+atan2 = _function("atan2")
+sqrt = _function("sqrt")
 
 
 def pi_like(*values: Number) -> Number:

@@ -8,6 +8,7 @@ They read parameters off a table: what `linkages.construction.link` and
 from __future__ import annotations
 
 import itertools
+from collections.abc import Iterator
 from math import pi
 
 import numpy as np
@@ -44,6 +45,15 @@ def kinks(first: float, second: float, joined: float) -> list[float]:
             collinear = round(kink / pi) * pi
             out = [collinear, *out, collinear + BESIDE, collinear - BESIDE]
     return out
+
+
+def kink_pairs(
+    first: tuple[float, float, float], second: tuple[float, float, float]
+) -> Iterator[dict[str, float]]:
+    """Every pair of the `kinks` of two links that are made of two, each given by its
+    twists, as the parameters ``kink_1`` and ``kink_2``."""
+    for kink_1, kink_2 in itertools.product(kinks(*first), kinks(*second)):
+        yield {"kink_1": kink_1, "kink_2": kink_2}
 
 
 def twist_pairs(twist: float, ratio: float, sign: int) -> list[tuple[float, float]]:

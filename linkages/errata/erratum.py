@@ -31,9 +31,26 @@ class Erratum:
     measure: Callable[[], Amounts]
 
 
+@dataclass(frozen=True)
+class WordErratum:
+    """A statement of a ``source`` and what holds in its place; ``see`` says in a few
+    words what the program finds."""
+
+    source: str
+    place: str
+    printed: str
+    corrected: str
+    see: Callable[[], str]
+
+
 def median_and_largest(
     printed: list[float] | np.ndarray, corrected: list[float] | np.ndarray
 ) -> Amounts:
     """The median of what the print leaves along a path, and the largest of what the
     correction leaves."""
     return Amounts(float(np.median(printed)), float(np.max(corrected)))
+
+
+def largest_gap(x: np.ndarray, y: np.ndarray) -> float:
+    """The largest difference of two arrays."""
+    return float(np.abs(x - y).max())

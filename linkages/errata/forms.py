@@ -1,11 +1,11 @@
-"""Closed forms as printed, beside the corrected ones."""
+"""Closed forms as printed, against the corrected ones: each change makes the printed form
+of the right one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from functools import partial
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -16,15 +16,19 @@ from linkages.closed_forms.closed_form import (
     ClosedForm,
     Pair,
     constant,
+    cosine_of,
     joint,
     minus,
     negative,
     plus,
     ratio,
     reciprocal,
+    sine_of,
+    tangent,
 )
 from linkages.construction.numbers import Number
-from linkages.errata.erratum import Amounts, Erratum, median_and_largest
+from linkages.errata.erratum import Amounts, median_and_largest
+from linkages.families.bricard import LETTERS, Three, closure_equations
 
 Change: TypeAlias = Callable[[ClosedForm], ClosedForm]
 INPUTS = 60  # input angles along a form
@@ -67,7 +71,7 @@ def _with_joints(form: ClosedForm, pairs: Mapping[int, Pair]) -> ClosedForm:
     return replace(form, half_tangents=tuple(angles))
 
 
-def with_constants(form: ClosedForm, **values: Number) -> ClosedForm:
+def _with_constants(form: ClosedForm, **values: Number) -> ClosedForm:
     """The form with further or other constants."""
     return replace(form, constants={**form.constants, **values})
 
@@ -75,7 +79,7 @@ def with_constants(form: ClosedForm, **values: Number) -> ClosedForm:
 # --- the Goldberg 5R linkages
 
 
-def _inverted_factor(form: ClosedForm) -> ClosedForm:
+def inverted_factor(form: ClosedForm) -> ClosedForm:
     """tan(theta3/2) = m_c tan(theta1/2), the factor upside down."""
     first = joint(1)
     s1, c1 = first
@@ -84,21 +88,21 @@ def _inverted_factor(form: ClosedForm) -> ClosedForm:
     return _with_joints(form, {3: third, 5: fifth})
 
 
-def _other_twist(form: ClosedForm) -> ClosedForm:
+def other_twist(form: ClosedForm) -> ClosedForm:
     """m2 for m1."""
-    return with_constants(form, m_a=ratio("alpha", "gamma"))
+    return _with_constants(form, m_a=ratio("alpha", "gamma"))
 
 
-def _other_signs(form: ClosedForm) -> ClosedForm:
+def other_signs(form: ClosedForm) -> ClosedForm:
     """m2 for m3, and the sign of m4."""
     m_a = -ratio("gamma", "alpha")
-    return with_constants(form, m_a=m_a, m_c=ratio("beta", "gamma"))
+    return _with_constants(form, m_a=m_a, m_c=ratio("beta", "gamma"))
 
 
 # --- the mixed double-Goldberg linkages
 
 
-def _printed_type_one(form: ClosedForm) -> ClosedForm:
+def printed_type_one(form: ClosedForm) -> ClosedForm:
     """Type I with m2, m4 and m6 in the places of m1, m3 and m4."""
     first = joint(1)
     fourth = joint(4)
@@ -121,7 +125,7 @@ def _printed_type_one(form: ClosedForm) -> ClosedForm:
     return replace(_with_joints(form, pairs), relation=relation)
 
 
-def _negative_fourth(form: ClosedForm) -> ClosedForm:
+def negative_fourth(form: ClosedForm) -> ClosedForm:
     """Type III with the wrong sign of tan(theta4/2)."""
     s1, c1 = joint(1)
     return _with_joints(form, {4: (-constant("m_3") * s1, c1)})
@@ -139,10 +143,10 @@ def _by_fourth(form: ClosedForm, fourth: Pair) -> ClosedForm:
     return _with_joints(form, {3: third, 4: fourth, 5: fifth, 6: negative(third)})
 
 
-def _printed_discriminant(form: ClosedForm) -> ClosedForm:
+def printed_discriminant(form: ClosedForm) -> ClosedForm:
     """Equation (5.2.4) with 1 - m1 m2 before the root: P comes out by (m1 m6 - m1 m2) /
     (2 m6 Q) too large."""
-    changed = with_constants(form, m_2=ratio("gamma", "alpha"))
+    changed = _with_constants(form, m_2=ratio("gamma", "alpha"))
     s1, c1 = joint(1)
     s4, c4 = joint(4)
     k_b = constant("m_ba") * constant("m_bc")
@@ -154,14 +158,14 @@ def _printed_discriminant(form: ClosedForm) -> ClosedForm:
     return _by_fourth(changed, fourth)
 
 
-def _printed_denominator(form: ClosedForm) -> ClosedForm:
+def printed_denominator(form: ClosedForm) -> ClosedForm:
     """Equation (5.2.5) with 2 m2 Q for 2 m6 Q: P comes out times m6/m2."""
-    changed = with_constants(form, m_2=ratio("gamma", "alpha"))
+    changed = _with_constants(form, m_2=ratio("gamma", "alpha"))
     s4, c4 = joint(4)
     return _by_fourth(changed, (constant("m_bc") * s4, constant("m_2") * c4))
 
 
-def _printed_second_form(form: ClosedForm) -> ClosedForm:
+def printed_second_form(form: ClosedForm) -> ClosedForm:
     """Equation (5.13) with P = m1/m2 for Form II, in the convention of the paper:
     tan(theta4/2) = m4 P."""
     p = constant("m_da") / constant("m_dc")
@@ -172,88 +176,66 @@ def _printed_second_form(form: ClosedForm) -> ClosedForm:
     return _with_joints(form, {3: third, 4: fourth, 5: fifth, 6: negative(third)})
 
 
-def _erratum(
-    source: str,
-    equation: str,
-    linkage: str,
-    printed: str,
-    corrected: str,
-    change: Change,
-    number: int = 0,
-) -> Erratum:
-    """The misprint by which ``change`` makes the closed form ``number``."""
-    measure = partial(compare_closed_forms, linkage, number, change)
-    return Erratum(source, equation, linkage, printed, corrected, measure)
+# --- the line-symmetric Bricard linkages
 
 
-SONG = "Song 2013"
-BOTH = "Song 2013; Song and Chen 2012 (mixed)"
-SPECIAL = "Song and Chen 2012 (special)"
+class _Symbols(NamedTuple):
+    """Lengths, cosines, sines and offsets of a closed form of the line-symmetric
+    linkages, three each."""
 
-FORM_ERRATA: tuple[Erratum, ...] = (
-    _erratum(
-        BOTH,
-        "(3.2.4); (2.4)",
-        "subtractive-goldberg-5r",
-        "tan(theta3/2) = m(alpha45, alpha12) tan(theta1/2)",
-        "tan(theta3/2) = tan(theta1/2) / m(alpha45, alpha12)",
-        _inverted_factor,
-    ),
-    _erratum(
-        BOTH,
-        "(3.4.4); (4.4)",
-        "subtractive-goldberg-5r",
-        "tan(theta2/2) = -m2 / tan(theta1/2)",
-        "tan(theta2/2) = -m1 / tan(theta1/2), and -1/m6 for 1/m6 in tan(theta3/2)",
-        _other_twist,
-    ),
-    _erratum(
-        BOTH,
-        "(3.4.5); (4.5)",
-        "goldberg-5r",
-        "tan(theta2/2) = -m2 / tan(theta1/2), +m4 in tan(theta3/2)",
-        "tan(theta2/2) = -m3 / tan(theta1/2), -m4 in tan(theta3/2)",
-        _other_signs,
-    ),
-    _erratum(
-        BOTH,
-        "(3.4.8), (3.4.9); (4.8), (4.9)",
-        "mixed-double-goldberg-type-i",
-        "t2 = -m2/(m6 x), t4 = -m2/Q, t5 = m4 x, H = (m2 - m6 x^2)/((m2 + m6) x)",
-        "t2 = m1/(m6 x), t4 = -m4/Q, t5 = -m3 Q, H = (m1 + m6 x^2)/((m1 - m6) x)",
-        _printed_type_one,
-    ),
-    _erratum(
-        BOTH,
-        "(3.4.16); (4.16)",
-        "mixed-double-goldberg-type-iii",
-        "tan(theta4/2) = -m3 tan(theta1/2)",
-        "tan(theta4/2) = m3 tan(theta1/2)",
-        _negative_fourth,
-    ),
-    _erratum(
-        SONG,
-        "(5.2.4)",
-        "wohlhart-double-goldberg",
-        "(1 - m1 m2) + sqrt(...)",
-        "(1 - m1 m6) + sqrt(...)",
-        _printed_discriminant,
-    ),
-    _erratum(
-        SONG,
-        "(5.2.5)",
-        "wohlhart-double-goldberg",
-        "denominator 2 m2 Q",
-        "denominator 2 m6 Q",
-        _printed_denominator,
-    ),
-    _erratum(
-        SPECIAL,
-        "(5.13)",
-        "special-wohlhart-double-goldberg",
-        "Form II: P = m1/m2",
-        "Form II: P = m2/tan(theta1/2)",
-        _printed_second_form,
-        number=1,
-    ),
-)
+    lengths: Three
+    cosines: Three
+    sines: Three
+    offsets: Three
+
+
+def _symbols() -> _Symbols:
+    u12 = tangent("alpha12")
+    u23 = tangent("alpha23")
+    u34 = tangent("alpha34")
+    return _Symbols(
+        (constant("a12"), constant("a23"), constant("a34")),
+        (cosine_of(u12), cosine_of(u23), cosine_of(u34)),
+        (sine_of(u12), sine_of(u23), sine_of(u34)),
+        (constant("R1"), constant("R2"), constant("R3")),
+    )
+
+
+def merged(form: ClosedForm) -> ClosedForm:
+    """(4.2.15) as it stands: H2 runs into L2, which is lost."""
+    symbols = _symbols()
+    c12, c23, c34 = symbols.cosines
+    _, s23, _ = symbols.sines
+    _, r2, r3 = symbols.offsets
+    first = -r3 * c12 * s23 + c34
+    second = r2 * (c23 + c12 * c34)
+    third = r3 * (1 + c12 * c23 * c34)
+    return _with_constants(form, H_2=first + second + third, L_2=0)
+
+
+def other_length(form: ClosedForm) -> ClosedForm:
+    """(C6) with a34 for a23 in G2."""
+    symbols = _symbols()
+    _, _, a34 = symbols.lengths
+    c12, _, _ = symbols.cosines
+    _, s23, s34 = symbols.sines
+    return _with_constants(form, G_2=a34 * c12 * s34 + a34 * s23)
+
+
+def no_such_length(form: ClosedForm) -> ClosedForm:
+    """(4.3.6) with the difference in H2', a33 being read as a34."""
+    symbols = _symbols()
+    _, _, a34 = symbols.lengths
+    c12, _, _ = symbols.cosines
+    _, s23, s34 = symbols.sines
+    _, _, r3 = symbols.offsets
+    return _with_constants(form, H_2=r3 * c12 * s23 - a34 * s34)
+
+
+def unprimed(form: ClosedForm) -> ClosedForm:
+    """The coefficients (4.2.22) in the place of the missing (4.3.8)."""
+    third = closure_equations(*_symbols()).third
+    constants: dict[str, Number] = {}
+    for letter, value in zip(LETTERS, third, strict=True):
+        constants[f"{letter}_3"] = value
+    return _with_constants(form, **constants)

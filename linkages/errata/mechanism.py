@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.errata.erratum import Amounts, Erratum, median_and_largest
-from linkages.errata.matrices import path_along
+from linkages.errata.equations import path_along
+from linkages.errata.erratum import Amounts, median_and_largest
 
 TWIST = radians(100)
 LENGTH = 1.3
@@ -33,7 +33,7 @@ def _configurations() -> _Configurations:
     return _Configurations(path[:, 0], path[:, 1], joints)
 
 
-def _even_plane() -> Amounts:
+def even_plane() -> Amounts:
     """Equation (17): the normal of the plane O2 O4 O6 is at right angles to O6 O2 and
     O6 O4."""
     x, y, _ = _configurations()
@@ -63,7 +63,7 @@ def _gaps_of_normal(factor: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(products).max(axis=1))
 
 
-def _distance_of_planes() -> Amounts:
+def distance_of_planes() -> Amounts:
     """Equation (29): the distance of O1 from the plane O2 O4 O6."""
     x, y, _ = _configurations()
     twists = np.full_like(y, TWIST)
@@ -112,7 +112,7 @@ def _meeting(one: _Line, other: _Line) -> np.ndarray:
     return np.asarray(one.point + along[0] * one.direction)
 
 
-def _line_of_meetings() -> Amounts:
+def line_of_meetings() -> Amounts:
     """Equation (25): n, and n divided by its length, beside the unit vector from O'' to
     O'."""
     loop, path = path_along("wohlhart-symmetric", a=LENGTH, alpha=TWIST)
@@ -134,33 +134,3 @@ def _line_of_meetings() -> Amounts:
         printed.append(float(printed_gap.max()))
         corrected.append(float(corrected_gap.max()))
     return median_and_largest(printed, corrected)
-
-
-SOURCE = "Racila and Dahan 2010"
-
-MECHANISM_ERRATA: tuple[Erratum, ...] = (
-    Erratum(
-        SOURCE,
-        "(17)",
-        "wohlhart-symmetric",
-        "C3 with (cos(theta) + 1)(...)",
-        "(cos(phi) + 1)(...)",
-        _even_plane,
-    ),
-    Erratum(
-        SOURCE,
-        "(25)",
-        "wohlhart-symmetric",
-        "unit vector n with n_x = 1",
-        "n divided by its length",
-        _line_of_meetings,
-    ),
-    Erratum(
-        SOURCE,
-        "(29)",
-        "wohlhart-symmetric",
-        "sin(alpha/2), cos(alpha/2) and sin^2(theta/2) sin^2(alpha) under the root",
-        "sin(phi/2), cos(phi/2) and sin^2(phi/2) sin^2(alpha)",
-        _distance_of_planes,
-    ),
-)

@@ -13,28 +13,72 @@ words), and conditions that are only stricter than needed, are not listed.
 
 from __future__ import annotations
 
-from linkages.errata.conditions import CONDITION_ERRATA
-from linkages.errata.equations import EQUATION_ERRATA
-from linkages.errata.erratum import Erratum
-from linkages.errata.forms import FORM_ERRATA
-from linkages.errata.matrices import MATRIX_ERRATA
-from linkages.errata.mechanism import MECHANISM_ERRATA
-from linkages.errata.switching import SWITCHING_ERRATA
-from linkages.errata.symmetric import SYMMETRIC_ERRATA
-from linkages.errata.tori import TORI_ERRATA
+import tomllib
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from importlib import resources
+from pkgutil import resolve_name
+from typing import Any
 
-ERRATA: tuple[Erratum, ...] = (
-    *CONDITION_ERRATA,
-    *FORM_ERRATA,
-    *EQUATION_ERRATA,
-    *MATRIX_ERRATA,
-    *MECHANISM_ERRATA,
-    *SWITCHING_ERRATA,
-    *SYMMETRIC_ERRATA,
-    *TORI_ERRATA,
-)
+from linkages.errata import conditions, forms
+from linkages.errata.erratum import Amounts, Erratum, WordErratum
+from linkages.loop import Loop
+
+TABLE = "errata.toml"
+
+
+@cache
+def _tables() -> dict[str, list[dict[str, Any]]]:
+    file = resources.files("linkages.errata") / TABLE
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+@cache
+def misprints() -> tuple[Erratum, ...]:
+    """All misprints, in the order of the table."""
+    return tuple(_erratum(**table) for table in _tables()["misprint"])
+
+
+def _erratum(
+    source: str, equation: str, linkage: str, printed: str, corrected: str, **by: Any
+) -> Erratum:
+    measure = _measure(linkage, **by)
+    return Erratum(source, equation, linkage, printed, corrected, measure)
+
+
+def _measure(
+    linkage: str,
+    measure: str = "",
+    change: str = "",
+    form: int = 0,
+    loop: str = "",
+    table: Mapping[str, str] | None = None,
+) -> Callable[[], Amounts]:
+    """How a misprint of this linkage is measured, see the head of the table."""
+    if measure:
+        function: Callable[[], Amounts] = resolve_name(f"linkages.errata.{measure}")
+        return function
+    if change:
+        printed = getattr(forms, change)
+        return partial(forms.compare_closed_forms, linkage, form, printed)
+    build: Callable[[], Loop] = partial(conditions.changed_member, linkage, table or {})
+    if loop:
+        build = getattr(conditions, loop)
+    return partial(conditions.compare_mobility, linkage, build)
 
 
 def errata_of(name: str) -> tuple[Erratum, ...]:
     """The misprints that concern the linkage called ``name``."""
-    return tuple(erratum for erratum in ERRATA if erratum.linkage == name)
+    return tuple(erratum for erratum in misprints() if erratum.linkage == name)
+
+
+def word_errata() -> tuple[WordErratum, ...]:
+    """What the sources say in words and is not so, statements of one figure or one
+    example that are made of all linkages among it."""
+    return tuple(_word_erratum(**table) for table in _tables()["statement"])
+
+
+def _word_erratum(see: str = "", seen: str = "", **fields: str) -> WordErratum:
+    if seen:
+        return WordErratum(**fields, see=lambda: seen)
+    return WordErratum(**fields, see=resolve_name(f"linkages.errata.words:{see}"))

@@ -1,5 +1,5 @@
 """Misprints in the switching of the roots of the double-Goldberg linkages, and m2 for
-m6 in their special conditions.
+m6 in their special conditions, and Appendix C on the first reconfigurable linkage.
 
 At a switch of the square root the curve must go on: the measure is the gap between the
 angles theta4, as |sin| of half their difference, on both sides of the input where the
@@ -13,7 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.errata.erratum import Amounts, Erratum
+from linkages.catalogue import entry
+from linkages.construction.link import Link
+from linkages.construction.spatial_triangle import CompositeLink, composite_link
+from linkages.errata.erratum import Amounts
+from linkages.families.bricard import LETTERS, closure_equations
 
 NEAR = 1e-13  # rad, from the input where the root changes
 
@@ -90,7 +94,7 @@ def _pole() -> float:
     return sqrt(-m.m3 * m.m4)
 
 
-def _place() -> Amounts:
+def place() -> Amounts:
     """Switch at sqrt(m3 m4); or at sqrt(-m3 m4) where that is real, and nowhere
     else."""
     m = _ratios(PLAIN)
@@ -101,14 +105,14 @@ def _place() -> Amounts:
     return Amounts(printed, max(without, at_pole))
 
 
-def _ranges() -> Amounts:
+def ranges() -> Amounts:
     """The plus root below and above 2 atan(q), as the printed ranges say; or above
     alone."""
     pole = _pole()
     return Amounts(_gap(CROSSING, pole, 1, 1), _gap(CROSSING, pole, -1, 1))
 
 
-def _paper_place() -> Amounts:
+def paper_place() -> Amounts:
     """The modulus of Song and Chen's q, which is imaginary, beside sqrt(-m1 m2); b and
     d have changed places there."""
     alpha, beta, gamma, delta = CROSSING
@@ -132,7 +136,7 @@ def _special_ratios(alpha: float, beta: float, gamma: float) -> Ratios:
     return _ratios(Twists(alpha, beta, gamma, delta))
 
 
-def _constant_angle() -> Amounts:
+def constant_angle() -> Amounts:
     """Equations (5.2.13) to (5.2.15) and (5.2.17) on the special linkage: the least
     that the print leaves of one, the largest that the correction leaves."""
     m = _special_ratios(radians(125), radians(60), radians(14))
@@ -160,7 +164,7 @@ def _left_by(m: Ratios, printed: float) -> list[float]:
     ]
 
 
-def _critical_input() -> Amounts:
+def critical_input() -> Amounts:
     """Appendix B, Case 3: m6 - m1 tan(theta1/2)^2 at the input where its sign is said
     to change."""
     m = _special_ratios(radians(70), radians(125), radians(120))
@@ -172,50 +176,90 @@ def _critical_input() -> Amounts:
     )
 
 
-SONG = "Song 2013"
-SPECIAL_PAPER = "Song and Chen 2012 (special)"
-WDG = "wohlhart-double-goldberg"
-DSG = "special-double-subtractive-goldberg"
+# --- Appendix C, on the first reconfigurable linkage
 
-SWITCHING_ERRATA: tuple[Erratum, ...] = (
-    Erratum(
-        SONG,
-        "(5.2.4), (5.2.5)",
-        WDG,
-        "the root changes at q = sqrt(m3 m4)",
-        "at q = sqrt(-m3 m4), and only if m3 m4 < 0",
-        _place,
-    ),
-    Erratum(
-        SONG,
-        "(5.2.4), (5.2.5)",
-        WDG,
-        "-pi <= theta1 < 2 atan(q), -2 atan(q) <= theta1 < pi",
-        "-pi <= theta1 < -2 atan(q), 2 atan(q) <= theta1 < pi",
-        _ranges,
-    ),
-    Erratum(
-        SPECIAL_PAPER,
-        "(5.4), (5.5)",
-        WDG,
-        "q = abs(m1) sqrt(...) is imaginary; the amount is for its modulus",
-        "q = sqrt(-m1 m2), and only if m1 m2 < 0",
-        _paper_place,
-    ),
-    Erratum(
-        SONG,
-        "(5.2.13)-(5.2.15), (5.2.17)",
-        DSG,
-        "m2, as in m3 = -m2",
-        "m6, as in m3 = -m6",
-        _constant_angle,
-    ),
-    Erratum(
-        SONG,
-        "Appendix B, Case 3",
-        DSG,
-        "limits at atan(sqrt(m2/m1))",
-        "limits at 2 atan(sqrt(m6/m1))",
-        _critical_input,
-    ),
-)
+FIRST = "reconfigurable-bricard-1"
+
+
+def _triangle() -> CompositeLink:
+    """The spatial triangle on its links 12 and 23."""
+    values = entry(FIRST).defaults
+    a = Link(values["a"], values["alpha"])
+    b = Link(values["b"], values["beta"])
+    return composite_link(a, b, values["kink"], values["r2"])
+
+
+def _kink() -> float:
+    """The angle theta2' of the Bennett form, rad."""
+    return entry(FIRST).defaults["kink"]
+
+
+def _coefficients() -> dict[str, float]:
+    """The coefficients (C6), by their letters."""
+    lengths, twists, offsets = (row[:3] for row in entry(FIRST).build().arrays)
+    c12, c23, c34 = np.cos(twists)
+    s12, s23, s34 = np.sin(twists)
+    a12, a23, a34 = lengths
+    r1, r2, r3 = offsets
+    second = closure_equations(
+        (a12, a23, a34), (c12, c23, c34), (s12, s23, s34), (r1, r2, r3)
+    ).second
+    out = {}
+    for letter, value in zip(LETTERS, second, strict=True):
+        out[letter] = float(value)
+    return out
+
+
+def _left(t: float, first: int, third: int) -> float:
+    """What (C7) leaves at the two bifurcations with tan(theta2/2) = ``t``; ``first``
+    and ``third`` are the signs of the terms in (C8)."""
+    k = _coefficients()
+
+    def term(x: str, y: str, z: str) -> float:
+        one = k[x] + first * k[y]
+        other = k[x] + third * k[y]
+        return one * t * t + 2 * k[z] * t + other
+
+    by_sine = term("A", "F", "E")
+    by_cosine = term("B", "H", "G")
+    free = term("L", "D", "C")
+    theta_1 = -float(_triangle().before.angle)
+    gaps = []
+    for x in (theta_1, theta_1 + np.pi):
+        gaps.append(abs(by_sine * np.sin(x) + by_cosine * np.cos(x) + free))
+    return float(max(gaps))
+
+
+def equal_angles() -> Amounts:
+    """Equation (C3): theta2 of the bifurcations by tan(theta2/2) = tan(theta2'), or
+    theta2 = theta2'."""
+    kink = _kink()
+    return Amounts(_left(np.tan(kink), -1, 1), _left(np.tan(kink / 2), -1, 1))
+
+
+def third_terms() -> Amounts:
+    """Equation (C8): differences, or sums, in the third terms."""
+    t = np.tan(_kink() / 2)
+    return Amounts(_left(t, -1, -1), _left(t, -1, 1))
+
+
+def asymmetric_ratio() -> Amounts:
+    """Equation (5.3.18): sin(alpha34)/a34 beside the fraction, by the angle theta1' of
+    the triangle."""
+    lengths, twists, offsets = entry(FIRST).build().arrays
+    x = np.pi - float(_triangle().before.angle)
+    sin_x = np.sin(x)
+    cos_x = np.cos(x)
+    sin_k = np.sin(_kink())
+    cos_k = np.cos(_kink())
+    c12, c23 = np.cos(twists[:2])
+    s12, s23 = np.sin(twists[:2])
+    top = s23 * sin_k * sin_x - c23 * s12 * cos_x - c12 * cos_k * s23 * cos_x
+    bottom = (
+        lengths[1] * (c12 * sin_x * sin_k - cos_x * cos_k)
+        - lengths[0] * cos_x
+        - offsets[1] * s12 * sin_x
+    )
+    fraction = top / bottom
+    ratio = np.sin(twists[2]) / lengths[2]
+    return Amounts(float(abs(-ratio - fraction)), float(abs(ratio - fraction)))

@@ -7,7 +7,7 @@ from math import cos, sin
 
 import numpy as np
 
-from linkages.errata.erratum import Amounts, Erratum
+from linkages.errata.erratum import Amounts, largest_gap
 
 SIGMA, CHI, THETA, R, S = 0.7, 0.8, 0.25, 1.5, 0.9
 PHIS = (0.6, 2.1, -1.3)
@@ -42,17 +42,13 @@ def _centre() -> np.ndarray:
     return np.asarray((_point(0.4) + _point(0.4 + np.pi)) / 2)
 
 
-def _gap(x: np.ndarray, y: np.ndarray) -> float:
-    return float(np.abs(x - y).max())
-
-
 def _off_axis(axis: np.ndarray) -> float:
     """Largest |cosine| between ``axis`` and the radii of the circle."""
     products = [axis @ (_point(phi) - _centre()) for phi in PHIS]
     return float(max(abs(product) for product in products) / S)
 
 
-def _surface() -> Amounts:
+def surface() -> Amounts:
     """Equation (2.1): r added after or before the turn by sigma."""
     by_sigma = _rotation(2, SIGMA)
     by_chi = _rotation(0, CHI)
@@ -62,12 +58,12 @@ def _surface() -> Amounts:
         on_circle = _rotation(1, THETA) @ _rotation(2, phi) @ np.array([S, 0, 0])
         tilted = by_chi @ on_circle
         point = _point(phi)
-        printed = max(printed, _gap(by_sigma @ tilted + shift, point))
-        corrected = max(corrected, _gap(by_sigma @ (tilted + shift), point))
+        printed = max(printed, largest_gap(by_sigma @ tilted + shift, point))
+        corrected = max(corrected, largest_gap(by_sigma @ (tilted + shift), point))
     return Amounts(printed, corrected)
 
 
-def _axis_of_chi() -> Amounts:
+def axis_of_chi() -> Amounts:
     """Before (2.1): the axis of the circle turned by chi about Y, or about X."""
     by_sigma = _rotation(2, SIGMA)
     tilted = _rotation(1, THETA) @ [0, 0, 1]
@@ -76,14 +72,14 @@ def _axis_of_chi() -> Amounts:
     return Amounts(_off_axis(printed), _off_axis(corrected))
 
 
-def _centres() -> Amounts:
+def centres() -> Amounts:
     """Equation (2.5): the centre without and with its distance r."""
     direction = np.array([cos(SIGMA), sin(SIGMA), 0])
     centre = _centre()
-    return Amounts(_gap(direction, centre), _gap(R * direction, centre))
+    return Amounts(largest_gap(direction, centre), largest_gap(R * direction, centre))
 
 
-def _axis_of_circle() -> Amounts:
+def axis_of_circle() -> Amounts:
     """Equation (2.6): the direction of the circle's axis."""
     phi = PHIS[0]
     sp = sin(phi)
@@ -101,55 +97,35 @@ def _axis_of_circle() -> Amounts:
     return Amounts(_off_axis(printed), _off_axis(corrected))
 
 
-def _carried_centre() -> Amounts:
+def carried_centre() -> Amounts:
     """Equation (3.2), R1 = Q4: the origin of torus 4 is the centre of the circle of
     torus 1."""
     shift = np.array([R, 0, 0])
     centre = _centre()
-    return Amounts(_gap(shift, centre), _gap(_rotation(2, SIGMA) @ shift, centre))
+    return Amounts(
+        largest_gap(shift, centre), largest_gap(_rotation(2, SIGMA) @ shift, centre)
+    )
 
 
-SOURCE = "Bil and Budniak, Model of 5R spatial linkage in the geometry of tori"
+def circle_direction() -> Amounts:
+    """Equation (2.3): the pin direction is a unit vector."""
+    return Amounts(_direction_length_gap(+1), _direction_length_gap(-1))
 
-TORI_ERRATA: tuple[Erratum, ...] = (
-    Erratum(
-        SOURCE,
-        "before (2.1)",
-        "torus-4r",
-        "axis of the circle turned by chi about Y",
-        "turned by chi about X",
-        _axis_of_chi,
-    ),
-    Erratum(
-        SOURCE,
-        "(2.1)",
-        "torus-4r",
-        "Rz(sigma) Rx(chi) {...} + (r, 0, 0)",
-        "Rz(sigma) {Rx(chi) ... + (r, 0, 0)}",
-        _surface,
-    ),
-    Erratum(
-        SOURCE,
-        "(2.5)",
-        "torus-4r",
-        "R = (cos(sigma), sin(sigma), 0)",
-        "R = r (cos(sigma), sin(sigma), 0)",
-        _centres,
-    ),
-    Erratum(
-        SOURCE,
-        "(2.6)",
-        "torus-4r",
-        "Z with cos(phi) and sin(phi), a radius of the circle",
-        "Z = Rz(sigma) (sin(theta), -sin(chi) cos(theta), cos(chi) cos(theta))",
-        _axis_of_circle,
-    ),
-    Erratum(
-        SOURCE,
-        "(3.5), (3.6)",
-        "torus-5r-14-plus-plus",
-        "... + (r1, 0, 0)",
-        "... + r1 (cos(sigma1), sin(sigma1), 0)",
-        _carried_centre,
-    ),
-)
+
+def _direction_length_gap(sign: int) -> float:
+    """How far the length of the vector is from 1, with this sign of sin(theta)."""
+    kappa = 0.3
+    zeta = -0.4
+    ck = cos(kappa)
+    sk = sin(kappa)
+    cz = cos(zeta)
+    sz = sin(zeta)
+    cp = cos(PHIS[0])
+    sp = sin(PHIS[0])
+    along = cz * sk * cp + sz * sp
+    across = cz * sk * sp - sz * cp
+    x = along * cos(THETA) + cz * ck * sin(THETA)
+    up = sign * along * sin(THETA) + cz * ck * cos(THETA)
+    y = cos(CHI) * across - sin(CHI) * up
+    z = sin(CHI) * across + cos(CHI) * up
+    return float(abs(np.sqrt(x * x + y * y + z * z) - 1))

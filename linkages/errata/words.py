@@ -1,12 +1,8 @@
-"""What the sources say in words and is not so, each with what the program sees.
-
-Statements of one figure or one example that are made of all linkages are listed too.
-"""
+"""What the program sees of statements of the sources that are not so."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
@@ -25,22 +21,8 @@ from linkages.networks.assembly import motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import NetworkMechanism, lock_network
 
-THESIS = "Song 2013"
-PAPER = "Racila and Dahan 2010"
 MEMBERS = 12  # random linkages that a general statement is held against
 TRIES = 200  # draws among which these are looked for
-
-
-@dataclass(frozen=True)
-class WordErratum:
-    """A statement of a ``source`` and what holds in its place; ``see`` says in a few
-    words what the program finds."""
-
-    source: str
-    place: str
-    printed: str
-    corrected: str
-    see: Callable[[], str]
 
 
 def _random_maps(name: str) -> list[Atlas]:
@@ -58,19 +40,19 @@ def _random_maps(name: str) -> list[Atlas]:
     return maps
 
 
-def _components_of_double_goldbergs() -> str:
+def components_of_double_goldbergs() -> str:
     maps = _random_maps("wohlhart-double-goldberg")
     split = [atlas for atlas in maps if atlas.components > 1]
     return f"{len(split)} of {len(maps)} random ones have more than one component"
 
 
-def _one_curve_for_two_forms() -> str:
+def one_curve_for_two_forms() -> str:
     maps = _random_maps("bricard-line-symmetric")
     single = [atlas for atlas in maps if len(atlas.forms) == 1]
     return f"in {len(single)} of {len(maps)} random ones both are one closed curve"
 
 
-def _windings_of_type_two() -> str:
+def windings_of_type_two() -> str:
     windings = []
     for delta in (45, 83):
         atlas = map_linkage(
@@ -82,7 +64,7 @@ def _windings_of_type_two() -> str:
     return "; ".join(windings)
 
 
-def _type_of_a_common_pair() -> str:
+def type_of_a_common_pair() -> str:
     a, b, c, d = _basic_links()
     # links of S2 and G2 from the common pair on, which comes last
     subtractive = closed_chain(a, b - c, a, c, b)
@@ -93,19 +75,19 @@ def _type_of_a_common_pair() -> str:
     )
 
 
-def _bakers_variants() -> str:
+def bakers_variants() -> str:
     alpha, beta, gamma, delta = np.radians([66, 50, 28, 83])
     variants = ["serial-goldberg-variant-6r", "l-shape-goldberg-variant-6r"]
     texts = []
     for order in (Order.II, Order.IV):
         loop = double_goldberg_type(
-            1.0, alpha, beta, gamma, delta, order, Kind.GOLDBERG
+            1.0, alpha, beta, gamma, delta, order=order, kind=Kind.GOLDBERG
         )
         texts.append(f"Type {order.name}: {_identified(loop, variants)}")
     return "; ".join(texts)
 
 
-def _end_of_the_long_stroke() -> str:
+def end_of_the_long_stroke() -> str:
     """Where the strokes of the translator with a twist of 150 degrees end."""
     texts = []
     for stroke in Stroke:
@@ -115,7 +97,7 @@ def _end_of_the_long_stroke() -> str:
     return "; ".join(texts)
 
 
-def _continuous_twists() -> str:
+def continuous_twists() -> str:
     """The twists, of some, at which the translator turns without contact of thin
     links."""
     free = [
@@ -148,7 +130,7 @@ def _freedoms(mechanism: NetworkMechanism, locks: Sequence[str]) -> tuple[int, i
     return motion.mobility, len(ring) - len(motion.still(ring))
 
 
-def _pairs_three_apart() -> str:
+def pairs_three_apart() -> str:
     network = lock_network(NETWORKS["four-bennett-network"].build(), {})
     ring = network.placed.network.plan.ring
     pairs = [(ring[k], ring[(k + 3) % 8]) for k in range(8)]
@@ -156,96 +138,9 @@ def _pairs_three_apart() -> str:
     return f"{len(alike)} of {len(pairs)} pairs leave a 6R of mobility 1"
 
 
-def _moving_triples() -> str:
+def moving_triples() -> str:
     network = lock_network(NETWORKS["four-bennett-network"].build(), {})
     triples = list(combinations(network.placed.network.plan.ring, 3))
     moving = [triple for triple in triples if _freedoms(network, triple)[0]]
     names = ", ".join("/".join(triple) for triple in moving)
     return f"{names} of {len(triples)} move"
-
-
-WORDS: tuple[WordErratum, ...] = (
-    WordErratum(
-        THESIS,
-        "table 3.5.1, against table 3.5.2",
-        "Type II is a variant of Baker's first variant (2.4.5), Type IV of his second "
-        "(2.4.6)",
-        "Type II of the second, Type IV of the first, as in table 3.5.2 and section "
-        "3.4",
-        _bakers_variants,
-    ),
-    WordErratum(
-        THESIS,
-        "section 3.4.3",
-        "linkages S2 and G2 with a common link pair give a Type II linkage",
-        "they give Type III",
-        _type_of_a_common_pair,
-    ),
-    WordErratum(
-        THESIS,
-        "section 3.4.2",
-        "theta1 of Type II turns twice while theta3 to theta6 turn once",
-        "only where m3 m4 < 0, with delta between alpha and gamma; else theta1 and "
-        "theta2 do not turn",
-        _windings_of_type_two,
-    ),
-    WordErratum(
-        THESIS,
-        "section 4.2",
-        "the general line-symmetric Bricard linkage has two distinct forms",
-        "for the lengths and twists given; for others the formulas of Forms I and II "
-        "are two parts of one form",
-        _one_curve_for_two_forms,
-    ),
-    WordErratum(
-        THESIS,
-        "section 5.2.1",
-        "all four forms of Wohlhart's double-Goldberg linkage can bifurcate into each "
-        "other",
-        "for some geometries; others have two components of two forms each",
-        _components_of_double_goldbergs,
-    ),
-    WordErratum(
-        THESIS,
-        "table 5.4.1",
-        "odd/odd+2: 1/3, 4/5, 5/7, 7/1",
-        "3/5 for 4/5",
-        lambda: "4/5 is no pair of odd joints, and stands in the row n/n+1 too",
-    ),
-    WordErratum(
-        THESIS,
-        "table 5.4.1, row n/n+3",
-        "n/n+3: 1/4 to 5/8",
-        "1/4 to 5/8, 6/1, 7/2, 8/3",
-        _pairs_three_apart,
-    ),
-    WordErratum(
-        THESIS,
-        "section 5.4.5",
-        "a third lock makes every 5R and 6R linkage of the network immobile",
-        "all but four triples are rigid: a 5R keeps its motion where the third joint "
-        "stands still anyway",
-        _moving_triples,
-    ),
-    WordErratum(
-        THESIS,
-        "text on fig. 5.4.14",
-        "(a) gives the L-shape linkages, (b) the serial ones",
-        "(a) is the serial network, (b) the L-shape one, as in the caption",
-        lambda: "the caption contradicts the text",
-    ),
-    WordErratum(
-        PAPER,
-        "section 4",
-        "in the final position theta = 120 deg and all joints are in the plane",
-        "on the short stroke, and on the long one for twists up to 120 deg",
-        _end_of_the_long_stroke,
-    ),
-    WordErratum(
-        PAPER,
-        "section 2",
-        "90 deg is the only twist with a continuous movement",
-        "thin links only meet beyond 120 and below 60 deg",
-        _continuous_twists,
-    ),
-)

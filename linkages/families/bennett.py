@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -17,46 +18,33 @@ from linkages.closed_forms.closed_form import (
     ClosedForm,
     constant,
     joint,
-    negative,
     only,
     reciprocal,
+    signed,
     tangent,
 )
 from linkages.construction.conditions import (
     bennett_length,
     require_positive,
-    require_within,
+    require_twists,
 )
 from linkages.construction.numbers import Number, pi_like
-from linkages.construction.table_equations import equal_links, zero_offsets
-from linkages.entry import (
-    Condition,
-    Entry,
-    FormPattern,
-    Parameter,
-    ParameterKind,
-    Relation,
-    RelationKind,
-)
+from linkages.entry import FormPattern
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 
 POSITION = 30
-SOURCE = (
-    "Bennett 1903; set-ups: Song 2013, Kinematic study of overconstrained linkages, "
-    "eqs (2.2.1)-(2.2.19)"
-)
 ALIKE, OPPOSITE = +1, -1  # how opposite joints turn
 
 
-def _loop(a: Number, alpha: Number, b: Number, beta: Number) -> Loop:
-    return Loop((a, b, a, b), (alpha, beta, alpha, beta), (0, 0, 0, 0), "bennett")
-
-
-def _second_length(a: Number, alpha: Number, beta: Number, b: Number | None) -> Number:
+def _loop(
+    a: Number, alpha: Number, beta: Number, b: Number | None, second_twist: Number
+) -> Loop:
     require_positive("length of link 12", a)
-    require_within("twist alpha", alpha, 0.0, math.pi)
-    require_within("twist beta", beta, 0.0, math.pi)
-    return bennett_length("23", beta, b, a, alpha)
+    require_twists(alpha=alpha, beta=beta)
+    b = bennett_length("23", beta, b, a, alpha)
+    twists = (alpha, second_twist, alpha, second_twist)
+    return Loop((a, b, a, b), twists, (0, 0, 0, 0), "bennett")
 
 
 def bennett(a: Number, alpha: Number, beta: Number, b: Number | None = None) -> Loop:
@@ -68,44 +56,35 @@ def bennett(a: Number, alpha: Number, beta: Number, b: Number | None = None) -> 
     -theta1, theta4 = -theta2 and tan(theta1/2) tan(theta2/2) = sin((beta + alpha)/2) /
     sin((beta - alpha)/2) (Song 2013, eqs 2.2.2-2.2.4).
     """
-    return _loop(a, alpha, _second_length(a, alpha, beta, b), beta)
+    return _loop(a, alpha, beta, b, beta)
 
 
 def bennett_ab_2(
     a: Number, alpha: Number, beta: Number, b: Number | None = None
 ) -> Loop:
-    """The asymmetric Bennett linkage AB-2, whose second twist is pi - beta (Song 2013,
-    eq. 2.2.18).
-
-    Parameters, closed form (with pi - beta for beta) and errors as in `bennett`.
-    """
-    second = _second_length(a, alpha, beta, b)
-    return _loop(a, alpha, second, pi_like(alpha, beta) - beta)
+    """The asymmetric Bennett linkage AB-2, as `bennett` with the second twist pi - beta
+    (Song 2013, eq. 2.2.18)."""
+    return _loop(a, alpha, beta, b, pi_like(alpha, beta) - beta)
 
 
 def bennett_line_symmetric(
     a: Number, alpha: Number, beta: Number, b: Number | None = None
 ) -> Loop:
-    """The line-symmetric Bennett linkage LB-1, whose second twist is -beta (Song 2013,
-    eqs 2.2.13, 2.2.17).
+    """The line-symmetric Bennett linkage LB-1, as `bennett` with the second twist -beta
+    (Song 2013, eqs 2.2.13, 2.2.17).
 
-    Parameters and errors as in `bennett`. Closed form: theta3 = theta1, theta4 = theta2
-    and tan(theta1/2) tan(theta2/2) = cos((alpha23 + alpha)/2) / cos((alpha23 -
-    alpha)/2) (eq. 2.2.14).
+    Closed form: theta3 = theta1, theta4 = theta2 and tan(theta1/2) tan(theta2/2) =
+    cos((alpha23 + alpha)/2) / cos((alpha23 - alpha)/2) (eq. 2.2.14).
     """
-    return _loop(a, alpha, _second_length(a, alpha, beta, b), -beta)
+    return _loop(a, alpha, beta, b, -beta)
 
 
 def bennett_lb_2(
     a: Number, alpha: Number, beta: Number, b: Number | None = None
 ) -> Loop:
-    """The line-symmetric Bennett linkage LB-2, whose second twist is beta - pi (Song
-    2013, eq. 2.2.17).
-
-    Parameters, closed form (eq. 2.2.14) and errors as in `bennett_line_symmetric`.
-    """
-    second = _second_length(a, alpha, beta, b)
-    return _loop(a, alpha, second, beta - pi_like(alpha, beta))
+    """The line-symmetric Bennett linkage LB-2, as `bennett_line_symmetric` with the
+    second twist beta - pi (Song 2013, eq. 2.2.17)."""
+    return _loop(a, alpha, beta, b, beta - pi_like(alpha, beta))
 
 
 # --- form and closed form
@@ -140,138 +119,51 @@ def _patterns(
     return patterns
 
 
-def _closed_form(
-    linkage: str, sign: int, product: Number, equations: str
+def _formulas(
+    sign: int, is_quotient_of_sums: bool, equations: str, linkage: str
 ) -> tuple[ClosedForm, ...]:
-    """The closed form with t1 t2 = ``product``; ``sign`` as in `_patterns`."""
+    """The closed form with t1 t2 = (v + u)/(v - u) or (1 + u v)/(1 - u v), u and v being
+    the half tangents of alpha and beta; ``sign`` as in `_patterns`."""
+    u = tangent("alpha")
+    v = tangent("beta")
+    product = (1 + u * v) / (1 - u * v)
+    if is_quotient_of_sums:
+        product = (v + u) / (v - u)
     first = joint(1)
     second = reciprocal(first, constant("m"))
-    third = first if sign > 0 else negative(first)
-    fourth = second if sign > 0 else negative(second)
     form = ClosedForm(
         linkage,
         "Bennett form",
         "Song 2013, eq. " + equations,
         ("alpha", "beta"),
-        only(first, second, third, fourth),
+        only(first, second, signed(sign, first), signed(sign, second)),
         {"m": product},
     )
     return (form,)
 
 
-def _quotient_of_sums() -> Number:
-    u = tangent("alpha")
-    v = tangent("beta")
-    return (v + u) / (v - u)
-
-
-def _quotient_of_products() -> Number:
-    u = tangent("alpha")
-    v = tangent("beta")
-    return (1 + u * v) / (1 - u * v)
-
-
-def _ab_1_formulas() -> tuple[ClosedForm, ...]:
-    product = _quotient_of_sums()
-    return _closed_form("bennett", OPPOSITE, product, "(2.2.3), (2.2.4)")
-
-
-def _ab_2_formulas() -> tuple[ClosedForm, ...]:
-    product = _quotient_of_products()
-    return _closed_form("bennett-ab-2", OPPOSITE, product, "(2.2.4) with (2.2.18)")
-
-
-def _lb_1_formulas() -> tuple[ClosedForm, ...]:
-    product = _quotient_of_products()
-    return _closed_form("bennett-line-symmetric", ALIKE, product, "(2.2.14)")
-
-
-def _lb_2_formulas() -> tuple[ClosedForm, ...]:
-    product = _quotient_of_sums()
-    return _closed_form("bennett-lb-2", ALIKE, product, "(2.2.14) with (2.2.17)")
-
-
-# --- entries
-
-
-def _twist(name: str, degrees: float, meaning: str) -> Parameter:
-    default = math.radians(degrees)
-    return Parameter(name, default, ParameterKind.ANGLE, meaning, 0.15, math.pi - 0.15)
-
-
-PARAMETERS = (
-    Parameter.length("a", 1.0, "length of links 12 and 34", 0.3, 3.0),
-    _twist("alpha", 100, "twist of links 12 and 34"),
-    _twist("beta", 40, "twist of links 23 and 41 before its sign is set"),
-)
-OPPOSITE_LINKS = Condition(
-    "a12 = a34, a23 = a41, alpha12 = alpha34, alpha23 = alpha41",
-    (equal_links((12, 34), (23, 41)),),
-)
-NO_OFFSETS = Condition("all offsets 0", (zero_offsets(),))
-ERRATA = (
-    "Song 2013, eqs (2.2.8), (2.2.11): the order of the inverses, and theta2 with "
-    "theta4, are exchanged; the results (2.2.9), (2.2.10), (2.2.14) are right.",
-)
-FACTS = {"mobility": 1, "rank": 3, "forms": 1, "bifurcations": 0}
-SAME_LINKAGE = (Relation(RelationKind.SAME, "bennett", "Song (2013), section 2.2"),)
-
-
-def _conditions(second_twist: str) -> tuple[Condition, ...]:
-    ratio = f"alpha23 = {second_twist}, sin(alpha)/a = sin(beta)/b"
-    return OPPOSITE_LINKS, Condition(ratio), NO_OFFSETS
-
-
-ENTRIES: tuple[Entry, ...] = (
-    Entry(
-        "bennett",
-        "Bennett linkage, asymmetric set-up",
-        SOURCE,
-        bennett,
-        PARAMETERS,
-        conditions=_conditions("beta"),
-        patterns=_patterns(OPPOSITE, lambda beta: beta),
-        formulas=_ab_1_formulas,
-        errata=ERRATA,
-        facts=FACTS,
-    ),
-    Entry(
-        "bennett-ab-2",
-        "Bennett linkage, asymmetric set-up with supplementary twist",
-        SOURCE,
-        bennett_ab_2,
-        PARAMETERS,
-        conditions=_conditions("pi - beta"),
-        patterns=_patterns(OPPOSITE, lambda beta: math.pi - beta),
-        formulas=_ab_2_formulas,
-        relations=SAME_LINKAGE,
-        errata=ERRATA,
-        facts=FACTS,
-    ),
-    Entry(
-        "bennett-line-symmetric",
-        "Bennett linkage, line-symmetric set-up",
-        SOURCE,
-        bennett_line_symmetric,
-        PARAMETERS,
-        conditions=_conditions("-beta"),
-        patterns=_patterns(ALIKE, lambda beta: -beta),
-        formulas=_lb_1_formulas,
-        relations=SAME_LINKAGE,
-        errata=ERRATA,
-        facts=FACTS,
-    ),
-    Entry(
-        "bennett-lb-2",
-        "Bennett linkage, line-symmetric set-up with supplementary twist",
-        SOURCE,
-        bennett_lb_2,
-        PARAMETERS,
-        conditions=_conditions("beta - pi"),
-        patterns=_patterns(ALIKE, lambda beta: beta - math.pi),
-        formulas=_lb_2_formulas,
-        relations=SAME_LINKAGE,
-        errata=ERRATA,
-        facts=FACTS,
-    ),
+ENTRIES = read_entries(
+    "bennett",
+    {
+        "bennett": Model(
+            bennett,
+            _patterns(OPPOSITE, lambda beta: beta),
+            partial(_formulas, OPPOSITE, True, "(2.2.3), (2.2.4)"),
+        ),
+        "bennett-ab-2": Model(
+            bennett_ab_2,
+            _patterns(OPPOSITE, lambda beta: math.pi - beta),
+            partial(_formulas, OPPOSITE, False, "(2.2.4) with (2.2.18)"),
+        ),
+        "bennett-line-symmetric": Model(
+            bennett_line_symmetric,
+            _patterns(ALIKE, lambda beta: -beta),
+            partial(_formulas, ALIKE, False, "(2.2.14)"),
+        ),
+        "bennett-lb-2": Model(
+            bennett_lb_2,
+            _patterns(ALIKE, lambda beta: beta - math.pi),
+            partial(_formulas, ALIKE, True, "(2.2.14) with (2.2.17)"),
+        ),
+    },
 )

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -28,39 +27,19 @@ from linkages.closed_forms.closed_form import (
     constant,
     cosine_of,
     joint,
-    negative,
+    signed,
     sine_of,
     tangent,
 )
 from linkages.construction.conditions import decided
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number
-from linkages.construction.table_equations import (
-    equal_links,
-    equal_offsets,
-    equal_twists,
-    opposite_offsets,
-    zero_lengths,
-    zero_offsets,
-)
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    FormPattern,
-    Parameter,
-    ParameterKind,
-    Relation,
-    RelationKind,
-)
+from linkages.entry import FormPattern
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
 POSITION = 160
-SOURCE = (
-    "Bricard 1927, Lecons de cinematique; Baker 1980, Mech. Mach. Theory 15, 267-286; "
-    "Song 2013, "
-)
 
 
 def bricard_line_symmetric(
@@ -70,58 +49,26 @@ def bricard_line_symmetric(
     alpha12: Number,
     alpha23: Number,
     alpha34: Number,
-    R1: Number,
-    R2: Number,
-    R3: Number,
+    R1: Number = 0,
+    R2: Number = 0,
+    R3: Number = 0,
 ) -> Loop:
     """The general line-symmetric Bricard linkage: links 12, 23, 34 and offsets of
     joints 1, 2, 3, twice over.
 
     Lengths not negative, twists in rad, any offsets. Raises `GeometryError` for a
-    negative length. Closed form: Song 2013, eqs (4.2.14)-(4.2.24), where H2 and L2 of
-    (4.2.15) must be -R3 c12 s23 s34 and R1 (c12 c23 + c34) + R2 (c23 + c12 c34) + R3 (1
-    + c12 c23 c34), c and s being cosines and sines of the twists.
+    negative length. Sources: Song 2013, eqs (4.2.14)-(4.2.24), and section 4.4.3 without
+    offsets; without lengths Bricard 1897; Song 2013, eq. (2.4.16), to which the
+    equalities of the twists must be added: without them the loop is rigid.
     """
     for name, length in (("a12", a12), ("a23", a23), ("a34", a34)):
         size = decided(length)
         if size is not None and size < 0:
             raise GeometryError(f"length {name}", f"{size:.6g}", "0 or greater")
-    return Loop(
-        (a12, a23, a34) * 2,
-        (alpha12, alpha23, alpha34) * 2,
-        (R1, R2, R3) * 2,
-        "bricard-line-symmetric",
-    )
+    return Loop((a12, a23, a34) * 2, (alpha12, alpha23, alpha34) * 2, (R1, R2, R3) * 2)
 
 
-def bricard_line_symmetric_zero_offset(
-    a12: Number,
-    a23: Number,
-    a34: Number,
-    alpha12: Number,
-    alpha23: Number,
-    alpha34: Number,
-) -> Loop:
-    """The line-symmetric Bricard linkage whose offsets vanish (Song 2013, section
-    4.4.3); errors as above."""
-    return bricard_line_symmetric(a12, a23, a34, alpha12, alpha23, alpha34, 0, 0, 0)
-
-
-def bricard_octahedral_line_symmetric(
-    alpha12: Number,
-    alpha23: Number,
-    alpha34: Number,
-    R1: Number,
-    R2: Number,
-    R3: Number,
-) -> Loop:
-    """The line-symmetric octahedral Bricard linkage: no lengths, opposite twists and
-    offsets alike.
-
-    Sources: Bricard 1897; Song 2013, eq. (2.4.16), to which alpha12 = alpha45, alpha23
-    = alpha56 and alpha34 = alpha61 must be added: without them the loop is rigid.
-    """
-    return bricard_line_symmetric(0, 0, 0, alpha12, alpha23, alpha34, R1, R2, R3)
+bricard_octahedral_line_symmetric = partial(bricard_line_symmetric, 0, 0, 0)
 
 
 def revised_line_symmetric(
@@ -160,14 +107,19 @@ class Equations(NamedTuple):
     third: Coefficients
 
 
-def original_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
-    """The equations where opposite joints turn alike (eqs 4.2.15, 4.2.22).
+def closure_equations(
+    a: Three, c: Three, s: Three, R: Three, sign: int = 1
+) -> Equations:
+    """The equations where opposite joints turn alike (eqs 4.2.15, 4.2.22), or for
+    ``sign`` -1 oppositely, with opposite offsets (eqs 4.3.6, 4.3.8; the latter is not in
+    the text): those with the twist alpha34 turned round.
 
     ``a``, ``R`` are the three lengths and offsets, ``c``, ``s`` cosines and sines of
     the twists, of any number type.
     """
     (a12, a23, a34), (r1, r2, r3) = a, R
-    (c12, c23, c34), (s12, s23, s34) = c, s
+    c12, c23, c34 = c[0], c[1], sign * c[2]
+    s12, s23, s34 = s[0], s[1], sign * s[2]
     second = (
         a34 * s12 * c23 + a12 * s34,
         -(r3 * s12 * c23 * s34 + r2 * s12 * s34),
@@ -189,36 +141,6 @@ def original_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
         a23 * s12 * c34 + a12 * s23,
         -r2 * s12 * s23 * c34,
         r1 * (c12 + c23 * c34) + r2 * (1 + c12 * c23 * c34) + r3 * (c23 + c12 * c34),
-    )
-    return Equations(second, third)
-
-
-def revised_equations(a: Three, c: Three, s: Three, R: Three) -> Equations:
-    """The same for opposite offsets and theta_{i+3} = -theta_i (eqs 4.3.6, 4.3.8; the
-    latter is not in the text)."""
-    (a12, a23, a34), (r1, r2, r3) = a, R
-    (c12, c23, c34), (s12, s23, s34) = c, s
-    second = (
-        a34 * s12 * c23 - a12 * s34,
-        r3 * s12 * c23 * s34 + r2 * s12 * s34,
-        -(a23 * s12 * c34 - a12 * s23),
-        r3 * s12 * s23 * c34 - r1 * s12 * s23,
-        -r3 * s23 * s34,
-        a34 * c12 * s23 - a23 * s34,
-        -(a23 * c12 * s34 - a34 * s23),
-        r3 * c12 * s23 * s34,
-        r1 * (c12 * c23 - c34) + r2 * (c23 - c12 * c34) + r3 * (1 - c12 * c23 * c34),
-    )
-    third = (
-        -(a12 * c23 * s34 - a34 * s12),
-        r2 * s12 * c23 * s34 + r3 * s12 * s34,
-        -(a23 * c12 * s34 - a34 * s23),
-        r2 * c12 * s23 * s34 + r1 * s23 * s34,
-        r2 * s12 * s23,
-        -(a12 * s23 * c34 - a23 * s12),
-        -(a23 * s12 * c34 - a12 * s23),
-        r2 * s12 * s23 * c34,
-        r1 * (c12 - c23 * c34) + r2 * (1 - c12 * c23 * c34) + r3 * (c23 - c12 * c34),
     )
     return Equations(second, third)
 
@@ -276,17 +198,6 @@ def _residual(
     return residual
 
 
-def _three_patterns(
-    suffix: str, mark: str, sign: int, equations: Equations
-) -> list[FormPattern]:
-    both = f"Forms I{mark} and II{mark} ({suffix})"
-    return [
-        FormPattern(f"Form I{mark} ({suffix})", _residual(sign, +1, equations)),
-        FormPattern(f"Form II{mark} ({suffix})", _residual(sign, -1, equations)),
-        FormPattern(both, _residual(sign, 0, equations)),
-    ]
-
-
 def patterns(
     a12: float,
     a23: float,
@@ -297,9 +208,10 @@ def patterns(
     R1: float = 0.0,
     R2: float = 0.0,
     R3: float = 0.0,
+    revised: bool = False,
 ) -> tuple[FormPattern, ...]:
-    """Forms I and II, and, where one closed curve holds both, "Forms I and II"; I' and
-    II' for zero offsets.
+    """Forms I and II, and, where one closed curve holds both, "Forms I and II"; for
+    the ``revised`` linkage I' and II', for zero offsets all of them.
 
     Lengths and offsets in one unit, twists in rad.
     """
@@ -307,41 +219,30 @@ def patterns(
     c = (math.cos(alpha12), math.cos(alpha23), math.cos(alpha34))
     s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
     R = (R1, R2, R3)
-    out = _three_patterns("original", "", +1, original_equations(a, c, s, R))
     has_lengths = max(a) > 0
     has_offsets = max(abs(R1), abs(R2), abs(R3)) > 0
-    if has_lengths and not has_offsets:
-        revised = revised_equations(a, c, s, R)
-        out += _three_patterns("revised", "'", -1, revised)
+    out = []
+    if not revised:
+        equations = closure_equations(a, c, s, R)
+        out += _three_patterns("original", "", +1, equations)
+    if revised or (has_lengths and not has_offsets):
+        equations = closure_equations(a, c, s, R, -1)
+        out += _three_patterns("revised", "'", -1, equations)
     return tuple(out)
 
 
-def revised_patterns(
-    a12: float,
-    a23: float,
-    a34: float,
-    alpha12: float,
-    alpha23: float,
-    alpha34: float,
-    R1: float,
-    R2: float,
-    R3: float,
-) -> tuple[FormPattern, ...]:
-    """Forms I' and II', and, where one closed curve holds both, "Forms I' and II'".
-
-    Lengths and offsets in one unit, twists in rad.
-    """
-    a = (a12, a23, a34)
-    c = (math.cos(alpha12), math.cos(alpha23), math.cos(alpha34))
-    s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
-    equations = revised_equations(a, c, s, (R1, R2, R3))
-    return tuple(_three_patterns("revised", "'", -1, equations))
-
-
-def _octahedral_patterns(
-    alpha12: float, alpha23: float, alpha34: float, R1: float, R2: float, R3: float
-) -> tuple[FormPattern, ...]:
-    return patterns(0.0, 0.0, 0.0, alpha12, alpha23, alpha34, R1, R2, R3)
+def _three_patterns(
+    suffix: str, mark: str, sign: int, equations: Equations
+) -> list[FormPattern]:
+    roots = {
+        f"Form I{mark}": +1,
+        f"Form II{mark}": -1,
+        f"Forms I{mark} and II{mark}": 0,
+    }
+    return [
+        FormPattern(f"{name} ({suffix})", _residual(sign, root, equations))
+        for name, root in roots.items()
+    ]
 
 
 # --- closed forms
@@ -399,17 +300,17 @@ def _symbols(names: tuple[str, ...], parameters: tuple[str, ...]) -> Three:
 def _closed_form(
     linkage: str,
     sign: int,
-    lengths: tuple[str, ...] = LENGTH_NAMES,
-    offsets: tuple[str, ...] = OFFSET_NAMES,
+    lengths: tuple[str, ...],
+    offsets: tuple[str, ...],
 ) -> ClosedForm:
     """``sign`` +1 where opposite joints turn alike, -1 where oppositely."""
-    equations = original_equations if sign > 0 else revised_equations
     u12, u23, u34 = (tangent(name) for name in TWIST_NAMES)
-    rows = equations(
+    rows = closure_equations(
         _symbols(LENGTH_NAMES, lengths),
         (cosine_of(u12), cosine_of(u23), cosine_of(u34)),
         (sine_of(u12), sine_of(u23), sine_of(u34)),
         _symbols(OFFSET_NAMES, offsets),
+        sign,
     )
     constants = {}
     for number, row in ((2, rows.second), (3, rows.third)):
@@ -418,9 +319,7 @@ def _closed_form(
     s, c = joint(2)
     quadratic = _quadratic(2)
     half: tuple[tuple[Pair, ...], ...] = ((joint(1),), (joint(2),), _third_pairs())
-    other = half
-    if sign < 0:
-        other = tuple(tuple(negative(pair) for pair in pairs) for pairs in half)
+    other = tuple(tuple(signed(sign, pair) for pair in pairs) for pairs in half)
     return ClosedForm(
         linkage,
         "Forms I and II" if sign > 0 else "Forms I' and II'",
@@ -438,199 +337,35 @@ ORIGINAL = "Song 2013, eqs (4.2.14)-(4.2.24), H2 and L2 of (4.2.15) completed"
 REVISED = "Song 2013, eqs (4.3.3)-(4.3.8), (4.3.8) being missing in the text"
 
 
-def _general_formulas(linkage: str, sign: int) -> tuple[ClosedForm, ...]:
-    return (_closed_form(linkage, sign),)
+def _formulas(
+    signs: tuple[int, ...],
+    linkage: str,
+    lengths: tuple[str, ...] = LENGTH_NAMES,
+    offsets: tuple[str, ...] = OFFSET_NAMES,
+) -> tuple[ClosedForm, ...]:
+    return tuple(_closed_form(linkage, sign, lengths, offsets) for sign in signs)
 
 
-def _zero_offset_formulas() -> tuple[ClosedForm, ...]:
-    linkage = "bricard-line-symmetric-zero-offset"
-    return (
-        _closed_form(linkage, +1, offsets=()),
-        _closed_form(linkage, -1, offsets=()),
-    )
-
-
-def _octahedral_formulas() -> tuple[ClosedForm, ...]:
-    return (_closed_form("bricard-octahedral-line-symmetric", +1, lengths=()),)
-
-
-# --- entries
-
-
-def _length(link: str, opposite: str, default: float) -> Parameter:
-    meaning = f"length of link {link} and {opposite}"
-    return Parameter.length(f"a{link}", default, meaning, 0.3, 3.0)
-
-
-def _twist(link: str, opposite: str, degrees: float) -> Parameter:
-    return Parameter(
-        f"alpha{link}",
-        math.radians(degrees),
-        ParameterKind.ANGLE,
-        f"twist of link {link} and {opposite}",
-        0.2,
-        math.pi - 0.2,
-    )
-
-
-def _offset(number: int, default: float) -> Parameter:
-    meaning = f"offset of joint {number} and {number + 3}"
-    return Parameter.length(f"R{number}", default, meaning, -1.0, 1.0)
-
-
-LENGTHS = (
-    _length("12", "45", 2.4),
-    _length("23", "56", 2.9),
-    _length("34", "61", 1.5),
-)
-TWISTS = (_twist("12", "45", 40), _twist("23", "56", 80), _twist("34", "61", 130))
-OFFSETS = (_offset(1, 0.5), _offset(2, 0.55), _offset(3, 0.42))
-# Song (2013), eq. (4.3.9): the linkage of (4.2.25) with other directions of the axes
-REVISED_TWISTS = (
-    *TWISTS[:2],
-    Parameter(
-        "alpha34",
-        math.radians(-50),
-        ParameterKind.ANGLE,
-        "twist of link 34 and 61",
-        -math.pi + 0.2,
-        -0.2,
-    ),
-)
-REVISED_OFFSETS = tuple(
-    replace(
-        offset, meaning=f"offset of joint {k}, that of joint {k + 3} with the sign -"
-    )
-    for k, offset in enumerate(OFFSETS, start=1)
-)
-OPPOSITE_LINKS: tuple[tuple[int, int], ...] = ((12, 45), (23, 56), (34, 61))
-OPPOSITE_JOINTS: tuple[tuple[int, int], ...] = ((1, 4), (2, 5), (3, 6))
-LINKS = Condition(
-    "a12 = a45, a23 = a56, a34 = a61, "
-    "alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61",
-    (equal_links(*OPPOSITE_LINKS),),
-)
-ERRATA = (
-    "Song 2013, text of (4.2.1): theta3 = theta1, theta4 = theta2 must be "
-    "theta4 = theta1, theta5 = theta2",
-    "Song 2013, eq. (4.2.15): H2 and L2 are incomplete, see the constructor",
-)
-
-
-def _case_of(other: str, source: str) -> Relation:
-    return Relation(RelationKind.SPECIAL_CASE, other, source)
-
-
-def _isomer_of(other: str) -> Relation:
-    return Relation(
-        RelationKind.ISOMER,
-        other,
-        BY_IDENTIFICATION,
-        "links at joint 3 exchanged",
-        joint=3,
-    )
-
-
-GENERAL_CASE = _case_of("bricard-line-symmetric", "Song (2013), section 4.4")
-
-ENTRIES: tuple[Entry, ...] = (
-    Entry(
-        "bricard-line-symmetric",
-        "General line-symmetric Bricard 6R linkage",
-        SOURCE + "eqs (4.2.1)-(4.2.25)",
-        bricard_line_symmetric,
-        (*LENGTHS, *TWISTS, *OFFSETS),
-        conditions=(
-            LINKS,
-            Condition("R1 = R4, R2 = R5, R3 = R6", (equal_offsets(*OPPOSITE_JOINTS),)),
+ENTRIES = read_entries(
+    "bricard",
+    {
+        "bricard-line-symmetric": Model(
+            bricard_line_symmetric, patterns, partial(_formulas, (+1,))
         ),
-        patterns=patterns,
-        formulas=partial(_general_formulas, "bricard-line-symmetric", +1),
-        errata=ERRATA,
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 2,
-            "bifurcations": 0,
-            "components": 2,
-        },
-    ),
-    Entry(
-        "bricard-line-symmetric-zero-offset",
-        "Line-symmetric Bricard 6R linkage with zero offsets",
-        SOURCE + "section 4.4.3",
-        bricard_line_symmetric_zero_offset,
-        (*LENGTHS, *TWISTS),
-        conditions=(LINKS, Condition("all offsets 0", (zero_offsets(),))),
-        patterns=patterns,
-        formulas=_zero_offset_formulas,
-        relations=(
-            GENERAL_CASE,
-            _isomer_of("wohlhart-double-goldberg"),
-            _isomer_of("double-subtractive-goldberg"),
+        "bricard-line-symmetric-zero-offset": Model(
+            bricard_line_symmetric,
+            patterns,
+            partial(_formulas, (+1, -1), offsets=()),
         ),
-        errata=(*ERRATA, "Song 2013, eq. (4.3.8) is missing from the text"),
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 4,
-            "bifurcations": 4,
-            "components": 1,
-        },
-    ),
-    Entry(
-        "bricard-octahedral-line-symmetric",
-        "Line-symmetric octahedral Bricard 6R linkage",
-        "Bricard 1897, J. Pure Appl. Math. 3, 113-150; "
-        "Song 2013, eq. (2.4.16) and section 4.4.2",
-        bricard_octahedral_line_symmetric,
-        (*TWISTS, *OFFSETS),
-        conditions=(
-            Condition("all lengths 0", (zero_lengths(),)),
-            Condition(
-                "alpha12 = alpha45, alpha23 = alpha56, alpha34 = alpha61",
-                (equal_twists(*OPPOSITE_LINKS),),
-            ),
-            Condition("R_i = R_{i+3}", (equal_offsets(*OPPOSITE_JOINTS),)),
+        "bricard-octahedral-line-symmetric": Model(
+            bricard_octahedral_line_symmetric,
+            partial(patterns, 0.0, 0.0, 0.0),
+            partial(_formulas, (+1,), lengths=()),
         ),
-        patterns=_octahedral_patterns,
-        formulas=_octahedral_formulas,
-        relations=(GENERAL_CASE,),
-        errata=("Song 2013, eq. (2.4.16): the equalities of the twists are missing",),
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 1,
-            "bifurcations": 0,
-            "components": 1,
-        },
-    ),
-    Entry(
-        "bricard-line-symmetric-revised",
-        "Revised general line-symmetric Bricard 6R",
-        "Mavroidis and Roth (1995); Song (2013), eqs (2.4.19), (4.3.1)-(4.3.9)",
-        revised_line_symmetric,
-        (*LENGTHS, *REVISED_TWISTS, *REVISED_OFFSETS),
-        conditions=(
-            Condition(
-                "a12 = a45, a23 = a56, a34 = a61, twists likewise",
-                (equal_links(*OPPOSITE_LINKS),),
-            ),
-            Condition(
-                "R1 = -R4, R2 = -R5, R3 = -R6", (opposite_offsets(*OPPOSITE_JOINTS),)
-            ),
+        "bricard-line-symmetric-revised": Model(
+            revised_line_symmetric,
+            partial(patterns, revised=True),
+            partial(_formulas, (-1,)),
         ),
-        patterns=revised_patterns,
-        formulas=partial(_general_formulas, "bricard-line-symmetric-revised", -1),
-        relations=(
-            Relation(RelationKind.SAME, "bricard-line-symmetric", BY_IDENTIFICATION),
-        ),
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 2,
-            "bifurcations": 0,
-            "components": 2,
-        },
-    ),
+    },
 )

@@ -13,7 +13,7 @@ import numpy as np
 from linkages.construction.conditions import decided, require_different
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number, acos, atan2, cos, pi_like, sin, sqrt
-from linkages.entry import Condition, Entry, Parameter
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
@@ -194,52 +194,11 @@ def _distance(point: complex, first: complex, second: complex) -> float:
     return float(abs((np.conj(side) * (point - first)).imag) / abs(side))
 
 
-# --- entry
-
-
-def _coordinate(
-    name: str, default: float, which: str, corner: str, low: float, high: float
-) -> Parameter:
-    meaning = f"{which} coordinate of the corner {corner}"
-    return Parameter.length(name, default, meaning, low, high)
-
-
-def _radius(
-    name: str, default: float, sides: str, low: float, high: float
-) -> Parameter:
-    meaning = f"radius of the circle that {sides} touch"
-    return Parameter.length(name, default, meaning, low, high)
-
-
-ENTRIES = (
-    Entry(
-        "bricard-octahedral-doubly-collapsible",
-        "Doubly collapsible octahedral Bricard 6R",
-        "Bricard (1897); Baker (1980); Song (2013), eq. 2.4.18",
-        doubly_collapsible_octahedral,
-        (
-            _coordinate("x1", 2.3, "first", "A", 1.8, 2.8),
-            _coordinate("y1", 0.4, "second", "A", 0.1, 0.8),
-            _coordinate("x2", -1.1, "first", "A'", -1.6, -0.9),
-            _coordinate("y2", 1.9, "second", "A'", 1.5, 2.3),
-            _radius("radius_1", 0.7, "AB, A'B', A'B, AB'", 0.5, 0.8),
-            _radius("radius_2", 1.1, "AC, A'C', A'C, AC'", 0.95, 1.3),
-        ),
-        conditions=(
-            Condition(
-                "all lengths zero; offsets and twists are sides and turns of the "
-                "hexagon A B C A' B' C'"
-            ),
-            Condition(
-                "AB, A'B', A'B, AB' touch one circle, AC, A'C', A'C, AC' another one "
-                "about the same centre"
-            ),
-        ),
-        guesses=_guesses,
-        errata=(
-            "R1 R3 R5 + R2 R4 R6 = 0 is printed as the only condition; "
-            "it is necessary, not sufficient",
-        ),
-        facts={"joints": 6, "mobility": 1},
-    ),
+ENTRIES = read_entries(
+    "bricard_collapsible",
+    {
+        "bricard-octahedral-doubly-collapsible": Model(
+            doubly_collapsible_octahedral, guesses=_guesses
+        )
+    },
 )

@@ -3,34 +3,15 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
 from linkages.construction.conditions import decided, require_different, require_equal
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number, acos, cos, pi_like, sin
-from linkages.construction.table_equations import (
-    TableNumbers,
-    equal_lengths,
-    equal_offsets,
-    equation,
-    opposite_offsets,
-    opposite_twists,
-    supplementary_twists,
-    zero_lengths,
-    zero_offsets,
-    zero_twist_sums,
-)
-from linkages.entry import (
-    Condition,
-    Entry,
-    Parameter,
-    ParameterKind,
-    Relation,
-    RelationKind,
-)
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
@@ -46,50 +27,27 @@ def plane_symmetric(
     alpha34: Number,
     R2: Number,
     R3: Number,
+    revised: bool = False,
 ) -> Loop:
     """General plane-symmetric Bricard 6R; lengths and offsets in one unit, twists in
     rad.
 
     alpha12 + alpha61 = alpha34 + alpha45 = pi, alpha23 + alpha56 = 0, R2 = R6, R3 = R5.
     Source: Bricard (1927); equation (2.4.14) in Song (2013) has alpha23 + alpha56 = pi,
-    which with these offsets is rigid.
+    which with these offsets is rigid. The ``revised`` one of Mavroidis and Roth (1995),
+    equation (2.4.20) in Song (2013), has opposite twists, R2 = -R6, R3 = -R5: the axes 2
+    and 6 are reversed on one side.
     """
     pi = pi_like(alpha12, alpha23, alpha34)
+    sign = -1 if revised else 1
     return closed_chain(
         Link(a12, alpha12),
         Link(a23, alpha23),
         Link(a34, alpha34),
-        Link(a34, pi - alpha34),
+        Link(a34, -alpha34 if revised else pi - alpha34),
         Link(a23, -alpha23),
-        Link(a12, pi - alpha12),
-        offsets=(0, R2, R3, 0, R3, R2),
-    )
-
-
-def revised_plane_symmetric(
-    a12: Number,
-    a23: Number,
-    a34: Number,
-    alpha12: Number,
-    alpha23: Number,
-    alpha34: Number,
-    R2: Number,
-    R3: Number,
-) -> Loop:
-    """Revised general plane-symmetric Bricard 6R: opposite twists, R2 = -R6, R3 = -R5.
-
-    Lengths and offsets in one unit, twists in rad. Source: Mavroidis and Roth (1995);
-    equation (2.4.20) in Song (2013). It is `plane_symmetric` with the axes 2 and 6
-    reversed on one side.
-    """
-    return closed_chain(
-        Link(a12, alpha12),
-        Link(a23, alpha23),
-        Link(a34, alpha34),
-        Link(a34, -alpha34),
-        Link(a23, -alpha23),
-        Link(a12, -alpha12),
-        offsets=(0, R2, R3, 0, -R3, -R2),
+        Link(a12, -alpha12 if revised else pi - alpha12),
+        offsets=(0, R2, R3, 0, sign * R3, sign * R2),
     )
 
 
@@ -151,174 +109,15 @@ def _octahedral_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
         }
 
 
-# --- conditions
-
-
-def _second_gap(t: TableNumbers) -> float:
-    """R2 = -R1 sin(alpha34)/sin(alpha12+alpha34)."""
-    sine = math.sin(t.alpha(12) + t.alpha(34))
-    return t.R(2) + t.R(1) * math.sin(t.alpha(34)) / sine
-
-
-def _third_gap(t: TableNumbers) -> float:
-    """R3 = R1 sin(alpha12)/sin(alpha12+alpha34)."""
-    sine = math.sin(t.alpha(12) + t.alpha(34))
-    return t.R(3) - t.R(1) * math.sin(t.alpha(12)) / sine
-
-
-def _fifth_gap(t: TableNumbers) -> float:
-    """R5 = R1 sin(alpha61)/sin(alpha45+alpha61)."""
-    sine = math.sin(t.alpha(45) + t.alpha(61))
-    return t.R(5) - t.R(1) * math.sin(t.alpha(61)) / sine
-
-
-def _sixth_gap(t: TableNumbers) -> float:
-    """R6 = -R1 sin(alpha45)/sin(alpha45+alpha61)."""
-    sine = math.sin(t.alpha(45) + t.alpha(61))
-    return t.R(6) + t.R(1) * math.sin(t.alpha(45)) / sine
-
-
-def _bases_gap(t: TableNumbers) -> float:
-    """R2^2 + R3^2 + 2 R2 R3 cos(alpha23) = R5^2 + R6^2 + 2 R5 R6 cos(alpha56)."""
-    one = _squared_base(t.R(2), t.R(3), t.alpha(23))
-    other = _squared_base(t.R(5), t.R(6), t.alpha(56))
-    return one - other
-
-
-def _squared_base(x: float, y: float, angle: float) -> float:
-    """The squared third side of a triangle with the turn ``angle`` between two."""
-    return x**2 + y**2 + 2 * x * y * math.cos(angle)
-
-
-MIRRORED_LENGTHS = Condition(
-    "a12 = a61, a23 = a56, a34 = a45", (equal_lengths((12, 61), (23, 56), (34, 45)),)
-)
-SUPPLEMENTARY_TWISTS = Condition(
-    "alpha12 + alpha61 = pi, alpha23 + alpha56 = 0, alpha34 + alpha45 = pi",
-    (supplementary_twists((12, 61), (34, 45)), opposite_twists((23, 56))),
-)
-OPPOSITE_TWISTS = Condition(
-    "alpha12 + alpha61 = alpha23 + alpha56 = alpha34 + alpha45 = 0",
-    (zero_twist_sums((12, 61), (23, 56), (34, 45)),),
-)
-OCTAHEDRON = (
-    Condition("all lengths zero, R4 = -R1", (zero_lengths(), opposite_offsets((1, 4)))),
-    Condition(
-        "R2 = -R1 sin(alpha34)/sin(alpha12+alpha34), "
-        "R3 = R1 sin(alpha12)/sin(alpha12+alpha34)",
-        (equation(_second_gap), equation(_third_gap)),
-    ),
-    Condition(
-        "R5 = R1 sin(alpha61)/sin(alpha45+alpha61), "
-        "R6 = -R1 sin(alpha45)/sin(alpha45+alpha61)",
-        (equation(_fifth_gap), equation(_sixth_gap)),
-    ),
-    Condition(
-        "R2^2 + R3^2 + 2 R2 R3 cos(alpha23) = R5^2 + R6^2 + 2 R5 R6 cos(alpha56)",
-        (equation(_bases_gap),),
-    ),
-)
-
-
-# --- entries
-
-
-def _length(name: str, default: float) -> Parameter:
-    return Parameter.length(name, default, f"length {name}", 0.3, 2.0)
-
-
-def _offset(name: str, default: float, low: float, high: float) -> Parameter:
-    return Parameter.length(name, default, f"offset {name}", low, high)
-
-
-def _twist(link: int, degrees: float) -> Parameter:
-    return Parameter.angle(f"alpha{link}", degrees, f"twist of link {link}", 15, 165)
-
-
-def _octahedral_twist(link: int, default: float, low: float, high: float) -> Parameter:
-    """The twist with its default in rad and its bounds in degrees."""
-    return Parameter(
-        f"alpha{link}",
-        default,
-        ParameterKind.ANGLE,
-        f"twist of link {link}",
-        math.radians(low),
-        math.radians(high),
-    )
-
-
-HALF = (
-    _length("a12", 1.0),
-    _length("a23", 0.8),
-    _length("a34", 1.25),
-    _twist(12, 50),
-    _twist(23, 77),
-    _twist(34, 110),
-    _offset("R2", -0.45, -0.5, 0.5),
-    _offset("R3", 0.6, -0.5, 0.5),
-)
-FACTS = {"joints": 6, "mobility": 1}
-
-ENTRIES = (
-    Entry(
-        "bricard-plane-symmetric",
-        "General plane-symmetric Bricard 6R",
-        "Bricard (1927); Baker (1980); Song (2013), eq. 2.4.14",
-        plane_symmetric,
-        HALF,
-        conditions=(
-            MIRRORED_LENGTHS,
-            SUPPLEMENTARY_TWISTS,
-            Condition(
-                "R1 = R4 = 0, R2 = R6, R3 = R5",
-                (zero_offsets(1, 4), equal_offsets((2, 6), (3, 5))),
-            ),
+ENTRIES = read_entries(
+    "bricard_plane",
+    {
+        "bricard-plane-symmetric": Model(plane_symmetric),
+        "bricard-plane-symmetric-revised": Model(
+            partial(plane_symmetric, revised=True)
         ),
-        errata=("alpha23 + alpha56 = pi is printed; it is 0 with R2 = R6, R3 = R5",),
-        facts=FACTS,
-    ),
-    Entry(
-        "bricard-plane-symmetric-revised",
-        "Revised general plane-symmetric Bricard 6R",
-        "Mavroidis and Roth (1995); Song (2013), eq. 2.4.20",
-        revised_plane_symmetric,
-        HALF,
-        conditions=(
-            MIRRORED_LENGTHS,
-            OPPOSITE_TWISTS,
-            Condition(
-                "R1 = R4 = 0, R2 = -R6, R3 = -R5",
-                (zero_offsets(1, 4), opposite_offsets((2, 6), (3, 5))),
-            ),
+        "bricard-octahedral-plane-symmetric": Model(
+            plane_symmetric_octahedral, guesses=_octahedral_guesses
         ),
-        relations=(
-            Relation(
-                RelationKind.SAME,
-                "bricard-plane-symmetric",
-                "Mavroidis and Roth (1995)",
-            ),
-        ),
-        facts=FACTS,
-    ),
-    Entry(
-        "bricard-octahedral-plane-symmetric",
-        "Plane-symmetric octahedral Bricard 6R",
-        "Bricard (1897, 1927); Baker (1980); Song (2013), eq. 2.4.17",
-        plane_symmetric_octahedral,
-        (
-            _octahedral_twist(12, 2.1898919226139584, 115, 130),
-            _octahedral_twist(23, 0.9447166986444288, 45, 65),
-            _octahedral_twist(34, 2.258845335456913, 120, 135),
-            _octahedral_twist(45, 0.8086507372666255, 42, 50),
-            _octahedral_twist(61, 0.5933371007764807, 32, 36),
-            _offset("R1", 1.936892176093739, 1.0, 3.0),
-        ),
-        conditions=OCTAHEDRON,
-        guesses=_octahedral_guesses,
-        errata=(
-            "the condition on alpha23 and alpha56 is missing in print; "
-            "without it the loop is rigid",
-        ),
-        facts=FACTS,
-    ),
+    },
 )

@@ -1,5 +1,6 @@
 """Wohlhart's double-Goldberg 6R (WDG) and the double-subtractive-Goldberg 6R (DSG),
-general and special.
+general and special, and
+the former with kink angles.
 
 Links 12 and 45 are a + c / alpha + gamma (WDG) or a - c / alpha - gamma (DSG), links 23
 and 61 are d / delta, links 34 and 56 are b / beta; all four basic links have one
@@ -40,6 +41,7 @@ Eliminating t4 gives E t3^2 + b (N_d / t1 - D_d t1) t3 + v (d + b) (1 - w b d) =
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -59,56 +61,51 @@ from linkages.closed_forms.closed_form import (
     only,
     plus,
     reciprocal,
+    symbols,
     tangent,
 )
-from linkages.construction.basic_links import length_a
 from linkages.construction.conditions import (
     bennett_length,
     require_different,
     require_equal,
     require_positive,
-    require_within,
+    require_twists,
 )
+from linkages.construction.constructions import superpose
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number, atan, tan
-from linkages.construction.possible_angles import twist_pairs
-from linkages.construction.table_equations import zero_offsets
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    FormPattern,
-    Parameter,
-    Relation,
-    RelationKind,
-)
+from linkages.construction.possible_angles import kink_pairs, twist_pairs
+from linkages.construction.spatial_triangle import KinkAngle
+from linkages.entry import FormPattern
+from linkages.entry_table import Model, read_entries
+from linkages.families.goldberg_5r import generalized_goldberg
 from linkages.loop import Loop
 
 POSITION = 80
-THESIS = (
-    "Song 2013, Kinematic study of overconstrained linkages and design of "
-    "reconfigurable mechanisms"
-)
-PAPER = "Song and Chen 2012, A special Wohlhart's double-Goldberg 6R linkage"
 WDG, DSG = "wohlhart-double-goldberg", "double-subtractive-goldberg"
 
 
-def _loop(
+def joined_double_goldberg(
     sign: int,
     a: Number,
     alpha: Number,
     beta: Number,
     gamma: Number,
     delta: Number,
-    b: Number | None,
-    c: Number | None,
-    d: Number | None,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
 ) -> Loop:
+    """The double-Goldberg 6R of the links a/alpha, b/beta, c/gamma, d/delta: Wohlhart's,
+    or for ``sign`` -1 the double-subtractive one, with a > c.
+
+    Twists in rad, between 0 and pi; lengths b, c, d follow from the Bennett ratio, and
+    are checked when given. Raises `GeometryError` for a ratio that differs. Sources:
+    Wohlhart 1991; Song 2013, eqs (5.2.1)-(5.2.8), where the products m1 m2 of (5.2.4)
+    and 2 m2 Q of (5.2.5) must be m1 m6 and 2 m6 Q.
+    """
     require_positive("length a", a)
-    require_within("twist alpha", alpha, 0.0, math.pi)
-    require_within("twist beta", beta, 0.0, math.pi)
-    require_within("twist gamma", gamma, 0.0, math.pi)
-    require_within("twist delta", delta, 0.0, math.pi)
+    require_twists(alpha=alpha, beta=beta, gamma=gamma, delta=delta)
     link_b = Link(bennett_length("b/beta", beta, b, a, alpha), beta)
     length_c = bennett_length("c/gamma", gamma, c, a, alpha)
     link_d = Link(bennett_length("d/delta", delta, d, a, alpha), delta)
@@ -119,90 +116,65 @@ def _loop(
     return closed_chain(joined, link_d, link_b, joined, link_b, link_d)
 
 
-def wohlhart_double_goldberg(
+def special_joined_double_goldberg(
+    sign: int,
     a: Number,
     alpha: Number,
     beta: Number,
-    gamma: Number,
     delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
+    gamma: Number | None = None,
 ) -> Loop:
-    """Wohlhart's double-Goldberg 6R of the links a/alpha, b/beta, c/gamma, d/delta.
+    """The same with tan(alpha/2) tan(gamma/2) = tan(beta/2) tan(delta/2), by which the
+    twist gamma (rad) follows; it is checked when given.
 
-    Twists in rad, between 0 and pi; lengths b, c, d follow from the Bennett ratio, and
-    are checked when given. Raises `GeometryError` for a ratio that differs. Sources:
-    Wohlhart 1991; Song 2013, eqs (5.2.1)-(5.2.5), where the products m1 m2 of (5.2.4)
-    and 2 m2 Q of (5.2.5) must be m1 m6 and 2 m6 Q.
-    """
-    return _loop(+1, a, alpha, beta, gamma, delta, b, c, d)
-
-
-def double_subtractive_goldberg(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """The double-subtractive-Goldberg 6R of the links a/alpha, b/beta, c/gamma,
-    d/delta, with a > c.
-
-    Parameters and errors as in `wohlhart_double_goldberg`. Source: Song 2013, eqs
-    (5.2.1), (5.2.6)-(5.2.8).
-    """
-    return _loop(-1, a, alpha, beta, gamma, delta, b, c, d)
-
-
-def _special_gamma(
-    alpha: Number, beta: Number, delta: Number, gamma: Number | None
-) -> Number:
-    """The twist gamma with tan(alpha/2) tan(gamma/2) = tan(beta/2) tan(delta/2); a
-    given one is checked."""
-    require_within("twist alpha", alpha, 0.0, math.pi)
-    product = tan(beta / 2) * tan(delta / 2)
-    if gamma is None:
-        return 2 * atan(product / tan(alpha / 2))
-    require_equal(
-        "tan(alpha/2) tan(gamma/2)",
-        tan(alpha / 2) * tan(gamma / 2),
-        product,
-        "tan(beta/2) tan(delta/2)",
-    )
-    return gamma
-
-
-def special_wohlhart_double_goldberg(
-    a: Number, alpha: Number, beta: Number, delta: Number, gamma: Number | None = None
-) -> Loop:
-    """Wohlhart's double-Goldberg 6R with tan(alpha/2) tan(gamma/2) = tan(beta/2)
-    tan(delta/2).
-
-    Its Form I is a Bennett linkage of the joints 1, 2, 4, 5. The twist gamma (rad)
-    follows, and is checked when given. Sources: Song and Chen 2012, eqs (5.10)-(5.13),
-    where m1/m2 of Form II in (5.13) must be m2/tan(theta1/2); Song 2013, eqs (5.2.25),
-    (5.2.33).
-    """
-    gamma = _special_gamma(alpha, beta, delta, gamma)
-    return wohlhart_double_goldberg(a, alpha, beta, gamma, delta)
-
-
-def special_double_subtractive_goldberg(
-    a: Number, alpha: Number, beta: Number, delta: Number, gamma: Number | None = None
-) -> Loop:
-    """The double-subtractive-Goldberg 6R with tan(alpha/2) tan(gamma/2) = tan(beta/2)
-    tan(delta/2).
-
-    Its Form II is a Bennett linkage of the joints 1, 2, 4, 5. The twist gamma (rad)
-    follows, and is checked when given. Source: Song 2013, eqs (5.2.25),
+    Form I of Wohlhart's, Form II of the double-subtractive linkage is a Bennett linkage
+    of the joints 1, 2, 4, 5. Sources: Song and Chen 2012, eqs (5.10)-(5.13), where m1/m2
+    of Form II in (5.13) must be m2/tan(theta1/2); Song 2013, eqs (5.2.25),
     (5.2.33)-(5.2.34), where b must be 1.0572, not 1.5072.
     """
-    gamma = _special_gamma(alpha, beta, delta, gamma)
-    return double_subtractive_goldberg(a, alpha, beta, gamma, delta)
+    require_twists(alpha=alpha)
+    product = tan(beta / 2) * tan(delta / 2)
+    if gamma is None:
+        gamma = 2 * atan(product / tan(alpha / 2))
+    else:
+        require_equal(
+            "tan(alpha/2) tan(gamma/2)",
+            tan(alpha / 2) * tan(gamma / 2),
+            product,
+            "tan(beta/2) tan(delta/2)",
+        )
+    return joined_double_goldberg(sign, a, alpha, beta, gamma, delta)
+
+
+wohlhart_double_goldberg = partial(joined_double_goldberg, +1)
+double_subtractive_goldberg = partial(joined_double_goldberg, -1)
+special_wohlhart_double_goldberg = partial(special_joined_double_goldberg, +1)
+special_double_subtractive_goldberg = partial(special_joined_double_goldberg, -1)
+
+
+def generalized_double_goldberg(
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    delta: Number,
+    kink_1: KinkAngle,
+    kink_2: KinkAngle,
+    b: Number | None = None,
+    c: Number | None = None,
+    d: Number | None = None,
+) -> Loop:
+    """Links b, [a c], b, d, [a c], d, the pair a, c locked at ``kink_1`` and at
+    ``kink_2`` (rad, or a `Kink`).
+
+    Twists in rad; the lengths b, c, d follow from the Bennett ratio and are checked if
+    given. Kinks 0, 0 give Wohlhart's linkage, pi, pi the double-subtractive one, pi, 0
+    the mixed Type I; equal kinks give a linkage of Mavroidis and Roth with R2 = R3 = -R5
+    = -R6. Raises `GeometryError`. Source: Wohlhart (1991a), for equal kinks.
+    """
+    first = generalized_goldberg(a, alpha, beta, gamma, kink_1, b, c)
+    second = generalized_goldberg(a, alpha, delta, gamma, kink_2, d, c)
+    return superpose(first, second, shared=2)
 
 
 # --- forms
@@ -415,18 +387,6 @@ def _with_partner(
     return residual
 
 
-def _patterns_of(
-    sign: int, a: float, alpha: float, beta: float, gamma: float, delta: float
-) -> tuple[FormPattern, ...]:
-    return patterns(sign, alpha, beta, gamma, delta)
-
-
-def _special_patterns_of(
-    sign: int, a: float, alpha: float, beta: float, delta: float
-) -> tuple[FormPattern, ...]:
-    return special_patterns(sign, alpha, beta, delta)
-
-
 # --- closed forms
 
 TWISTS = ("alpha", "beta", "gamma", "delta")
@@ -512,14 +472,7 @@ def non_constructive_closed_form(
     third = joint(3)
     s1, c1 = first
     s3, c3 = third
-    b = constant("b")
-    d = constant("d")
-    n_b = constant("N_b")
-    d_b = constant("D_b")
-    n_d = constant("N_d")
-    d_d = constant("D_d")
-    e = constant("E")
-    f = constant("F")
+    b, d, n_b, d_b, n_d, d_d, e, f = symbols("b d N_b D_b N_d D_d E F")
     cross = b * (n_d * c1**2 - d_d * s1**2)
     relation = e * s1 * c1 * s3**2 + cross * s3 * c3 + f * s1 * c1 * c3**2
     fourth = (
@@ -541,11 +494,7 @@ def non_constructive_closed_form(
 
 
 def _non_constructive_constants(tangents: _Tangents) -> dict[str, Number]:
-    g = constant("g")
-    v = constant("v")
-    w = constant("w")
-    b = constant("b")
-    d = constant("d")
+    g, v, w, b, d = symbols("g v w b d")
     constants = {
         "b": tangents.b,
         "d": tangents.d,
@@ -564,7 +513,7 @@ def _non_constructive_constants(tangents: _Tangents) -> dict[str, Number]:
 
 
 def _special_closed_form(
-    sign: int, form: str, fourth: Pair, fifth: Pair, bennett: bool
+    linkage: str, sign: int, form: str, fourth: Pair, fifth: Pair, bennett: bool
 ) -> ClosedForm:
     """Forms I and II under tan(alpha/2) tan(gamma/2) = tan(beta/2) tan(delta/2), where
     each is rational."""
@@ -581,7 +530,7 @@ def _special_closed_form(
         )
     second = reciprocal(first, constant("m_da") * constant("m_dc"))
     return ClosedForm(
-        f"special-{WDG if sign > 0 else DSG}",
+        linkage,
         form,
         source,
         tangents.names,
@@ -590,34 +539,38 @@ def _special_closed_form(
     )
 
 
-def _formulas(linkage: str, sign: int) -> tuple[ClosedForm, ...]:
+def _formulas(sign: int, linkage: str) -> tuple[ClosedForm, ...]:
     return (
         constructive_closed_form(linkage, sign),
         non_constructive_closed_form(linkage, sign),
     )
 
 
-def _special_wdg_formulas() -> tuple[ClosedForm, ...]:
+def _special_wdg_formulas(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
     opposite = negative(first)
     other = (-constant("m_ba") * constant("m_bc") * c1, s1)
     return (
-        _special_closed_form(+1, "Form I (Bennett 4R)", opposite, other, bennett=True),
-        _special_closed_form(+1, "Form II", other, opposite, bennett=False),
-        non_constructive_closed_form(f"special-{WDG}", +1, special=True),
+        _special_closed_form(
+            linkage, +1, "Form I (Bennett 4R)", opposite, other, bennett=True
+        ),
+        _special_closed_form(linkage, +1, "Form II", other, opposite, bennett=False),
+        non_constructive_closed_form(linkage, +1, special=True),
     )
 
 
-def _special_dsg_formulas() -> tuple[ClosedForm, ...]:
+def _special_dsg_formulas(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
     rest = minus(HALF_TURN, first)
     other = (constant("m_ba") * constant("m_bc") * s1, c1)
     return (
-        _special_closed_form(-1, "Form I", other, rest, bennett=False),
-        _special_closed_form(-1, "Form II (Bennett 4R)", rest, other, bennett=True),
-        non_constructive_closed_form(f"special-{DSG}", -1, special=True),
+        _special_closed_form(linkage, -1, "Form I", other, rest, bennett=False),
+        _special_closed_form(
+            linkage, -1, "Form II (Bennett 4R)", rest, other, bennett=True
+        ),
+        non_constructive_closed_form(linkage, -1, special=True),
     )
 
 
@@ -633,127 +586,60 @@ def _guesses(sign: int, special: bool, form: np.ndarray) -> Iterator[dict[str, f
         yield guess if special else {**guess, "gamma": gamma}
 
 
-# --- entries
+def _generalized_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """Sum and product of the cosines of alpha and gamma are linear in the rest."""
+    lengths, twists, offsets = form
+    ratio = lengths[0] / np.sin(twists[0])
+    joined = twists[1]
+    for twist, sign in itertools.product((joined, joined + np.pi), (1, -1)):
+        cosine = np.cos(twist)
+        total = sign * lengths[1] / ratio / np.tan(twist / 2)
+        shear = offsets[1] / ratio * (1 + cosine)
+        top = cosine**2 + shear**2 - 1 + total**2
+        product = top / (2 * (1 + cosine))
+        mean = total / 2
+        square = max(mean**2 - product, 0.0)
+        root = np.sqrt(square)
+        if abs(mean) + root >= 1:
+            continue
+        pair = np.arccos([mean + root, mean - root])
+        for gamma, alpha in itertools.permutations(pair):
+            links = {"a": ratio * np.sin(alpha), "alpha": alpha, "gamma": gamma}
+            for kink_pair in kink_pairs(
+                (alpha, gamma, twists[1]), (alpha, gamma, twists[4])
+            ):
+                yield {**links, **kink_pair}
 
 
-def _twist(name: str, degrees: float) -> Parameter:
-    return Parameter.angle(name, degrees, f"twist {name} of a basic link", 10, 170)
-
-
-MEANING_OF_A = "length of the basic link a/alpha"
-GENERAL = (
-    length_a(66, MEANING_OF_A),
-    _twist("alpha", 66),
-    _twist("beta", 50),
-    _twist("gamma", 28),
-    _twist("delta", 83),
-)
-SPECIAL = (
-    Parameter.length("a", 1.0, MEANING_OF_A, 0.3, 3.0),
-    _twist("alpha", 125),
-    _twist("beta", 60),
-    _twist("delta", 45),
-)
-RATIO = Condition(
-    "sin(alpha)/a = sin(beta)/b = sin(gamma)/c = sin(delta)/d, all offsets 0",
-    (zero_offsets(),),
-)
-TANGENTS = Condition("tan(alpha/2) tan(gamma/2) = tan(beta/2) tan(delta/2)")
-SUM = Condition(
-    "links 12 and 45: a + c, alpha + gamma; 23 and 61: d, delta; 34 and 56: b, beta"
-)
-DIFFERENCE = Condition(
-    "links 12 and 45: a - c, alpha - gamma; 23 and 61: d, delta; 34 and 56: b, beta"
-)
-SWITCHING = (
-    "Song 2013, eqs (5.2.4), (5.2.5): m1 m2 and m2 Q must be m1 m6 and m6 Q; "
-    "the switch of the root is at tan(theta1/2) = sqrt(-m3 m4), and only if m3 m4 < 0"
-)
-FACTS = {"mobility": 1, "rank": 5, "forms": 4, "bifurcations": 4, "components": 1}
-
-
-def _case_of(other: str, source: str) -> Relation:
-    return Relation(RelationKind.SPECIAL_CASE, other, source)
-
-
-def _built_from(other: str, source: str) -> Relation:
-    detail = "common link pair of two"
-    return Relation(RelationKind.CONSTRUCTED, other, source, detail)
-
-
-GENERAL_CASES = (
-    _case_of("generalized-double-goldberg", "Wohlhart (1991a)"),
-    _case_of("mavroidis-roth-opposite", "Song (2013), section 2.4.6"),
-    _case_of("mavroidis-roth-reflected", BY_IDENTIFICATION),
-)
-
-ENTRIES: tuple[Entry, ...] = (
-    Entry(
-        WDG,
-        "Wohlhart's double-Goldberg 6R linkage",
-        f"Wohlhart 1991, Mech. Mach. Theory 26, 659-668; {THESIS}, eqs (5.2.1)-(5.2.5)",
-        wohlhart_double_goldberg,
-        GENERAL,
-        conditions=(SUM, RATIO),
-        patterns=partial(_patterns_of, +1),
-        formulas=partial(_formulas, WDG, +1),
-        guesses=partial(_guesses, +1, False),
-        relations=(*GENERAL_CASES, _built_from("goldberg-5r", "Wohlhart (1991a)")),
-        errata=(SWITCHING,),
-        facts=FACTS,
-    ),
-    Entry(
-        DSG,
-        "Double-subtractive-Goldberg 6R linkage",
-        f"{THESIS}, eqs (5.2.1), (5.2.6)-(5.2.8)",
-        double_subtractive_goldberg,
-        GENERAL,
-        conditions=(DIFFERENCE, RATIO),
-        patterns=partial(_patterns_of, -1),
-        formulas=partial(_formulas, DSG, -1),
-        guesses=partial(_guesses, -1, False),
-        relations=(
-            *GENERAL_CASES,
-            _built_from("subtractive-goldberg-5r", "Song (2013), table 3.3.1"),
+ENTRIES = read_entries(
+    "double_goldberg",
+    {
+        WDG: Model(
+            wohlhart_double_goldberg,
+            lambda a, **twists: patterns(+1, **twists),
+            partial(_formulas, +1),
+            partial(_guesses, +1, False),
         ),
-        errata=("Song 2013, eqs (5.2.13)-(5.2.17): m2 must be m6",),
-        facts=FACTS,
-    ),
-    Entry(
-        f"special-{WDG}",
-        "Special Wohlhart double-Goldberg 6R linkage",
-        f"{PAPER}, eqs (5.10)-(5.13); {THESIS}, eqs (5.2.25), (5.2.33)",
-        special_wohlhart_double_goldberg,
-        SPECIAL,
-        conditions=(SUM, RATIO, TANGENTS),
-        patterns=partial(_special_patterns_of, +1),
-        formulas=_special_wdg_formulas,
-        guesses=partial(_guesses, +1, True),
-        relations=(
-            _case_of(WDG, "Song and Chen (2012)"),
-            _case_of("back-to-back-double-goldberg-sum", BY_IDENTIFICATION),
+        DSG: Model(
+            double_subtractive_goldberg,
+            lambda a, **twists: patterns(-1, **twists),
+            partial(_formulas, -1),
+            partial(_guesses, -1, False),
         ),
-        errata=(
-            "Song and Chen 2012, eq. (5.13), Form II: m1/m2 must be m2/tan(theta1/2)",
-            SWITCHING,
+        f"special-{WDG}": Model(
+            special_wohlhart_double_goldberg,
+            lambda a, **twists: special_patterns(+1, **twists),
+            _special_wdg_formulas,
+            partial(_guesses, +1, True),
         ),
-        facts=FACTS,
-    ),
-    Entry(
-        f"special-{DSG}",
-        "Special double-subtractive-Goldberg 6R linkage",
-        f"{THESIS}, eqs (5.2.25), (5.2.33)-(5.2.35)",
-        special_double_subtractive_goldberg,
-        SPECIAL,
-        conditions=(DIFFERENCE, RATIO, TANGENTS),
-        patterns=partial(_special_patterns_of, -1),
-        formulas=_special_dsg_formulas,
-        guesses=partial(_guesses, -1, True),
-        relations=(
-            _case_of(DSG, "Song (2013), section 5.2"),
-            _case_of("back-to-back-double-goldberg-difference", BY_IDENTIFICATION),
+        f"special-{DSG}": Model(
+            special_double_subtractive_goldberg,
+            lambda a, **twists: special_patterns(-1, **twists),
+            _special_dsg_formulas,
+            partial(_guesses, -1, True),
         ),
-        errata=("Song 2013, eq. (5.2.34): b = 1.5072 must be 1.0572",),
-        facts=FACTS,
-    ),
+        "generalized-double-goldberg": Model(
+            generalized_double_goldberg, guesses=_generalized_guesses
+        ),
+    },
 )

@@ -1,7 +1,9 @@
-"""Planar four-bars: general, parallelogram, rhombus and kite.
+"""Four-bars: planar ones, general, parallelogram, rhombus and kite, and the spherical
+one.
 
-All twists and offsets vanish; theta_i is the exterior angle at joint i, and the four
-add up to a multiple of a full turn.
+In the plane all twists and offsets vanish; theta_i is the exterior angle at joint i, and
+the four add up to a multiple of a full turn. The axes of the spherical one meet in a
+point, for comparison with the Bennett linkage.
 """
 
 from __future__ import annotations
@@ -12,25 +14,14 @@ from typing import TypeAlias
 import numpy as np
 
 from linkages.construction.conditions import decided, require_positive
+from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number
-from linkages.construction.table_equations import (
-    equal_lengths,
-    zero_offsets,
-    zero_twists,
-)
-from linkages.entry import (
-    Condition,
-    Entry,
-    FormPattern,
-    Parameter,
-    Relation,
-    RelationKind,
-)
+from linkages.entry import FormPattern
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 from linkages.values import GeometryError, told_apart
 
 POSITION = 10
-SOURCE = "Hunt 1990, Kinematic geometry of mechanisms"
 LINKS = ("12", "23", "34", "41")
 Function: TypeAlias = Callable[[np.ndarray], np.ndarray]
 
@@ -145,92 +136,22 @@ def form_patterns(a: float, b: float, c: float, d: float) -> tuple[FormPattern, 
     return ()
 
 
-def _parallelogram_patterns(a: float, b: float) -> tuple[FormPattern, ...]:
-    return form_patterns(a, b, a, b)
+def spherical_four_bar(
+    alpha12: Number, alpha23: Number, alpha34: Number, alpha41: Number
+) -> Loop:
+    """Spherical 4R: lengths and offsets zero, twists (rad) free. Source: Savage (1972),
+    among others."""
+    twists = (alpha12, alpha23, alpha34, alpha41)
+    return closed_chain(*(Link(0, twist) for twist in twists))
 
 
-def _rhombus_patterns(a: float) -> tuple[FormPattern, ...]:
-    return form_patterns(a, a, a, a)
-
-
-def _kite_patterns(a: float, b: float) -> tuple[FormPattern, ...]:
-    return form_patterns(a, b, b, a)
-
-
-def _length(name: str, default: float, meaning: str) -> Parameter:
-    return Parameter.length(name, default, meaning, 0.3, 3.0)
-
-
-def _case_of(other: str) -> Relation:
-    return Relation(RelationKind.SPECIAL_CASE, other, "Hunt (1990)")
-
-
-PLANE = Condition("all twists and offsets 0", (zero_twists, zero_offsets()))
-
-ENTRIES: tuple[Entry, ...] = (
-    Entry(
-        "four-bar",
-        "Planar four-bar",
-        SOURCE,
-        four_bar,
-        (
-            _length("a", 1.0, "length of link 12"),
-            _length("b", 2.4, "length of link 23"),
-            _length("c", 2.0, "length of link 34"),
-            _length("d", 2.7, "length of link 41"),
-        ),
-        conditions=(PLANE, Condition("no link as long as the other three together")),
-        facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 0},
-    ),
-    Entry(
-        "parallelogram",
-        "Parallelogram four-bar",
-        SOURCE,
-        parallelogram,
-        (
-            _length("a", 1.0, "length of links 12 and 34"),
-            _length("b", 2.0, "length of links 23 and 41"),
-        ),
-        conditions=(
-            Condition("a12 = a34, a23 = a41", (equal_lengths((12, 34), (23, 41)),)),
-            PLANE,
-        ),
-        patterns=_parallelogram_patterns,
-        relations=(_case_of("four-bar"),),
-        facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},
-    ),
-    Entry(
-        "rhombus",
-        "Rhombus four-bar",
-        SOURCE,
-        rhombus,
-        (_length("a", 1.0, "length of every link"),),
-        conditions=(
-            Condition(
-                "a12 = a23 = a34 = a41",
-                (equal_lengths((12, 23), (12, 34), (12, 41)),),
-            ),
-            PLANE,
-        ),
-        patterns=_rhombus_patterns,
-        relations=(_case_of("parallelogram"), _case_of("kite")),
-        facts={"mobility": 1, "rank": 3, "forms": 3, "bifurcations": 3, "arcs": 6},
-    ),
-    Entry(
-        "kite",
-        "Kite four-bar",
-        SOURCE,
-        kite,
-        (
-            _length("a", 1.0, "length of links 12 and 41"),
-            _length("b", 2.0, "length of links 23 and 34"),
-        ),
-        conditions=(
-            Condition("a12 = a41, a23 = a34", (equal_lengths((12, 41), (23, 34)),)),
-            PLANE,
-        ),
-        patterns=_kite_patterns,
-        relations=(_case_of("four-bar"),),
-        facts={"mobility": 1, "rank": 3, "forms": 2, "bifurcations": 2, "arcs": 4},
-    ),
+ENTRIES = read_entries(
+    "four_bar",
+    {
+        "four-bar": Model(four_bar),
+        "parallelogram": Model(parallelogram, lambda a, b: form_patterns(a, b, a, b)),
+        "rhombus": Model(rhombus, lambda a: form_patterns(a, a, a, a)),
+        "kite": Model(kite, lambda a, b: form_patterns(a, b, b, a)),
+        "spherical-four-bar": Model(spherical_four_bar),
+    },
 )

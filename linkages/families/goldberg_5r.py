@@ -1,23 +1,42 @@
-"""The other 5R linkages of Goldberg's family: syncopated, generalized, and those of
+"""Goldberg's 5R linkages: plain, subtractive, syncopated, generalized, and those of
 Myard.
 
-All are made of two Bennett loops with a common link; the plain and the subtractive
-Goldberg linkage stand in `linkages.families.goldberg`. Twists in rad. Only the length
-of link a is free: the others follow from the Bennett ratio, and are checked where they
-are given.
+All are made of two Bennett loops with a common link b/beta: the other links a/alpha and
+c/gamma are added in link 23, laid back on each other, or locked at an angle. Twists in
+rad. Only the length of link a is free: the others follow from the Bennett ratio, and are
+checked where they are given.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import cos, pi, sin, sqrt, tan
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import ClosedForm, constant, ratio, tangent
+from linkages.closed_forms.closed_form import (
+    HALF_TURN,
+    ZERO,
+    ClosedForm,
+    Pair,
+    constant,
+    joint,
+    minus,
+    only,
+    plus,
+    ratio,
+    reciprocal,
+    symbols,
+    tangent,
+)
 from linkages.construction import numbers
-from linkages.construction.basic_links import length_a
-from linkages.construction.conditions import require_different, require_equal
+from linkages.construction.conditions import (
+    bennett_length,
+    require_different,
+    require_equal,
+    require_positive,
+    require_twists,
+)
 from linkages.construction.link import (
     Link,
     bennett_links,
@@ -28,31 +47,50 @@ from linkages.construction.link import (
 from linkages.construction.numbers import Number, pi_like
 from linkages.construction.possible_angles import half_tangents, kinks, twists_with
 from linkages.construction.spatial_triangle import KinkAngle, composite_link
-from linkages.construction.table_equations import (
-    TableNumbers,
-    equal_lengths,
-    equal_links,
-    equal_offsets,
-    equal_twists,
-    equation,
-    supplementary_twists,
-    twists_of_value,
-    zero_lengths,
-    zero_offsets,
-)
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    Guesses,
-    Parameter,
-    Relation,
-    RelationKind,
-)
-from linkages.families.goldberg import goldberg_closed_form
+from linkages.entry import FormPattern, Guesses
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 
-POSITION = 50
+POSITION = 40
+TWISTS = ("alpha", "beta", "gamma")
+SUM, DIFFERENCE = +1, -1  # how a and c are joined
+
+
+def joined_goldberg(
+    sign: int,
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    b: Number | None = None,
+    c: Number | None = None,
+) -> Loop:
+    """The Goldberg 5R with links 12, 23, 34, 45, 51: b, a + c, b, c, a, and the twists
+    likewise, in rad; for ``sign`` -1 the subtractive one with a - c, a > c.
+
+    Lengths b and c follow from the Bennett ratio of a/alpha, and are checked when given.
+    Raises `GeometryError` for another ratio. theta1 + theta4 and theta2 + theta3 + theta5
+    are pi, in the subtractive one 0. Sources: Goldberg 1943; Song 2013, eqs (2.3.1),
+    (3.2.1), (3.2.2), and Song and Chen, A family of mixed double-Goldberg 6R linkages,
+    eqs (2.1), (2.2); for the subtractive one Song and Chen 2011 and Song 2013, eqs
+    (3.2.3), (3.2.4), where link 23 must be a51 - a45 / alpha51 - alpha45 and
+    tan(theta3/2) = tan(theta1/2) sin((gamma - beta)/2) / sin((gamma + beta)/2).
+    """
+    require_positive("length a", a)
+    require_twists(alpha=alpha, beta=beta, gamma=gamma)
+    b = bennett_length("b/beta", beta, b, a, alpha)
+    c = bennett_length("c/gamma", gamma, c, a, alpha)
+    joined = a + sign * c
+    require_positive("length of link 23", joined)
+    if sign < 0:
+        require_different("twist gamma", gamma, alpha, "alpha, whose link it cancels")
+    lengths = (b, joined, b, c, a)
+    twists = (beta, alpha + sign * gamma, beta, gamma, alpha)
+    return Loop(lengths, twists, (0,) * 5)
+
+
+goldberg = partial(joined_goldberg, SUM)
+subtractive_goldberg = partial(joined_goldberg, DIFFERENCE)
 
 
 def syncopated_goldberg(
@@ -160,39 +198,101 @@ def myard_plane_symmetric(
     return extended_myard(a, alpha, right_angle, offset, b, alpha34)
 
 
-# --- closed forms
+# --- forms and closed forms
 
 
-def _syncopated_formulas() -> tuple[ClosedForm, ...]:
+def _pattern(name: str, sign: int) -> Callable[..., tuple[FormPattern, ...]]:
+    zero = np.cos if sign > 0 else np.sin
+
+    def residual(theta: np.ndarray) -> np.ndarray:
+        h = np.moveaxis(np.asarray(theta) / 2, -1, 0)
+        opposite = zero(h[0] + h[3])
+        others = zero(h[1] + h[2] + h[4])
+        return np.stack([opposite, others], axis=-1)
+
+    return lambda **values: (FormPattern(name, residual),)
+
+
+def goldberg_closed_form(
+    linkage: str,
+    sign: int,
+    alpha: Number,
+    beta: Number,
+    gamma: Number,
+    angles: tuple[str, ...],
+    constants: Mapping[str, Number],
+) -> ClosedForm:
+    """The closed form of the links b, a + ``sign`` c, b, c, a with the half tangents
+    ``alpha``, ``beta``, ``gamma``.
+
+    ``angles`` are the parameters of the linkage that it depends on, ``constants`` those
+    in which the half tangents are written. Song (2013), equations (3.2.2) and (2.2) of
+    Song and Chen (2012); for the difference (3.2.4) and (2.4), where the factor of
+    tan(theta3/2) is printed inverted.
+    """
+    first = joint(1)
+    s_1, c_1 = first
+    m_c = constant("m_c")
+    second = reciprocal(first, constant("m_a"))
+    third: Pair
+    if sign > 0:
+        name = "Goldberg form"
+        source = "(3.2.2)"
+        third = (m_c * s_1, c_1)
+        rest = HALF_TURN
+    else:
+        name = "subtractive Goldberg form"
+        source = "(3.2.4), the factor of tan(theta3/2) inverted"
+        third = (s_1, m_c * c_1)
+        rest = ZERO
+    fourth = minus(rest, first)
+    fifth = minus(rest, plus(second, third))
+    factors = {
+        "m_a": (alpha + beta) / (alpha - beta),
+        "m_c": (gamma + beta) / (gamma - beta),
+    }
+    return ClosedForm(
+        linkage,
+        name,
+        "Song 2013, eq. " + source,
+        angles,
+        only(first, second, third, fourth, fifth),
+        {**constants, **factors},
+    )
+
+
+def _formulas(sign: int, linkage: str) -> tuple[ClosedForm, ...]:
+    alpha, beta, gamma = (tangent(name) for name in TWISTS)
+    return (goldberg_closed_form(linkage, sign, alpha, beta, gamma, TWISTS, {}),)
+
+
+def _syncopated_formulas(linkage: str) -> tuple[ClosedForm, ...]:
     """The link b of the Goldberg 5R is the difference of d and b, with half tangent
     u_side."""
-    alpha, beta, gamma = (tangent(name) for name in ("alpha", "beta", "gamma"))
-    p = constant("p")
-    u_delta = constant("u_delta")
+    alpha, beta, gamma = (tangent(name) for name in TWISTS)
+    p, u_delta = symbols("p u_delta")
     constants = {
         "p": ratio("alpha", "beta") * ratio("gamma", "beta"),
         "u_delta": (p + 1) / (p - 1) * (alpha + gamma) / (1 - alpha * gamma),
         "u_side": (u_delta - beta) / (1 + u_delta * beta),
     }
     form = goldberg_closed_form(
-        "syncopated-goldberg-5r",
-        +1,
+        linkage,
+        SUM,
         alpha,
         constant("u_side"),
         gamma,
-        ("alpha", "beta", "gamma"),
+        TWISTS,
         constants,
     )
     return (form,)
 
 
-def _myard_formulas() -> tuple[ClosedForm, ...]:
+def _myard_formulas(linkage: str) -> tuple[ClosedForm, ...]:
     alpha = tangent("alpha")
     beta = tangent("beta")
-    form = goldberg_closed_form(
-        "myard-asymmetric-5r", +1, alpha, beta, alpha, ("alpha", "beta"), {}
-    )
-    return (form,)
+    angles = ("alpha", "beta")
+    return (goldberg_closed_form(linkage, SUM, alpha, beta, alpha, angles, {}),)
 
 
 # --- first guesses
@@ -221,195 +321,27 @@ def _kink_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
         yield {"kink": kink}
 
 
-# --- conditions
-
-
-def _ratio_gap(t: TableNumbers) -> float:
-    """sin(alpha12)/a12 = sin(alpha23)/a23."""
-    first = sin(t.alpha(12)) / t.a(12)
-    second = sin(t.alpha(23)) / t.a(23)
-    return first - second
-
-
-def _middle_gap(t: TableNumbers) -> float:
-    """cos(alpha34/2) = sin(alpha12) / sqrt(1 + (R3 sin(alpha23)/a23)^2)."""
-    shear = t.R(3) * sin(t.alpha(23)) / t.a(23)
-    left = cos(t.alpha(34) / 2)
-    right = sin(t.alpha(12)) / sqrt(1 + shear**2)
-    return left - right
-
-
-def _joined_length_gap(t: TableNumbers) -> float:
-    """a23 = a12/sin(alpha12) (cos(alpha45) + cos(alpha51)) tan(alpha23/2)."""
-    sum_of_cosines = cos(t.alpha(45)) + cos(t.alpha(51))
-    scale = t.a(12) / sin(t.alpha(12))
-    return t.a(23) - scale * sum_of_cosines * tan(t.alpha(23) / 2)
-
-
-RATIO = Condition("sin(twist)/length is the same for the links a, b, c")
-MYARD_CONDITIONS = (
-    Condition(
-        "a12 = a51, a23 = a45, a34 = 0, alpha12 + alpha51 = pi, alpha23 = alpha45",
-        (
-            equal_lengths((12, 51), (23, 45)),
-            zero_lengths(34),
-            supplementary_twists((12, 51)),
-            equal_twists((23, 45)),
+ENTRIES = read_entries(
+    "goldberg_5r",
+    {
+        "goldberg-5r": Model(
+            goldberg,
+            _pattern("Goldberg form", SUM),
+            partial(_formulas, SUM),
         ),
-    ),
-    Condition("sin(alpha12)/a12 = sin(alpha23)/a23", (equation(_ratio_gap),)),
-    Condition(
-        "cos(alpha34/2) = sin(alpha12) / sqrt(1 + (R3 sin(alpha23)/a23)^2)",
-        (equation(_middle_gap),),
-    ),
-    Condition(
-        "R1 = R2 = R5 = 0, R3 = R4", (zero_offsets(1, 2, 5), equal_offsets((3, 4)))
-    ),
-)
-
-
-# --- entries
-
-
-def _twist(
-    name: str, degrees: float, meaning: str, low: float = 15, high: float = 165
-) -> Parameter:
-    return Parameter.angle(name, degrees, meaning, low, high)
-
-
-ABC = (
-    length_a(66),
-    _twist("alpha", 66, "twist of link a"),
-    _twist("beta", 50, "twist of the common link b"),
-    _twist("gamma", 28, "twist of link c"),
-)
-OFFSET = Parameter.length("offset", 0.4, "R3 = R4", -0.5, 0.5)
-MYARD_LINK = (
-    length_a(35),
-    _twist("alpha", 35, "twist of link 12; that of link 51 is pi - alpha", 15, 75),
-)
-MYARD_ERRATUM = (
-    "alpha34 = pi - 2 alpha is printed for any R3 = R4; it holds for R3 = R4 = 0 only"
-)
-FACTS = {"joints": 5, "mobility": 1}
-
-ENTRIES = (
-    Entry(
-        "syncopated-goldberg-5r",
-        "Syncopated Goldberg 5R",
-        "Goldberg (1943); Baker (1979); Song (2013), eq. 2.3.2",
-        syncopated_goldberg,
-        ABC,
-        conditions=(
-            RATIO,
-            Condition(
-                "a12 = a34 = d - b, a23 = a + c, a45 = c, a51 = a, "
-                "twists likewise, R = 0",
-                (zero_offsets(),),
-            ),
-            Condition(
-                "m(alpha, beta) m(gamma, beta) = m(delta, alpha + gamma), "
-                "m(x, y) = sin((x+y)/2)/sin((x-y)/2)"
-            ),
-            Condition("sin(delta)/d = sin(alpha + gamma)/(a + c)"),
+        "subtractive-goldberg-5r": Model(
+            subtractive_goldberg,
+            _pattern("subtractive Goldberg form", DIFFERENCE),
+            partial(_formulas, DIFFERENCE),
         ),
-        formulas=_syncopated_formulas,
-        guesses=syncopation_guesses(side=0, alpha=4, gamma=3),
-        relations=(Relation(RelationKind.SAME, "goldberg-5r", "Baker (1979)"),),
-        facts=FACTS,
-    ),
-    Entry(
-        "generalized-goldberg-5r",
-        "Generalized Goldberg 5R",
-        "Goldberg (1943); Wohlhart (1991a); Song (2013), eq. 2.3.3",
-        generalized_goldberg,
-        (
-            *ABC,
-            _twist(
-                "kink", 40, "angle at which the links a and c are locked", -120, 120
-            ),
+        "syncopated-goldberg-5r": Model(
+            syncopated_goldberg,
+            formulas=_syncopated_formulas,
+            guesses=syncopation_guesses(side=0, alpha=4, gamma=3),
         ),
-        conditions=(
-            Condition(
-                "a12 = a34, alpha12 = alpha34, equal ratio sin(twist)/length "
-                "of the links 12, 45, 51",
-                (equal_links((12, 34)),),
-            ),
-            Condition(
-                "cos(alpha23) = cos(alpha45) cos(alpha51) "
-                "- cos(kink) sin(alpha45) sin(alpha51)"
-            ),
-            Condition(
-                "a23 = a12/sin(alpha12) (cos(alpha45) + cos(alpha51)) tan(alpha23/2)",
-                (equation(_joined_length_gap),),
-            ),
-            Condition("R1 = R4 = R5 = 0", (zero_offsets(1, 4, 5),)),
-            Condition(
-                "R2 = R3 = a12/sin(alpha12) sin(kink) sin(alpha45) sin(alpha51)"
-                "/(1 + cos(alpha23))"
-            ),
-        ),
-        guesses=_kink_guesses,
-        relations=(
-            Relation(
-                RelationKind.CONSTRUCTED,
-                "bennett",
-                "Wohlhart (1991a)",
-                "two loops, links locked at a kink angle",
-            ),
-        ),
-        facts=FACTS,
-    ),
-    Entry(
-        "myard-plane-symmetric-5r",
-        "Plane-symmetric Myard 5R",
-        "Myard (1931); Song (2013), eq. 2.3.4",
-        myard_plane_symmetric,
-        (*MYARD_LINK, OFFSET),
-        conditions=(
-            *MYARD_CONDITIONS,
-            Condition("alpha23 = pi/2", (twists_of_value(pi / 2, 23),)),
-        ),
-        relations=(
-            Relation(
-                RelationKind.SPECIAL_CASE, "extended-myard-5r", "Chen and You (2008a)"
-            ),
-        ),
-        errata=(MYARD_ERRATUM, "alpha41 = pi/2 is printed for alpha45"),
-        facts=FACTS,
-    ),
-    Entry(
-        "extended-myard-5r",
-        "Extended Myard 5R",
-        "Chen and You (2008a); Song (2013), eq. 2.3.5",
-        extended_myard,
-        (*MYARD_LINK, _twist("beta", 62, "twist of the links 23 and 45"), OFFSET),
-        conditions=MYARD_CONDITIONS,
-        relations=(
-            Relation(
-                RelationKind.SPECIAL_CASE, "generalized-goldberg-5r", BY_IDENTIFICATION
-            ),
-        ),
-        errata=(MYARD_ERRATUM,),
-        facts=FACTS,
-    ),
-    Entry(
-        "myard-asymmetric-5r",
-        "Asymmetric Myard 5R",
-        "Myard (1931); Baker (1979)",
-        myard_asymmetric,
-        (
-            length_a(28),
-            _twist("alpha", 28, "twist of 45 and 51"),
-            _twist("beta", 50, "twist of 12 and 34"),
-        ),
-        conditions=(
-            Condition(
-                "a Goldberg 5R with a = c, alpha = gamma, R = 0", (zero_offsets(),)
-            ),
-        ),
-        formulas=_myard_formulas,
-        relations=(Relation(RelationKind.SPECIAL_CASE, "goldberg-5r", "Baker (1979)"),),
-        facts=FACTS,
-    ),
+        "generalized-goldberg-5r": Model(generalized_goldberg, guesses=_kink_guesses),
+        "myard-plane-symmetric-5r": Model(myard_plane_symmetric),
+        "extended-myard-5r": Model(extended_myard),
+        "myard-asymmetric-5r": Model(myard_asymmetric, formulas=_myard_formulas),
+    },
 )

@@ -1,22 +1,34 @@
-"""6R linkages of three Bennett loops: serial and L-shape of Goldberg, their
-syncopations, Baker's variants.
+"""Goldberg's 6R linkages: three Bennett loops in series or in L-shape, their
+syncopations, Baker's variants, and all of these with kink angles.
 
-Twists in rad. Only the length of link a is free: b, c, d follow from the Bennett ratio,
-and are checked where they are given. Every offset is zero unless a kink angle brings
-one.
+They are the outer loops of three or four Bennett loops with the links a/alpha, b/beta,
+c/gamma, d/delta of one Bennett ratio. Twists in rad. Only the length of link a is free:
+b, c, d follow from the Bennett ratio, and are checked where they are given. Every offset
+is zero unless a kink angle brings one.
+
+Baker's variants with kink angles, and the isomer of the L-shape, are left by a network
+of Bennett loops when two of its joints are locked; Song (2013), sections 5.4.3 and
+5.4.6, names them without formulas. How they move follows from
+`linkages.networks.network`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import itertools
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from linkages.closed_forms.closed_form import (
     HALF_TURN,
+    ZERO,
     ClosedForm,
+    Pair,
     constant,
+    cosine_of,
     joint,
     minus,
     negative,
@@ -24,174 +36,72 @@ from linkages.closed_forms.closed_form import (
     plus,
     ratio,
     reciprocal,
+    sine_of,
+    tangent,
 )
-from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
+from linkages.construction import numbers
 from linkages.construction.constructions import lock, superpose
 from linkages.construction.link import (
     Link,
-    bennett_links,
+    basic_links,
+    chain_constructor,
     closed_chain,
     half_angle_ratio,
+    joined_chain,
     syncopated_link,
 )
 from linkages.construction.numbers import Number
-from linkages.construction.possible_angles import half_tangents, twists_with
+from linkages.construction.possible_angles import half_tangents, kink_pairs, twists_with
 from linkages.construction.spatial_triangle import KinkAngle
-from linkages.construction.table_equations import zero_offsets
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    Parameter,
-    Relation,
-    RelationKind,
-)
+from linkages.entry_table import Model, read_entries
 from linkages.families.goldberg_5r import syncopation_guesses
 from linkages.loop import Loop
 
 POSITION = 70
-NETWORK = "from the network of Bennett loops of Song 2013, section 5.4"
+
+# Goldberg (1943): links a, c, d in line
+serial_goldberg = chain_constructor("b a+c+d b d c a")
+# Goldberg (1943): a Goldberg 5R and a Bennett loop across it on link a
+l_shape_goldberg = chain_constructor("b+d a+c b c d a")
+# Baker (1993a), equations (2.4.5) and (2.4.6) in Song (2013)
+serial_variant = chain_constructor("b a+c d b c+d a")
+l_shape_variant = chain_constructor("b+d a c b c+d a")
 
 
-def serial_goldberg(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """Serial Goldberg 6R: three Bennett loops in a row, links a, c, d in line. Source:
-    Goldberg (1943)."""
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
-    )
-    joined = link_a + link_c + link_d
-    return closed_chain(link_b, joined, link_b, link_d, link_c, link_a)
-
-
-def syncopated_serial_goldberg(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """Syncopated serial Goldberg 6R: a serial one taken from a Bennett loop with sides
-    a + c + d and e.
+def syncopated_serial_goldberg(*parameters: Number, **others: Any) -> Loop:
+    """Syncopated serial Goldberg 6R of `basic_links`: a serial one taken from a Bennett
+    loop with sides a + c + d and e.
 
     Raises `GeometryError` for a beta equal to one of the other twists. Source: Goldberg
     (1943), equation (2.4.2) in Song (2013), whose triple product lacks a minus sign.
     """
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
-    )
-    product = (
-        half_angle_ratio(alpha, beta)
-        * half_angle_ratio(gamma, beta)
-        * half_angle_ratio(delta, beta)
-    )
-    joined = link_a + link_c + link_d
-    side = syncopated_link(joined, -product) - link_b
-    return closed_chain(side, joined, side, link_d, link_c, link_a)
+    links = basic_links(*parameters, **others)
+    product = _product_with_b(links, "acd")
+    links["e"] = syncopated_link(links["a"] + links["c"] + links["d"], -product)
+    return joined_chain("e-b a+c+d e-b d c a", links)
 
 
-def l_shape_goldberg(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """L-shape Goldberg 6R: a Goldberg 5R and a Bennett loop across it on link a.
-    Source: Goldberg (1943)."""
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
-    )
-    first = link_b + link_d
-    second = link_a + link_c
-    return closed_chain(first, second, link_b, link_c, link_d, link_a)
-
-
-def syncopated_l_shape_goldberg(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """Syncopated L-shape Goldberg 6R: an L-shape one taken from a Bennett loop with
-    sides a + c and e.
+def syncopated_l_shape_goldberg(*parameters: Number, **others: Any) -> Loop:
+    """Syncopated L-shape Goldberg 6R of `basic_links`: an L-shape one taken from a
+    Bennett loop with sides a + c and e.
 
     Raises `GeometryError` for a beta equal to alpha or gamma. Source: Goldberg (1943),
     equation (2.4.4) in Song (2013).
     """
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
+    links = basic_links(*parameters, **others)
+    product = _product_with_b(links, "ac")
+    links["e"] = syncopated_link(links["a"] + links["c"], product)
+    return joined_chain("b+d-e a+c e-b c d a", links)
+
+
+def _product_with_b(links: Mapping[str, Link], names: str) -> Number:
+    """The product of the half-angle ratios of these links with b."""
+    product, *others = (
+        half_angle_ratio(links[name].twist, links["b"].twist) for name in names
     )
-    product = half_angle_ratio(alpha, beta) * half_angle_ratio(gamma, beta)
-    joined = link_a + link_c
-    link_e = syncopated_link(joined, product)
-    first = link_b + link_d - link_e
-    third = link_e - link_b
-    return closed_chain(first, joined, third, link_c, link_d, link_a)
-
-
-def serial_variant(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """Baker's variant of the serial Goldberg 6R: a, c in line on one side and c, d on
-    the other.
-
-    Source: Baker (1993a), equation (2.4.5) in Song (2013).
-    """
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
-    )
-    second = link_a + link_c
-    fifth = link_c + link_d
-    return closed_chain(link_b, second, link_d, link_b, fifth, link_a)
-
-
-def l_shape_variant(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """Baker's variant of the L-shape Goldberg 6R: b, d in line on one side and c, d on
-    the other.
-
-    Source: Baker (1993a), equation (2.4.6) in Song (2013).
-    """
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
-    )
-    first = link_b + link_d
-    fifth = link_c + link_d
-    return closed_chain(first, link_a, link_c, link_b, fifth, link_a)
+    for factor in others:
+        product = product * factor
+    return product
 
 
 def generalized_serial_goldberg(
@@ -208,9 +118,7 @@ def generalized_serial_goldberg(
 
     Source: named by Goldberg (1943) and Song (2013), section 2.4.1, without formulas.
     """
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, None), c=(gamma, None), d=(delta, None)
-    )
+    link_a, link_b, link_c, link_d = basic_links(a, alpha, beta, gamma, delta).values()
     pair = _kinked_pair(link_a, link_b, link_c, kink_1)
     row = pair.relabelled(4)  # c a b [a.c] b
     third = closed_chain(link_d, link_b, link_d, link_b)
@@ -230,9 +138,7 @@ def generalized_l_shape_goldberg(
 
     Source: named by Goldberg (1943) and Song (2013), section 2.4.1, without formulas.
     """
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, None), c=(gamma, None), d=(delta, None)
-    )
+    link_a, link_b, link_c, link_d = basic_links(a, alpha, beta, gamma, delta).values()
     pair = _kinked_pair(link_a, link_b, link_c, kink_1)
     bent = pair.reversed().relabelled(4)
     third = closed_chain(link_d, link_a, link_d, link_a)
@@ -247,62 +153,183 @@ def _kinked_pair(a: Link, b: Link, c: Link, kink: KinkAngle) -> Loop:
     return lock(superpose(first, second), 4, kink)
 
 
+def _locked_ring(order: str, *locks: tuple[int, str]) -> Callable[..., Loop]:
+    """The constructor of the loop that a ring of basic links leaves when joints are
+    locked, one after the other, each at the kink (rad, or a `Kink`) of this name."""
+
+    def construct(
+        a: Number,
+        alpha: Number,
+        beta: Number,
+        gamma: Number,
+        delta: Number,
+        **kink_angles: KinkAngle,
+    ) -> Loop:
+        loop = joined_chain(order, basic_links(a, alpha, beta, gamma, delta))
+        for number, name in locks:
+            loop = lock(loop, number, kink_angles[name])
+        return loop
+
+    return construct
+
+
+# links [b d], a, c, b, [c d], a: case 2 of section 5.4.3 of Song (2013)
+generalized_l_shape_variant = _locked_ring(
+    "d b a c b c d a", (7, "kink_2"), (2, "kink_1")
+)
+# links b, [a c], d, b, [c d], a: section 5.4.6 of Song (2013)
+generalized_serial_variant = _locked_ring(
+    "b a c d b d c a", (7, "kink_2"), (3, "kink_1")
+)
+# links [b d], [a c], b, d, c, a: case 3 of section 5.4.3 of Song (2013)
+isomerized_l_shape = _locked_ring("d b a c b d c a", (4, "kink_1"), (2, "kink_2"))
+
+
 # --- closed forms
 
 
-def _l_shape_variant_formulas() -> tuple[ClosedForm, ...]:
-    """Three cells around a common axis, whose joints 2 and 0 are straight: p is the
-    angle of a cell at its outer joint, v that at the joint before."""
-    p_first = joint(1)
-    v_first = reciprocal(p_first, constant("m_a"))
-    v_second = minus(v_first, HALF_TURN)
-    p_second = reciprocal(v_second, constant("m_b"))
-    p_third = negative(plus(p_first, p_second))
-    v_third = reciprocal(p_third, constant("m_c"))
-    between = plus(minus(HALF_TURN, v_second), v_third)
-    form = ClosedForm(
-        "l-shape-goldberg-variant-6r",
-        "form of three Bennett loops",
-        NETWORK,
-        ("alpha", "beta", "gamma", "delta"),
-        only(p_first, p_second, between, p_third, negative(v_third), v_first),
-        {
-            "m_a": ratio("delta", "alpha"),
-            "m_b": ratio("alpha", "beta"),
-            "m_c": ratio("beta", "gamma"),
-        },
+class _Joined(NamedTuple):
+    """What the joints before and after a link of two gain, and the kink at which it is
+    locked, as pairs; the constants in which these are written."""
+
+    before: Pair
+    after: Pair
+    kink: Pair
+    constants: Mapping[str, Number]
+
+
+STRAIGHT = _Joined(ZERO, ZERO, ZERO, {})
+
+
+def _joined(number: int, first: str, second: str) -> _Joined:
+    """Links with these twists, locked at the kink of this number, by the projections of
+    the spatial triangle."""
+    u_1, u_2, u_kink = tangent(first), tangent(second), tangent(f"kink_{number}")
+    c_1, s_1 = cosine_of(u_1), sine_of(u_1)
+    c_2, s_2 = cosine_of(u_2), sine_of(u_2)
+    c_kink, s_kink = cosine_of(u_kink), sine_of(u_kink)
+    names = [f"{name}_{number}" for name in "xyzwnk"]
+    x, y, z, w, n, k = (constant(name) for name in names)
+    values = (
+        c_kink * s_2 * c_1 + c_2 * s_1,
+        s_kink * s_2,
+        c_kink * s_1 * c_2 + c_1 * s_2,
+        s_kink * s_1,
+        numbers.sqrt(x**2 + y**2),
+        u_kink,
     )
+    constants = dict(zip(names, values, strict=True))
+    return _Joined((y, n + x), (w, n + z), (k, 1), constants)
+
+
+def _closed_form(
+    linkage: str,
+    joints: Sequence[Pair],
+    factors: Mapping[str, tuple[str, str]],
+    first: _Joined,
+    second: _Joined,
+) -> tuple[ClosedForm, ...]:
+    """The closed form with the ``factors`` of the Bennett loops, each by the twists whose
+    ratio it is."""
+    constants = {name: ratio(*twists) for name, twists in factors.items()}
+    form = ClosedForm(
+        linkage,
+        "form of three Bennett loops",
+        "from the network of Bennett loops of Song 2013, section 5.4",
+        ("alpha", "beta", "gamma", "delta"),
+        only(*joints),
+        {**constants, **first.constants, **second.constants},
+    )
+    if first is not STRAIGHT:
+        form = replace(
+            form,
+            form="form of the network",
+            source="from the network of Bennett loops of Song (2013), section 5.4",
+            angles=(*form.angles, "kink_1", "kink_2"),
+        )
     return (form,)
 
 
-def _serial_variant_formulas() -> tuple[ClosedForm, ...]:
-    """Three cells in a row, whose joints U1 and V2 are straight."""
-    p_first = negative(joint(1))
-    v_first = reciprocal(p_first, constant("m_a"))
-    v_second = minus(joint(1), HALF_TURN)
-    p_second = reciprocal(v_second, constant("m_c"))
-    p_third = minus(HALF_TURN, v_second)
-    v_third = reciprocal(p_third, constant("m_d"))
-    form = ClosedForm(
-        "serial-goldberg-variant-6r",
-        "form of three Bennett loops",
-        NETWORK,
-        ("alpha", "beta", "gamma", "delta"),
-        only(
-            joint(1),
-            v_first,
-            plus(plus(p_second, v_third), HALF_TURN),
-            p_third,
-            negative(v_third),
-            minus(HALF_TURN, plus(v_first, p_second)),
-        ),
-        {
-            "m_a": ratio("beta", "alpha"),
-            "m_c": ratio("beta", "gamma"),
-            "m_d": ratio("beta", "delta"),
-        },
+def _l_shape_variant_formulas(kinked: bool, linkage: str) -> tuple[ClosedForm, ...]:
+    """Three cells around a common axis, locked at joints 2 and 0: p is the angle of a
+    cell at its outer joint, v that at the joint before."""
+    b_d = _joined(1, "delta", "beta") if kinked else STRAIGHT
+    c_d = _joined(2, "gamma", "delta") if kinked else STRAIGHT
+    p_1 = minus(joint(1), b_d.before)
+    v_1 = reciprocal(p_1, constant("m_a"))
+    v_2 = plus(minus(v_1, HALF_TURN), b_d.kink)
+    p_2 = reciprocal(v_2, constant("m_b"))
+    p_3 = negative(plus(c_d.kink, plus(p_1, p_2)))
+    v_3 = reciprocal(p_3, constant("m_c"))
+    joints = (
+        joint(1),
+        plus(p_2, b_d.after),
+        plus(minus(HALF_TURN, v_2), v_3),
+        p_3,
+        plus(negative(v_3), c_d.before),
+        plus(v_1, c_d.after),
     )
-    return (form,)
+    factors = {
+        "m_a": ("delta", "alpha"),
+        "m_b": ("alpha", "beta"),
+        "m_c": ("beta", "gamma"),
+    }
+    return _closed_form(linkage, joints, factors, b_d, c_d)
+
+
+def _serial_variant_formulas(kinked: bool, linkage: str) -> tuple[ClosedForm, ...]:
+    """Three cells in a row, locked at joints U1 and V2."""
+    a_c = _joined(1, "alpha", "gamma") if kinked else STRAIGHT
+    d_c = _joined(2, "delta", "gamma") if kinked else STRAIGHT
+    p_1 = negative(joint(1))
+    v_1 = reciprocal(p_1, constant("m_a"))
+    v_2 = minus(minus(a_c.kink, p_1), HALF_TURN)
+    p_2 = reciprocal(v_2, constant("m_c"))
+    p_3 = minus(minus(HALF_TURN, v_2), d_c.kink)
+    v_3 = reciprocal(p_3, constant("m_d"))
+    joints = (
+        joint(1),
+        plus(v_1, a_c.before),
+        plus(plus(plus(p_2, v_3), HALF_TURN), a_c.after),
+        p_3,
+        plus(negative(v_3), d_c.before),
+        plus(minus(HALF_TURN, plus(v_1, p_2)), d_c.after),
+    )
+    factors = {
+        "m_a": ("beta", "alpha"),
+        "m_c": ("beta", "gamma"),
+        "m_d": ("beta", "delta"),
+    }
+    return _closed_form(linkage, joints, factors, a_c, d_c)
+
+
+def _isomer_formulas(linkage: str) -> tuple[ClosedForm, ...]:
+    """Four cells around a common axis, locked at joints 2 and 4."""
+    b_d = _joined(2, "delta", "beta")
+    a_c = _joined(1, "alpha", "gamma")
+    p_1 = minus(joint(1), b_d.before)
+    v_1 = reciprocal(p_1, constant("m_a"))
+    v_2 = plus(minus(v_1, HALF_TURN), b_d.kink)
+    p_2 = reciprocal(v_2, constant("m_b"))
+    v_3 = plus(minus(v_2, HALF_TURN), a_c.kink)
+    p_3 = reciprocal(v_3, constant("m_c"))
+    p_4 = negative(plus(p_1, plus(p_2, p_3)))
+    v_4 = reciprocal(p_4, constant("m_d"))
+    joints = (
+        joint(1),
+        plus(plus(p_2, b_d.after), a_c.before),
+        plus(p_3, a_c.after),
+        plus(minus(HALF_TURN, v_3), v_4),
+        p_4,
+        plus(minus(HALF_TURN, v_4), v_1),
+    )
+    factors = {
+        "m_a": ("delta", "alpha"),
+        "m_b": ("alpha", "beta"),
+        "m_c": ("beta", "gamma"),
+        "m_d": ("gamma", "delta"),
+    }
+    return _closed_form(linkage, joints, factors, a_c, b_d)
 
 
 # --- first guesses
@@ -340,168 +367,91 @@ KINKS = tuple((np.linspace(-np.pi, np.pi, 12, endpoint=False) + 0.01).tolist())
 KINK_SCAN = {"kink_1": KINKS, "kink_2": KINKS}
 
 
-# --- entries
+def _hidden_twists(
+    length: float, twist: float, ratio: float, known: float
+) -> Iterator[float]:
+    """The other twists of a link made of two, of ``length`` and ``twist``, one of which
+    has the twist ``known``: length = ratio (cos x + cos y) tan(twist / 2)."""
+    for joined, sign in itertools.product((twist, twist + np.pi), (1, -1)):
+        tangent = np.tan(joined / 2)
+        if not tangent:
+            continue
+        cosine = sign * length / (ratio * tangent) - np.cos(known)
+        if abs(cosine) < 1:
+            yield float(np.arccos(cosine))
 
 
-def _parameters(
-    alpha: float, beta: float, gamma: float, delta: float
-) -> tuple[Parameter, ...]:
-    twists = twists_of_links(a=alpha, b=beta, c=gamma, d=delta)
-    return length_a(alpha), *twists
+def _hidden_twist_guesses(
+    name: str,
+    simple: int,
+    first: tuple[int, int],
+    second: tuple[int, int],
+    form: np.ndarray,
+) -> Iterator[dict[str, float]]:
+    """The twist ``name`` from the lengths of both links that are made of two, and the
+    kinks from their twists.
+
+    ``simple`` is the column of a basic link; ``first`` and ``second`` are those of a link
+    made of two and of the other link in it.
+    """
+    lengths, twists, _ = form
+    ratio = lengths[simple] / np.sin(twists[simple])
+    hidden: list[float] = []
+    for joined, known in (first, second):
+        hidden += _hidden_twists(lengths[joined], twists[joined], ratio, twists[known])
+    for twist in hidden:
+        locked = [(twists[known], twist, twists[i]) for i, known in (first, second)]
+        for pair in kink_pairs(*locked):
+            yield {name: twist, **pair}
 
 
-def _kink(name: str, degrees: float, links: str) -> Parameter:
-    return Parameter.angle(name, degrees, f"angle between {links}", -120, 120)
+def _isomer_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """The kinks from the twists of the links that are made of two."""
+    twists = form[1]
+    beta, delta, gamma, alpha = twists[2:]
+    yield from kink_pairs((alpha, gamma, twists[1]), (beta, delta, twists[0]))
 
 
-def _links(order: str) -> Condition:
-    text = f"links {order}, twists likewise, R = 0"
-    return Condition(text, (zero_offsets(),))
-
-
-def _case_of(other: str, source: str) -> Relation:
-    return Relation(RelationKind.SPECIAL_CASE, other, source)
-
-
-def _grown_from_5r(detail: str) -> tuple[Relation, ...]:
-    """What the serial and the L-shape linkage are to the Goldberg 5R."""
-    without = Relation(
-        RelationKind.DEGENERATE,
-        "goldberg-5r",
-        "Goldberg (1943)",
-        "delta to 0: its link vanishes",
-        vanishing="delta",
-    )
-    built = Relation(RelationKind.CONSTRUCTED, "goldberg-5r", "Goldberg (1943)", detail)
-    return without, built
-
-
-TYPICAL = _parameters(66, 50, 28, 83)
-SLENDER = _parameters(35, 62, 41, 22)
-FACTS = {"joints": 6, "mobility": 1}
-SONG = "Song (2013), section 5.4"
-
-ENTRIES = (
-    Entry(
-        "serial-goldberg-6r",
-        "Serial Goldberg 6R",
-        "Goldberg (1943); Song (2013), eq. 2.4.1",
-        serial_goldberg,
-        SLENDER,
-        conditions=(EQUAL_RATIOS, _links("b, a+c+d, b, d, c, a")),
-        relations=(
-            _case_of("generalized-serial-goldberg-6r", "Goldberg (1943)"),
-            *_grown_from_5r("a third loop in line"),
+ENTRIES = read_entries(
+    "goldberg_6r",
+    {
+        "serial-goldberg-6r": Model(serial_goldberg),
+        "syncopated-serial-goldberg-6r": Model(
+            syncopated_serial_goldberg, guesses=_serial_guesses
         ),
-        facts=FACTS,
-    ),
-    Entry(
-        "syncopated-serial-goldberg-6r",
-        "Syncopated serial Goldberg 6R",
-        "Goldberg (1943); Song (2013), eq. 2.4.2",
-        syncopated_serial_goldberg,
-        SLENDER,
-        conditions=(
-            EQUAL_RATIOS,
-            _links("e-b, a+c+d, e-b, d, c, a"),
-            Condition("sin(epsilon)/e = sin(alpha+gamma+delta)/(a+c+d)"),
-            Condition(
-                "m(alpha,beta) m(gamma,beta) m(delta,beta) "
-                "= -m(epsilon, alpha+gamma+delta)"
-            ),
+        "l-shape-goldberg-6r": Model(l_shape_goldberg),
+        "syncopated-l-shape-goldberg-6r": Model(
+            syncopated_l_shape_goldberg,
+            guesses=syncopation_guesses(side=2, alpha=5, gamma=3),
         ),
-        guesses=_serial_guesses,
-        errata=(
-            "the triple product is printed with + and then leaves the linkage rigid; "
-            "it takes -",
+        "serial-goldberg-variant-6r": Model(
+            serial_variant,
+            formulas=partial(_serial_variant_formulas, False),
+            guesses=partial(difference_guesses, "gamma", 1, 5),
         ),
-        facts=FACTS,
-    ),
-    Entry(
-        "l-shape-goldberg-6r",
-        "L-shape Goldberg 6R",
-        "Goldberg (1943); Song (2013), eq. 2.4.3",
-        l_shape_goldberg,
-        TYPICAL,
-        conditions=(EQUAL_RATIOS, _links("b+d, a+c, b, c, d, a")),
-        relations=(
-            _case_of("generalized-l-shape-goldberg-6r", "Goldberg (1943)"),
-            *_grown_from_5r("a third loop across"),
+        "l-shape-goldberg-variant-6r": Model(
+            l_shape_variant,
+            formulas=partial(_l_shape_variant_formulas, False),
+            guesses=partial(difference_guesses, "delta", 0, 3),
         ),
-        facts=FACTS,
-    ),
-    Entry(
-        "syncopated-l-shape-goldberg-6r",
-        "Syncopated L-shape Goldberg 6R",
-        "Goldberg (1943); Song (2013), eq. 2.4.4",
-        syncopated_l_shape_goldberg,
-        SLENDER,
-        conditions=(
-            EQUAL_RATIOS,
-            _links("b+d-e, a+c, e-b, c, d, a"),
-            Condition(
-                "sin(epsilon)/e = sin(alpha+gamma)/(a+c), "
-                "m(alpha,beta) m(gamma,beta) = m(epsilon, alpha+gamma)"
-            ),
+        "generalized-serial-goldberg-6r": Model(
+            generalized_serial_goldberg, scan=KINK_SCAN
         ),
-        guesses=syncopation_guesses(side=2, alpha=5, gamma=3),
-        relations=(_case_of("generalized-l-shape-goldberg-6r", BY_IDENTIFICATION),),
-        facts=FACTS,
-    ),
-    Entry(
-        "serial-goldberg-variant-6r",
-        "Variant of the serial Goldberg 6R",
-        "Baker (1993a); Song (2013), eq. 2.4.5",
-        serial_variant,
-        TYPICAL,
-        conditions=(EQUAL_RATIOS, _links("b, a+c, d, b, c+d, a")),
-        guesses=partial(difference_guesses, "gamma", 1, 5),
-        formulas=_serial_variant_formulas,
-        relations=(_case_of("generalized-serial-goldberg-variant-6r", SONG),),
-        facts=FACTS,
-    ),
-    Entry(
-        "l-shape-goldberg-variant-6r",
-        "Variant of the L-shape Goldberg 6R",
-        "Baker (1993a); Song (2013), eq. 2.4.6",
-        l_shape_variant,
-        TYPICAL,
-        conditions=(EQUAL_RATIOS, _links("b+d, a, c, b, c+d, a")),
-        guesses=partial(difference_guesses, "delta", 0, 3),
-        formulas=_l_shape_variant_formulas,
-        relations=(_case_of("generalized-l-shape-goldberg-variant-6r", SONG),),
-        facts=FACTS,
-    ),
-    Entry(
-        "generalized-serial-goldberg-6r",
-        "Serial Goldberg 6R with kink angles",
-        "Goldberg (1943)",
-        generalized_serial_goldberg,
-        (*SLENDER, _kink("kink_1", 25, "a and c"), _kink("kink_2", -40, "c and d")),
-        conditions=(
-            EQUAL_RATIOS,
-            Condition(
-                "as the serial linkage, the links a, c, d locked at the two kink "
-                "angles and replaced by one"
-            ),
+        "generalized-l-shape-goldberg-6r": Model(
+            generalized_l_shape_goldberg, scan=KINK_SCAN
         ),
-        scan=KINK_SCAN,
-        facts=FACTS,
-    ),
-    Entry(
-        "generalized-l-shape-goldberg-6r",
-        "L-shape Goldberg 6R with kink angles",
-        "Goldberg (1943)",
-        generalized_l_shape_goldberg,
-        (*TYPICAL, _kink("kink_1", 25, "a and c"), _kink("kink_2", -40, "b and d")),
-        conditions=(
-            EQUAL_RATIOS,
-            Condition(
-                "as the L-shape linkage, the pairs a, c and b, d locked at the kink "
-                "angles"
-            ),
+        "generalized-serial-goldberg-variant-6r": Model(
+            generalized_serial_variant,
+            formulas=partial(_serial_variant_formulas, True),
+            guesses=partial(_hidden_twist_guesses, "gamma", 5, (1, 5), (4, 2)),
         ),
-        scan=KINK_SCAN,
-        facts=FACTS,
-    ),
+        "generalized-l-shape-goldberg-variant-6r": Model(
+            generalized_l_shape_variant,
+            formulas=partial(_l_shape_variant_formulas, True),
+            guesses=partial(_hidden_twist_guesses, "delta", 1, (0, 3), (4, 2)),
+        ),
+        "isomerized-generalized-l-shape-goldberg-6r": Model(
+            isomerized_l_shape, formulas=_isomer_formulas, guesses=_isomer_guesses
+        ),
+    },
 )

@@ -1,28 +1,15 @@
-"""Mavroidis and Roth's 6R: four links of one Bennett ratio, and two equal links that
-are free."""
+"""The 6R of Mavroidis and Roth and that of Dietmaier: four links at two joints in
+Bennett ratios, and two equal links that are free."""
 
 from __future__ import annotations
 
 from enum import Enum
 from functools import partial
 
-from linkages.construction.basic_links import length_a, twist_of
+from linkages.construction.conditions import require_different, require_equal
 from linkages.construction.link import Link, bennett_links, closed_chain
-from linkages.construction.numbers import Number
-from linkages.construction.table_equations import (
-    equal_links,
-    equal_offsets,
-    opposite_offsets,
-    zero_offsets,
-)
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    Parameter,
-    Relation,
-    RelationKind,
-)
+from linkages.construction.numbers import Number, cos, sin
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 
 POSITION = 140
@@ -69,97 +56,54 @@ def mavroidis_roth(
     return closed_chain(link_a, free, third, fourth, free, link_c, offsets=offsets)
 
 
-# --- entries
+def dietmaier(
+    a12: Number,
+    alpha12: Number,
+    alpha61: Number,
+    alpha34: Number,
+    alpha45: Number,
+    length: Number,
+    twist: Number,
+    R2: Number,
+    R3: Number,
+    a61: Number | None = None,
+    a34: Number | None = None,
+    a45: Number | None = None,
+) -> Loop:
+    """Dietmaier's 6R: two links of one Bennett ratio at joint 1, two of another at
+    joint 4, 23 equal to 56.
 
-PARAMETERS = (
-    length_a(35),
-    twist_of("a", 35),
-    twist_of("c", 81),
-    Parameter.length("length", 1.13, "length of the free links 23 and 56", 0.3, 2.0),
-    Parameter.angle("twist", 73, "twist of the free links 23 and 56", 15, 165),
-    Parameter.length("R2", 0.31, "offset R2", -0.5, 0.5),
-    Parameter.length("R3", -0.47, "offset R3", -0.5, 0.5),
-)
-OFFSETS = {
-    OffsetPattern.OPPOSITE: equal_offsets((2, 5), (3, 6)),
-    OffsetPattern.REFLECTED: equal_offsets((2, 6), (3, 5)),
-    OffsetPattern.NEGATIVE: opposite_offsets((2, 5), (3, 6)),
-}
-LINKS = Condition(
-    "a12 = a34, a23 = a56, a45 = a61, twists likewise",
-    (equal_links((12, 34), (23, 56), (45, 61)),),
-)
-EXCHANGED_LINKS = Condition(
-    "a12 = a45, a23 = a56, a34 = a61, twists likewise",
-    (equal_links((12, 45), (23, 56), (34, 61)),),
-)
-RATIO = Condition(
-    "sin(twist)/length is the same for the links 12, 34, 45, 61; links 23 = 56 are free"
-)
-SOURCE = "Mavroidis and Roth (1995); Song (2013), eq. 2.4.11"
-
-
-def _name(pattern: OffsetPattern, exchanged: bool) -> str:
-    order = "exchanged-" if exchanged else ""
-    return f"{order}mavroidis-roth-{pattern.name.lower()}"
-
-
-def _source(pattern: OffsetPattern, exchanged: bool) -> str:
-    if pattern is not OffsetPattern.NEGATIVE:
-        return SOURCE
-    if exchanged:
-        return "found by closure"
-    return (
-        "found by closure; the kinked double-Goldberg 6R of Wohlhart (1991a) is a case "
-        "of it"
-    )
+    Twists in rad; ``length`` and ``twist`` are those of the links 23 and 56; R2 = R6,
+    R3 = R5. The other lengths follow and are checked if given: a12/sin(alpha12) (cos
+    alpha12 + cos alpha61) = a34/sin(alpha34) (cos alpha34 + cos alpha45). Raises
+    `GeometryError`. Source: Dietmaier (1995b); equation (2.4.12) in Song (2013) has
+    sin/a for a/sin and offsets R1 = R5, R2 = R4, which leaves the linkage rigid.
+    """
+    link12, link61 = bennett_links(a12, alpha12, a61=(alpha61, a61))
+    first = cos(alpha12) + cos(alpha61)
+    second = cos(alpha34) + cos(alpha45)
+    name = "cos(alpha34) + cos(alpha45)"
+    require_different(name, second, 0, "supplementary twists")
+    length34 = a12 / sin(alpha12) * first * sin(alpha34) / second
+    if a34 is not None:
+        require_equal("a34", a34, length34, "from the condition on the cosines")
+        length34 = a34
+    link34, link45 = bennett_links(length34, alpha34, a45=(alpha45, a45))
+    free = Link(length, twist)
+    links = (link12, free, link34, link45, free, link61)
+    return closed_chain(*links, offsets=(0, R2, R3, 0, R3, R2))
 
 
-def _relations(pattern: OffsetPattern, exchanged: bool) -> tuple[Relation, ...]:
-    relations = []
-    if pattern is OffsetPattern.REFLECTED:
-        case = Relation(RelationKind.SPECIAL_CASE, "dietmaier", "Dietmaier (1995b)")
-        relations.append(case)
-    if pattern is OffsetPattern.NEGATIVE:
-        same = _name(OffsetPattern.OPPOSITE, exchanged)
-        relations.append(Relation(RelationKind.SAME, same, BY_IDENTIFICATION))
-    elif exchanged:
-        isomer = Relation(
-            RelationKind.ISOMER,
-            _name(pattern, exchanged=False),
-            "Wohlhart (1991b)",
-            "links at joint 4 exchanged",
-            joint=4,
-        )
-        relations.append(isomer)
-    if exchanged and pattern is OffsetPattern.OPPOSITE:
-        general = "bricard-line-symmetric"
-        case = Relation(RelationKind.SPECIAL_CASE, general, BY_IDENTIFICATION)
-        relations.insert(0, case)
-    return tuple(relations)
-
-
-def _entry(pattern: OffsetPattern, exchanged: bool) -> Entry:
-    word = "exchanged, " if exchanged else ""
-    offsets = (zero_offsets(1, 4), OFFSETS[pattern])
-    return Entry(
-        _name(pattern, exchanged),
-        f"Mavroidis and Roth's 6R, {word}{pattern.value}",
-        _source(pattern, exchanged),
-        partial(mavroidis_roth, pattern=pattern, exchanged=exchanged),
-        PARAMETERS,
-        conditions=(
-            EXCHANGED_LINKS if exchanged else LINKS,
-            RATIO,
-            Condition(f"R1 = R4 = 0, {pattern.value}", offsets),
-        ),
-        relations=_relations(pattern, exchanged),
-        facts={"joints": 6, "mobility": 1},
-    )
-
-
-ENTRIES = tuple(
-    _entry(pattern, exchanged)
-    for exchanged in (False, True)
-    for pattern in OffsetPattern
+ENTRIES = read_entries(
+    "mavroidis_roth",
+    {
+        **{
+            f"{prefix}mavroidis-roth-{pattern.name.lower()}": Model(
+                partial(mavroidis_roth, pattern=pattern, exchanged=bool(prefix))
+            )
+            for prefix in ("", "exchanged-")
+            for pattern in OffsetPattern
+        },
+        "dietmaier": Model(dietmaier),
+    },
 )

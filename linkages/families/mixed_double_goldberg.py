@@ -13,7 +13,7 @@ Types I and II is written by t4: Q = -m4/t4 and P = -m3/t4.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
@@ -26,7 +26,6 @@ from linkages.closed_forms.closed_form import (
     ZERO,
     ClosedForm,
     Pair,
-    constant,
     joint,
     minus,
     negative,
@@ -34,20 +33,13 @@ from linkages.closed_forms.closed_form import (
     plus,
     ratio,
     reciprocal,
+    symbols,
 )
-from linkages.construction.basic_links import EQUAL_RATIOS, length_a, twists_of_links
-from linkages.construction.link import Link, bennett_links, closed_chain
+from linkages.construction.link import Link, basic_links, joined_chain
 from linkages.construction.numbers import Number
 from linkages.construction.possible_angles import twist_pairs
-from linkages.construction.table_equations import zero_offsets
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    Guesses,
-    Relation,
-    RelationKind,
-)
+from linkages.entry import Guesses
+from linkages.entry_table import Model, read_entries
 from linkages.families.double_goldberg import (
     constructive_closed_form,
     non_constructive_closed_form,
@@ -71,72 +63,44 @@ class Order(Enum):
 
 
 @dataclass(frozen=True)
-class _KindFacts:
-    """Signs with which the first and the second 5R join their links, names, and the
-    angle at which joint 3 of Type III is locked."""
+class _Joints:
+    """Signs with which the first and the second 5R join their links, and the name."""
 
     first: int
     second: int
     prefix: str
-    title: str
-    locked: float
 
 
 class Kind(Enum):
     """Of which 5R linkages a member is made."""
 
-    MIXED = _KindFacts(-1, 1, "mixed-double-goldberg", "Mixed double-Goldberg 6R", 0.0)
-    GOLDBERG = _KindFacts(1, 1, "double-goldberg", "Double-Goldberg 6R", np.pi)
-    SUBTRACTIVE = _KindFacts(
-        -1,
-        -1,
-        "double-subtractive-goldberg",
-        "Double-subtractive-Goldberg 6R",
-        np.pi,
-    )
+    MIXED = _Joints(-1, 1, "mixed-double-goldberg")
+    GOLDBERG = _Joints(1, 1, "double-goldberg")
+    SUBTRACTIVE = _Joints(-1, -1, "double-subtractive-goldberg")
 
 
 def double_goldberg_type(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
+    *parameters: Number,
     order: Order = Order.I,
     kind: Kind = Kind.MIXED,
-    b: Number | None = None,
-    c: Number | None = None,
-    d: Number | None = None,
+    **others: Any,
 ) -> Loop:
     """The double-Goldberg 6R of Type ``order``, I to VI, made of the two 5R linkages of
-    ``kind``.
+    ``kind``, with the parameters of `basic_links` and no offsets.
 
-    Twists of the links a, b, c, d in rad; the lengths b, c, d follow and are checked if
-    given; no offsets. Source: Song and Chen (2012), tables 2 and 3; Song (2013), tables
-    3.3.1 and 3.5.3, equations (3.4.3) to (3.4.22). The latter's "alpha34 = alpha +
-    gamma" in (3.4.11) is alpha45.
+    Source: Song and Chen (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3,
+    equations (3.4.3) to (3.4.22). The latter's "alpha34 = alpha + gamma" in (3.4.11) is
+    alpha45.
     """
-    link_a, link_b, link_c, link_d = bennett_links(
-        a, alpha, b=(beta, b), c=(gamma, c), d=(delta, d)
-    )
-    return double_goldberg_chain(link_a, link_b, link_c, link_d, order, kind)
+    return double_goldberg_chain(basic_links(*parameters, **others), order, kind)
 
 
-def double_goldberg_chain(
-    a: Link, b: Link, c: Link, d: Link, order: Order, kind: Kind
-) -> Loop:
-    """The loop of Type ``order`` and ``kind`` of these four basic links, whatever their
-    ratios; -c is allowed."""
-    basic = {"a": a, "b": b, "c": c, "d": d}
-    links = []
-    for text in order.value.split():
-        link = basic[text[0]]
-        if len(text) == 3:
-            sign = kind.value.first if text[1] == "*" else kind.value.second
-            other = basic[text[2]]
-            link = link + other if sign > 0 else link - other
-        links.append(link)
-    return closed_chain(*links)
+def double_goldberg_chain(links: Mapping[str, Link], order: Order, kind: Kind) -> Loop:
+    """The loop of Type ``order`` and ``kind`` of the basic links a, b, c, d, whatever
+    their ratios; -c is allowed."""
+    signs = {1: "+", -1: "-"}
+    text = order.value.replace("+", signs[kind.value.second])
+    return joined_chain(text.replace("*", signs[kind.value.first]), links)
 
 
 # --- closed forms of the mixed linkages
@@ -153,13 +117,14 @@ def _ratios() -> dict[str, Number]:
 
 
 def _form(
+    linkage: str,
     order: Order,
     source: str,
     angles: tuple[Pair, ...],
     relation: Number | None = None,
 ) -> tuple[ClosedForm, ...]:
     form = ClosedForm(
-        _name(order, Kind.MIXED),
+        linkage,
         f"Forms of Type {order.name}",
         source,
         ("alpha", "beta", "gamma", "delta"),
@@ -171,15 +136,12 @@ def _form(
     return (form,)
 
 
-def _type_one() -> tuple[ClosedForm, ...]:
+def _type_one(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
-    m1 = constant("m_1")
-    m3 = constant("m_3")
-    m4 = constant("m_4")
-    m6 = constant("m_6")
+    m1, m3, m4, m6 = symbols("m_1 m_3 m_4 m_6")
     q = reciprocal(fourth, -m4)
     outer = plus(q, reciprocal(first, m1))
     # (m1 + m6 x^2) (Q^2 + m4/m3) = (1/m3 - m4) (m1 - m6) x Q, times m3 t4^2 / m4
@@ -198,18 +160,15 @@ def _type_one() -> tuple[ClosedForm, ...]:
         "Song and Chen 2012, eqs (4.8), (4.9), corrected: t2 = m1/(m6 t1), "
         "t5 = -m3 Q, H = (m1 + m6 t1^2)/..."
     )
-    return _form(Order.I, source, angles, relation)
+    return _form(linkage, Order.I, source, angles, relation)
 
 
-def _type_two() -> tuple[ClosedForm, ...]:
+def _type_two(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     fourth = joint(4)
     s1, c1 = first
     s4, c4 = fourth
-    m1 = constant("m_1")
-    m2 = constant("m_2")
-    m3 = constant("m_3")
-    m4 = constant("m_4")
+    m1, m2, m3, m4 = symbols("m_1 m_2 m_3 m_4")
     p, r = reciprocal(fourth, -m3)
     # m4 x P^2 - (m3 m4 - 1) P + m3 x = 0, times t4^2 / m3
     relation = m3 * m4 * s1 * c4**2 + (m3 * m4 - 1) * s4 * c4 * c1 + s1 * s4**2
@@ -225,14 +184,13 @@ def _type_two() -> tuple[ClosedForm, ...]:
         (m3 * m4 * c4, s4),
         sixth,
     )
-    return _form(Order.II, "Song and Chen 2012, eq. (4.12)", angles, relation)
+    return _form(linkage, Order.II, "Song and Chen 2012, eq. (4.12)", angles, relation)
 
 
-def _type_three() -> tuple[ClosedForm, ...]:
+def _type_three(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m3 = constant("m_3")
+    m1, m3 = symbols("m_1 m_3")
     angles = (
         first,
         reciprocal(first, m1),
@@ -242,15 +200,13 @@ def _type_three() -> tuple[ClosedForm, ...]:
         ((1 - m1 * m3) * s1 * c1, m1 * c1**2 + m3 * s1**2),
     )
     source = "Song and Chen 2012, eq. (4.16), with tan(theta4/2) = +m3 tan(theta1/2)"
-    return _form(Order.III, source, angles)
+    return _form(linkage, Order.III, source, angles)
 
 
-def _type_four() -> tuple[ClosedForm, ...]:
+def _type_four(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m2 = constant("m_2")
-    m3 = constant("m_3")
+    m1, m2, m3 = symbols("m_1 m_2 m_3")
     angles = (
         first,
         reciprocal(first, m1),
@@ -259,14 +215,13 @@ def _type_four() -> tuple[ClosedForm, ...]:
         (m3 * s1, c1),
         (m1 * m2 * c1**2 + s1**2, (m1 - m2) * s1 * c1),
     )
-    return _form(Order.IV, "Song and Chen 2012, eq. (4.17)", angles)
+    return _form(linkage, Order.IV, "Song and Chen 2012, eq. (4.17)", angles)
 
 
-def _type_five() -> tuple[ClosedForm, ...]:
+def _type_five(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m4 = constant("m_4")
+    m1, m4 = symbols("m_1 m_4")
     third = (c1, m4 * s1)
     angles = (
         first,
@@ -276,15 +231,13 @@ def _type_five() -> tuple[ClosedForm, ...]:
         minus(HALF_TURN, third),
         (-m1 * c1, s1),
     )
-    return _form(Order.V, "Song and Chen 2012, eq. (4.21)", angles)
+    return _form(linkage, Order.V, "Song and Chen 2012, eq. (4.21)", angles)
 
 
-def _type_six() -> tuple[ClosedForm, ...]:
+def _type_six(linkage: str) -> tuple[ClosedForm, ...]:
     first = joint(1)
     s1, c1 = first
-    m1 = constant("m_1")
-    m2 = constant("m_2")
-    m4 = constant("m_4")
+    m1, m2, m4 = symbols("m_1 m_2 m_4")
     sixth = (
         (m4 * s1**2 + (m1 * m2 * m4 + m1 - m2) * c1**2) * s1,
         ((m1 * m4 - m2 * m4 - 1) * s1**2 - m1 * m2 * c1**2) * c1,
@@ -297,7 +250,7 @@ def _type_six() -> tuple[ClosedForm, ...]:
         minus(HALF_TURN, first),
         sixth,
     )
-    return _form(Order.VI, "Song and Chen 2012, eq. (4.22)", angles)
+    return _form(linkage, Order.VI, "Song and Chen 2012, eq. (4.22)", angles)
 
 
 MIXED_FORMULAS = {
@@ -310,22 +263,22 @@ MIXED_FORMULAS = {
 }
 
 
-def _type_one_of_equals(kind: Kind) -> tuple[ClosedForm, ...]:
+def _type_one_of_equals(sign: int, linkage: str) -> tuple[ClosedForm, ...]:
     """Type I of two equal 5R linkages is a double-Goldberg linkage with the links b, d
     exchanged."""
-    name = _name(Order.I, kind)
-    sign = kind.value.second
     return (
-        constructive_closed_form(name, sign, exchanged=True),
-        non_constructive_closed_form(name, sign, exchanged=True),
+        constructive_closed_form(linkage, sign, exchanged=True),
+        non_constructive_closed_form(linkage, sign, exchanged=True),
     )
 
 
-def _formulas(order: Order, kind: Kind) -> Callable[[], tuple[ClosedForm, ...]] | None:
+def _formulas(
+    order: Order, kind: Kind
+) -> Callable[[str], tuple[ClosedForm, ...]] | None:
     if kind is Kind.MIXED:
         return MIXED_FORMULAS[order]
     if order is Order.I:
-        return partial(_type_one_of_equals, kind)
+        return partial(_type_one_of_equals, kind.value.second)
     return None
 
 
@@ -355,128 +308,19 @@ def _guesses(order: Order, kind: Kind) -> Guesses | None:
     return None
 
 
-# --- relations
-
-SHARED = "common link pair or common Bennett loop"
-SHARED_BY_TWO = f"{SHARED} of two"
-TABLE_3_3_1 = "Song (2013), table 3.3.1"
-TABLE_3_5_3 = "Song (2013), table 3.5.3"
-
-
-def _case_of(other: str, source: str) -> Relation:
-    return Relation(RelationKind.SPECIAL_CASE, other, source)
-
-
-def _same_as(other: str, source: str) -> Relation:
-    return Relation(RelationKind.SAME, other, source)
-
-
-def _built_from(other: str, source: str, detail: str) -> Relation:
-    return Relation(RelationKind.CONSTRUCTED, other, source, detail)
-
-
-def _mixed_relations(order: Order) -> tuple[Relation, ...]:
-    detail = f"{SHARED}, with a subtractive one"
-    built = _built_from("goldberg-5r", TABLE_3_3_1, detail)
-    others = {
-        Order.I: _case_of("generalized-double-goldberg", "Wohlhart (1991a)"),
-        Order.V: _case_of("waldron-collinear", "Song (2013), section 3.4"),
-        Order.VI: _same_as("syncopated-l-shape-goldberg-6r", BY_IDENTIFICATION),
-    }
-    return (others[order], built) if order in others else (built,)
-
-
-def _goldberg_relations(order: Order) -> tuple[Relation, ...]:
-    built = _built_from("goldberg-5r", TABLE_3_5_3, SHARED_BY_TWO)
-    table_3_5_2 = "Song (2013), table 3.5.2"
-    return {
-        Order.I: (_same_as("wohlhart-double-goldberg", TABLE_3_5_3),),
-        Order.II: (_same_as("l-shape-goldberg-variant-6r", table_3_5_2),),
-        Order.III: (built,),
-        Order.IV: (_same_as("serial-goldberg-variant-6r", table_3_5_2),),
-        Order.V: (_case_of("waldron-hybrid", BY_IDENTIFICATION), built),
-        Order.VI: (_same_as("l-shape-goldberg-6r", BY_IDENTIFICATION),),
-    }[order]
-
-
-def _subtractive_relations(order: Order) -> tuple[Relation, ...]:
-    if order is Order.I:
-        return (_same_as("double-subtractive-goldberg", TABLE_3_5_3),)
-    built = _built_from("subtractive-goldberg-5r", TABLE_3_5_3, SHARED_BY_TWO)
-    general = {
-        Order.V: "waldron-hybrid",
-        Order.VI: "generalized-l-shape-goldberg-6r",
-    }
-    if order in general:
-        return _case_of(general[order], BY_IDENTIFICATION), built
-    return (built,)
-
-
-RELATIONS = {
-    Kind.MIXED: _mixed_relations,
-    Kind.GOLDBERG: _goldberg_relations,
-    Kind.SUBTRACTIVE: _subtractive_relations,
-}
-
-
-# --- entries
-
-ERRATA = {
-    Order.I: (
-        "the closure equations (4.8), (4.9) / (3.4.8), (3.4.9) are printed with m2 for "
-        "m1 and m4",
-    ),
-    Order.II: (
-        "alpha34 = alpha + gamma is printed twice in (4.11) / (3.4.11); one is alpha45",
-    ),
-    Order.III: (
-        "tan(theta4/2) = -m3 tan(theta1/2) is printed in (4.16) / (3.4.16); "
-        "the sign is +",
-    ),
-}
-
-
 def _name(order: Order, kind: Kind) -> str:
     return f"{kind.value.prefix}-type-{order.name.lower()}"
 
 
-def _links(order: Order, kind: Kind) -> Condition:
-    first = "+" if kind.value.first > 0 else "-"
-    second = "+" if kind.value.second > 0 else "-"
-    links = order.value.replace("+", second).replace("*", first).replace(" ", ", ")
-    return Condition(f"links {links}, twists likewise, R = 0", (zero_offsets(),))
-
-
-def _default_delta(order: Order, kind: Kind) -> float:
-    """The twist delta (deg) of the member that stands for its family.
-
-    Joint 1 of the mixed Types I and II turns fully, as in the figures 3.4.2 and 3.4.4 of
-    Song (2013), where m3 m4 < 0: where delta is between alpha and gamma.
-    """
-    turns = kind is Kind.MIXED and order in (Order.I, Order.II)
-    return 45 if turns else 83
-
-
-def _entry(order: Order, kind: Kind) -> Entry:
-    facts: dict[str, Any] = {"joints": 6, "mobility": 1}
-    if order is Order.III:
-        facts["locked"] = {3: kind.value.locked}
-    return Entry(
-        _name(order, kind),
-        f"{kind.value.title}, Type {order.name}",
-        "Song and Chen (2012), tables 2 and 3; Song (2013), tables 3.3.1 and 3.5.3",
-        partial(double_goldberg_type, order=order, kind=kind),
-        (
-            length_a(66),
-            *twists_of_links(a=66, b=50, c=28, d=_default_delta(order, kind)),
-        ),
-        conditions=(EQUAL_RATIOS, _links(order, kind)),
-        formulas=_formulas(order, kind),
-        guesses=_guesses(order, kind),
-        relations=RELATIONS[kind](order),
-        errata=ERRATA.get(order, ()) if kind is Kind.MIXED else (),
-        facts=facts,
-    )
-
-
-ENTRIES = tuple(_entry(order, kind) for kind in Kind for order in Order)
+ENTRIES = read_entries(
+    "mixed_double_goldberg",
+    {
+        _name(order, kind): Model(
+            partial(double_goldberg_type, order=order, kind=kind),
+            formulas=_formulas(order, kind),
+            guesses=_guesses(order, kind),
+        )
+        for kind in Kind
+        for order in Order
+    },
+)

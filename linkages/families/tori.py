@@ -35,14 +35,7 @@ from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number, atan, atan2, cos, pi_like, sin, sqrt
 from linkages.construction.possible_angles import kinks
 from linkages.construction.spatial_triangle import composite_link
-from linkages.entry import (
-    Condition,
-    Entry,
-    Parameter,
-    ParameterKind,
-    Relation,
-    RelationKind,
-)
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
@@ -368,25 +361,8 @@ def _bennett_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
     yield {"r1": form[0, 0], "s1": form[0, 1], "chi1": form[1, 0], "theta1": 0.0}
 
 
-# --- entries
+# --- variants
 
-
-def _angle(
-    name: str, default: float, meaning: str, low: float, high: float
-) -> Parameter:
-    return Parameter(name, default, ParameterKind.ANGLE, meaning, low, high)
-
-
-FIRST_TORUS = (
-    Parameter.length(
-        "r1", 1.5, "distance of the circle's centre from the axis of torus 1", 1.2, 2.0
-    ),
-    Parameter.length("s1", 0.9, "radius of the circle of torus 1", 0.4, 1.1),
-    _angle("chi1", 0.8, "first angle of the circle's axis", 0.4, 1.3),
-    _angle("theta1", 0.25, "second angle of the circle's axis", -0.5, 0.5),
-)
-DELTA = _angle("delta", 0.6, "place of the other torus of the second pair", -2.0, 2.0)
-RATIOS = {(1, 3): 0.7, (1, 4): 1.6, (2, 3): 0.45, (2, 4): 1.02}
 MIRRORED = {
     (1, 3, "--"),
     (1, 4, "-+"),
@@ -395,100 +371,25 @@ MIRRORED = {
     (2, 3, "+-"),
     (2, 4, "++"),
 }
-ERRATA = (
-    "(2.1): r is added before the turn by sigma, as in (2.2); the axis of the turn by "
-    "chi is X, not Y",
-    "(2.3): the terms with sin(theta) of the second and third row take the other sign; "
-    "(2.5): r is missing",
-    "(2.6): the axis of the circle is Rz(sigma) (sin theta, -sin chi cos theta, "
-    "cos chi cos theta)",
-    "(3.5), (3.6): the centre (r1, 0, 0) is to be turned by sigma1",
-)
-ONE_SURFACE = "r1^2 + s1^2 = r2^2 + s2^2, r1 s1 cos(theta1) = r2 s2 cos(theta2)"
-RELATIONS_5R = (
-    Relation(
-        RelationKind.SPECIAL_CASE,
-        "generalized-goldberg-5r",
-        "Bil and Budniak (2015), geometry; found by identification",
-    ),
-    Relation(
-        RelationKind.CONSTRUCTED,
-        "torus-4r",
-        "Bil and Budniak (2015)",
-        "two pairs of tori",
-    ),
-)
 
 
-def _variants() -> tuple[Variant, ...]:
-    out = []
-    for first, second in RATIOS:
-        for z_sense, u_sense in itertools.product(Sense, Sense):
-            mirrored = (first, second, z_sense.value + u_sense.value) in MIRRORED
-            out.append(Variant(first, second, z_sense, u_sense, mirrored))
-    return tuple(out)
+def _variants() -> Iterator[Variant]:
+    for first, second, z_sense, u_sense in itertools.product(
+        (1, 2), (3, 4), Sense, Sense
+    ):
+        mirrored = (first, second, z_sense.value + u_sense.value) in MIRRORED
+        yield Variant(first, second, z_sense, u_sense, mirrored)
 
 
-def _ratio_parameter(variant: Variant) -> Parameter:
-    default = RATIOS[variant.first, variant.second]
-    low, high = (0.3, 0.9) if variant.second == 3 else (1.02, 1.8)
-    meaning = f"s/r of torus {variant.second}"
-    return Parameter("ratio", default, ParameterKind.NUMBER, meaning, low, high)
-
-
-def _entry(variant: Variant) -> Entry:
-    i = variant.first
-    j = variant.second
-    z = variant.z_sense.value
-    u = variant.u_sense.value
-    senses = f"circle {i} on torus {j}, Z{i}1 = {z}Z{j}, U{i} = {u}Z{j}1"
-    return Entry(
-        variant.name,
-        f"5R of two pairs of tori, {senses}",
-        "Bil and Budniak (2015), eqs 3.1 to 3.4",
-        partial(torus_5r, variant=variant),
-        (*FIRST_TORUS, _ratio_parameter(variant), DELTA),
-        conditions=(
-            Condition(f"{ONE_SURFACE}, likewise for the tori 3, 4"),
-            Condition(f"R{i} = Q{j}, s{i} = r{j}, Z{i}1 parallel to Z{j}"),
-            Condition("equivalent to the generalized Goldberg 5R"),
-        ),
-        guesses=partial(_guesses, variant),
-        relations=RELATIONS_5R,
-        errata=ERRATA,
-        facts={"joints": 5, "mobility": 1},
-        is_other_view=True,
-    )
-
-
-ENTRIES = (
-    Entry(
-        "torus-4r",
-        "4R of two equal tori",
-        "Bil (2012); Bil and Budniak (2015), section 2",
-        torus_4r,
-        FIRST_TORUS,
-        conditions=(
-            Condition(ONE_SURFACE),
-            Condition(
-                "s1 sin(chi1) = s2 sin(chi2), "
-                "s1 sin(theta1) cos(chi1) = s2 sin(theta2) cos(chi2)"
-            ),
-            Condition(
-                "a Bennett linkage whose joints are read at points moved along one axis"
-            ),
-        ),
-        guesses=_bennett_guesses,
-        relations=(
-            Relation(
-                RelationKind.SAME,
-                "bennett",
-                "Bil (2012); closed form of the companion torus",
-            ),
-        ),
-        errata=ERRATA[:3],
-        facts={"joints": 4, "mobility": 1},
-        is_other_view=True,
-    ),
-    *(_entry(variant) for variant in _variants()),
+ENTRIES = read_entries(
+    "tori",
+    {
+        "torus-4r": Model(torus_4r, guesses=_bennett_guesses),
+        **{
+            variant.name: Model(
+                partial(torus_5r, variant=variant), guesses=partial(_guesses, variant)
+            )
+            for variant in _variants()
+        },
+    },
 )

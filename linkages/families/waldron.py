@@ -1,22 +1,29 @@
-"""Waldron's hybrid 6R: two Bennett loops, of any ratios, with a joint axis in
-common."""
+"""The 6R of Waldron and that of Yu and Baker: two Bennett loops, of any ratios, with a
+joint axis in common, and what is taken from a primary Bennett loop when they are
+collinear."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from math import radians, sin
+from typing import Any
 
 import numpy as np
 
-from linkages.construction.basic_links import length_a, twist_of
 from linkages.construction.constructions import share_joint
-from linkages.construction.link import Link, bennett_links, closed_chain
+from linkages.construction.link import (
+    Link,
+    basic_links,
+    bennett_links,
+    closed_chain,
+    half_angle_ratio,
+    joined_chain,
+    syncopated_link,
+)
 from linkages.construction.numbers import Number
-from linkages.construction.possible_angles import kinks
+from linkages.construction.possible_angles import half_tangents, kink_pairs, twists_with
 from linkages.construction.spatial_triangle import Kink, KinkAngle, composite_link
-from linkages.construction.table_equations import zero_offsets
-from linkages.entry import Condition, Entry, Parameter, Relation, RelationKind
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
@@ -75,16 +82,15 @@ def waldron_collinear(
 def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
     """Kinks from the twists, the shift from a length or an offset, linear in it."""
     lengths, twists, _ = form
-    first = kinks(twists[0], twists[4], twists[2])
-    second = kinks(twists[3], twists[1], twists[5])
     unit = lengths[0]
-    for kink_1, kink_2 in itertools.product(first, second):
+    second_lock = twists[3], twists[1], twists[5]
+    for pair in kink_pairs((twists[0], twists[4], twists[2]), second_lock):
         try:
-            shifts = _shifts(form, kink_1, unit)
+            shifts = _shifts(form, pair["kink_1"], unit)
         except GeometryError:
             continue
         for shift in shifts:
-            yield {"kink_1": kink_1, "kink_2": kink_2, "shift": shift}
+            yield {**pair, "shift": shift}
 
 
 def _shifts(form: np.ndarray, kink: float, unit: float) -> list[float]:
@@ -110,76 +116,82 @@ def _shifts(form: np.ndarray, kink: float, unit: float) -> list[float]:
     return [unit * (target - float(zero)) / slope for target in (size, -size)]
 
 
-# --- entries
+def yu_baker(*parameters: Number, **others: Any) -> Loop:
+    """Yu and Baker's syncopated 6R of `basic_links`: links e - b, a + c, e - d, c, b -
+    d, a; e/epsilon follows.
+
+    Raises `GeometryError` where the loop of e does not exist: for alpha = beta and for
+    gamma = delta. Source: Yu and Baker (1981); equation (2.4.10) in Song (2013).
+    """
+    return _syncopated(basic_links(*parameters, **others))
 
 
-def _kink(name: str, degrees: float, links: str) -> Parameter:
-    return Parameter.angle(name, degrees, f"angle between {links}", -120, 120)
+def yu_baker_two_ratios(
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    c: Number,
+    gamma: Number,
+    delta: Number,
+    b: Number | None = None,
+    d: Number | None = None,
+) -> Loop:
+    """Yu and Baker's syncopated 6R with one Bennett ratio for a, b and another for c,
+    d.
+
+    Errors and source as `yu_baker`; equation (2.4.10) in Song (2013) asks for one
+    ratio, which is not needed.
+    """
+    link_a, link_b = bennett_links(a, alpha, b=(beta, b))
+    link_c, link_d = bennett_links(c, gamma, d=(delta, d))
+    return _syncopated({"a": link_a, "b": link_b, "c": link_c, "d": link_d})
 
 
-LENGTH_C = 1.25 * sin(radians(81))
-LOOPS = (
-    length_a(35),
-    twist_of("a", 35),
-    twist_of("b", 62),
-    Parameter.length("c", LENGTH_C, "length of link c", 0.3, 3.0),
-    twist_of("c", 81),
-    twist_of("d", 48),
-)
-RATIOS = Condition("sin(alpha)/a = sin(beta)/b and sin(gamma)/c = sin(delta)/d")
-FACTS = {"joints": 6, "mobility": 1}
+def _syncopated(links: dict[str, Link]) -> Loop:
+    a, b, c, d = links.values()
+    product = half_angle_ratio(a.twist, b.twist) * half_angle_ratio(c.twist, d.twist)
+    links["e"] = syncopated_link(a + c, product)
+    return joined_chain("e-b a+c e-d c b-d a", links)
 
-ENTRIES = (
-    Entry(
-        "waldron-hybrid",
-        "Waldron's hybrid 6R of two Bennett loops",
-        "Waldron (1968); Baker (1993a); Song (2013), section 2.4.5",
-        waldron_hybrid,
-        (
-            *LOOPS,
-            _kink("kink_1", 25, "b and d"),
-            _kink("kink_2", -70, "c and a"),
-            Parameter.length(
-                "shift", 0.37, "distance along the common axis", -1.0, 1.0
-            ),
-        ),
-        conditions=(
-            RATIOS,
-            Condition(
-                "links 34 and 61 and the offsets R1, R3, R4, R6 from the spatial "
-                "triangles"
-            ),
-            Condition("R2 = R5 = 0", (zero_offsets(2, 5),)),
-        ),
-        guesses=_guesses,
-        relations=(
-            Relation(
-                RelationKind.CONSTRUCTED,
-                "bennett",
-                "Waldron (1968)",
-                "two loops on a common axis",
-            ),
-        ),
-        facts=FACTS,
-    ),
-    Entry(
-        "waldron-collinear",
-        "Waldron's hybrid 6R with collinear links",
-        "Waldron (1968); Yu and Baker (1981); Song (2013), section 2.4.6",
-        waldron_collinear,
-        LOOPS,
-        conditions=(
-            RATIOS,
-            Condition(
-                "links b, a, b-d, c, d, a+c, twists likewise, R = 0",
-                (zero_offsets(),),
-            ),
-        ),
-        relations=(
-            Relation(
-                RelationKind.SPECIAL_CASE, "waldron-hybrid", "Yu and Baker (1981)"
-            ),
-        ),
-        facts=FACTS,
-    ),
+
+def _yu_baker_guesses(form: np.ndarray) -> Iterator[dict[str, float]]:
+    """A cubic equation for tan(beta/2): delta is beta less the twist of link 56,
+    epsilon beta plus that of link 12."""
+    twists = form[1]
+    half_twists = twists / 2
+    a = float(np.tan(half_twists[5]))
+    c = float(np.tan(half_twists[3]))
+    firsts = _signed(twists[0])
+    fifths = _signed(twists[4])
+    for s, r in itertools.product(firsts, fifths):
+        for beta in twists_with(np.roots(_cubic(a, c, s, r))):
+            half_delta = np.tan(beta / 2 - np.arctan(r))
+            delta = 2 * np.arctan(half_delta)
+            yield {"beta": beta, "delta": delta % np.pi}
+
+
+def _cubic(a: float, c: float, s: float, r: float) -> np.ndarray:
+    """Coefficients, the highest first, of the equation for x = tan(beta/2) by the half
+    tangents of a, c and of the links 12, 56."""
+    # tan(delta/2) is x - r over 1 + r x
+    left = np.convolve([1.0, r * (a * c - 1.0), a * c], [-s, 1.0])
+    right = np.convolve([c * r, a + c, -a * r], [1.0, s])
+    cubic: np.ndarray = (a + c) * left - (1.0 - a * c) * right
+    return cubic
+
+
+def _signed(twist: float) -> list[float]:
+    """Half tangents of the twist and of its opposite, each with and without a half
+    turn."""
+    return half_tangents(twist) + half_tangents(-twist)
+
+
+ENTRIES = read_entries(
+    "waldron",
+    {
+        "waldron-hybrid": Model(waldron_hybrid, guesses=_guesses),
+        "waldron-collinear": Model(waldron_collinear),
+        "yu-baker": Model(yu_baker, guesses=_yu_baker_guesses),
+        "yu-baker-two-ratios": Model(yu_baker_two_ratios, guesses=_yu_baker_guesses),
+    },
 )

@@ -9,30 +9,16 @@ import numpy as np
 
 from linkages.closed_forms.closed_form import (
     ClosedForm,
-    constant,
     cosine_of,
     joint,
     sine_of,
+    symbols,
     tangent,
 )
-from linkages.construction.conditions import require_positive, require_within
+from linkages.construction.conditions import require_positive, require_twists
 from linkages.construction.numbers import Number, pi_like
-from linkages.construction.table_equations import (
-    equal_lengths,
-    equal_twists,
-    opposite_twists,
-    zero_offsets,
-)
-from linkages.entry import (
-    BY_IDENTIFICATION,
-    Condition,
-    Entry,
-    FormPattern,
-    Parameter,
-    ParameterKind,
-    Relation,
-    RelationKind,
-)
+from linkages.entry import FormPattern
+from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 
 POSITION = 210
@@ -50,7 +36,7 @@ def wohlhart_symmetric(a: Number, alpha: Number) -> Loop:
     closed curve, outside two.
     """
     require_positive("length a", a)
-    require_within("twist alpha", alpha, 0.0, math.pi)
+    require_twists(alpha=alpha)
     twists = (alpha, 2 * pi_like(alpha) - alpha) * 3
     return Loop((a,) * 6, twists, (0,) * 6, "wohlhart-symmetric")
 
@@ -75,12 +61,11 @@ def _patterns(a: float, alpha: float) -> tuple[FormPattern, ...]:
     return (FormPattern("threefold form", residual),)
 
 
-def _formulas() -> tuple[ClosedForm, ...]:
+def _formulas(linkage: str) -> tuple[ClosedForm, ...]:
     """Odd joints at theta, even joints at phi."""
     import sympy as sp
 
-    c = constant("c")
-    s = constant("s")
+    c, s = symbols("c s")
     s1, c1 = joint(1)
     s2, c2 = joint(2)
     sine1 = 2 * s1 * c1
@@ -97,7 +82,7 @@ def _formulas() -> tuple[ClosedForm, ...]:
     )
     u = tangent("alpha")
     form = ClosedForm(
-        "wohlhart-symmetric",
+        linkage,
         "threefold form",
         "Racila and Dahan 2010, eq. (15)",
         ("alpha",),
@@ -109,61 +94,7 @@ def _formulas() -> tuple[ClosedForm, ...]:
     return (form,)
 
 
-ENTRIES: tuple[Entry, ...] = (
-    Entry(
-        "wohlhart-symmetric",
-        "Wohlhart symmetric 6R mechanism",
-        "Wohlhart 1987, Proc. 7th IFToMM World Congress, 193-198; "
-        "Racila and Dahan 2010, Meccanica 45, 153-165, eqs (2)-(15)",
-        wohlhart_symmetric,
-        (
-            Parameter.length("a", 1.0, "length of every link", 0.3, 3.0),
-            Parameter(
-                "alpha",
-                math.pi / 2,
-                ParameterKind.ANGLE,
-                "twist of links 12, 34 and 56",
-                0.2,
-                math.pi - 0.2,
-            ),
-        ),
-        conditions=(
-            Condition(
-                "all lengths equal, all offsets 0",
-                (
-                    equal_lengths((12, 23), (12, 34), (12, 45), (12, 56), (12, 61)),
-                    zero_offsets(),
-                ),
-            ),
-            Condition(
-                "twists alpha and 2 pi - alpha in turn",
-                (
-                    equal_twists((12, 34), (12, 56)),
-                    opposite_twists((12, 23), (12, 45), (12, 61)),
-                ),
-            ),
-        ),
-        patterns=_patterns,
-        formulas=_formulas,
-        relations=(
-            Relation(
-                RelationKind.SPECIAL_CASE, "bricard-plane-symmetric", BY_IDENTIFICATION
-            ),
-            Relation(RelationKind.SPECIAL_CASE, "wohlhart-hybrid", BY_IDENTIFICATION),
-        ),
-        errata=(
-            "Racila and Dahan 2010, eq. (17): C3 has cos(theta) + 1 where it must have "
-            "cos(phi) + 1",
-            "Racila and Dahan 2010, section 2: 90 degrees is not the only twist of "
-            "continuous motion; thick links may collide at others, but the closed "
-            "curves are full",
-        ),
-        facts={
-            "mobility": 1,
-            "rank": 5,
-            "forms": 1,
-            "bifurcations": 0,
-            "components": 1,
-        },
-    ),
+ENTRIES = read_entries(
+    "wohlhart",
+    {"wohlhart-symmetric": Model(wohlhart_symmetric, _patterns, _formulas)},
 )

@@ -14,12 +14,11 @@ import itertools
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from functools import cache
 
 import numpy as np
 
 from bifurc.errors import BifurcError
-from linkages.catalogue import catalogue
+from linkages.catalogue import catalogue, distinct_entries
 from linkages.construction.constructions import lock
 from linkages.construction.spatial_triangle import Kink
 from linkages.entry import Entry, ParameterKind
@@ -207,12 +206,6 @@ def _spread(match: Match) -> float:
     return float(match.distance / count**0.5)
 
 
-@cache
-def _for_locking() -> tuple[Entry, ...]:
-    """The catalogue without the linkages that are others in more parameters."""
-    return tuple(entry for entry in catalogue().values() if not entry.is_other_view)
-
-
 def _locked_joints(loop: Loop, tolerance: float) -> tuple[LockedJoint, ...]:
     """Every joint without offset that, straight or folded, leaves a known linkage."""
     if loop.n <= MIN_JOINTS:
@@ -226,7 +219,9 @@ def _locked_joints(loop: Loop, tolerance: float) -> tuple[LockedJoint, ...]:
             smaller = lock(loop, joint, kink)
         except GeometryError:
             continue
-        matches = identify(smaller, tolerance, _for_locking(), locking=False).matches
+        matches = identify(
+            smaller, tolerance, distinct_entries(), locking=False
+        ).matches
         if matches:
             angle = np.pi if kink is Kink.FOLDED else 0.0
             out.append(LockedJoint(joint, angle, matches))

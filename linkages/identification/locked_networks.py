@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
 from itertools import combinations
 
-from linkages.catalogue import catalogue
-from linkages.entry import Entry
+from linkages.catalogue import distinct_entries
 from linkages.identification.identify import identify
 from linkages.loop import MIN_JOINTS
 from linkages.networks.assembly import motion_at
@@ -86,11 +84,5 @@ def _state_at(placed: PlacedNetwork) -> LockedState:
     names: tuple[str, ...] = ()
     if motion.mobility == 1 and len(left) >= MIN_JOINTS:
         loop = replaced_ring(placed, at_rest)
-        names = identify(loop, entries=_entries(), locking=False).names
+        names = identify(loop, entries=distinct_entries(), locking=False).names
     return LockedState(placed.kinks, motion.mobility, left, still, names)
-
-
-@cache
-def _entries() -> tuple[Entry, ...]:
-    """The catalogue without the linkages that are others in more parameters."""
-    return tuple(entry for entry in catalogue().values() if not entry.is_other_view)

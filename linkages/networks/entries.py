@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import radians, sin
 
 import numpy as np
 
-from linkages.construction.basic_links import (
-    EQUAL_RATIOS,
-    length_a,
-    twists_of_links,
-)
 from linkages.construction.numbers import Number
 from linkages.entry import Condition, Parameter, UnknownParameterError
 from linkages.networks.network import Network, build_network
@@ -67,7 +63,14 @@ class NetworkEntry:
         return build_network(self.plan, **{**defaults, **values})
 
 
-PARAMETERS = (length_a(35), *twists_of_links(a=35, b=62, c=81, d=48))
+PARAMETERS = (
+    Parameter.length("a", 1.7 * sin(radians(35)), "length of link a", 0.3, 3.0),
+    Parameter.angle("alpha", 35, "twist of link a", 15, 110),
+    Parameter.angle("beta", 62, "twist of link b", 15, 110),
+    Parameter.angle("gamma", 81, "twist of link c", 15, 110),
+    Parameter.angle("delta", 48, "twist of link d", 15, 110),
+)
+EQUAL_RATIOS = Condition("sin(twist)/length is the same for the links a, b, c, d")
 SOURCE = "Goldberg (1943); Baker (1983); Song (2013), section 5.4"
 
 FOUR_JOINTS = (

@@ -2,14 +2,15 @@
 
 from docs.generator.errata_pages import errata_index, errata_pages
 from docs.generator.places import DOCS
-from linkages.errata.misprints import ERRATA
-from linkages.errata.words import WORDS
+from linkages.errata.misprints import misprints, word_errata
 
 PAGE = (DOCS / "errata.md").read_text(encoding="utf-8")
 
 
 def test_every_row_stands_on_the_page_of_each_of_its_sources():
-    rows = sum(len(erratum.source.split("; ")) for erratum in [*ERRATA, *WORDS])
+    rows = sum(
+        len(erratum.source.split("; ")) for erratum in [*misprints(), *word_errata()]
+    )
     assert sum(page.count for page in errata_pages(PAGE)) == rows
 
 

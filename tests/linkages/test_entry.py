@@ -28,7 +28,7 @@ def test_conditions_that_are_equations_hold_for_random_members(name):
 
 def test_a_third_of_the_conditions_and_more_are_equations_in_the_numbers_of_the_table():
     conditions = [c for found in catalogue().values() for c in found.conditions]
-    assert sum(bool(c.terms) for c in conditions) >= len(conditions) // 3
+    assert sum(bool(c.equations) for c in conditions) >= len(conditions) // 3
 
 
 def test_a_condition_that_is_an_equation_fails_for_a_table_of_other_numbers():
@@ -36,7 +36,7 @@ def test_a_condition_that_is_an_equation_fails_for_a_table_of_other_numbers():
     for found in catalogue().values():
         n = found.build().n
         for condition in found.conditions:
-            if condition.terms:
+            if condition.equations:
                 assert condition.residual(rng.uniform(0.2, 1.5, (3, n))) > 1e-6
 
 

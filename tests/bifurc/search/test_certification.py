@@ -13,7 +13,7 @@ from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.families.bricard import bricard_line_symmetric_zero_offset
+from linkages.families.bricard import bricard_line_symmetric
 from tests.bifurc.curves.test_jumps import polyline
 
 ERRORS = [1e-2, 1e-3, 1e-4]
@@ -59,9 +59,7 @@ def test_a_right_map_near_a_surface_is_certified(error):
 
 @pytest.mark.parametrize("error", [1e-2, 1e-3])
 def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
-    loop = bricard_line_symmetric_zero_offset(
-        1.0, 1.0 + error, 1.3, 1.0, 1.0 + error, 1.9
-    )
+    loop = bricard_line_symmetric(1.0, 1.0 + error, 1.3, 1.0, 1.0 + error, 1.9)
     atlas = explore(LoopClosure(loop), settings=SETTINGS)
     assert counts(atlas) == (4, 4)
     assert all(form.certificate.holds for form in atlas.forms)

@@ -10,15 +10,10 @@ from linkages.construction.conditions import bennett_length
 from linkages.construction.constructions import (
     ending_with,
     isomerize,
-    isomerized_angles,
     lock,
     locked_angles,
     share_joint,
-    subtract,
-    summate,
     superpose,
-    superpose_across_bennett,
-    superposed_angles,
 )
 from linkages.construction.link import (
     Link,
@@ -28,9 +23,13 @@ from linkages.construction.link import (
     syncopated_link,
 )
 from linkages.construction.spatial_triangle import Kink, composite_link
-from linkages.families.generalized_double_goldberg import generalized_double_goldberg
-from linkages.families.goldberg import goldberg, subtractive_goldberg
-from linkages.families.goldberg_5r import generalized_goldberg, syncopated_goldberg
+from linkages.families.double_goldberg import generalized_double_goldberg
+from linkages.families.goldberg_5r import (
+    generalized_goldberg,
+    goldberg,
+    subtractive_goldberg,
+    syncopated_goldberg,
+)
 from linkages.families.goldberg_6r import l_shape_goldberg, serial_goldberg
 from linkages.families.mavroidis_roth import OffsetPattern, mavroidis_roth
 from linkages.families.mixed_double_goldberg import (
@@ -50,6 +49,59 @@ TIGHT = 1e-13  # closure is exact; a few dozen rounded products remain
 
 def bennett_loop(one: Link, other: Link) -> Loop:
     return closed_chain(one, other, one, other)
+
+
+def summate(first: Loop, second: Loop, kink: Kink = Kink.STRAIGHT) -> Loop:
+    """Two loops on their common last link, the neighbours at joint n of ``first`` in
+    line or folded upon each other."""
+    return lock(superpose(first, second), first.n, kink)
+
+
+def superpose_across_bennett(first: Loop, second: Loop) -> Loop:
+    """The loop left when the last two links of both form a Bennett loop, removed: the
+    common Bennett-linkage method of Song and Chen (2011)."""
+    return superpose(first, isomerize(second, second.n), shared=2)
+
+
+def superposed_angles(
+    first: np.ndarray, second: np.ndarray, shared: int = 1
+) -> np.ndarray:
+    """Joint angles (..., n + m - 2 shared), rad, of the superposed loop from those of
+    the two loops."""
+    first = np.asarray(first, dtype=float)
+    second = np.asarray(second, dtype=float)
+    last = first.shape[-1] - shared
+    other = second.shape[-1] - shared
+    start = first[..., 0] - second[..., 0] + np.pi
+    end = first[..., last] - second[..., other] + np.pi
+    forth = first[..., 1:last]
+    back = -second[..., other - 1 : 0 : -1]
+    parts = [start[..., None], forth, end[..., None], back]
+    return np.concatenate(parts, axis=-1)
+
+
+def isomerized_angles(loop: Loop, joint: int, theta: np.ndarray) -> np.ndarray:
+    """Joint angles (..., n), rad, of ``isomerize(loop, joint)`` for configurations
+    ``theta`` (..., n).
+
+    ``joint`` keeps its angle; its neighbours turn against each other.
+    """
+    i = joint - 1
+    out = np.array(theta, dtype=float)
+    first = float(loop.twists[i - 1])
+    second = float(loop.twists[i])
+    c1 = np.cos(first)
+    s1 = np.sin(first)
+    c2 = np.cos(second)
+    s2 = np.sin(second)
+    ck = np.cos(out[..., i])
+    sk = np.sin(out[..., i])
+    before = np.arctan2(s2 * sk, ck * s2 * c1 + c2 * s1)
+    after = np.arctan2(s1 * sk, ck * s1 * c2 + c1 * s2)
+    turn = before - after
+    out[..., i - 1] += turn
+    out[..., (i + 1) % loop.n] -= turn
+    return out
 
 
 def bennett_angles(one: Link, other: Link, theta: float) -> np.ndarray:
@@ -110,7 +162,10 @@ def test_sum_and_difference_of_bennett_loops_are_the_goldberg_linkages():
     a, b, c, _ = LINKS
     first, second = bennett_loop(a, b), bennett_loop(c, b)
     assert same(summate(first, second), goldberg(A, ALPHA, BETA, GAMMA))
-    assert same(subtract(first, second), subtractive_goldberg(A, ALPHA, BETA, GAMMA))
+    assert same(
+        summate(first, second, Kink.FOLDED),
+        subtractive_goldberg(A, ALPHA, BETA, GAMMA),
+    )
 
 
 def test_kink_angle_gives_the_generalized_goldberg_linkage():
@@ -259,7 +314,10 @@ def type_of(loop: Loop) -> str:
         for order in Order
         for signed in (c, -c)
         if same_up_to_link_direction(
-            loop, double_goldberg_chain(a, b, signed, d, order, Kind.MIXED)
+            loop,
+            double_goldberg_chain(
+                {"a": a, "b": b, "c": signed, "d": d}, order, Kind.MIXED
+            ),
         )
     }
     assert len(found) == 1, found

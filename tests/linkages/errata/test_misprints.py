@@ -7,14 +7,13 @@ import pytest
 
 from linkages.catalogue import entry
 from linkages.errata.erratum import HOLDS
-from linkages.errata.misprints import ERRATA, errata_of
-from linkages.errata.words import WORDS
+from linkages.errata.misprints import errata_of, misprints, word_errata
 
 PAGE = Path(__file__).parents[3] / "docs" / "errata.md"
 
 
 @pytest.mark.parametrize(
-    "erratum", ERRATA, ids=lambda erratum: f"{erratum.equation} {erratum.linkage}"
+    "erratum", misprints(), ids=lambda erratum: f"{erratum.equation} {erratum.linkage}"
 )
 def test_printed_equation_fails_and_the_corrected_one_holds(erratum):
     printed, corrected = erratum.measure()
@@ -23,7 +22,7 @@ def test_printed_equation_fails_and_the_corrected_one_holds(erratum):
 
 
 @pytest.mark.parametrize(
-    "erratum", ERRATA, ids=lambda erratum: f"{erratum.equation} {erratum.linkage}"
+    "erratum", misprints(), ids=lambda erratum: f"{erratum.equation} {erratum.linkage}"
 )
 def test_page_of_the_docs_has_the_row_with_its_amount(erratum):
     amount = f"{erratum.measure()[0]:.1g}"
@@ -42,11 +41,11 @@ def test_page_of_the_docs_has_no_other_rows():
         for line in PAGE.read_text(encoding="utf-8").splitlines()
         if line.startswith("| ")
     ]
-    assert len(rows) == len(ERRATA) + len(WORDS) + 2
+    assert len(rows) == len(misprints()) + len(word_errata()) + 2
 
 
 def test_every_misprint_belongs_to_a_linkage_of_the_catalogue():
-    assert all(entry(erratum.linkage) for erratum in ERRATA)
+    assert all(entry(erratum.linkage) for erratum in misprints())
     assert {e.equation for e in errata_of("wohlhart-double-goldberg")} >= {
         "(5.2.4)",
         "(5.2.5)",

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from linkages.errata.words import WORDS
+from linkages.errata.misprints import word_errata
 
 PAGE = Path(__file__).parents[3] / "docs" / "errata.md"
 SEEN = {
@@ -26,7 +26,7 @@ SEEN = {
 }
 
 
-@pytest.mark.parametrize("erratum", WORDS, ids=lambda erratum: erratum.place)
+@pytest.mark.parametrize("erratum", word_errata(), ids=lambda erratum: erratum.place)
 def test_what_is_seen_stands_on_the_page(erratum):
     seen = erratum.see()
     assert seen == SEEN.get(erratum.place, seen)
@@ -37,6 +37,6 @@ def test_what_is_seen_stands_on_the_page(erratum):
 
 
 def test_every_statement_that_can_be_measured_is():
-    places = [erratum.place for erratum in WORDS]
+    places = [erratum.place for erratum in word_errata()]
     assert SEEN.keys() <= set(places)
     assert len(set(places)) == len(places)

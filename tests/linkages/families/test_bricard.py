@@ -4,7 +4,6 @@ import pytest
 from linkages.catalogue import entry
 from linkages.families.bricard import (
     bricard_line_symmetric,
-    bricard_line_symmetric_zero_offset,
     bricard_octahedral_line_symmetric,
     patterns,
 )
@@ -21,7 +20,7 @@ def test_opposite_links_and_offsets_are_alike():
 
 
 def test_the_special_cases_lack_offsets_or_lengths():
-    assert bricard_line_symmetric_zero_offset(1, 2, 3, *TWISTS).offsets == (0,) * 6
+    assert bricard_line_symmetric(1, 2, 3, *TWISTS).offsets == (0,) * 6
     assert bricard_octahedral_line_symmetric(*TWISTS, 1, 2, 3).lengths == (0,) * 6
 
 

@@ -8,13 +8,11 @@ from linkages.families.back_to_back import back_to_back, matching_twist
 from linkages.families.bricard_collapsible import doubly_collapsible_octahedral
 from linkages.families.bricard_other import trihedral, wohlhart_hybrid
 from linkages.families.bricard_plane import plane_symmetric_octahedral
-from linkages.families.dietmaier import dietmaier
 from linkages.families.goldberg_5r import extended_myard, syncopated_goldberg
 from linkages.families.goldberg_6r import serial_goldberg
-from linkages.families.mavroidis_roth import mavroidis_roth
+from linkages.families.mavroidis_roth import dietmaier, mavroidis_roth
 from linkages.families.mixed_double_goldberg import double_goldberg_type
-from linkages.families.waldron import waldron_collinear
-from linkages.families.yu_baker import yu_baker
+from linkages.families.waldron import waldron_collinear, yu_baker
 from linkages.values import GeometryError
 
 TWISTS = tuple(np.radians([35.0, 62.0, 41.0, 22.0]))

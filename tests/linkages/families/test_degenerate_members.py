@@ -9,7 +9,7 @@ import pytest
 from linkages.catalogue import catalogue, entry
 from linkages.entry import ParameterKind
 from linkages.families.goldberg_5r import syncopated_goldberg
-from linkages.families.yu_baker import yu_baker
+from linkages.families.waldron import yu_baker
 from linkages.loop import Loop
 from linkages.values import GeometryError
 

@@ -3,7 +3,7 @@ import math
 import pytest
 import sympy
 
-from linkages.families.goldberg import goldberg, subtractive_goldberg
+from linkages.families.goldberg_5r import goldberg, subtractive_goldberg
 from linkages.values import GeometryError
 
 TWISTS = dict(zip(("alpha", "beta", "gamma"), (1.15, 0.87, 0.49), strict=True))

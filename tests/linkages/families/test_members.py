@@ -15,9 +15,9 @@ from linkages.construction.link import (
 from linkages.entry import Entry
 from linkages.families.bricard_other import wohlhart_hybrid
 from linkages.families.bricard_plane import plane_symmetric, plane_symmetric_octahedral
-from linkages.families.dietmaier import dietmaier
 from linkages.families.goldberg_5r import extended_myard
 from linkages.families.goldberg_6r import syncopated_serial_goldberg
+from linkages.families.mavroidis_roth import dietmaier
 from linkages.loop import Loop
 from linkages.values import GeometryError
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from linkages.errata.misprints import ERRATA
+from linkages.errata.misprints import misprints
 from linkages.source_figures.draw import DRAWINGS
 from linkages.source_figures.table import (
     Agreement,
@@ -47,7 +47,7 @@ def test_a_figure_that_differs_says_why():
 
 
 def test_equations_that_a_remark_calls_misprinted_are_among_the_errata():
-    known = " ".join(erratum.equation for erratum in ERRATA)
+    known = " ".join(erratum.equation for erratum in misprints())
     for equation in (
         "(2.3.4)",
         "(2.4.22)",
