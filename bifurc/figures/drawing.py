@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import textwrap
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -172,6 +172,20 @@ def _draw_singular_points(axes: Axes, spots: np.ndarray, mark: Mark) -> None:
         markeredgewidth=1.1,
         clip_on=False,
         zorder=4,
+    )
+
+
+def name_above(axes: Axes, x: float, name: str, **style: Any) -> None:
+    """The name of something at an abscissa, above the frame."""
+    axes.annotate(
+        name,
+        (x, 1.0),
+        (0, 2),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        ha="center",
+        fontsize=8,
+        **style,
     )
 
 

@@ -6,6 +6,7 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 from bifurc.singular.point import Kind
 
+Properties: TypeAlias = dict[str, Any]  # of what matplotlib draws, as it calls them
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
 # Settings of matplotlib for all figures, which the user's own must not disturb. Their
