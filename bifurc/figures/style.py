@@ -67,6 +67,11 @@ class Style(NamedTuple):
     color: str
     dashes: Dashes
 
+    @property
+    def line(self) -> Properties:
+        """How a line of it is drawn."""
+        return {"color": self.color, "linestyle": self.dashes}
+
 
 class Mark(NamedTuple):
     """Symbol of a singular point, as matplotlib calls it, and its size in points."""
@@ -89,6 +94,16 @@ def color_on_dark(color: str) -> str:
     """The colour that stands for ``color`` on a dark page: the same where it can be
     seen there."""
     return ON_DARK.get(color, color)
+
+
+def hollow(mark: Mark) -> Properties:
+    """How a mark is drawn, white inside."""
+    return {
+        "marker": mark.symbol,
+        "markersize": mark.size,
+        "markerfacecolor": "white",
+        "markeredgecolor": "black",
+    }
 
 
 def mark_of(kind: Kind) -> Mark:

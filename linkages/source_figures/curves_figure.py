@@ -86,14 +86,12 @@ def _draw_form(axes: Axes, form: Form, content: Content) -> None:
     groups = joints_alike(points)
     for curve in groups:
         rows = cut_to_frame(points[:, [0, curve.joints[0]]], scales)
-        style = form_style(curve.index)
         axes.plot(
             *rows.T,
-            color=style.color,
-            linestyle=style.dashes,
             linewidth=1.7,
             label=_names(curve.joints),
             clip_on=False,
+            **form_style(curve.index).line,
         )
     for degrees, filling in content.get("dots", ()):
         color = "black" if filling == "filled" else "white"

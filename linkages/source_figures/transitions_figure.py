@@ -81,8 +81,7 @@ def draw(source: SourceFigure) -> Figure:
 def _draw_form_names(axes: Axes, atlas: Atlas) -> None:
     """The names of the forms below the map, by the lines that it has for them."""
     for index, form in enumerate(atlas.forms):
-        style = form_style(index)
-        axes.plot([], [], color=style.color, linestyle=style.dashes, label=form.name)
+        axes.plot([], [], label=form.name, **form_style(index).line)
     axes.legend(
         loc="upper left", bbox_to_anchor=(-0.05, -0.14), frameon=False, handlelength=3.2
     )

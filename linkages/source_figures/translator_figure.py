@@ -101,8 +101,7 @@ def _draw_motions(
             for theta, phi in (angles, -angles):
                 points = np.stack([theta, ordinate(theta, phi, alpha)], axis=1)
                 rows = cut_to_frame(points, (ROUND, scale))
-                dashes = style.dashes
-                axes.plot(*rows.T, color=style.color, linestyle=dashes, label=label)
+                axes.plot(*rows.T, label=label, **style.line)
                 label = "_"
     axes.set(xlim=(-180, 180), xlabel="θ (deg)")
     axes.xaxis.set_major_locator(MultipleLocator(60))
