@@ -3,7 +3,7 @@ dashed, and marks where something happens."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -17,7 +17,7 @@ from bifurc.diagrams.diagram import Stability, Stretch
 from bifurc.figures.drawing import note_emptiness, widen_flat_axes
 from bifurc.figures.labels import label_spots
 from bifurc.figures.quantities import AxisRequest, Quantity, quantity_of
-from bifurc.figures.style import COLORS, RC, Dashes
+from bifurc.figures.style import COLORS, RC, Dashes, Properties, Style
 from bifurc.singular.point import Kind
 
 PIECE_POINTS = 16  # drawn on each piece of a form, at least
@@ -74,10 +74,8 @@ def plot_diagram(
         _draw_legend(figure, atlas, stabilities, marks)
         note_emptiness(axes, atlas)
         marked = _marked(atlas)
-        points = [point for _, _, point in marked]
-        label_spots(
-            axes, [name for name, _, _ in marked], [_spot(u, x, y) for u in points]
-        )
+        names = [name for name, _, _ in marked]
+        label_spots(axes, names, [_spot(u, x, y) for _, _, u in marked])
     return figure
 
 
@@ -96,13 +94,8 @@ def _draw_stretches(
             stretches.append(Stretch(number, 0.0, length, Stability.UNKNOWN, -1))
     for stretch in stretches:
         rows = _rows(atlas, stretch, x, y)
-        axes.plot(
-            rows[:, 0],
-            rows[:, 1],
-            color=_color(stretch.form),
-            linestyle=DASHES[stretch.stability],
-            linewidth=LINE_WIDTH,
-        )
+        style = Style(_color(stretch.form), DASHES[stretch.stability])
+        axes.plot(*rows.T, linewidth=LINE_WIDTH, **style.line)
     drawn = {stretch.stability for stretch in stretches}
     return [stability for stability in Stability if stability in drawn]
 
@@ -135,11 +128,11 @@ def _draw_marks(axes: Axes, atlas: Atlas, x: Quantity, y: Quantity) -> list[_Mar
     for _, mark, point in _marked(atlas):
         drawn[mark.label] = mark
         spot = _spot(point, x, y)
-        axes.plot(spot[0], spot[1], zorder=5, **_properties(mark))
+        axes.plot(*spot, zorder=5, **_properties(mark))
     return list(drawn.values())
 
 
-def _properties(mark: _Mark) -> dict[str, Any]:
+def _properties(mark: _Mark) -> Properties:
     """How a line of one point is drawn as a mark."""
     return {
         "marker": mark.symbol,
@@ -201,11 +194,9 @@ def _draw_legend(
             handles.append(line)
     for stability in stabilities:
         if stability is not Stability.UNKNOWN:
-            dashes, label = DASHES[stability], stability.value
+            style = Style("0.3", DASHES[stability]).line
             handles.append(
-                Line2D(
-                    [], [], color="0.3", linestyle=dashes, linewidth=1.6, label=label
-                )
+                Line2D([], [], linewidth=1.6, label=stability.value, **style)
             )
     for mark in marks:
         handles.append(Line2D([], [], label=mark.label, **_properties(mark)))

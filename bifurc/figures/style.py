@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple, TypeAlias
 
+from bifurc.singular.point import Mark
+
+Properties: TypeAlias = dict[str, Any]  # of what matplotlib draws, as it calls them
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
 # Settings of matplotlib for all figures, which the user's own must not disturb. Their
@@ -64,6 +67,11 @@ class Style(NamedTuple):
     color: str
     dashes: Dashes
 
+    @property
+    def line(self) -> Properties:
+        """How a line of it is drawn."""
+        return {"color": self.color, "linestyle": self.dashes}
+
 
 def form_style(index: int) -> Style:
     """Style of form number ``index``: colours and dashes repeat, but not together
@@ -75,3 +83,13 @@ def color_on_dark(color: str) -> str:
     """The colour that stands for ``color`` on a dark page: the same where it can be
     seen there."""
     return ON_DARK.get(color, color)
+
+
+def hollow(mark: Mark) -> Properties:
+    """How a mark is drawn, white inside."""
+    return {
+        "marker": mark.symbol,
+        "markersize": mark.size,
+        "markerfacecolor": "white",
+        "markeredgecolor": "black",
+    }

@@ -332,7 +332,7 @@ class MechanismSubject(Subject):
         """Those of bodies; of a single loop those of links."""
         if self.table is not None:
             return super().approaches(branch)
-        from linkages.links.body_clearance import approaches_of_bodies
+        from linkages.links.clearance import approaches_of_bodies
 
         return tuple(approaches_of_bodies(self.readout.structure, branch))
 

@@ -17,8 +17,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.subject import mechanism_subject
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network
-from linkages.viewing.document import MOST_SAMPLES, make_view_document
-from linkages.viewing.title import title_of
+from linkages.viewing.document import MOST_SAMPLES, make_view_document, title_of
 from tests.linkages.mechanisms.spatial_mechanisms import platform
 from tests.linkages.viewing.conftest import slider_crank
 
