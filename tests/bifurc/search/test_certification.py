@@ -11,12 +11,8 @@ from bifurc.search import branch_examination, tracing
 from bifurc.search.explore import explore
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
-from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.families.bricard import bricard_line_symmetric
 from tests.bifurc.curves.test_jumps import polyline
 
-ERRORS = [1e-2, 1e-3, 1e-4]
 SETTINGS = SearchSettings(starts=40)
 trace_branch = tracing.trace_branch
 
@@ -44,26 +40,6 @@ class Hyperbola(FunctionProblem):
 
 def counts(atlas):
     return len(atlas.forms), len(atlas.bifurcations)
-
-
-@pytest.mark.parametrize("error", ERRORS)
-def test_a_right_map_near_a_surface_is_certified(error):
-    loop = entry("special-double-subtractive-goldberg").build(
-        alpha=2.0, beta=1.0, delta=1.0 + error
-    )
-    atlas = explore(LoopClosure(loop), settings=SETTINGS)
-    assert counts(atlas) == (4, 4)
-    assert all(form.certificate.holds for form in atlas.forms)
-    assert atlas.completeness.level is Level.PROVED
-
-
-@pytest.mark.parametrize("error", [1e-2, 1e-3])
-def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
-    loop = bricard_line_symmetric(1.0, 1.0 + error, 1.3, 1.0, 1.0 + error, 1.9)
-    atlas = explore(LoopClosure(loop), settings=SETTINGS)
-    assert counts(atlas) == (4, 4)
-    assert all(form.certificate.holds for form in atlas.forms)
-    assert atlas.completeness.level is Level.PROVED
 
 
 def jumping_branch(problem, start, direction, settings, closing, *_):
