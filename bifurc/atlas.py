@@ -15,10 +15,10 @@ from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
 from bifurc.diagrams.diagram import Diagram
 from bifurc.errors import ProblemError, RouteError
-from bifurc.html_tables import html_paragraph, html_table
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
+from bifurc.tables import html_paragraph, html_table
 
 # Values that JSON can hold, nested to any depth, by their names.
 JsonObject: TypeAlias = Mapping[str, Any]

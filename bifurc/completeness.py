@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from enum import Enum, StrEnum
 from typing import Any
 
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 
 
 class Level(StrEnum):

@@ -24,7 +24,7 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas, NearMotion
 from bifurc.decisions import closes_to_rounding, is_solution
-from bifurc.text_tables import table
+from bifurc.tables import table
 from linkages.app.options import FOLDER
 from linkages.catalogue import entry
 from linkages.loop import Loop

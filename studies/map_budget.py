@@ -120,7 +120,7 @@ def process_times(name: str) -> dict[str, float]:
             "from linkages.app.cli import main; main()",
             ("map", name, "--json"),
         ),
-        "the imports of a map": ("import linkages.app.exploration", ()),
+        "the imports of a map": ("import linkages.app.atlas_source", ()),
         "import numpy": ("import numpy", ()),
         "python alone": ("pass", ()),
     }

@@ -24,7 +24,7 @@ from bifurc.atlas import Atlas
 from bifurc.completeness import Level
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
-from bifurc.text_tables import table
+from bifurc.tables import table
 from linkages.catalogue import catalogue, entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

@@ -27,7 +27,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.settings import TraceSettings
 from bifurc.singular.locate import locate_singular_point
-from bifurc.text_tables import table
+from bifurc.tables import table
 from studies.near_misses import NearMiss, near_misses
 
 STEPS = (0.1, 0.5)

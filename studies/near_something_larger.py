@@ -25,7 +25,7 @@ from matplotlib.patches import Patch
 
 from bifurc.atlas import Atlas
 from bifurc.settings import SearchSettings
-from bifurc.text_tables import table
+from bifurc.tables import table
 from linkages.app.options import NamedPath
 from linkages.catalogue import entry
 from linkages.families.bennett import bennett

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import click
 
-from bifurc.text_tables import table
+from bifurc.tables import table
 from linkages.app.answer.verdict import judge
 from linkages.app.options import FOLDER
 from linkages.catalogue import catalogue

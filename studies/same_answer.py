@@ -26,7 +26,7 @@ from typing import TextIO
 
 import click
 
-from bifurc.text_tables import section
+from bifurc.tables import section
 from linkages.app.options import FOLDER
 from studies.same_answer_maps import Comparison
 

@@ -28,7 +28,7 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.settings import SearchSettings
 from bifurc.singular.dimension import local_dimensions
-from bifurc.text_tables import count_of, section
+from bifurc.tables import count_of, section
 from linkages.app.options import FOLDER
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mapping import map_linkage

@@ -30,7 +30,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from bifurc.text_tables import section
+from bifurc.tables import section
 from linkages.app.options import FOLDER
 from studies.hard_cases import crossings, ladders
 from studies.stability_arcs import STEPS, follow_ladder, followers

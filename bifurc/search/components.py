@@ -37,7 +37,7 @@ from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.walk import reached_charts
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 
 WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 

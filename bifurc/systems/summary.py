@@ -13,7 +13,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.diagrams.diagram import Diagram
 from bifurc.singular.point import Kind
 from bifurc.systems.verdict import verdict_of
-from bifurc.text_tables import section
+from bifurc.tables import section
 
 SHOWN = 40  # rows of a table; the others are counted
 NONE = "-"

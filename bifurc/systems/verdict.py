@@ -6,7 +6,7 @@ from bifurc.atlas import Atlas
 from bifurc.completeness import Level
 from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 
 
 def verdict_of(atlas: Atlas) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from docs.generator.linkage_record import LinkageRecord
 from docs.generator.pictures import drawing_of
 from linkages.entry import Entry

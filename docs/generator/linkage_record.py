@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from bifurc.torus import wrap
 from linkages.app.answer.verdict import judge
 from linkages.app.texts.numbers import in_degrees

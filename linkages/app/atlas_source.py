@@ -6,23 +6,52 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from bifurc.files.dataset import load_atlas
+from linkages.app.answer.verdict import judge
 from linkages.app.choice import require_table
-from linkages.app.exit_codes import CommandError
-from linkages.app.exploration import explore_linkage, require_uninterrupted
+from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.inputs import choose_held
 from linkages.app.options import HoldOptions, SearchOptions
+from linkages.app.status import StatusLine
 from linkages.app.subject import as_subject, subject_at
 from linkages.labels import NoLinkageError
 from linkages.linkage import Linkage
+from linkages.mapping import map_linkage
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
 
+def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:
+    """The transition map of a linkage or a mechanism; progress is shown on standard error.
+
+    Ctrl-C ends the search early, and the atlas holds what was found by then. Raises
+    `bifurc.ProblemError` for settings out of their range.
+    """
+    settings = search.settings()
+    status = StatusLine()
+    try:
+        return map_linkage(
+            linkage,
+            settings=settings,
+            seed=search.seed,
+            progress=status,
+        )
+    finally:
+        status.wipe()
+
+
+def require_uninterrupted(atlas: Atlas) -> None:
+    """Raise `CommandError` where Ctrl-C ended the search: half a map is of no use to
+    the command."""
+    if atlas.provenance.interrupted:
+        raise CommandError(judge(atlas).sentence, ExitCode.INTERRUPTED)
+
+
 def open_linkage_atlas(path: str) -> Atlas:
     """The atlas of a linkage in a file. Raises `bifurc.AtlasFileError` for a file that
     holds no atlas, and `CommandError` for one that holds another, or is not there."""
+    from bifurc.files.dataset import load_atlas
+
     try:
         atlas = load_atlas(path)
     except FileNotFoundError:

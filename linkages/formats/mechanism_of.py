@@ -10,7 +10,7 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from linkages.decisions import (
     is_closed_as_it_stands,
     is_file_closed,

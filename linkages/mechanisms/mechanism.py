@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
 from linkages.mechanisms.couplings import Coupling, Leader, leaders
 from linkages.mechanisms.joint import (

@@ -12,7 +12,7 @@ from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 from bifurc.completeness import Scope
 from bifurc.singular.point import Kind
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from linkages.statements import LinkageClaim
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from bifurc.completeness import Completeness, Level
 from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
 from bifurc.systems.verdict import has_only_open_points
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from linkages.app.answer.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
 from linkages.app.subject import subject_at

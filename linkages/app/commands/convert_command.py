@@ -34,7 +34,7 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     """
     require_ending(TARGET, out, *WRITTEN)
     from bifurc.files.atomic import replace_file
-    from bifurc.text_tables import count_of
+    from bifurc.tables import count_of
 
     mechanism = _mechanism(source, hold)
     text = mechanism_text(mechanism, out)

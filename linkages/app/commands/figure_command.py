@@ -49,7 +49,7 @@ def figure_command(names: tuple[str, ...], is_list: bool, out: Path | None) -> N
 
 def show_list() -> None:
     """Print every figure with what it shows."""
-    from bifurc.text_tables import table
+    from bifurc.tables import table
     from linkages.app.output import say
     from linkages.source_figures.table import source_figures
 

@@ -13,7 +13,7 @@ def list_command() -> None:
     Example:
       bifurc list
     """
-    from bifurc.text_tables import table
+    from bifurc.tables import table
     from linkages.app.output import say
     from linkages.catalogue import catalogue
     from linkages.networks.entries import NETWORKS

@@ -91,7 +91,7 @@ def map_command(
       bifurc map special-double-subtractive-goldberg --digits 50
     """
     from linkages.app.answer.verdict import judge
-    from linkages.app.exploration import explore_linkage
+    from linkages.app.atlas_source import explore_linkage
     from linkages.app.figure_axes import figure_axes
     from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say

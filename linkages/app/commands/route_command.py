@@ -107,8 +107,8 @@ def _route_over_locks(
     """Show the route of a network over its locks; raises `CommandError` where there is
     none, or the source is no network."""
     from bifurc.errors import RouteError
+    from linkages.app.atlas_source import explore_linkage, require_uninterrupted
     from linkages.app.choice import choose_linkage, require_kind
-    from linkages.app.exploration import explore_linkage, require_uninterrupted
     from linkages.app.output import say
     from linkages.app.texts.lock_route_text import describe_lock_route, read_place
     from linkages.networks.entries import NETWORKS

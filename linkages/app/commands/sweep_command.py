@@ -110,7 +110,7 @@ def sweep_command(
       bifurc sweep four-bennett-network --lock 2=40 --lock 6=-170:170:35
       bifurc sweep five_bar.toml --lock A=-180:175:72
     """
-    from bifurc.text_tables import count_of
+    from bifurc.tables import count_of
     from linkages.app.sweep.plan import read_plan
 
     plan = read_plan(

@@ -73,7 +73,7 @@ def tolerance_command(
       bifurc tolerance special-double-subtractive-goldberg --error 1e-4 --out out
       bifurc tolerance four-bennett-network --lock 2=40 --lock 6=-75
     """
-    from linkages.app.exploration import explore_linkage
+    from linkages.app.atlas_source import explore_linkage
     from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.reports.tolerance import climb, measure
@@ -104,7 +104,7 @@ def tolerance_command(
 def _require_forms(atlas: Atlas) -> None:
     """Raise `CommandError` unless there are forms whose closure can be measured."""
     from linkages.app.answer.verdict import judge
-    from linkages.app.exploration import require_uninterrupted
+    from linkages.app.atlas_source import require_uninterrupted
 
     require_uninterrupted(atlas)
     if atlas.forms:

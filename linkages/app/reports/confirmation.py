@@ -14,7 +14,7 @@ from bifurc.singular.confirm import (
     Convergence,
     confirm_singular_point,
 )
-from bifurc.text_tables import table
+from bifurc.tables import table
 from linkages.app.choice import choose_precisely
 from linkages.app.subject import LoopSubject, subject_at
 from linkages.closure.precise import precise_residual

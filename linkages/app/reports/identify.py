@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from linkages.app.texts.numbers import known_to, link_name
 from linkages.entry import ParameterKind
 from linkages.identification.fitting import NEAR

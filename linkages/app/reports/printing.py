@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
-from bifurc.text_tables import table
+from bifurc.tables import table
 from linkages.app.answer.configurations import show_configuration
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.reports.print_options import PrintOptions

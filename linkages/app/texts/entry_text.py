@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from bifurc.text_tables import table
+from bifurc.tables import table
 from linkages.app.texts.numbers import in_degrees, known_to, link_name
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.loop import Loop

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.text_tables import count_of, table
+from bifurc.tables import count_of, table
 from linkages.app.exit_codes import CommandError
 from linkages.app.inputs import read_kinks
 from linkages.app.texts.network_text import describe_ring

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.text_tables import section
+from bifurc.tables import section
 from bifurc.torus import wrap
 from linkages.app.answer.configurations import SHOWN_SHARE
 from linkages.app.answer.mechanism_document import describe_mechanism

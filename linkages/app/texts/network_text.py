@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bifurc.atlas import Atlas
-from bifurc.text_tables import section, table
+from bifurc.tables import section, table
 from linkages.app.texts.entry_text import list_below, parameter_table
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees

@@ -6,7 +6,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.routes.route import Route
-from bifurc.text_tables import count_of, table
+from bifurc.tables import count_of, table
 from linkages.app.answer.configurations import (
     arclength_unit,
     show_configuration,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
-from bifurc.text_tables import section
+from bifurc.tables import section
 from linkages.app.answer.configurations import (
     arclength_unit,
     show_configuration,

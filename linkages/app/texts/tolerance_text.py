@@ -8,7 +8,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.curves.valley import Unfolding
-from bifurc.text_tables import count_of, section
+from bifurc.tables import count_of, section
 from linkages.app.answer.configurations import unit_of_arclengths
 from linkages.app.reports.tolerance import (
     Ladder,

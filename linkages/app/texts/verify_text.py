@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, TypeAlias
 
-from bifurc.text_tables import count_of
+from bifurc.tables import count_of
 from linkages.app.reports.verify import (
     ClosedFormCheck,
     ErratumCheck,

@@ -537,7 +537,7 @@ STEPS = {
     ("show", "bennett"): "linkages.catalogue.entry",
     ("identify", "bennett"): "linkages.identification.identify.identify",
     ("verify", "bennett"): "linkages.app.reports.verify.verify",
-    ("map", "bennett"): "linkages.app.exploration.explore_linkage",
+    ("map", "bennett"): "linkages.app.atlas_source.explore_linkage",
     ("route", "bennett", "a", "b"): "linkages.app.atlas_source.explore_linkage",
     ("view", "kite"): "linkages.app.atlas_source.explore_linkage",
     ("export", "kite", "--to", "a.glb"): "linkages.app.atlas_source.explore_linkage",
