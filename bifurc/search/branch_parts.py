@@ -19,12 +19,12 @@ from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_same_point, is_solution
 from bifurc.numerics.collocation import piece_through, reparametrised
 from bifurc.problem import Problem
-from bifurc.singular.local_branches import LocalBranch
 from bifurc.singular.point import SingularPoint
 
 if TYPE_CHECKING:
-    # it imports mpmath, which most searches do not need
+    # they import mpmath, which most searches do not need
     from bifurc.singular.germ import Germ
+    from bifurc.singular.local_branches import LocalBranch
 
 WITHIN = np.linspace(-1.0, 1.0, 17)  # of the piece between, where it is checked
 
