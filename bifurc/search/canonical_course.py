@@ -16,7 +16,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_slow_at_start, is_unclear_start
 from bifurc.problem import Problem
-from bifurc.torus import wrap, wrapped_periods
+from bifurc.torus import whole_turns, wrap, wrapped_periods
 
 FUNCTIONS = 8  # that are tried
 # By how much a maximum stands above all others, over the range of the function.
@@ -53,15 +53,7 @@ def canonical_course(problem: Problem, branch: Branch) -> Branch:
     start = branch(0.0)
     periods = wrapped_periods(problem.periods, problem.bounds)
     wrapped = wrap(start, periods, within=SEAM)
-    return branch.moved_by_periods(_turns(wrapped - start, periods))
-
-
-def _turns(gaps: np.ndarray, periods: np.ndarray) -> np.ndarray:
-    """Gaps (n,) in whole periods, 0 where there is none."""
-    turns = np.zeros(len(periods))
-    periodic = np.isfinite(periods)
-    turns[periodic] = np.rint(gaps[periodic] / periods[periodic])
-    return turns
+    return branch.moved_by_periods(whole_turns(wrapped - start, periods))
 
 
 # --- where it begins ------------------------------------------------------------------
@@ -149,23 +141,14 @@ class _Height:
         if not len(tops):
             return _Top(0.0, 0.0)
         best = float(tops[order[-1]])
-        return _Top(best, min(self._margin(tops[order]), self._bend(best)) / extent)
-
-    def _margin(self, tops: np.ndarray) -> float:
-        """By how much the last of the ``tops`` (k,), the lowest first, stands above the
-        one before it, over what is clear."""
-        heights = self.at(self.branch(tops[-2:]))
-        margin = heights[-1] - heights[0] if len(tops) > 1 else np.inf
-        return float(margin) / CLEAR_MARGIN
-
-    def _bend(self, top: float) -> float:
-        """Minus the second derivative at a top times the square of the length of the
-        curve, over what is clear."""
+        highest = self.at(self.branch(tops[order[-2:]]))
+        margin = highest[-1] - highest[0] if len(tops) > 1 else np.inf
         step = BEND_STEP * self.branch.length
-        places = np.array([top - step, top + step])
-        before, after = self.branch.rates_of_height(self.coefficients, places)
-        bend = (before - after) / (2 * step)
-        return float(bend) * self.branch.length**2 / CLEAR_BEND
+        beside = np.array([best - step, best + step])
+        before, after = self.branch.rates_of_height(self.coefficients, beside)
+        bend = (before - after) / (2 * step) * self.branch.length**2
+        clarity = min(float(margin) / CLEAR_MARGIN, float(bend) / CLEAR_BEND)
+        return _Top(best, clarity / extent)
 
 
 # --- which way it runs ----------------------------------------------------------------
