@@ -17,7 +17,7 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_same_point, is_solution
 from bifurc.numerics.collocation import piece_through, reparametrised
-from bifurc.problem import Problem
+from bifurc.problem import Piece, Problem
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import LocalBranch
 from bifurc.singular.point import SingularPoint
@@ -70,19 +70,30 @@ def with_piece_between(
     residual = float(problem.gaps(powers @ piece).max())
     if not is_solution(residual):
         return None
-    closing = Branch(
-        pieces=piece[None],
-        centers=np.array([0.5 * length]),
-        radii=np.array([0.5 * length]),
-        breaks=np.array([0.0, length]),
-        residuals=np.array([residual]),
-        periods=before.periods,
-        outcome=outcome,
+    closing = branch_of_pieces(
+        [Piece(piece, length, residual)], before.periods, outcome
     )
     closed = followed_by(before, closing, np.zeros(before.n))
     if outcome is Outcome.CLOSED:
         return closed
     return replace(followed_by(closed, after, shift), outcome=outcome)
+
+
+def branch_of_pieces(
+    pieces: Sequence[Piece], periods: np.ndarray, outcome: Outcome
+) -> Branch:
+    """The branch of polynomial pieces that lie end to end."""
+    lengths = np.array([piece.length for piece in pieces])
+    breaks = np.concatenate([[0.0], np.cumsum(lengths)])
+    return Branch(
+        pieces=np.array([piece.coefficients for piece in pieces]),
+        centers=breaks[:-1] + 0.5 * lengths,
+        radii=0.5 * lengths,
+        breaks=breaks,
+        residuals=np.array([piece.residual for piece in pieces]),
+        periods=periods,
+        outcome=outcome,
+    )
 
 
 def followed_by(one: Branch, other: Branch, shift: np.ndarray) -> Branch:
@@ -203,7 +214,7 @@ def _curve(
 ) -> Branch:
     """The curve of pieces of an ``order`` between places s = ``edges`` (k + 1,) of a
     branch."""
-    pieces, lengths, residuals = [], [], []
+    pieces = []
     powers = CHECKS[:, None] ** np.arange(order + 1)
     for begin, end in pairwise(edges):
         middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
@@ -211,22 +222,10 @@ def _curve(
         def points(
             x: np.ndarray, middle: float = middle, half: float = half
         ) -> np.ndarray:
-            places: np.ndarray = branch(middle + half * x)
+            places: np.ndarray = germ.u + branch(middle + half * x)
             return places
 
         piece = piece_through(points, order)
-        coefficients = piece.coefficients
-        coefficients[0] += germ.u
-        pieces.append(coefficients)
-        lengths.append(piece.length)
-        residuals.append(float(problem.gaps(powers @ coefficients).max()))
-    breaks = np.concatenate([[0.0], np.cumsum(lengths)])
-    return Branch(
-        pieces=np.array(pieces),
-        centers=0.5 * (breaks[:-1] + breaks[1:]),
-        radii=0.5 * np.diff(breaks),
-        breaks=breaks,
-        residuals=np.array(residuals),
-        periods=problem.periods,
-        outcome=Outcome.STALLED,
-    )
+        residual = float(problem.gaps(powers @ piece.coefficients).max())
+        pieces.append(replace(piece, residual=residual))
+    return branch_of_pieces(pieces, problem.periods, Outcome.STALLED)
