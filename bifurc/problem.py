@@ -275,11 +275,11 @@ class Problem(ABC):
 
     def relative_residuals(self, points: np.ndarray) -> np.ndarray:
         """F over the magnitude (k, m) at points (k, n)."""
-        return self._over_magnitude(self.residuals(points))
+        return self.residuals(points) / self.magnitude
 
     def relative_jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' over the magnitude (k, m, n) at points (k, n)."""
-        return self._over_magnitude(self.jacobians(points))
+        return self.jacobians(points) / self.magnitude
 
     def hessians(self, points: np.ndarray) -> np.ndarray:
         """F'' (k, m, n, n) at points (k, n)."""
@@ -287,12 +287,7 @@ class Problem(ABC):
 
     def relative_hessians(self, points: np.ndarray) -> np.ndarray:
         """F'' over the magnitude (k, m, n, n) at points (k, n)."""
-        return self._over_magnitude(self.hessians(points))
-
-    def _over_magnitude(self, values: np.ndarray) -> np.ndarray:
-        """``values`` over the magnitude; the same array where that is 1, as of every
-        loop."""
-        return values if self.magnitude == 1.0 else values / self.magnitude
+        return self.hessians(points) / self.magnitude
 
     def gaps(self, points: np.ndarray) -> np.ndarray:
         """|F| over the magnitude (k,) at points (k, n)."""

@@ -85,24 +85,12 @@ def _clearest_top(problem: Problem, branch: Branch) -> float:
 
 @dataclass(frozen=True)
 class _Height:
-    """A function along a closed curve: the sum over the unknowns of ``weights`` (n,)
-    times the cosine of an angle beyond its phase, or times an unknown without a period
-    over the scale.
-
-    ``angular`` (n,) and ``linear`` (n,) are the unknowns' factors, 0 for those of the
-    other kind.
-    """
+    """A function along a closed curve, with the ``coefficients`` (4, n) of
+    `Branch.rates_of_height`: a weight times the cosine of an angle beyond its phase, or
+    times an unknown without a period over the scale."""
 
     branch: Branch
-    weights: np.ndarray
-    phases: np.ndarray
-    angular: np.ndarray
-    linear: np.ndarray
-
-    @property
-    def coefficients(self) -> np.ndarray:
-        """Those (4, n) of `Branch.rates_of_height`."""
-        return np.array([self.weights, self.phases, self.angular, self.linear])
+    coefficients: np.ndarray
 
     @staticmethod
     def of(problem: Problem, number: int, branch: Branch) -> _Height:
@@ -116,13 +104,13 @@ class _Height:
         angular[periodic] = 2 * np.pi / problem.periods[periodic]
         signs = np.where(np.sin(phases) > 0, 1.0, -1.0)
         linear = np.where(periodic, 0.0, signs / problem.scale)
-        return _Height(branch, weights, phases, angular, linear)
+        return _Height(branch, np.array([weights, phases, angular, linear]))
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """Heights (k,) of points (k, n)."""
-        waves = np.cos(points * self.angular - self.phases)
-        terms = np.where(self.angular > 0, waves, points * self.linear)
-        heights: np.ndarray = terms @ self.weights
+        weights, phases, angular, linear = self.coefficients
+        waves = np.cos(points * angular - phases)
+        heights: np.ndarray = np.where(angular > 0, waves, points * linear) @ weights
         return heights
 
     def top(self, samples: np.ndarray, points: np.ndarray) -> _Top:

@@ -45,8 +45,7 @@ class Numbered(dict[int, Item], Generic[Item]):
     """Things of one kind in the order in which they were found, by numbers that they
     keep: what is forgotten leaves its number to no other one."""
 
-    def __init__(self) -> None:
-        self._count = 0
+    _count = 0
 
     def add(self, item: Item) -> int:
         """The number of a thing just recorded."""

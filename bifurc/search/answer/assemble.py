@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -167,22 +167,18 @@ def _component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of
     the forms."""
     # networkx, which could do this, takes longer to import than the search
-    components: list[set[Hashable]] = [{form} for form in range(count)]
+    component = {("form", form): form for form in range(count)}
     for point in points:
-        meeting: set[Hashable] = {form for form, _ in point.passes}
-        meeting |= {("surface", k) for k in point.surfaces}
-        apart = [component for component in components if not component & meeting]
-        joined = [component for component in components if component & meeting]
-        components = [*apart, meeting.union(*joined)]
-    parts = [
-        sorted(member for member in component if isinstance(member, int))
-        for component in components
-    ]
-    numbers = [0] * count
-    for number, forms in enumerate(sorted(filter(None, parts))):
-        for form in forms:
-            numbers[form] = number
-    return numbers
+        meeting = [("form", form) for form, _ in point.passes]
+        meeting += [("surface", surface) for surface in point.surfaces]
+        for thing in meeting:
+            component.setdefault(thing, len(component))
+        joined = {component[thing] for thing in meeting}
+        for thing, number in component.items():
+            if number in joined:
+                component[thing] = min(joined)
+    first_forms = [component["form", form] for form in range(count)]
+    return [sorted(set(first_forms)).index(first) for first in first_forms]
 
 
 def _surfaces(
