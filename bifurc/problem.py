@@ -191,6 +191,7 @@ class Problem(ABC):
     scale, as those numbers are rounded; 0 where that is not known. ``hessian_error`` is
     how far off `hessian` may be, over a bound on F''. ``has_assumed_bounds`` (n, 2): which
     ends of the bounds were chosen, as none were given; a single False for none of them.
+    ``has_crossings``: curves may cross, so that short steps are a sign of a crossing.
     """
 
     names: tuple[str, ...]
@@ -205,6 +206,7 @@ class Problem(ABC):
     equations: str = ""
     is_exact: bool = False
     data_rounding: float = 0.0
+    has_crossings: bool = True
     has_assumed_bounds: np.ndarray = np.array(False)
 
     @property
@@ -224,12 +226,9 @@ class Problem(ABC):
 
     def take_unknowns_of(self, other: Problem) -> None:
         """Take the unknowns of another problem, with its region and its sizes."""
-        self.names = other.names
-        self.units = other.units
-        self.periods = other.periods
-        self.bounds = other.bounds
-        self.magnitude = other.magnitude
-        self.scale = other.scale
+        self.names, self.units = other.names, other.units
+        self.periods, self.bounds = other.periods, other.bounds
+        self.magnitude, self.scale = other.magnitude, other.scale
         self.derivatives = other.derivatives
 
     @abstractmethod
@@ -293,11 +292,6 @@ class Problem(ABC):
         """|F| over the magnitude (k,) at points (k, n)."""
         sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
         return sizes / self.magnitude
-
-    @property
-    def has_crossings(self) -> bool:
-        """Whether curves may cross: short steps are then a sign of a crossing."""
-        return True
 
     @property
     def has_rim(self) -> bool:
