@@ -222,10 +222,12 @@ def _curve(
         def points(
             x: np.ndarray, middle: float = middle, half: float = half
         ) -> np.ndarray:
-            places: np.ndarray = germ.u + branch(middle + half * x)
+            places: np.ndarray = branch(middle + half * x)
             return places
 
+        # so short that places beside the point would be rounded off elsewhere
         piece = piece_through(points, order)
+        piece.coefficients[0] += germ.u
         residual = float(problem.gaps(powers @ piece.coefficients).max())
         pieces.append(replace(piece, residual=residual))
     return branch_of_pieces(pieces, problem.periods, Outcome.STALLED)
