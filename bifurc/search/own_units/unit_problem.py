@@ -260,10 +260,12 @@ class UnitProblem(EquationProblem):
         ``deadline``."""
         if _has_own(self.problem, "seeds"):
             return self.seeds_inwards(self.problem.seeds_until(rng, count, deadline))
-        if np.allclose(self.own_box, self.region):
+        # the bounds, and on a circle the region
+        box = np.where(np.isinf(self.bounds), self.region, self.bounds)
+        if np.allclose(box, self.region):
             return random_seeds(self, rng, count, self.region, deadline)
         near = random_seeds(self, rng, count - count // 2, self.region, deadline)
-        anywhere = random_seeds(self, rng, count // 2, self.own_box, deadline)
+        anywhere = random_seeds(self, rng, count // 2, box, deadline)
         return near.and_random(anywhere)
 
     def seeds_inwards(self, seeds: Seeds) -> Seeds:
@@ -296,12 +298,6 @@ class UnitProblem(EquationProblem):
             home=None if seeds.home is None else home,
             more=None if seeds.more is None else more,
         )
-
-    @property
-    def own_box(self) -> np.ndarray:
-        """The bounds (n, 2), and on a circle the region."""
-        box: np.ndarray = np.where(np.isinf(self.bounds), self.region, self.bounds)
-        return box
 
     def ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
         """Points (k, n), in the user's units, at which ``count`` random starts in the
