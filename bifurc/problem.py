@@ -193,6 +193,7 @@ class Problem(ABC):
     scale, as those numbers are rounded; 0 where that is not known. ``hessian_error`` is
     how far off `hessian` may be, over a bound on F''. ``has_assumed_bounds`` (n, 2): which
     ends of the bounds were chosen, as none were given; a single False for none of them.
+    ``has_crossings``: curves may cross, so that short steps are a sign of a crossing.
     """
 
     names: tuple[str, ...]
@@ -207,6 +208,7 @@ class Problem(ABC):
     equations: str = ""
     is_exact: bool = False
     data_rounding: float = 0.0
+    has_crossings: bool = True
     has_assumed_bounds: np.ndarray = np.array(False)
 
     @property
@@ -232,12 +234,9 @@ class Problem(ABC):
 
     def take_unknowns_of(self, other: Problem) -> None:
         """Take the unknowns of another problem, with its region and its sizes."""
-        self.names = other.names
-        self.units = other.units
-        self.periods = other.periods
-        self.bounds = other.bounds
-        self.magnitude = other.magnitude
-        self.scale = other.scale
+        self.names, self.units = other.names, other.units
+        self.periods, self.bounds = other.periods, other.bounds
+        self.magnitude, self.scale = other.magnitude, other.scale
         self.derivatives = other.derivatives
 
     @abstractmethod
@@ -283,11 +282,11 @@ class Problem(ABC):
 
     def relative_residuals(self, points: np.ndarray) -> np.ndarray:
         """F over the magnitude (k, m) at points (k, n)."""
-        return self._over_magnitude(self.residuals(points))
+        return self.residuals(points) / self.magnitude
 
     def relative_jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' over the magnitude (k, m, n) at points (k, n)."""
-        return self._over_magnitude(self.jacobians(points))
+        return self.jacobians(points) / self.magnitude
 
     def hessians(self, points: np.ndarray) -> np.ndarray:
         """F'' (k, m, n, n) at points (k, n)."""
@@ -295,22 +294,12 @@ class Problem(ABC):
 
     def relative_hessians(self, points: np.ndarray) -> np.ndarray:
         """F'' over the magnitude (k, m, n, n) at points (k, n)."""
-        return self._over_magnitude(self.hessians(points))
-
-    def _over_magnitude(self, values: np.ndarray) -> np.ndarray:
-        """``values`` over the magnitude; the same array where that is 1, as of every
-        loop."""
-        return values if self.magnitude == 1.0 else values / self.magnitude
+        return self.hessians(points) / self.magnitude
 
     def gaps(self, points: np.ndarray) -> np.ndarray:
         """|F| over the magnitude (k,) at points (k, n)."""
         sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
         return sizes / self.magnitude
-
-    @property
-    def has_crossings(self) -> bool:
-        """Whether curves may cross: short steps are then a sign of a crossing."""
-        return True
 
     @property
     def has_rim(self) -> bool:

@@ -106,14 +106,9 @@ def missed_probability(hits: Sequence[int]) -> float:
     if starts == 0:
         return 1.0
     singles = sum(1 for count in hits if count == 1)
-    return min(1.0, _poisson_limit(singles) / starts)
+    limit = -math.log(1.0 - CONFIDENCE)
+    if singles:
+        from scipy.special import gammaincinv
 
-
-def _poisson_limit(count: int) -> float:
-    """The upper limit of the mean of a Poisson variable that was seen to be ``count``
-    (Garwood 1936)."""
-    if count == 0:
-        return -math.log(1.0 - CONFIDENCE)
-    from scipy.special import gammaincinv
-
-    return float(gammaincinv(count + 1, CONFIDENCE))
+        limit = float(gammaincinv(singles + 1, CONFIDENCE))
+    return min(1.0, limit / starts)

@@ -57,6 +57,8 @@ class ValleyProblem(NumericalProblem):
     They are followed as far as it nearly closes.
     """
 
+    has_crossings = False  # they have opened, and the valley turns
+
     def __init__(self, of: Problem):
         self.of = of
         self.rank = of.n - 1
@@ -88,11 +90,6 @@ class ValleyProblem(NumericalProblem):
         return self.of.valley_corrector()
 
     # --- the region -------------------------------------------------------------------
-
-    @property
-    def has_crossings(self) -> bool:
-        """Whether curves may cross: no, crossings have opened, and the valley turns."""
-        return False
 
     @property
     def has_rim(self) -> bool:

@@ -43,6 +43,8 @@ class ScaledProblem(NumericalProblem):
     the user, so that what is left of F over it is an error of the unknowns.
     """
 
+    has_crossings = False  # bridges take dense matrices
+
     def __init__(self, problem: LargeProblem, start: np.ndarray):
         n = problem.n
         self.problem = problem
@@ -59,11 +61,6 @@ class ScaledProblem(NumericalProblem):
         self.derivatives = problem.derivatives
         self.magnitude = 1.0
         self.magnitude = self._size_of_jacobian(self.own_units.inwards(start))
-
-    @property
-    def has_crossings(self) -> bool:
-        """No bridges are laid: they take dense matrices."""
-        return False
 
     def largest_entry(self, vectors: np.ndarray) -> float:
         """The longest of the ``vectors`` (k, n): entries are small where they are

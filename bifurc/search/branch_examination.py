@@ -28,7 +28,6 @@ from bifurc.search.findings import PointSighting, Run, TracedBranch
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
 from bifurc.search.starts import Start, half_branch_starts
 from bifurc.singular.locate import LocatedPoint
-from bifurc.singular.point import SingularPoint
 
 ABOUT = 16  # nodes before and after a deep place that are not lower: those of a piece
 BESIDE = 3 * ABOUT  # and among which some are far higher, as a whole piece may be flat
@@ -159,7 +158,9 @@ class BranchExaminer:
                     sightings.missing.append(place)
                 continue
             sightings.located.append(place)
-            if self._is_at(branch, place, sighting.point):
+            gap = self.problem.difference(branch(place), sighting.point.u)
+            beside = float(np.linalg.norm(gap)) - sighting.point.error
+            if is_passed(beside, self.problem.scale):  # and not only near it
                 sightings.passes.append(place)
                 sighting = self.points.seen_on_curve(sighting)
             if sighting.is_new:
@@ -172,27 +173,15 @@ class BranchExaminer:
         for place in lower.crossings.tolist():
             if self.run.is_over:
                 break
-            sighting = self._sight_crossing(branch, place)
+            u = branch(place)
+            jacobian = self.problem.jacobians(u[None])[0]
+            _, _, right = np.linalg.svd(jacobian)
+            null_space = right[self.problem.n - 2 :].T
+            error = DEFLATED_ERROR * self.problem.scale
+            sighting = self.points.sight(LocatedPoint(u, null_space, error))
             sightings.passes.append(place)
             if sighting.is_new:
                 sightings.starts.extend(half_branch_starts(sighting.point))
-
-    def _sight_crossing(self, branch: Branch, s: float) -> PointSighting:
-        """The singular point at arclength ``s`` of a branch of lower rank, where others
-        meet it."""
-        u = branch(s)
-        jacobian = self.problem.jacobians(u[None])[0]
-        _, _, right = np.linalg.svd(jacobian)
-        null_space = right[self.problem.n - 2 :].T
-        error = DEFLATED_ERROR * self.problem.scale
-        return self.points.sight(LocatedPoint(u, null_space, error))
-
-    def _is_at(self, branch: Branch, s: float, point: SingularPoint) -> bool:
-        """Whether a branch passes a singular point at arclength ``s``, and not only
-        near it."""
-        gap = self.problem.difference(branch(s), point.u)
-        beside = float(np.linalg.norm(gap)) - point.error
-        return is_passed(beside, self.problem.scale)
 
     def _candidate_ends(self, branch: Branch, profile: Profile) -> list[_Candidate]:
         """The ends of an open branch where a singular point may lie."""

@@ -18,7 +18,7 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_same_point, is_solution
 from bifurc.numerics.collocation import piece_through, reparametrised
-from bifurc.problem import Problem
+from bifurc.problem import Piece, Problem
 from bifurc.singular.point import SingularPoint
 
 if TYPE_CHECKING:
@@ -74,19 +74,30 @@ def with_piece_between(
     residual = float(problem.gaps(powers @ piece).max())
     if not is_solution(residual):
         return None
-    closing = Branch(
-        pieces=piece[None],
-        centers=np.array([0.5 * length]),
-        radii=np.array([0.5 * length]),
-        breaks=np.array([0.0, length]),
-        residuals=np.array([residual]),
-        periods=before.periods,
-        outcome=outcome,
+    closing = branch_of_pieces(
+        [Piece(piece, length, residual)], before.periods, outcome
     )
     closed = followed_by(before, closing, np.zeros(before.n))
     if outcome is Outcome.CLOSED:
         return closed
     return replace(followed_by(closed, after, shift), outcome=outcome)
+
+
+def branch_of_pieces(
+    pieces: Sequence[Piece], periods: np.ndarray, outcome: Outcome
+) -> Branch:
+    """The branch of polynomial pieces that lie end to end."""
+    lengths = np.array([piece.length for piece in pieces])
+    breaks = np.concatenate([[0.0], np.cumsum(lengths)])
+    return Branch(
+        pieces=np.array([piece.coefficients for piece in pieces]),
+        centers=breaks[:-1] + 0.5 * lengths,
+        radii=0.5 * lengths,
+        breaks=breaks,
+        residuals=np.array([piece.residual for piece in pieces]),
+        periods=periods,
+        outcome=outcome,
+    )
 
 
 def followed_by(one: Branch, other: Branch, shift: np.ndarray) -> Branch:
@@ -207,7 +218,7 @@ def _curve(
 ) -> Branch:
     """The curve of pieces of an ``order`` between places s = ``edges`` (k + 1,) of a
     branch."""
-    pieces, lengths, residuals = [], [], []
+    pieces = []
     powers = CHECKS[:, None] ** np.arange(order + 1)
     for begin, end in pairwise(edges):
         middle, half = 0.5 * (begin + end), 0.5 * (end - begin)
@@ -218,19 +229,9 @@ def _curve(
             places: np.ndarray = branch(middle + half * x)
             return places
 
+        # so short that places beside the point would be rounded off elsewhere
         piece = piece_through(points, order)
-        coefficients = piece.coefficients
-        coefficients[0] += germ.u
-        pieces.append(coefficients)
-        lengths.append(piece.length)
-        residuals.append(float(problem.gaps(powers @ coefficients).max()))
-    breaks = np.concatenate([[0.0], np.cumsum(lengths)])
-    return Branch(
-        pieces=np.array(pieces),
-        centers=0.5 * (breaks[:-1] + breaks[1:]),
-        radii=0.5 * np.diff(breaks),
-        breaks=breaks,
-        residuals=np.array(residuals),
-        periods=problem.periods,
-        outcome=Outcome.STALLED,
-    )
+        piece.coefficients[0] += germ.u
+        residual = float(problem.gaps(powers @ piece.coefficients).max())
+        pieces.append(replace(piece, residual=residual))
+    return branch_of_pieces(pieces, problem.periods, Outcome.STALLED)

@@ -16,7 +16,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_slow_at_start, is_unclear_start
 from bifurc.problem import Problem
-from bifurc.torus import wrap, wrapped_periods
+from bifurc.torus import whole_turns, wrap, wrapped_periods
 
 FUNCTIONS = 8  # that are tried
 # By how much a maximum stands above all others, over the range of the function.
@@ -53,15 +53,7 @@ def canonical_course(problem: Problem, branch: Branch) -> Branch:
     start = branch(0.0)
     periods = wrapped_periods(problem.periods, problem.bounds)
     wrapped = wrap(start, periods, within=SEAM)
-    return branch.moved_by_periods(_turns(wrapped - start, periods))
-
-
-def _turns(gaps: np.ndarray, periods: np.ndarray) -> np.ndarray:
-    """Gaps (n,) in whole periods, 0 where there is none."""
-    turns = np.zeros(len(periods))
-    periodic = np.isfinite(periods)
-    turns[periodic] = np.rint(gaps[periodic] / periods[periodic])
-    return turns
+    return branch.moved_by_periods(whole_turns(wrapped - start, periods))
 
 
 # --- where it begins ------------------------------------------------------------------
@@ -93,24 +85,12 @@ def _clearest_top(problem: Problem, branch: Branch) -> float:
 
 @dataclass(frozen=True)
 class _Height:
-    """A function along a closed curve: the sum over the unknowns of ``weights`` (n,)
-    times the cosine of an angle beyond its phase, or times an unknown without a period
-    over the scale.
-
-    ``angular`` (n,) and ``linear`` (n,) are the unknowns' factors, 0 for those of the
-    other kind.
-    """
+    """A function along a closed curve, with the ``coefficients`` (4, n) of
+    `Branch.rates_of_height`: a weight times the cosine of an angle beyond its phase, or
+    times an unknown without a period over the scale."""
 
     branch: Branch
-    weights: np.ndarray
-    phases: np.ndarray
-    angular: np.ndarray
-    linear: np.ndarray
-
-    @property
-    def coefficients(self) -> np.ndarray:
-        """Those (4, n) of `Branch.rates_of_height`."""
-        return np.array([self.weights, self.phases, self.angular, self.linear])
+    coefficients: np.ndarray
 
     @staticmethod
     def of(problem: Problem, number: int, branch: Branch) -> _Height:
@@ -124,13 +104,13 @@ class _Height:
         angular[periodic] = 2 * np.pi / problem.periods[periodic]
         signs = np.where(np.sin(phases) > 0, 1.0, -1.0)
         linear = np.where(periodic, 0.0, signs / problem.scale)
-        return _Height(branch, weights, phases, angular, linear)
+        return _Height(branch, np.array([weights, phases, angular, linear]))
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """Heights (k,) of points (k, n)."""
-        waves = np.cos(points * self.angular - self.phases)
-        terms = np.where(self.angular > 0, waves, points * self.linear)
-        heights: np.ndarray = terms @ self.weights
+        weights, phases, angular, linear = self.coefficients
+        waves = np.cos(points * angular - phases)
+        heights: np.ndarray = np.where(angular > 0, waves, points * linear) @ weights
         return heights
 
     def top(self, samples: np.ndarray, points: np.ndarray) -> _Top:
@@ -149,23 +129,14 @@ class _Height:
         if not len(tops):
             return _Top(0.0, 0.0)
         best = float(tops[order[-1]])
-        return _Top(best, min(self._margin(tops[order]), self._bend(best)) / extent)
-
-    def _margin(self, tops: np.ndarray) -> float:
-        """By how much the last of the ``tops`` (k,), the lowest first, stands above the
-        one before it, over what is clear."""
-        heights = self.at(self.branch(tops[-2:]))
-        margin = heights[-1] - heights[0] if len(tops) > 1 else np.inf
-        return float(margin) / CLEAR_MARGIN
-
-    def _bend(self, top: float) -> float:
-        """Minus the second derivative at a top times the square of the length of the
-        curve, over what is clear."""
+        highest = self.at(self.branch(tops[order[-2:]]))
+        margin = highest[-1] - highest[0] if len(tops) > 1 else np.inf
         step = BEND_STEP * self.branch.length
-        places = np.array([top - step, top + step])
-        before, after = self.branch.rates_of_height(self.coefficients, places)
-        bend = (before - after) / (2 * step)
-        return float(bend) * self.branch.length**2 / CLEAR_BEND
+        beside = np.array([best - step, best + step])
+        before, after = self.branch.rates_of_height(self.coefficients, beside)
+        bend = (before - after) / (2 * step) * self.branch.length**2
+        clarity = min(float(margin) / CLEAR_MARGIN, float(bend) / CLEAR_BEND)
+        return _Top(best, clarity / extent)
 
 
 # --- which way it runs ----------------------------------------------------------------

@@ -111,14 +111,17 @@ def _finer_ranks(ranks: np.ndarray, values: np.ndarray, tolerance: float) -> np.
 def _branch_features(branch: Branch, scale: float) -> np.ndarray:
     """Numbers (q,) that tell branches apart: length, means, means of products, winding
     numbers up to their common sign."""
-    arclengths, weights = _quadrature(branch)
+    half = 0.5 * np.diff(branch.breaks)[:, None]
+    arclengths = (branch.breaks[:-1, None] + half + half * NODES).ravel()
+    weights = (half * WEIGHTS / branch.length).ravel()
     points = _embedded(branch(arclengths), branch.periods, scale)
     means = weights @ points
     products = points.T @ (weights[:, None] * points)
     length = [branch.length / scale]
     upper = products[np.triu_indices(len(means))]
-    winding = _unsigned(branch.winding)
-    return np.concatenate([length, means, upper, winding])
+    turning = branch.winding[branch.winding != 0]
+    sign = np.sign(turning[0]) if len(turning) else 1
+    return np.concatenate([length, means, upper, sign * branch.winding])
 
 
 def _surface_features(surface: Surface, scale: float) -> np.ndarray:
@@ -136,15 +139,6 @@ def _surface_features(surface: Surface, scale: float) -> np.ndarray:
     return np.concatenate([kind, size, -means])
 
 
-def _quadrature(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
-    """Arclengths (k,) and weights (k,) for a mean along a branch."""
-    half = 0.5 * np.diff(branch.breaks)
-    middle = branch.breaks[:-1] + half
-    arclengths = middle[:, None] + half[:, None] * NODES
-    shares = half[:, None] * WEIGHTS / branch.length
-    return arclengths.ravel(), shares.ravel()
-
-
 def _embedded(points: np.ndarray, periods: np.ndarray, scale: float) -> np.ndarray:
     """Points (k, n) as (k, 2 n): cosines and then sines of the unknowns with a period,
     the others over the scale and then 0."""
@@ -155,9 +149,3 @@ def _embedded(points: np.ndarray, periods: np.ndarray, scale: float) -> np.ndarr
     second = np.zeros_like(points)
     second[:, is_periodic] = np.sin(angles)
     return np.concatenate([first, second], axis=1)
-
-
-def _unsigned(winding: np.ndarray) -> np.ndarray:
-    """Winding numbers (n,), the first that is not 0 taken as positive."""
-    turning = winding[winding != 0]
-    return -winding if len(turning) and turning[0] < 0 else winding

@@ -116,16 +116,8 @@ def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
     if atlas.names != problem.names:
         raise ProblemError("unknowns of the atlas", atlas.names, str(problem.names))
     forms = []
-    for index, form in enumerate(atlas.forms):
-        stops = _singular_arclengths(atlas, index)
+    for number, form in enumerate(atlas.forms):
+        stops = [s for p in atlas.points for index, s in p.passes if index == number]
         certificate = certify_branch(problem, form.branch, form.profile, stops)
         forms.append(replace(form, certificate=certificate))
     return replace(atlas, forms=tuple(forms))
-
-
-def _singular_arclengths(atlas: Atlas, form: int) -> list[float]:
-    """Arclengths at which a form, given by its index, passes a singular point."""
-    arclengths = []
-    for point in atlas.points:
-        arclengths += [s for index, s in point.passes if index == form]
-    return arclengths

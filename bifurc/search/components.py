@@ -111,6 +111,7 @@ APART, ERRORS = 1e-5, 10
 # How far beside a singular point of such a surface it is looked for, over the scale, and
 # how often.
 PROBE, PROBES = 1e-2, 3
+ON_CURVES = "singular points are samples of curves of such points"
 UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
 # the same where curves of singular points were reached by chance
 UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
@@ -160,7 +161,11 @@ class Components:
         )
         if len(covering):
             self.charts = covering
-            self.part_of = _parts_of(problem, covering, samples, deadline)
+            chart = covering.chart_at(samples)
+            # also beside charts that are complete: where surfaces cross they leave slivers
+            beside = chart < 0
+            chart[beside] = reached_charts(problem, covering, samples[beside], deadline)
+            self.part_of = np.where(chart >= 0, covering.part[chart], -1)
             return []
         return [] if deadline.passed else self.seeds.pop(2)
 
@@ -179,7 +184,12 @@ class Components:
         for k in range(int(part.max()) + 1):
             samples = int(np.count_nonzero(part[on_curves] == k))
             places = int(np.count_nonzero(part[left_out] == k))
-            self.notes[k] = _note(samples, places)
+            words = []
+            if samples:
+                words.append(f"{samples} of its {ON_CURVES}")
+            if places:
+                words.append(f"at {places} places singular points were not looked for")
+            self.notes[k] = "; ".join(words)
 
     def parts_through(self, problem: Problem, point: np.ndarray) -> list[int]:
         """The parts of the charts on which a singular point (n,) lies; -1 alone where
@@ -242,30 +252,6 @@ class Components:
                 note = self._note_of_lower_rank(k)
             surfaces.append(Surface(2, on_part, charts=part, note=note))
         return surfaces
-
-
-def _parts_of(
-    problem: Problem, charts: ChartAtlas, samples: np.ndarray, deadline: Deadline
-) -> np.ndarray:
-    """Numbers (k,) of the parts of the charts that samples (k, n) belong to, -1 where
-    none is known."""
-    chart = charts.chart_at(samples)
-    # also beside charts that are complete: where surfaces cross they leave out slivers
-    beside = chart < 0
-    chart[beside] = reached_charts(problem, charts, samples[beside], deadline)
-    return np.where(chart >= 0, charts.part[chart], -1)
-
-
-def _note(samples: int, places: int) -> str:
-    """What is known of the singular points of a surface besides those in the atlas."""
-    parts = []
-    if samples:
-        parts.append(
-            f"{samples} of its singular points are samples of curves of such points"
-        )
-    if places:
-        parts.append(f"at {places} places singular points were not looked for")
-    return "; ".join(parts)
 
 
 def components_of_seeds(
@@ -364,7 +350,8 @@ def singular_points_of(
         point = locate_singular_point(problem, charts.centers[chart], NULLITY, reach)
         if point is None:
             continue
-        is_on_curve = _is_on_curve(problem, point, reach)
+        is_blurred = point.error > BLURRED * reach
+        is_on_curve = is_blurred or is_on_singular_curve(problem, point)
         if is_on_curve:
             point = point._replace(error=min(point.error, ACROSS * problem.scale))
         is_one_more = is_on_curve and len(curve_charts) >= MOST_SAMPLES
@@ -390,12 +377,6 @@ def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
     return numbers[np.argsort(sigma[numbers], kind="stable")]
 
 
-def _is_on_curve(problem: Problem, point: LocatedPoint, reach: float) -> bool:
-    """Whether a singular point, located from within ``reach``, is one of a curve."""
-    is_blurred = point.error > BLURRED * reach
-    return is_blurred or is_on_singular_curve(problem, point)
-
-
 def _is_listed(
     problem: Problem, points: list[LocatedPoint], point: LocatedPoint
 ) -> bool:
@@ -410,9 +391,8 @@ def surfaces_through(
 ) -> tuple[int, ...]:
     """Indices of the surfaces with charts on which a singular point (n,) of dimension 2
     or more lies."""
-    indices = []
-    for index, surface in enumerate(surfaces):
-        charts = surface.charts
-        if charts is not None and len(entrances(problem, charts, point)):
-            indices.append(index)
-    return tuple(indices)
+    return tuple(
+        index
+        for index, surface in enumerate(surfaces)
+        if surface.charts is not None and len(entrances(problem, surface.charts, point))
+    )

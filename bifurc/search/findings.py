@@ -45,8 +45,7 @@ class Numbered(dict[int, Item], Generic[Item]):
     """Things of one kind in the order in which they were found, by numbers that they
     keep: what is forgotten leaves its number to no other one."""
 
-    def __init__(self) -> None:
-        self._count = 0
+    _count = 0
 
     def add(self, item: Item) -> int:
         """The number of a thing just recorded."""
@@ -331,7 +330,10 @@ class Findings:
                 continue
             if self._has_germ(one) and self._has_germ(other):
                 continue
-            less, more = sorted((one, other), key=self._standing)
+            less, more = sorted(
+                (one, other),
+                key=lambda k: (self.points[k].is_confirmed, self.points[k].error),
+            )
             self.forget_point(less, SeedFate(Fate.AT_SINGULAR_POINT, more))
 
     def _has_germ(self, number: int) -> bool:
@@ -339,11 +341,6 @@ class Findings:
         equations tell it from others."""
         u = self.points[number].u
         return any(np.array_equal(germ.u, u) for germ in self.germs)
-
-    def _standing(self, number: int) -> tuple[bool, float]:
-        """What is known of a singular point; that which is more stays."""
-        point = self.points[number]
-        return point.is_confirmed, point.error
 
     def point_hidden_at(self, u: np.ndarray) -> PointSighting | None:
         """The known singular point whose branches doubles lose at a place ``u`` (n,):

@@ -63,18 +63,16 @@ class _Begin(Enum):
     BETWEEN = "between"
 
 
+class _Lost(Exception):
+    """A trace does not come back along a half-branch, or a part between two of them is
+    no solution."""
+
+
 class _Arc(NamedTuple):
     """A curve from the end of a half-branch to another one, or to its own end."""
 
     curve: Branch
-    begin: HalfEnd
     end: HalfEnd | None
-
-    def reversed(self) -> _Arc | None:
-        """The same run the other way; None where that has no begin."""
-        if self.end is None:
-            return None
-        return _Arc(self.curve.reversed(), self.end, self.begin)
 
 
 def ends_of(germ: Germ) -> np.ndarray:
@@ -90,102 +88,83 @@ def passes_inside(branch: Branch, germ: Germ) -> np.ndarray:
     return branch.passes(germ.u, INSIDE * germ.radius)
 
 
-def branches_of_germs(
-    problem: Problem, germs: Sequence[Germ], settings: TraceSettings, closing: float
-) -> list[Branch] | None:
-    """All branches through the points of the ``germs``, whose neighbourhoods are known;
-    None where a trace does not come back along a half-branch."""
-    tracer = _Tracer(problem, germs, settings, closing)
-    if not tracer.trace_arcs():
-        return None
-    return tracer.branches()
-
-
 class _Tracer:
-    """Arcs between germs, and what they make together."""
+    """Arcs between ``germs``, whose neighbourhoods are known, and what they make
+    together."""
 
     def __init__(
-        self,
-        problem: Problem,
-        germs: Sequence[Germ],
-        settings: TraceSettings,
-        closing: float,
+        self, problem: Problem, germs: Sequence[Germ], settings: TraceSettings
     ):
         self.problem = problem
         self.germs = germs
         self.settings = settings
-        self.closing = closing
         self._ends = [ends_of(germ) for germ in germs]
         # the arc that begins at the end of a half-branch
         self._arcs: dict[HalfEnd, _Arc] = {}
 
     # --- arcs -------------------------------------------------------------------------
 
-    def trace_arcs(self) -> bool:
-        """Trace from the end of every half-branch; whether all of them lead from one to
-        another or to an end of their own."""
+    def _trace_arcs(self) -> None:
+        """Trace from the end of every half-branch to another one, or to an end of its
+        own."""
         for number, ends in enumerate(self._ends):
             for half in range(len(ends)):
                 begin = HalfEnd(number, half)
                 if begin in self._arcs:
                     continue
                 arc = self._arc_from(begin)
-                if arc is None or arc.end in self._arcs:
-                    return False
+                if arc.end in self._arcs:
+                    raise _Lost
                 self._arcs[begin] = arc
-                backward = arc.reversed()
-                if backward is not None:
-                    self._arcs[backward.begin] = backward
-        return True
+                if arc.end is not None:
+                    self._arcs[arc.end] = _Arc(arc.curve.reversed(), begin)
 
-    def _arc_from(self, begin: HalfEnd) -> _Arc | None:
-        """The arc that leaves a half-branch; None where it ends in a neighbourhood, but
-        not along a half-branch."""
+    def _arc_from(self, begin: HalfEnd) -> _Arc:
+        """The arc that leaves a half-branch, up to the first place at which it is nearest
+        to the point of a germ, inside its neighbourhood."""
         inward = self._half_curve(begin)
         start = Place(inward(0.0), -inward(0.0, 1))
-        curve = follow_curve(self.problem, start, self.settings, self.closing)
+        closing = is_solution.threshold
+        curve = follow_curve(self.problem, start, self.settings, closing)
         if not len(curve.pieces):
-            return None
-        entry = self._first_entry(curve)
-        if entry is None:
-            return None if curve.closed else _Arc(curve, begin, None)
-        stop, number = entry
-        handover = self._handover(curve, stop, number)
-        if handover is None:
-            return None
-        s, end = handover
-        return _Arc(part_of(curve, 0.0, s), begin, end)
-
-    def _first_entry(self, curve: Branch) -> tuple[float, int] | None:
-        """The first arclength at which a curve is nearest to the point of a germ, inside
-        its neighbourhood, and the number of the germ."""
-        entries = []
-        for number, germ in enumerate(self.germs):
-            if not germ.branches:
-                continue  # an isolated point is beside the curve
-            entries += [(float(s), number) for s in passes_inside(curve, germ)]
-        return min(entries, default=None)
+            raise _Lost
+        entries = [
+            (float(s), number)
+            for number, germ in enumerate(self.germs)
+            if germ.branches  # an isolated point is beside the curve
+            for s in passes_inside(curve, germ)
+        ]
+        if entries:
+            s, end = self._handover(curve, *min(entries))
+            return _Arc(part_of(curve, 0.0, s), end)
+        if curve.closed:
+            raise _Lost
+        return _Arc(curve, None)
 
     def _handover(
         self, curve: Branch, stop: float, number: int
-    ) -> tuple[float, HalfEnd] | None:
+    ) -> tuple[float, HalfEnd]:
         """The arclength, before ``stop``, at which a curve comes to the end of a
-        half-branch of a germ, and that end; None where there is none."""
+        half-branch of a germ, and that end."""
         within = is_same_point.threshold * self.problem.scale
         leaving = LEAVING * self.germs[number].radius
-        handovers = []
-        for half, end in enumerate(self._ends[number]):
-            for s in curve.passes(end, within):
-                if leaving < s < stop:
-                    handovers.append((float(s), HalfEnd(number, half)))
-        return max(handovers, default=None)
+        handovers = [
+            (float(s), HalfEnd(number, half))
+            for half, end in enumerate(self._ends[number])
+            for s in curve.passes(end, within)
+            if leaving < s < stop
+        ]
+        if not handovers:
+            raise _Lost
+        return max(handovers)
 
     # --- branches ---------------------------------------------------------------------
 
-    def branches(self) -> list[Branch] | None:
-        """The branches that the arcs are together with those inside; None where a part
-        of one is no solution."""
-        branches: list[Branch | None] = []
+    def branches(self) -> list[Branch]:
+        """All branches through the points of the germs: arcs together with those
+        inside. Raises `_Lost`."""
+        self._trace_arcs()
+        branches: list[Branch] = []
         waiting = set(self._arcs)
         ends = sorted(waiting)
         loose = [end for end in ends if self._arcs[end].end is None]
@@ -196,15 +175,12 @@ class _Tracer:
                     branches.append(self._walked(begin, kind, waiting))
         while waiting:
             branches.append(self._walked(min(waiting), _Begin.BETWEEN, waiting))
-        whole = [branch for branch in branches if branch is not None]
-        return whole if len(whole) == len(branches) else None
+        return branches
 
-    def _walked(
-        self, begin: HalfEnd, kind: _Begin, waiting: set[HalfEnd]
-    ) -> Branch | None:
+    def _walked(self, begin: HalfEnd, kind: _Begin, waiting: set[HalfEnd]) -> Branch:
         """The branch that begins with the arc of one end, or, of a kind `LOOSE`, with it
         run backward; the ends on the way are ``waiting`` no longer."""
-        parts: list[Branch | None] = []
+        parts: list[Branch] = []
         arc = self._arcs[begin]
         inward: HalfEnd | None = arc.end
         waiting.discard(begin)
@@ -231,20 +207,17 @@ class _Tracer:
             inward = self._arcs[outward].end
         return self._joined(parts, is_closed)
 
-    def _joined(self, parts: Sequence[Branch | None], is_closed: bool) -> Branch | None:
-        """The branch of consecutive parts; None where there is none of them."""
+    def _joined(self, parts: Sequence[Branch], is_closed: bool) -> Branch:
+        """The branch of consecutive parts."""
         branch = parts[0]
         for part in parts[1:]:
-            if branch is None or part is None:
-                return None
             last, first = branch(branch.length), part(0.0)
             whole_periods = self.problem.difference(first, last) - (first - last)
             branch = followed_by(branch, part, whole_periods)
-        if branch is None:
-            return None
-        if is_closed:
-            return replace(branch, outcome=Outcome.CLOSED)
-        return replace(branch, outcome=joined_outcome(self.problem, branch, branch))
+        outcome = Outcome.CLOSED
+        if not is_closed:
+            outcome = joined_outcome(self.problem, branch, branch)
+        return replace(branch, outcome=outcome)
 
     def _partner(self, end: HalfEnd) -> HalfEnd | None:
         """The end of the other half of a branch; None where it is a cusp."""
@@ -259,10 +232,13 @@ class _Tracer:
         germ = self.germs[end.germ]
         return half_curve(self.problem, germ, end.half, self.settings.order)
 
-    def _curve_through(self, end: HalfEnd) -> Branch | None:
+    def _curve_through(self, end: HalfEnd) -> Branch:
         """The branch from the end of one half to that of the other."""
         germ = self.germs[end.germ]
-        return curve_through(self.problem, germ, end.half, self.settings.order)
+        curve = curve_through(self.problem, germ, end.half, self.settings.order)
+        if curve is None:
+            raise _Lost
+        return curve
 
 
 log = logging.getLogger(__name__)
@@ -277,9 +253,9 @@ BEFORE_CUSP = 0.1
 
 
 class _Pass(NamedTuple):
-    """Branch number ``branch`` passes a place at an arclength ``s``."""
+    """A ``branch`` passes a place at an arclength ``s``."""
 
-    branch: int
+    branch: TracedBranch
     s: float
 
 
@@ -301,10 +277,9 @@ class GermMender:
         if all(self._is_followed(germ) for germ in germs):
             return []
         settings = self.run.settings.tracing
-        branches = branches_of_germs(
-            self.problem, germs, settings, is_solution.threshold
-        )
-        if branches is None:
+        try:
+            branches = _Tracer(self.problem, germs, settings).branches()
+        except _Lost:
             log.info("no branches outward from germs at %s", [g.u for g in germs])
             return []
         superseded = self._superseded(germs, branches)
@@ -334,8 +309,7 @@ class GermMender:
             return not any(len(passes_inside(branch, germ)) for branch in branches)
         if any(len(passes) != 1 for passes in passing):
             return False
-        passed = {passes[0].branch for passes in passing}
-        if any(self.findings.traced[number].is_refused for number in passed):
+        if any(passes[0].branch.is_refused for passes in passing):
             return False
         return all(
             self._follows(germ, branch, *(passing[half][0] for half in branch.halves))
@@ -346,8 +320,8 @@ class GermMender:
         """The passes of all branches at a place (n,)."""
         within = is_same_point.threshold * self.problem.scale
         return [
-            _Pass(number, float(s))
-            for number, traced in self.findings.traced.items()
+            _Pass(traced, float(s))
+            for traced in self.findings.traced.values()
             for s in traced.branch.passes(place, within)
         ]
 
@@ -360,13 +334,13 @@ class GermMender:
             return False
         if not self._runs_along(germ, local, -1.0, other):
             return False
+        branch = one.branch.branch
         lengths = [_length(local, side) for side in (1.0, -1.0)]
         if local.returns:
-            passes = zip((one, other), lengths, strict=True)
-            return all(self._ends_after(each, length) for each, length in passes)
-        if one.branch != other.branch:
+            pairs = zip((one, other), lengths, strict=True)
+            return all(_ends_after(*pair) for pair in pairs)
+        if one.branch is not other.branch:
             return False
-        branch = self.findings.traced[one.branch].branch
         way = abs(one.s - other.s)
         if branch.closed:
             way = min(way, branch.length - way)
@@ -381,18 +355,8 @@ class GermMender:
         F is so flat beside the point that rounding leaves more open.
         """
         shares = SHARES[SHARES > BEFORE_CUSP] if local.returns else SHARES
-        places = germ.u + local(side * shares)
-        branch = self.findings.traced[at.branch].branch
-        distances, _ = branch.nearest(places)
+        distances, _ = at.branch.branch.nearest(germ.u + local(side * shares))
         return bool(np.all(is_precise_enough(distances, self.problem.scale)))
-
-    def _ends_after(self, at: _Pass, length: float) -> bool:
-        """Whether a branch ends after a pass and about so long a way."""
-        branch = self.findings.traced[at.branch].branch
-        if branch.outcome is not Outcome.STALLED:
-            return False
-        way = min(at.s, branch.length - at.s)
-        return abs(way - length) < SAME_LENGTH * length
 
     # --- what is put in whose place ---------------------------------------------------
 
@@ -429,3 +393,11 @@ def _length(local: LocalBranch, side: float) -> float:
     """The length of one half of a local branch."""
     points = local(side * np.linspace(0.0, 1.0, LENGTH_LOOKS))
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
+
+def _ends_after(at: _Pass, length: float) -> bool:
+    """Whether a branch ends after a pass and about so long a way."""
+    branch = at.branch.branch
+    way = min(at.s, branch.length - at.s)
+    is_there = abs(way - length) < SAME_LENGTH * length
+    return branch.outcome is Outcome.STALLED and is_there

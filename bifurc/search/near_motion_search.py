@@ -12,6 +12,7 @@ from bifurc.curves.near_motion import trace_near_motion
 from bifurc.curves.near_surface import near_surfaces
 from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
 from bifurc.limits import Deadline
+from bifurc.numerics.corrector import limited
 from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.search.canonical_course import canonical_course
@@ -25,7 +26,6 @@ LONGEST = 0.5  # step, over the problem's scale
 # Singular value, over the largest, below which no step is taken along its direction.
 FLAT = 1e-6
 WORK_AT_ONCE = 1e6  # points between two looks at the clock, times n^3
-TINY = 1e-300  # keeps a step of length zero from being divided by its length
 
 
 def closure_gap(
@@ -59,22 +59,13 @@ def valley_points(
     at_once = max(1, int(WORK_AT_ONCE / problem.n**3))
     lowest = []
     for begin in range(0, len(points), at_once):
-        lowest.append(_in_valley(problem, points[begin : begin + at_once]))
+        part = points[begin : begin + at_once]
+        for _ in range(STEPS):
+            part = part - limited(_steps_across(problem, part), LONGEST * problem.scale)
+        lowest.append(part)
         if deadline.passed:
             break
     return np.concatenate(lowest) if lowest else points
-
-
-def _in_valley(problem: Problem, points: np.ndarray) -> np.ndarray:
-    """Points (k, n) in the valley below points (k, n)."""
-    lowest = points.copy()
-    longest = LONGEST * problem.scale
-    for _ in range(STEPS):
-        steps = _steps_across(problem, lowest)
-        lengths = np.linalg.norm(steps, axis=1) + TINY
-        shares = np.minimum(1.0, longest / lengths)
-        lowest -= steps * shares[:, None]
-    return lowest
 
 
 def _steps_across(problem: Problem, points: np.ndarray) -> np.ndarray:

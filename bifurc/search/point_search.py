@@ -180,19 +180,14 @@ class PointSearch:
         if known is not None or is_precise_enough(located.error, self.problem.scale):
             return known
         hidden = self.findings.point_hidden_at(located.u)
-        if hidden is None or self._is_apart(located):
-            return None
-        return hidden
-
-    def _is_apart(self, located: LocatedPoint) -> bool:
-        """Whether more digits show a located point to be none of those known, though
-        doubles lose there the branches of one."""
-        if not self.problem.is_exact or self.run.is_over:
-            return False
+        if hidden is None or not self.problem.is_exact or self.run.is_over:
+            return hidden
+        # more digits may show it to be none of those known
         exactly = self._settle(located, 0.0)
         if exactly is None or not exactly.is_confirmed:
-            return False
-        return self.findings.point_at(exactly.u, exactly.error) is None
+            return hidden
+        is_other = self.findings.point_at(exactly.u, exactly.error) is None
+        return None if is_other else hidden
 
     def _settle(self, located: LocatedPoint, misclosure: float) -> LocatedPoint | None:
         """What `precisely_located` says of a located point, or said before."""

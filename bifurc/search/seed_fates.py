@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,6 +28,8 @@ from bifurc.search.seed_book import SeedFate
 from bifurc.search.solutions import polished
 from bifurc.search.starts import Start, half_branch_starts
 from bifurc.search.tracing import Tracer
+
+log = logging.getLogger(__name__)
 
 # Singular values are over the problem's magnitude, lengths over its scale.
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits, at worst
@@ -82,12 +85,12 @@ class Seed:
 
 
 class _Rule(NamedTuple):
-    """The ``reason`` why, where the ``test`` holds, a seed may have the fate that the
-    ``action`` gives; where that is None, the rule says nothing of it."""
+    """Where the ``test`` holds, a seed may have the fate that the ``action`` gives, for
+    a ``reason``; where that is None, the rule says nothing of it."""
 
-    reason: str
     test: Callable[[Seed], bool]
     action: Callable[[Seed], SeedFate | None]
+    reason: str
 
 
 class SeedJudge:
@@ -101,16 +104,14 @@ class SeedJudge:
         self.points = points
         self.tracer = tracer
         self.rules = (
-            _Rule("it cannot move", Seed.cannot_move, self._assembly),
-            _Rule("nearly a solution", Seed.is_any, self._known_near_motion),
-            _Rule("rank n - 3 all along", Seed.may_be_shaky, self._shaky_curve),
-            _Rule("at what is known", Seed.may_be_singular, self._known_about),
-            _Rule(
-                "rank n - 2 all along", Seed.may_be_singular, self._curve_of_lower_rank
-            ),
-            _Rule("a singular point", Seed.may_be_singular, self._singular_point),
-            _Rule("on a curve", Seed.is_any, self._curve),
-            _Rule("no curve runs through it", Seed.is_any, self._assembly),
+            _Rule(Seed.cannot_move, self._assembly, "F' has full rank"),
+            _Rule(Seed.is_any, self._near_motion, "a known near motion"),
+            _Rule(Seed.may_be_shaky, self._shaky_curve, "rank n - 3 all along"),
+            _Rule(Seed.may_be_singular, self._known_about, "known, as near as it is"),
+            _Rule(Seed.may_be_singular, self._curve_of_lower_rank, "rank n - 2"),
+            _Rule(Seed.may_be_singular, self._singular_point, "a singular point"),
+            _Rule(Seed.is_any, self._curve, "a curve"),
+            _Rule(Seed.is_any, self._assembly, "no curve runs through it"),
         )
 
     def fate_of(self, number: int) -> SeedFate:
@@ -120,10 +121,11 @@ class SeedJudge:
         for rule in self.rules:
             fate = rule.action(seed) if rule.test(seed) else None
             if fate is not None:
+                log.debug("seed %d is %s: %s", number, fate.fate.value, rule.reason)
                 return fate
         raise AssertionError("the last rule has an answer for every seed")
 
-    def _known_near_motion(self, seed: Seed) -> SeedFate | None:
+    def _near_motion(self, seed: Seed) -> SeedFate | None:
         """The known near motion on which it lies."""
         return self.findings.near_motion_through(seed.point)
 

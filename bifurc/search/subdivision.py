@@ -291,7 +291,9 @@ class _Division:
         self.count += count
         self.left.append(_Boxes(*small).middles)
         boxes = _Boxes(*with_arcs)
-        is_within = self._are_within(_Boxes(*rooms))
+        inner = _Boxes(*rooms)
+        low, high = self.problem.bounds.T
+        is_within = (inner.low >= low) & (inner.high <= high)
         unknown = boxes.at(~self._are_known(_Arcs(points, is_steady, is_within)))
         widths = np.max(unknown.high - unknown.low, axis=1, initial=0.0)
         is_small = widths < 2.0 * smallest
@@ -352,12 +354,6 @@ class _Division:
         is_one = (numbers[:, k] == numbers[:, k + 1]) & (numbers[:, k] >= 0)
         covered: np.ndarray = is_one & (travelled < DETOUR * chords)
         return covered
-
-    def _are_within(self, boxes: _Boxes) -> np.ndarray:
-        """Which unknowns (k, n) are within their bounds all over boxes."""
-        low, high = self.problem.bounds.T
-        is_within: np.ndarray = (boxes.low >= low) & (boxes.high <= high)
-        return is_within
 
     def _sides(self, points: np.ndarray) -> np.ndarray:
         """To which side (k, n) of the bounds points (k, n) lie outside, 0 inside."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -68,7 +68,9 @@ def assemble_atlas(
     located = [
         replace(point, u=wrap(point.u, periods))
         for point in findings.points.values()
-        if not _is_on_near_motion(findings, point)
+        # a point that no branch passes is that of a near motion where its rank drops
+        if point.kind is not Kind.ISOLATED
+        or findings.near_motion_through(point.u) is None
     ]
     met = meeting_points(problem, located, branches, surfaces, periods)
     points = tuple(_with_misclosure(point, traced) for point in met)
@@ -165,22 +167,18 @@ def _component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of
     the forms."""
     # networkx, which could do this, takes longer to import than the search
-    components: list[set[Hashable]] = [{form} for form in range(count)]
+    component = {("form", form): form for form in range(count)}
     for point in points:
-        meeting: set[Hashable] = {form for form, _ in point.passes}
-        meeting |= {("surface", k) for k in point.surfaces}
-        apart = [component for component in components if not component & meeting]
-        joined = [component for component in components if component & meeting]
-        components = [*apart, meeting.union(*joined)]
-    parts = [
-        sorted(member for member in component if isinstance(member, int))
-        for component in components
-    ]
-    numbers = [0] * count
-    for number, forms in enumerate(sorted(filter(None, parts))):
-        for form in forms:
-            numbers[form] = number
-    return numbers
+        meeting = [("form", form) for form, _ in point.passes]
+        meeting += [("surface", surface) for surface in point.surfaces]
+        for thing in meeting:
+            component.setdefault(thing, len(component))
+        joined = {component[thing] for thing in meeting}
+        for thing, number in component.items():
+            if number in joined:
+                component[thing] = min(joined)
+    first_forms = [component["form", form] for form in range(count)]
+    return [sorted(set(first_forms)).index(first) for first in first_forms]
 
 
 def _surfaces(
@@ -237,13 +235,6 @@ def _with_misclosure(
     return replace(point, note="; ".join(filter(None, [point.note, note])))
 
 
-def _is_on_near_motion(findings: Findings, point: SingularPoint) -> bool:
-    """Whether a singular point that no branch passes is the place of a near motion
-    where its rank drops, but for the misclosure."""
-    is_isolated = point.kind is Kind.ISOLATED
-    return is_isolated and findings.near_motion_through(point.u) is not None
-
-
 # --- events ---------------------------------------------------------------------------
 
 
@@ -269,31 +260,22 @@ def near_misses_of(
         places = wrap(branch.branch(arclengths), periods)
         for k in order_points(places, periods, problem.scale):
             s = float(arclengths[k])
-            if _is_at_point(problem, places[k], points) or _is_at_pass(form, s, met):
+            to_points = [problem.difference(places[k], p.u) for p in points]
+            is_at_point = any(
+                float(np.linalg.norm(gap)) <= point.error
+                for gap, point in zip(to_points, points, strict=True)
+            )
+            # an end that stops short of a cusp is at it
+            is_at_pass = any(
+                number == form and abs(s - passed) <= meeting.point.error
+                for meeting in met
+                for number, passed in meeting.passes
+            )
+            if is_at_point or is_at_pass:
                 continue
             value, error = near_miss_value(problem, branch.branch, rank, s)
             events.append(Event(form, s, places[k], value, error))
     return tuple(events)
-
-
-def _is_at_point(
-    problem: Problem, place: np.ndarray, points: Sequence[SingularPoint]
-) -> bool:
-    """Whether a place (n,) is no farther from a singular point than its error."""
-    return any(
-        float(np.linalg.norm(problem.difference(place, point.u))) <= point.error
-        for point in points
-    )
-
-
-def _is_at_pass(form: int, s: float, met: Sequence[MeetingPoint]) -> bool:
-    """Whether arclength ``s`` of a form is no farther from where it meets a singular
-    point than the error of that: an end that stops short of a cusp is at it."""
-    return any(
-        number == form and abs(s - passed) <= meeting.point.error
-        for meeting in met
-        for number, passed in meeting.passes
-    )
 
 
 def _dead_points(

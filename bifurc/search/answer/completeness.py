@@ -3,7 +3,6 @@ its words."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 
 from bifurc.atlas import Provenance
@@ -148,11 +147,18 @@ def judge_completeness(
     findings: Findings, provenance: Provenance, doubts: Sequence[Doubt] = ()
 ) -> Completeness:
     """What the audit proves, the estimate for the rest, and what is in doubt."""
-    hits = _count_hits(findings)
+    hits = findings.book.random_hits()
+    hits[NO_SOLUTION] += len(findings.book.seeds.gaps)
     missed = missed_probability(list(hits.values()))
     left = len(findings.book.open_seeds)
     missed_at_most = 1.0 if provenance.out_of_time and left else missed
-    claims = (*_claims(findings, provenance, left), _estimate(hits, missed))
+    total = hits.total()
+    reached = total - hits[NO_SOLUTION]
+    kind = SearchClaim.REACHED if reached else SearchClaim.NOTHING_REACHED
+    estimate = kind.claim(
+        Scope.STARTS, None, reached=reached, starts=total, missed=missed
+    )
+    claims = (*_claims(findings, provenance, left), estimate)
     return Completeness(claims, tuple(doubts), missed_at_most)
 
 
@@ -173,18 +179,3 @@ def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Clai
         kind = SearchClaim.CLOSING_TOLERANCE
         return (kind.claim(Scope.MOTIONS, Level.ESTIMATED, forms=loose),)
     return findings.audit.claims
-
-
-def _count_hits(findings: Findings) -> Counter[SeedFate]:
-    """How many random starts came to each fate."""
-    hits = findings.book.random_hits()
-    hits[NO_SOLUTION] += len(findings.book.seeds.gaps)
-    return hits
-
-
-def _estimate(hits: Counter[SeedFate], missed: float) -> Claim:
-    """What random starts reached, and what one more of them would."""
-    total = hits.total()
-    reached = total - hits[NO_SOLUTION]
-    kind = SearchClaim.REACHED if reached else SearchClaim.NOTHING_REACHED
-    return kind.claim(Scope.STARTS, None, reached=reached, starts=total, missed=missed)

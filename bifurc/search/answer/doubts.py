@@ -10,7 +10,6 @@ import numpy as np
 from bifurc.atlas import Event, Form, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.completeness import Doubt
-from bifurc.curves.certificate import Certificate
 from bifurc.curves.misclosure import misclosure_at
 from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
@@ -57,12 +56,20 @@ def doubts_of(
     are regular ones of the problem ``of_surfaces``, where it is another one.
     """
     for surface in surfaces:
-        yield from _doubts_of_surface(of_surfaces or problem, surface)
+        missed = _misclosure(of_surfaces or problem, surface)
+        samples = surface.samples[:MOST_SAMPLES]
+        if not _is_rounding(of_surfaces or problem, missed, samples):
+            yield SearchDoubt.SURFACE_OR_CURVES.doubt(surface.name, missed)
     for index, branch in enumerate(traced):
         yield from _doubts_of_form(problem, index, branch, points)
     for index, form in enumerate(forms):
-        if form.certificate is not None and form.certificate.leaves_doubt:
-            yield _doubt_of_certificate(_name(index), form.certificate)
+        certificate = form.certificate
+        if certificate is None or not certificate.leaves_doubt:
+            continue
+        kind, places = SearchDoubt.BLURRED, certificate.blurred
+        if len(certificate.gaps):
+            kind, places = SearchDoubt.UNCERTIFIED, certificate.gaps
+        yield kind.doubt(_name(index), places=places.tolist())
     for point in points:
         yield from _doubts_of_point(problem, point)
         yield from _doubts_of_halves(traced, point)
@@ -143,13 +150,6 @@ def _others(
     return len(known) - len(points)
 
 
-def _doubts_of_surface(problem: Problem, surface: Surface) -> Iterator[Doubt]:
-    """Whether what a surface misses is more than rounding."""
-    missed = _misclosure(problem, surface)
-    if not _is_rounding(problem, missed, surface.samples[:MOST_SAMPLES]):
-        yield SearchDoubt.SURFACE_OR_CURVES.doubt(surface.name, missed)
-
-
 def _is_rounding(problem: Problem, missed: float, points: np.ndarray) -> bool:
     """Whether a residual is no more than rounding, which is measured at points (k, n)
     where it is not plain."""
@@ -194,7 +194,11 @@ def _doubts_of_form(
         yield SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur)
     if not traced.multiplicity:
         yield SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank)
-    hidden = _hidden_by_rounding(traced)
+    rates = largest_rates(branch)
+    unit = unit_over_rounding(stands_still, change_by_blur(traced.blur))
+    # larger than the rounding of an ordinary curve, and no larger than what this makes
+    is_hidden = stands_still(rates, unit) & (rates >= stands_still.threshold)
+    hidden = np.flatnonzero(is_hidden)
     if len(hidden):
         numbers = [int(k) + 1 for k in hidden]
         yield SearchDoubt.STILL_UNKNOWNS.doubt(name, unknowns=numbers)
@@ -211,10 +215,16 @@ def _doubts_of_form(
         loose = [
             branch(s)
             for s in (0.0, branch.length)
-            if s not in ends and not _is_at_bounds(problem, branch(s))
+            if s not in ends and not np.any(_are_at_bounds(problem, branch(s)))
         ]
         if loose:
-            yield _doubt_of_loose_ends(problem, name, loose)
+            reach = is_stub.threshold * problem.scale
+            rough = sum(not problem.is_smooth_within(end, reach) for end in loose)
+            if rough:
+                kind = SearchDoubt.STALLED_AT_RIM
+                yield kind.doubt(name, ends=len(loose), rough=rough)
+            else:
+                yield SearchDoubt.STALLED.doubt(name, ends=len(loose))
 
 
 def _name(index: int) -> str:
@@ -222,52 +232,21 @@ def _name(index: int) -> str:
     return f"form {index + 1}"
 
 
-def _doubt_of_loose_ends(
-    problem: Problem, name: str, ends: Sequence[np.ndarray]
-) -> Doubt:
-    """That a form stalls at its ``ends`` (n,), and at how many of them F' is not
-    finite."""
-    reach = is_stub.threshold * problem.scale
-    rough = sum(not problem.is_smooth_within(end, reach) for end in ends)
-    if not rough:
-        return SearchDoubt.STALLED.doubt(name, ends=len(ends))
-    return SearchDoubt.STALLED_AT_RIM.doubt(name, ends=len(ends), rough=rough)
-
-
-def _hidden_by_rounding(traced: TracedBranch) -> np.ndarray:
-    """Indices (k,) of the unknowns whose rates along a branch are no larger than what
-    rounding may make, and no rounding of an ordinary curve."""
-    rates = largest_rates(traced.branch)
-    by_rounding = change_by_blur(traced.blur)
-    stands = stands_still(rates, unit_over_rounding(stands_still, by_rounding))
-    hidden: np.ndarray = np.flatnonzero(stands & (rates >= stands_still.threshold))
-    return hidden
-
-
-def _is_at_bounds(problem: Problem, point: np.ndarray) -> bool:
-    """Whether a point (n,) lies at an end of the bounds."""
-    gaps = np.abs(point[:, None] - problem.bounds)
-    return bool(np.any(is_same_point(gaps, problem.scale)))
+def _are_at_bounds(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Which unknowns of points (..., n) lie at the ends of their bounds (..., n, 2)."""
+    gaps = np.abs(points[..., None] - problem.bounds)
+    at_bounds: np.ndarray = is_same_point(gaps, problem.scale)
+    return at_bounds
 
 
 def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     """The unknowns without bounds of which a form reaches the ends of the region that
     was chosen instead."""
-    is_assumed = problem.has_assumed_bounds
-    if branch.outcome is not Outcome.LEFT_REGION or not np.any(is_assumed):
+    if branch.outcome is not Outcome.LEFT_REGION:
         return []
-    ends = np.array([branch(0.0), branch(branch.length)])
-    gaps = np.abs(ends[:, :, None] - problem.bounds)  # (2, n, 2)
-    is_there = is_same_point(gaps, problem.scale).any(axis=0) & is_assumed
+    ends = branch(np.array([0.0, branch.length]))
+    is_there = _are_at_bounds(problem, ends).any(axis=0) & problem.has_assumed_bounds
     return [problem.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
-
-
-def _doubt_of_certificate(name: str, certificate: Certificate) -> Doubt:
-    """Where nothing is certified of a form."""
-    if len(certificate.gaps):
-        places = certificate.gaps.tolist()
-        return SearchDoubt.UNCERTIFIED.doubt(name, places=places)
-    return SearchDoubt.BLURRED.doubt(name, places=certificate.blurred.tolist())
 
 
 def _doubts_of_halves(

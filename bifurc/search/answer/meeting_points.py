@@ -72,7 +72,9 @@ def _meeting_point(
     seen = len(point.half_branches)
     kind, note = point.kind, ""
     if traced != seen:
-        kind = _kind_in_doubt(point, traced)
+        kind = Kind.BIFURCATION if traced > 2 else Kind.UNDECIDED
+        if point.dimension > 1:
+            kind = Kind.DIMENSION_CHANGE
         note = f"{traced} half-branches were traced, the section shows {seen}"
     met: tuple[int, ...] = ()
     if point.dimension > 1:
@@ -101,28 +103,14 @@ def _tangents(
     """
     tangents = np.empty((len(passes), len(point.u)))
     for row, (index, s) in enumerate(passes):
-        tangents[row] = _exact_tangent(branches[index](s, 1), point)
+        tangents[row] = along = branches[index](s, 1)
+        if not len(point.tangents):
+            continue
+        cosines = point.tangents @ along / np.linalg.norm(along)
+        nearest = int(np.argmax(np.abs(cosines)))
+        if is_same_line(1.0 - float(np.abs(cosines[nearest]))):
+            tangents[row] = np.sign(cosines[nearest]) * point.tangents[nearest]
     return tangents
-
-
-def _exact_tangent(along: np.ndarray, point: SingularPoint) -> np.ndarray:
-    """The tangent (n,) of second order at a point, if one has the direction ``along``
-    (n,) of a branch there; else that direction."""
-    if not len(point.tangents):
-        return along
-    cosines = point.tangents @ along / np.linalg.norm(along)
-    nearest = int(np.argmax(np.abs(cosines)))
-    if not is_same_line(1.0 - float(np.abs(cosines[nearest]))):
-        return along
-    tangent: np.ndarray = np.sign(cosines[nearest]) * point.tangents[nearest]
-    return tangent
-
-
-def _kind_in_doubt(point: SingularPoint, half_branches: int) -> Kind:
-    """The kind of a point at which other half-branches were traced than seen."""
-    if point.dimension > 1:
-        return Kind.DIMENSION_CHANGE
-    return Kind.BIFURCATION if half_branches > 2 else Kind.UNDECIDED
 
 
 def ends_at(problem: Problem, branch: Branch, point: SingularPoint) -> list[float]:

@@ -260,10 +260,12 @@ class UnitProblem(EquationProblem):
         ``deadline``."""
         if _has_own(self.problem, "seeds"):
             return self.seeds_inwards(self.problem.seeds_until(rng, count, deadline))
-        if np.allclose(self.own_box, self.region):
+        # the bounds, and on a circle the region
+        box = np.where(np.isinf(self.bounds), self.region, self.bounds)
+        if np.allclose(box, self.region):
             return random_seeds(self, rng, count, self.region, deadline)
         near = random_seeds(self, rng, count - count // 2, self.region, deadline)
-        anywhere = random_seeds(self, rng, count // 2, self.own_box, deadline)
+        anywhere = random_seeds(self, rng, count // 2, box, deadline)
         return near.and_random(anywhere)
 
     def seeds_inwards(self, seeds: Seeds) -> Seeds:
@@ -296,12 +298,6 @@ class UnitProblem(EquationProblem):
             home=None if seeds.home is None else home,
             more=None if seeds.more is None else more,
         )
-
-    @property
-    def own_box(self) -> np.ndarray:
-        """The bounds (n, 2), and on a circle the region."""
-        box: np.ndarray = np.where(np.isinf(self.bounds), self.region, self.bounds)
-        return box
 
     def ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
         """Points (k, n), in the user's units, at which ``count`` random starts in the
@@ -347,10 +343,15 @@ def in_own_units(
         return None
     has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
     if has_own_answers or problem.n > LARGEST_DENSE:
-        own = _in_unit_of_scale(problem)
+        sizes = np.full(problem.n, _unit_of(problem))
+        weights = np.ones(problem._rows)
+        own = UnitProblem(problem, Units(np.zeros(problem.n), sizes, weights))
     else:
         own = _in_units_of_solutions(problem, deadline or Deadline())
-    return None if _is_as_it_stands(problem, own) else own
+    units = own.own_units
+    has_gained = np.any(units.origin) or own.simplified is not None
+    has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
+    return own if has_gained or has_sizes or _unit_of(problem) != 1.0 else None
 
 
 def _has_own(problem: FunctionProblem, name: str) -> bool:
@@ -358,14 +359,8 @@ def _has_own(problem: FunctionProblem, name: str) -> bool:
     return getattr(type(problem), name) is not getattr(FunctionProblem, name)
 
 
-def _in_unit_of_scale(problem: FunctionProblem) -> UnitProblem:
-    """The equations with all unknowns counted in the power of 2 next to the scale."""
-    sizes = np.full(problem.n, _unit_of(problem))
-    units = Units(np.zeros(problem.n), sizes, np.ones(problem._rows))
-    return UnitProblem(problem, units)
-
-
 def _unit_of(problem: FunctionProblem) -> float:
+    """The power of 2 next to the scale."""
     return float(2.0 ** round(math.log2(problem.scale)))
 
 
@@ -382,7 +377,8 @@ def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> Unit
         if closer is None or deadline.passed:
             break
         # what shrinks without end is a point, and looked at from where it is
-        is_point |= _is_a_point(closer, whole)
+        extents = np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(closer).max(axis=1))
+        is_point |= np.diff(closer, axis=1)[:, 0] < POINT * extents
         region = np.where(is_point[:, None], whole, closer)
         own = _problem_on(problem, region, simplified)
     else:
@@ -396,14 +392,6 @@ def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> Unit
     if not np.array_equal(region, whole) and not _has_curves(own):
         own = _deflated(_problem_on(problem, whole, simplified))
     return own
-
-
-def _is_a_point(region: np.ndarray, whole: np.ndarray) -> np.ndarray:
-    """In which unknowns (n,) a region (n, 2) is so small a part of the ``whole`` (n, 2)
-    that it is one point."""
-    least = POINT * np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(region).max(axis=1))
-    is_point: np.ndarray = np.diff(region, axis=1)[:, 0] < least
-    return is_point
 
 
 def in_one_size(own: UnitProblem) -> UnitProblem:
@@ -521,7 +509,10 @@ def _with_derivatives(
     tape, deflated = own.tape, own
     begin, order = 0, 1
     while order < HIGHEST and tape.m <= MOST_EQUATIONS:
-        flat = [begin + row for row in _flat_everywhere(flatness[:, begin:])]
+        if not len(flatness):
+            break
+        rule = np.quantile(flatness[:, begin:], 1.0 - OUTER, axis=0)
+        flat = (begin + np.flatnonzero(is_flat_equation(rule))).tolist()
         if not flat:
             break
         begin = tape.m
@@ -544,15 +535,6 @@ def _flatness(own: UnitProblem) -> np.ndarray:
     lengths = np.linalg.norm(own.jacobians(ends), axis=2)
     flatness: np.ndarray = lengths / (usual + TINY)
     return flatness
-
-
-def _flat_everywhere(flatness: np.ndarray) -> list[int]:
-    """Which of the equations of a ``flatness`` (k, m) have no gradient at solutions, as
-    a rule."""
-    if not len(flatness):
-        return []
-    rule = np.quantile(flatness, 1.0 - OUTER, axis=0)
-    return np.flatnonzero(is_flat_equation(rule)).tolist()
 
 
 def _has_curves(own: UnitProblem) -> bool:
@@ -609,12 +591,3 @@ def _weights(own: UnitProblem) -> np.ndarray:
         return ones
     ones[is_counted] = np.exp2(-np.round(np.log2(counted)))
     return ones
-
-
-def _is_as_it_stands(problem: FunctionProblem, own: UnitProblem) -> bool:
-    """Whether nothing is gained by other units."""
-    units = own.own_units
-    is_same = not np.any(units.origin) and own.simplified is None
-    has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
-    is_near_scale = _unit_of(problem) == 1.0
-    return is_same and not has_sizes and is_near_scale
