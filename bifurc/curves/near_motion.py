@@ -65,7 +65,7 @@ LOCATED = 1e-9  # over the scale: error of the places where the misclosure is ex
 class NearMotionTrace:
     """A curve along which a system is nearly solved.
 
-    ``branch``: as far as it nearly closes, or all round if it ``is_closed``; where it
+    ``branch``: as far as it nearly closes, or all round if it is closed; where it
     ``is_short`` it counts as none. The least residuals across it go up to
     ``misclosure``, over the magnitude; where it passes a place at which the rank drops
     it ``is_blurred`` there, and what it misses is looked for before and beyond. Where
@@ -81,16 +81,6 @@ class NearMotionTrace:
     is_repeated: bool
     assemblies: np.ndarray
     tolerance: float
-
-    @property
-    def length(self) -> float:
-        """Its arclength."""
-        return self.branch.length
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether it comes back to its start."""
-        return self.branch.closed
 
     @property
     def has_loose_end(self) -> bool:
@@ -192,11 +182,6 @@ class _Course:
     is_blurred: np.ndarray
     bridges: np.ndarray
 
-    @property
-    def is_closed(self) -> bool:
-        """Whether it comes back to its start."""
-        return self.branch.closed
-
     def extremes(self) -> tuple[np.ndarray, np.ndarray]:
         """Points (k, n) at which most is missed, and how much (k,): between ends of the
         curve and of the places where the valley is blurred."""
@@ -215,7 +200,7 @@ class _Course:
         """Arclengths (k,) at which the misclosure is least (``sign`` 1) or largest
         (-1), next to nothing else."""
         s, slopes, blurred = self.arclengths, sign * self.slopes, self.is_blurred
-        if self.is_closed:
+        if self.branch.closed:
             s = np.append(s, s[0] + self.branch.length)
             slopes = np.append(slopes, slopes[0])
             blurred = np.append(blurred, blurred[0])
@@ -233,7 +218,7 @@ class _Course:
         """The ends (k, n) of the curve, if it is open, and of all places where the
         valley is blurred."""
         ends = []
-        if not self.is_closed:
+        if not self.branch.closed:
             ends += list(self.branch(np.array([0.0, self.branch.length])))
         for number in self.bridges:
             ends += self._edges(*self.branch.breaks[number : number + 2])
@@ -325,7 +310,7 @@ def _assemblies(problem: Problem, course: _Course) -> np.ndarray:
         if not kept or _are_apart(problem, heights, zeros, kept[-1], k):
             kept.append(k)
     if (
-        course.is_closed
+        course.branch.closed
         and len(kept) > 1
         and not _are_apart(
             problem, np.append(heights, heights), zeros, kept[-1], kept[0]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.decisions import is_flat, nearly_closes
-from bifurc.numerics.null_spaces import decompose
+from bifurc.numerics.null_spaces import decompose, newton_in_rank
 from bifurc.problem import Problem
 
 STEPS = 6  # of Newton's method across a surface
@@ -46,7 +46,8 @@ def near_surfaces(
     dimensions = _weak_directions(problem, points)
     for dimension in range(2, problem.n):
         own = dimensions == dimension
-        places = _across(problem, points[own], dimension)
+        rank = problem.n - dimension
+        places = newton_in_rank(problem, points[own], rank, STEPS)
         if not len(places) or not _is_surface(problem, places, dimension):
             continue
         misclosure = float(problem.gaps(places).max())
@@ -69,14 +70,6 @@ def _weak_directions(problem: Problem, points: np.ndarray) -> np.ndarray:
     return counts
 
 
-def _across(problem: Problem, points: np.ndarray, dimension: int) -> np.ndarray:
-    """Points (k, n) corrected across a near surface."""
-    for _ in range(STEPS if len(points) else 0):
-        steps = decompose(problem, points).newton_steps(problem.n - dimension)
-        points = points + steps
-    return points
-
-
 def _is_surface(problem: Problem, places: np.ndarray, dimension: int) -> bool:
     """Whether about most of the places (k, n) the system is nearly solved in all weak
     directions, as far as `FAR`."""
@@ -84,7 +77,7 @@ def _is_surface(problem: Problem, places: np.ndarray, dimension: int) -> bool:
     right = decompose(problem, tried).right[:, problem.n - dimension :]  # (k, d, n)
     steps = FAR * problem.scale * np.concatenate([right, -right], axis=1)
     probes = (tried[:, None] + steps).reshape(-1, problem.n)
-    ends = _across(problem, probes, dimension)
+    ends = newton_in_rank(problem, probes, problem.n - dimension, STEPS)
     starts = np.repeat(tried, 2 * dimension, axis=0)
     moves = np.linalg.norm(ends - starts, axis=1)
     goes_on = (moves > STAYS * FAR * problem.scale) & nearly_closes(problem.gaps(ends))

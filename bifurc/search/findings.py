@@ -311,7 +311,7 @@ class Findings:
         if near.is_short:
             self.short_stretches.append(near)
             return None
-        points = near.branch(near.length * PLACES)
+        points = near.branch(near.branch.length * PLACES)
         for number, known in enumerate(self.near_motions):
             if np.median(known.runs_through(self.problem, points)) > 0.5:
                 return number
