@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bifurc.atlas import Surface
-from bifurc.curves.rank_deflation import RankDeflated
+from bifurc.curves.deflation import RankDeflated
 from bifurc.decisions import (
     closes_to_rounding,
     is_same_point,

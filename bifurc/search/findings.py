@@ -12,8 +12,7 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
-from bifurc.curves.near_motion import NearMotionTrace
-from bifurc.curves.near_surface import NearSurface
+from bifurc.curves.near_motion import NearMotionTrace, NearSurface
 from bifurc.decisions import (
     Decision,
     is_lost_in_rounding,

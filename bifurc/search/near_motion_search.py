@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bifurc.curves.near_motion import trace_near_motion
-from bifurc.curves.near_surface import near_surfaces
+from bifurc.curves.near_motion import near_surfaces, trace_near_motion
 from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
 from bifurc.numerics.singular_values import singular_values
 from bifurc.search.canonical_course import canonical_course

@@ -11,9 +11,8 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.deflation import Deflated, lower_rank_direction
+from bifurc.curves.deflation import Deflated, RankDeflated, lower_rank_direction
 from bifurc.curves.misclosure import largest_misclosure
-from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.decisions import (
     closes_to_rounding,
     is_at_rest,

@@ -2,7 +2,7 @@
 
 All along such a curve F' has one rank, lower than on the surface about it. That F = 0
 and that F' has no higher rank are equations of which the curve is a regular solution
-(`bifurc.curves.rank_deflation`): it is traced like a form.
+(`bifurc.curves.deflation`): it is traced like a form.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.rank_deflation import RankDeflated
+from bifurc.curves.deflation import RankDeflated
 from bifurc.decisions import is_same_point
 from bifurc.limits import Deadline
 from bifurc.problem import Problem
